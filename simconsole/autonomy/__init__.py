@@ -1,0 +1,1 @@
+"""The ROS side's driver: a program that only speaks rosbridge."""

@@ -1,0 +1,1 @@
+"""The rosbridge link: protocol core, messages, topics; server and client."""

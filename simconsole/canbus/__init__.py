@@ -1,0 +1,1 @@
+"""The CAN bus: its room is ready, a later release fills it."""

@@ -1,0 +1,1 @@
+"""Who drives: the mode table, arbitration and the last gate."""

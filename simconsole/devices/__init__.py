@@ -1,0 +1,1 @@
+"""The cockpit: sources, roles, calibration and validity."""

@@ -1,0 +1,59 @@
+"""Everything simconsole raises on purpose.
+
+::
+
+    SimConsoleError
+    +-- ProfileError            a profile or script: file, key, value, allowed range
+    +-- DeviceError             a cockpit device
+    |   +-- DeviceNotFound      the profile names a device that is not there
+    |   +-- DeviceModeError     the device is there in a mode that cannot drive
+    +-- BridgeError             the rosbridge link
+    |   +-- LocalProtocolError  we broke the protocol: a bug here
+    |   +-- RemoteProtocolError the peer broke the protocol: answered with a status
+    +-- RecordingError          a bundle or log that cannot be read
+    +-- StationError            a consumer process or its shared memory
+
+The command line prints the message on one line and exits with `exit_code`; a traceback means a bug.
+"""
+
+
+class SimConsoleError(Exception):
+    """Base of all errors a user can cause or cure. The message is one complete line."""
+
+    exit_code = 2
+
+
+class ProfileError(SimConsoleError):
+    """A profile, script or trace cannot be used. Names file, key, value and allowed range."""
+
+
+class DeviceError(SimConsoleError):
+    """A cockpit device cannot be used."""
+
+
+class DeviceNotFound(DeviceError):
+    """A device that the profile binds is not connected."""
+
+
+class DeviceModeError(DeviceError):
+    """A device is connected in a mode that cannot drive (the T500 RS boots as a gamepad)."""
+
+
+class BridgeError(SimConsoleError):
+    """The rosbridge link cannot be opened or has failed."""
+
+
+class LocalProtocolError(BridgeError):
+    """This side asked for something the protocol forbids."""
+
+
+class RemoteProtocolError(BridgeError):
+    """The peer sent something the protocol forbids; nothing of it was applied."""
+
+
+class RecordingError(SimConsoleError):
+    """A bundle or log is missing, truncated before its first tick, altered or of another version."""
+
+
+class StationError(SimConsoleError):
+    """A station process or the shared memory that feeds it cannot be opened."""

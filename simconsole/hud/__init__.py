@@ -1,0 +1,1 @@
+"""The driver's seat: layout and window."""

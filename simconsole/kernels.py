@@ -1,0 +1,70 @@
+"""Kernels: functions of one source text that run as plain Python and compiled, with equal bits.
+
+A kernel takes and returns floats, `typing.NamedTuple`s of floats and float64 arrays, calls only other kernels
+(imported by name), `math.sqrt` and `abs`, and uses only + - * / and comparisons. It stays an ordinary function
+here; `simconsole.compiling` makes the compiled twin, so importing a core never loads numba.
+"""
+
+from collections.abc import Callable, Iterable
+from typing import Any, TypeVar
+
+from numpy.typing import NDArray
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+Row = NDArray[Any]
+"""A float64 vector."""
+
+
+def kernel(function: F) -> F:
+    """Mark `function` as a kernel and return it unchanged."""
+    function.__kernel__ = True  # type: ignore[attr-defined]
+    return function
+
+
+def is_kernel(value: object) -> bool:
+    """Return whether `value` was marked by `kernel`."""
+    return bool(getattr(value, "__kernel__", False))
+
+
+def take(row: Row, start: int, count: int) -> tuple[float, ...]:
+    """Return `count` values of `row` from `start` as Python floats.
+
+    In kernels, `count` must be a module constant: `State(*take(row, STATE_AT, STATE_WIDTH))`.
+    """
+    return tuple(row[start : start + count].tolist())
+
+
+@kernel
+def put(row: Row, start: int, values: Iterable[float]) -> None:
+    """Write a NamedTuple of floats into `row` from `start`."""
+    index = start
+    for value in values:
+        row[index] = value
+        index += 1
+
+
+@kernel
+def clip(value: float, low: float, high: float) -> float:
+    """Limit a *finite* value. Test `is_finite` first: a NaN would pass every comparison."""
+    if value < low:
+        return low
+    if value > high:
+        return high
+    return value
+
+
+@kernel
+def is_finite(value: float) -> bool:
+    """Return False for NaN and both infinities, by arithmetic alone (equal in both executions)."""
+    return value - value == 0.0
+
+
+@kernel
+def approach(value: float, target: float, step: float) -> float:
+    """Move `value` towards `target` by at most `step` (>= 0): a rate limit over one tick."""
+    if target > value + step:
+        return value + step
+    if target < value - step:
+        return value - step
+    return target

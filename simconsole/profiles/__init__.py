@@ -1,0 +1,1 @@
+"""Typed profiles with bounds and defaults; simconsole.profile_files reads them."""

@@ -1,0 +1,85 @@
+"""The session profile: one drive, in the paper's six sections."""
+
+from typing import Annotated, Literal
+
+from msgspec import Meta, Struct
+
+from simconsole.profiles.bridge import BridgeProfile
+from simconsole.profiles.control import ControlProfile
+
+Name = Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$")]
+"""A bare profile name: no path, so that one profile can never reach outside the profile folder."""
+
+
+class Section(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Base of every section: unknown keys are errors."""
+
+
+class Start(Section):
+    """Where base_link stands at tick 0."""
+
+    x_m: Annotated[float, Meta(ge=-1e5, le=1e5)] = 0.0
+    y_m: Annotated[float, Meta(ge=-1e5, le=1e5)] = 0.0
+    yaw_deg: Annotated[float, Meta(ge=-180.0, le=180.0)] = 0.0
+
+
+class Environment(Section):
+    """The world and the ground under the wheels."""
+
+    world: Name | None = None
+    friction: Annotated[float, Meta(gt=0.0, le=2.0)] = 1.0
+    slope_x_percent: Annotated[float, Meta(ge=-40.0, le=40.0)] = 0.0
+    slope_y_percent: Annotated[float, Meta(ge=-40.0, le=40.0)] = 0.0
+
+
+class Scenario(Section):
+    """What is driven: the vehicle, from where, how long."""
+
+    vehicle: Name = "hatchback"
+    start: Start = Start()
+    duration_s: Annotated[float, Meta(gt=0.0, le=86_400.0)] | None = None
+
+
+class Features(Section):
+    """What the console does beside driving: who may command, and how it supervises them."""
+
+    control: ControlProfile = ControlProfile()
+
+
+class Outputs(Section):
+    """Who sees the drive."""
+
+    bridge: BridgeProfile | None = None
+    hud: bool = True
+    scene: bool = True
+    report: bool = True
+
+
+class Devices(Section):
+    """The cockpit."""
+
+    cockpit: Name = "t500rs_th8rs"
+    driver: Annotated[str, Meta(pattern=r"^(none|sdl|keyboard|virtual|(trace|script):.+)$")] = "sdl"
+    script: Name | None = None
+
+
+class ModeSection(Section):
+    """How time passes."""
+
+    tick_hz: Literal[50, 100, 125, 200, 250, 500, 1000] = 250
+    pacing: Literal["realtime", "free", "lockstep"] = "realtime"
+    control_period_ms: Annotated[int, Meta(ge=1, le=1000)] = 20
+    answer_timeout_s: Annotated[float, Meta(gt=0.0, le=60.0)] = 2.0
+
+
+class SessionProfile(Section):
+    """One drive."""
+
+    schema: Literal[1]
+    title: str = ""
+    environment: Environment = Environment()
+    scenario: Scenario = Scenario()
+    features: Features = Features()
+    outputs: Outputs = Outputs()
+    devices: Devices = Devices()
+    mode: ModeSection = ModeSection()

@@ -1,0 +1,1 @@
+"""The append log, the bundle, replay and comparison."""

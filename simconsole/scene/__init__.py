@@ -1,0 +1,1 @@
+"""The operators' view: state to shapes, shapes to rerun."""

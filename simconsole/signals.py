@@ -1,0 +1,259 @@
+"""The values of one tick: what the rooms hand to each other, with the unit in every field name.
+
+Frames: ISO 8855 / REP-103, x forward, y left, z up, angles left-positive; poses are of `base_link`, the centre of
+the rear axle on the ground, in `map`. Every field is a float64, so that one row holds a whole tick (rows.py) and
+the same classes serve the compiled functions. Enumerations are stored as their number.
+"""
+
+from enum import IntEnum, IntFlag
+from typing import Final, NamedTuple
+
+NEVER_TICKS: Final = 1e9
+"""Age of something that has never been received or whose device is gone."""
+
+
+class Validity(IntEnum):
+    """How far an input may be trusted. Nothing is commanded before ARMED."""
+
+    UNKNOWN = 0
+    ARMED = 1
+    LIVE = 2
+    STALE = 3
+    LOST = 4
+
+
+class Mode(IntEnum):
+    """Who drives. The transitions are the table of control/modes.py and nothing else."""
+
+    PARKED = 0
+    MANUAL = 1
+    SHARED = 2
+    AUTONOMOUS = 3
+    TAKEOVER_REQUESTED = 4
+    MINIMAL_RISK = 5
+    STOPPED = 6
+    EMERGENCY_STOP = 7
+
+
+class Reason(IntEnum):
+    """Why the mode last changed, or why a request to change it was refused."""
+
+    START = 0
+    PERSON_ASKED = 1
+    OPERATOR_ASKED = 2
+    REMOTE_ASKED = 3
+    STEERING_OVERRIDE = 4
+    BRAKE_OVERRIDE = 5
+    THROTTLE_OVERRIDE = 6
+    COMMAND_STALE = 7
+    COMMAND_INVALID = 8
+    DEVICE_LOST = 9
+    NO_REACTION = 10
+    STANDSTILL = 11
+    EMERGENCY = 12
+    RESET = 13
+    ARMED = 14
+    REFUSED_NO_COMMAND = 20
+    REFUSED_BRAKE_PRESSED = 21
+    REFUSED_TOO_FAST = 22
+    REFUSED_LATERAL_ACCELERATION = 23
+    REFUSED_NOT_ARMED = 24
+    REFUSED_EMERGENCY = 25
+    REFUSED_DEVIATION = 26
+
+
+class RemoteKind(IntEnum):
+    """What a remote command means; control/remote.py turns each kind into one request."""
+
+    NONE = 0
+    ACCELERATION = 1
+    SPEED = 2
+    TWIST = 3
+    ACTUATION = 4
+    POSE = 5
+
+
+class Event(IntFlag):
+    """Edges that happened since the last tick, whoever raised them."""
+
+    EMERGENCY_STOP = 1
+    RESET = 2
+    REQUEST_MANUAL = 4
+    REQUEST_AUTONOMOUS = 8
+    REQUEST_TAKEOVER = 16
+    REQUEST_SHARED = 32
+    COMMANDER_LOST = 64
+    MARK = 128
+    LOOP_STALL = 256
+
+
+class Button(IntFlag):
+    """What a pressed button means after the device profile has given it a role."""
+
+    AUTONOMOUS = 1
+    MANUAL = 2
+    EMERGENCY_STOP = 4
+    RESET = 8
+    SHIFT_UP = 16
+    SHIFT_DOWN = 32
+    INDICATOR_LEFT = 64
+    INDICATOR_RIGHT = 128
+    MARK = 256
+
+
+class DeviceSample(NamedTuple):
+    """The cockpit exactly as read: raw axes -1..1, buttons as bit masks of their device, ages in whole ticks.
+
+    An age counts from the last successful poll of the device, NEVER_TICKS when it is not there.
+    """
+
+    wheel_axis: float
+    throttle_axis: float
+    brake_axis: float
+    clutch_axis: float
+    handbrake_axis: float
+    wheel_buttons: float
+    shifter_buttons: float
+    hat_x: float
+    hat_y: float
+    wheel_age_ticks: float
+    pedals_age_ticks: float
+    shifter_age_ticks: float
+
+
+class RemoteCommand(NamedTuple):
+    """The newest accepted command of the controller on the ROS side; fields its kind does not use are 0."""
+
+    kind: float
+    sequence: float  # commands accepted since the start; 0 before the first
+    refused: float  # commands refused since the start
+    age_ticks: float  # since receipt
+    road_wheel_rad: float
+    road_wheel_radps: float
+    speed_mps: float
+    accel_mps2: float
+    yaw_rate_radps: float
+    throttle: float
+    brake: float
+    x_m: float
+    y_m: float
+    yaw_rad: float
+    direction: float  # 1 drive, -1 reverse, 0 neutral (Autoware GearCommand)
+
+
+class EventInput(NamedTuple):
+    """All edges that came in since the last tick, as a mask of `Event`."""
+
+    events: float
+
+
+class DriverInput(NamedTuple):
+    """The person, calibrated: angles left-positive, pedals 0 (released) to 1 (pressed), lever -1 (R), 0 (N), 1..7."""
+
+    hand_wheel_rad: float
+    hand_wheel_radps: float
+    throttle: float
+    brake: float
+    clutch: float
+    handbrake: float
+    gear: float
+    pressed: float  # Button mask, held now
+    edges: float  # Button mask, pressed since the last tick
+    wheel_validity: float
+    throttle_validity: float
+    brake_validity: float
+    clutch_validity: float
+    shifter_validity: float
+    neutral_ticks: float  # how long the lever has shown no gear (dwell)
+
+
+class Request(NamedTuple):
+    """What one source asks of the vehicle, in the actuators' own terms."""
+
+    road_wheel_rad: float
+    throttle: float
+    brake: float
+    clutch: float
+    handbrake: float
+    gear: float
+    automatic: float  # 1: the car works clutch and gears itself, in the direction of `gear`
+
+
+class ArbiterMemory(NamedTuple):
+    """What arbitration must remember from one tick to the next."""
+
+    mode_ticks: float  # since the mode was entered
+    engage_hand_wheel_rad: float  # where the hand wheel was when autonomy was engaged
+    steering_ticks: float  # how long the hand wheel has been past the take-over threshold
+    refused_seen: float
+    invalid_run: float  # refused commands in a row
+    fade_ticks: float  # since the last hand-over
+    speed_integral_mps2: float
+    hold_road_wheel_rad: float
+    standstill_ticks: float
+
+
+class Arbitration(NamedTuple):
+    """Who had how much authority in this tick, and why. Person's share = 1 - remote's share."""
+
+    mode: float
+    reason: float
+    remote_lateral: float
+    remote_longitudinal: float
+    person_road_wheel_rad: float
+    person_throttle: float
+    person_brake: float
+    remote_road_wheel_rad: float
+    remote_throttle: float
+    remote_brake: float
+    takeover_stage: float  # 0 none, 1 asked, 2 escalated
+
+
+class VehicleCommand(NamedTuple):
+    """What leaves the last gate: finite and inside every limit."""
+
+    road_wheel_rad: float
+    throttle: float
+    brake: float
+    clutch: float
+    handbrake: float
+    gear: float
+    automatic: float
+    target_speed_mps: float
+    target_x_m: float
+    target_y_m: float
+    target_yaw_rad: float
+    gate_active: float  # mask of the limits that changed something
+
+
+class VehicleState(NamedTuple):
+    """The vehicle as others see it; pose and velocity of base_link, accelerations of the centre of gravity."""
+
+    x_m: float
+    y_m: float
+    z_m: float
+    yaw_rad: float
+    pitch_rad: float
+    roll_rad: float
+    vx_mps: float
+    vy_mps: float
+    yaw_rate_radps: float
+    ax_mps2: float
+    ay_mps2: float
+    road_wheel_rad: float
+    hand_wheel_torque_nm: float  # at the rim, left-positive
+    engine_radps: float
+    engine_running: float
+    gear: float  # engaged in the gearbox
+    clutch: float  # 0 closed, 1 open, after the automatic
+    distance_m: float
+    coast_accel_mps2: float  # what released pedals would give now
+    full_throttle_accel_mps2: float  # what full throttle would give now
+    full_brake_accel_mps2: float  # what full brake would give now (negative)
+
+
+class TickTiming(NamedTuple):
+    """Wall-clock facts of one tick: they travel beside the snapshot, so equal drives stay equal bytes."""
+
+    late_ns: int
+    work_ns: int

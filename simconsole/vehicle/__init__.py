@@ -1,0 +1,1 @@
+"""The vehicles: platforms behind one interface."""

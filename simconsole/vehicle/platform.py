@@ -1,0 +1,45 @@
+"""The interface behind which every vehicle stands."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from simconsole.kernels import Row
+from simconsole.signals import VehicleState
+
+
+class Pose(NamedTuple):
+    """Where base_link starts, in `map`."""
+
+    x_m: float
+    y_m: float
+    yaw_rad: float
+
+
+class Ground(NamedTuple):
+    """The ground under the vehicle: friction coefficient and the slope of its plane along x and y of `map`."""
+
+    friction: float
+    slope_x: float
+    slope_y: float
+
+
+class Platform(NamedTuple):
+    """One vehicle, ready to drive.
+
+    `step(previous_row, row, parameters, substeps)` is a kernel: it reads `VehicleCommand` from `row` at COMMAND_AT
+    and its own state from `previous_row` at PLATFORM_AT, advances `substeps` steps of 1 ms, and writes
+    `VehicleState` at VEHICLE_AT and its state at PLATFORM_AT of `row` (simconsole.rows).
+    """
+
+    name: str
+    state: type[Any]  # a NamedTuple of floats: the platform's own columns
+    initial_state: tuple[float, ...]
+    initial_vehicle: VehicleState
+    parameters: Row
+    step: Callable[[Row, Row, Row, int], None]
+    steering_ratio: float  # hand-wheel angle per road-wheel angle
+    max_road_wheel_rad: float
+    length_m: float
+    width_m: float
+    height_m: float
+    rear_overhang_m: float  # from base_link to the rear end

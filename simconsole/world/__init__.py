@@ -1,0 +1,1 @@
+"""The road: course, crossings, lights."""
