@@ -5,24 +5,80 @@ this same function; only where inputs come from, how ticks are paced and who rea
 """
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, Final, NamedTuple, TypeVar
 
 import numpy as np
 
-from simconsole.control.decide import decide
-from simconsole.devices.calibration import calibrate
-from simconsole.kernels import Row, kernel, put
-from simconsole.rows import INPUT_WIDTH, PLATFORM_AT, VEHICLE_AT, Snapshot, TickInputs, columns, input_row
+from simconsole.control.arbitration import arbitrate
+from simconsole.control.gate import gate
+from simconsole.control.settings import ControlSettings
+from simconsole.devices.calibration import CockpitSettings, calibrate
+from simconsole.kernels import Row, kernel, put, take
+from simconsole.rows import (
+    ARBITRATION_AT,
+    ARBITRATION_WIDTH,
+    COMMAND_AT,
+    COMMAND_WIDTH,
+    DRIVER_AT,
+    DRIVER_WIDTH,
+    EVENTS_AT,
+    EVENTS_WIDTH,
+    INPUT_WIDTH,
+    MEMORY_AT,
+    MEMORY_WIDTH,
+    PLATFORM_AT,
+    REMOTE_AT,
+    REMOTE_WIDTH,
+    SAMPLE_AT,
+    SAMPLE_WIDTH,
+    VEHICLE_AT,
+    VEHICLE_WIDTH,
+    Snapshot,
+    TickInputs,
+    columns,
+)
+from simconsole.signals import (
+    NEVER_TICKS,
+    ArbiterMemory,
+    Arbitration,
+    DeviceSample,
+    DriverInput,
+    EventInput,
+    RemoteCommand,
+    VehicleCommand,
+    VehicleState,
+)
 from simconsole.vehicle.platform import Platform
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+COCKPIT_AT: Final = 0
+COCKPIT_WIDTH: Final = len(CockpitSettings._fields)
+CONTROL_AT: Final = COCKPIT_WIDTH
+CONTROL_WIDTH: Final = len(ControlSettings._fields)
+PHYSICS_HZ: Final = 1000
+"""The vehicle integrates at a fixed 1 ms whatever the tick."""
+
+NO_SAMPLE: Final = DeviceSample(
+    *(0.0,) * (SAMPLE_WIDTH - 3),
+    wheel_age_ticks=NEVER_TICKS,
+    pedals_age_ticks=NEVER_TICKS,
+    shifter_age_ticks=NEVER_TICKS,
+)
+NO_COMMAND: Final = RemoteCommand(*(0.0,) * REMOTE_WIDTH)._replace(age_ticks=NEVER_TICKS)
+NO_EVENTS: Final = EventInput(events=0.0)
 
 
 class Console(NamedTuple):
-    """What stays constant over a drive: the configuration that `advance` works under."""
+    """What stays constant over a drive: the configuration under which `advance` works."""
 
     tick_hz: int
-    settings: Row  # CockpitSettings and ControlSettings, flattened
+    tick_s: float
+    substeps: int
+    width: int
+    settings: Row  # CockpitSettings, then ControlSettings
     platform: Platform
-    decide: Callable[[Row, Row, Row, int], None]
+    decide: Callable[[Row, Row, Row, float], None]
     step: Callable[[Row, Row, Row, int], None]
 
     @property
@@ -32,7 +88,81 @@ class Console(NamedTuple):
 
 
 class ConsoleState(NamedTuple):
-    """Everything one tick hands to the next."""
+    """Everything one tick hands to the next: the row is the whole state."""
 
     tick: int
     row: Row
+
+
+def build_console(
+    cockpit: CockpitSettings, control: ControlSettings, platform: Platform, tick_hz: int, execution: Callable[[F], F]
+) -> Console:
+    """Put a console together. `execution` is `compiling.compiled` or `compiling.plain`; both give equal bits.
+
+    Raises:
+        ValueError: `tick_hz` does not divide 1000.
+    """
+    if PHYSICS_HZ % tick_hz:
+        raise ValueError(f"tick_hz {tick_hz} does not divide {PHYSICS_HZ}")
+    return Console(
+        tick_hz=tick_hz,
+        tick_s=1.0 / tick_hz,
+        substeps=PHYSICS_HZ // tick_hz,
+        width=PLATFORM_AT + len(platform.initial_state),
+        settings=np.array((*cockpit, *control), dtype=np.float64),
+        platform=platform,
+        decide=execution(decide),  # type: ignore[type-var]
+        step=execution(platform.step),  # type: ignore[type-var]
+    )
+
+
+def initial_state(console: Console) -> ConsoleState:
+    """Return the state before the first tick: vehicle in place, nobody armed, parked."""
+    row = np.zeros(console.width, dtype=np.float64)
+    put(row, SAMPLE_AT, NO_SAMPLE)
+    put(row, REMOTE_AT, NO_COMMAND)
+    put(row, VEHICLE_AT, console.platform.initial_vehicle)
+    put(row, PLATFORM_AT, console.platform.initial_state)
+    return ConsoleState(0, row)
+
+
+def advance(state: ConsoleState, inputs: TickInputs, console: Console) -> tuple[ConsoleState, Snapshot]:
+    """Advance the console by one tick. Neither `state` nor its row is changed."""
+    row = np.empty(console.width)
+    row[:INPUT_WIDTH] = (*inputs.sample, *inputs.remote, *inputs.events)
+    console.decide(state.row, row, console.settings, console.tick_s)
+    console.step(state.row, row, console.platform.parameters, console.substeps)
+    tick = state.tick + 1
+    return ConsoleState(tick, row), Snapshot(tick, console.tick_hz, row)
+
+
+@kernel
+def decide(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
+    """Calibrate, arbitrate and gate: turn the inputs in `row` into the one command the vehicle gets."""
+    remote = RemoteCommand(*take(row, REMOTE_AT, REMOTE_WIDTH))
+    control = ControlSettings(*take(settings, CONTROL_AT, CONTROL_WIDTH))
+    vehicle = VehicleState(*take(previous, VEHICLE_AT, VEHICLE_WIDTH))
+    command_before = VehicleCommand(*take(previous, COMMAND_AT, COMMAND_WIDTH))
+    driver = calibrate(
+        DeviceSample(*take(row, SAMPLE_AT, SAMPLE_WIDTH)),
+        DeviceSample(*take(previous, SAMPLE_AT, SAMPLE_WIDTH)),
+        DriverInput(*take(previous, DRIVER_AT, DRIVER_WIDTH)),
+        CockpitSettings(*take(settings, COCKPIT_AT, COCKPIT_WIDTH)),
+        tick_s,
+    )
+    memory, arbitration, request = arbitrate(
+        driver,
+        remote,
+        EventInput(*take(row, EVENTS_AT, EVENTS_WIDTH)),
+        vehicle,
+        ArbiterMemory(*take(previous, MEMORY_AT, MEMORY_WIDTH)),
+        Arbitration(*take(previous, ARBITRATION_AT, ARBITRATION_WIDTH)),
+        command_before,
+        control,
+        tick_s,
+    )
+    command = gate(request, remote, arbitration, command_before, vehicle, control, tick_s)
+    put(row, DRIVER_AT, driver)
+    put(row, MEMORY_AT, memory)
+    put(row, ARBITRATION_AT, arbitration)
+    put(row, COMMAND_AT, command)

@@ -1,0 +1,49 @@
+"""From resolved profiles to a console that is ready to drive: pure, so that a replay builds exactly the same one."""
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from msgspec import Struct
+
+from simconsole.control.settings import settings as control_settings
+from simconsole.devices.calibration import settings as cockpit_settings
+from simconsole.pipeline import Console, ConsoleState, build_console, initial_state
+from simconsole.profiles.device import CockpitProfile
+from simconsole.profiles.session import SessionProfile
+from simconsole.profiles.vehicle import VehicleProfile
+from simconsole.profiles.world import WorldProfile
+from simconsole.units import RAD_PER_DEG
+from simconsole.vehicle.platform import Ground, Pose
+from simconsole.vehicle.registry import build
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+class ResolvedSession(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A session with every profile it names in full: what a bundle stores and a replay reads."""
+
+    session: SessionProfile
+    cockpit: CockpitProfile
+    vehicle: VehicleProfile
+    world: WorldProfile | None = None
+
+
+def assemble(resolved: ResolvedSession, execution: Callable[[F], F]) -> tuple[Console, ConsoleState]:
+    """Return the console and its state before the first tick."""
+    session = resolved.session
+    start, environment, tick_hz = session.scenario.start, session.environment, session.mode.tick_hz
+    platform = build(
+        resolved.vehicle,
+        Pose(start.x_m, start.y_m, start.yaw_deg * RAD_PER_DEG),
+        Ground(environment.friction, environment.slope_x_percent / 100.0, environment.slope_y_percent / 100.0),
+    )
+    console = build_console(
+        cockpit_settings(resolved.cockpit, tick_hz),
+        control_settings(
+            session.features.control, platform.steering_ratio, platform.max_road_wheel_rad, tick_hz
+        ),
+        platform,
+        tick_hz,
+        execution,
+    )
+    return console, initial_state(console)

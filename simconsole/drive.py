@@ -1,0 +1,64 @@
+"""The loop of one drive: inputs in, one tick, outputs out. It opens and closes nothing (session.py does)."""
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple, Protocol
+
+from simconsole.pipeline import Console, ConsoleState, advance
+from simconsole.ports import CommandSource, DeviceSource, Seat, Station
+from simconsole.rows import Snapshot, TickInputs
+from simconsole.signals import EventInput
+
+
+class Recorder(Protocol):
+    """Where every tick goes first."""
+
+    def write(self, snapshot: Snapshot) -> None:
+        """Keep one tick; a failing disk must not raise."""
+
+
+class Pace(Protocol):
+    """When the next tick is due."""
+
+    def wait(self) -> int:
+        """Sleep until the next tick and return the events (mask) that pacing itself raised."""
+
+
+class Cast(NamedTuple):
+    """Everyone who takes part in a drive."""
+
+    devices: DeviceSource
+    commands: CommandSource
+    recorder: Recorder
+    stations: Sequence[Station]
+    pace: Pace
+    seat: Seat | None = None
+
+
+def run(
+    console: Console,
+    state: ConsoleState,
+    cast: Cast,
+    ticks: int,
+    finished: Callable[[Snapshot], bool] = lambda snapshot: False,
+) -> ConsoleState:
+    """Drive until `ticks` have passed or `finished` says so; return the last state.
+
+    The order is fixed: pace, seat, devices, commands, advance, recorder, stations. Everything that enters
+    `advance` is in the row that the recorder keeps, so that the drive replays.
+    """
+    snapshot = Snapshot(state.tick, console.tick_hz, state.row)
+    end = state.tick + ticks
+    while state.tick < end and not finished(snapshot):
+        raised = cast.pace.wait()
+        if cast.seat is not None:
+            cast.seat.act(snapshot)
+        coming = state.tick + 1
+        sample = cast.devices.poll(coming)
+        remote, events = cast.commands.take(coming)
+        if raised:
+            events = EventInput(events=float(int(events.events) | raised))
+        state, snapshot = advance(state, TickInputs(sample, remote, events), console)
+        cast.recorder.write(snapshot)
+        for station in cast.stations:
+            station.publish(snapshot)
+    return state

@@ -1,0 +1,57 @@
+"""What the drive loop needs of the world outside: four small protocols and their empty forms."""
+
+from typing import Protocol
+
+from simconsole.pipeline import NO_COMMAND, NO_EVENTS, NO_SAMPLE
+from simconsole.rows import Snapshot
+from simconsole.signals import DeviceSample, EventInput, RemoteCommand
+
+
+class DeviceSource(Protocol):
+    """The cockpit: where DeviceSamples come from."""
+
+    def poll(self, tick: int) -> DeviceSample:
+        """Return the newest sample for the coming `tick`, its ages in whole ticks."""
+
+    def close(self) -> None:
+        """Release the devices."""
+
+
+class CommandSource(Protocol):
+    """The controller's side: where remote commands and events come from."""
+
+    def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
+        """Return the newest command, its age in whole ticks, and all edges since the last call."""
+
+
+class Station(Protocol):
+    """A reader of snapshots. It must not block and must not raise into the loop."""
+
+    def publish(self, snapshot: Snapshot) -> None:
+        """See one tick; a station with its own rate ignores what it does not need."""
+
+
+class Seat(Protocol):
+    """Someone who works the devices by what they see: the simulated person."""
+
+    def act(self, snapshot: Snapshot) -> None:
+        """Look at the last tick and move wheel, pedals and lever."""
+
+
+class NobodySeated:
+    """A cockpit with no devices at all, for drives that only the ROS side commands."""
+
+    def poll(self, tick: int) -> DeviceSample:
+        """Return a sample in which every device is gone."""
+        return NO_SAMPLE
+
+    def close(self) -> None:
+        """Nothing to release."""
+
+
+class NobodyCommands:
+    """No controller: no command ever comes."""
+
+    def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
+        """Return the absence of a command."""
+        return NO_COMMAND, NO_EVENTS
