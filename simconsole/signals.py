@@ -85,6 +85,7 @@ class Event(IntFlag):
     COMMANDER_LOST = 64
     MARK = 128
     LOOP_STALL = 256
+    NO_ANSWER = 512
 
 
 class Button(IntFlag):
@@ -165,6 +166,7 @@ class DriverInput(NamedTuple):
     clutch_validity: float
     shifter_validity: float
     neutral_ticks: float  # how long the lever has shown no gear (dwell)
+    refused_ticks: float = 0.0  # ticks in a row in which a reading was refused (not finite or out of range)
 
 
 class Request(NamedTuple):

@@ -1,0 +1,116 @@
+"""The command line: words in, one command run, an exit code out.
+
+Exit codes: 0 good, 1 the check failed, 2 bad usage or a bad file, 130 interrupted. `--json` makes the last line on
+standard output one JSON object with the results. No heavy library is imported here: each command names the function
+that does it, loaded when it is called.
+"""
+
+import argparse
+import sys
+from importlib import import_module
+from typing import Any
+
+from simconsole import __version__
+from simconsole.errors import SimConsoleError
+
+INTERRUPTED = 130
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return the parser of every command."""
+    root = argparse.ArgumentParser(
+        prog="simconsole", description="A hardware-in-the-loop driving-simulator console.", allow_abbrev=False
+    )
+    root.add_argument("--version", action="version", version=f"simconsole {__version__}")
+    commands = root.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    _driving(commands)
+    _recordings(commands)
+    _tools(commands)
+    return root
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run one command and return its exit code. Errors a user can cause are one line on standard error."""
+    words = parser().parse_args(arguments)
+    module, function = words.does.split(":")
+    try:
+        outcome = getattr(import_module(f"simconsole.commands.{module}"), function)(words)
+    except SimConsoleError as error:
+        print(f"simconsole {words.command}: {error}", file=sys.stderr)
+        if words.json:
+            _print_json({"error": str(error)})
+        return error.exit_code
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    if outcome.text:
+        print(outcome.text)
+    if words.json:
+        _print_json(outcome.results)
+    return int(outcome.code)
+
+
+def _print_json(results: dict[str, Any]) -> None:
+    import orjson
+
+    print(orjson.dumps(results, option=orjson.OPT_SERIALIZE_NUMPY).decode())
+
+
+def _command(commands: Any, name: str, does: str, summary: str) -> argparse.ArgumentParser:
+    command: argparse.ArgumentParser = commands.add_parser(
+        name, help=summary, description=summary, allow_abbrev=False
+    )
+    command.set_defaults(does=does)
+    command.add_argument("--json", action="store_true", help="print the results as one JSON object on the last line")
+    return command
+
+
+def _driving(commands: Any) -> None:
+    demo = _command(commands, "demo", "demo:demo", "the whole way once, with no hardware: person, autopilot, report")
+    demo.add_argument("--realtime", action="store_true", help="pace it, with every station in its own process")
+    demo.add_argument("--out", metavar="DIR", help="where the bundle goes (default: out/demo-TIME)")
+
+    drive = _command(commands, "drive", "drive:drive", "drive a session")
+    drive.add_argument("session", nargs="?", default="seated", metavar="SESSION", help="a session profile")
+    drive.add_argument("--headless", action="store_true", help="no window, as fast as it goes")
+    drive.add_argument("--driver", metavar="D", help="sdl | virtual | trace:F | script:F | keyboard | none")
+    drive.add_argument("--for", dest="duration_s", type=float, metavar="S", help="end after S simulated seconds")
+    drive.add_argument("--out", metavar="DIR", help="where the bundle goes (default: out/drive-TIME)")
+
+    check = _command(commands, "check", "check:check", "drive scripted scenarios headless against their goldens")
+    check.add_argument("scenarios", nargs="+", metavar="SCENARIO")
+    check.add_argument("--jobs", type=int, default=1, metavar="N")
+    check.add_argument("--junit", metavar="FILE", help="write a JUnit report")
+    check.add_argument("--update-golden", action="store_true", help="accept what was driven as the new golden")
+
+    autopilot = _command(commands, "autopilot", "remote:autopilot", "the path tracker, as a ROS-side program")
+    autopilot.add_argument("--url", default="ws://127.0.0.1:9090", metavar="URL")
+    autopilot.add_argument("--course", default="urban", metavar="WORLD")
+
+
+def _recordings(commands: Any) -> None:
+    replay = _command(commands, "replay", "recordings:replay", "re-simulate a bundle; 0 only if every tick is equal")
+    verify = _command(commands, "verify", "recordings:verify", "check a bundle's manifest and checksums")
+    report = _command(commands, "report", "recordings:report", "write the HTML report of a bundle")
+    view = _command(commands, "view", "recordings:view", "write a bundle's scene.rrd, and open it in rerun")
+    for command in (replay, verify, report, view):
+        command.add_argument("bundle", metavar="BUNDLE")
+    view.add_argument("--no-open", action="store_true", help="only write scene.rrd")
+    compare = _command(commands, "compare", "recordings:compare", "find the first differing tick and field")
+    compare.add_argument("bundle", metavar="A")
+    compare.add_argument("other", metavar="B")
+
+
+def _tools(commands: Any) -> None:
+    devices = _command(commands, "devices", "cockpit:devices", "the cockpit: list, check or record its devices")
+    devices.add_argument("action", choices=("list", "check", "record"))
+    devices.add_argument("--cockpit", default="t500rs_th8rs", metavar="PROFILE")
+    devices.add_argument("--virtual", action="store_true", help="attach a virtual T500 RS and TH8 RS first")
+    devices.add_argument("--for", dest="duration_s", type=float, default=10.0, metavar="S")
+    devices.add_argument("--out", metavar="FILE", default="trace.csv", help="what `record` writes")
+
+    bridge = _command(commands, "bridge", "remote:bridge", "the rosbridge server alone, on a standing vehicle")
+    bridge.add_argument("action", choices=("serve",))
+    bridge.add_argument("--port", type=int, default=9090, metavar="P")
+    bridge.add_argument("--for", dest="duration_s", type=float, metavar="S")
+
+    _command(commands, "doctor", "doctor:doctor", "what this machine has and lacks")

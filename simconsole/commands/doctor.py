@@ -1,0 +1,48 @@
+"""`simconsole doctor`: what this machine has and lacks, without opening anything."""
+
+import os
+import platform
+import sys
+from argparse import Namespace
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+from simconsole import __version__
+from simconsole.commands.outcome import Outcome, table
+
+LIBRARIES = ("numpy", "numba", "pygame-ce", "websockets", "msgspec", "orjson", "rerun-sdk", "matplotlib", "pyyaml")
+
+
+def doctor(words: Namespace) -> Outcome:
+    """Report versions and what of the machine the console could use. Nothing found here stops a headless drive."""
+    found = {
+        "simconsole": __version__,
+        "python": platform.python_version(),
+        "system": f"{platform.system()} {platform.release()} {platform.machine()}",
+        "cores": str(os.cpu_count()),
+        **{name: _version(name) for name in LIBRARIES},
+        "input devices": _yes(Path("/dev/input").is_dir(), "no wheel can be read; virtual, trace and script can"),
+        "display": _yes(bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")), "no window; PNG works"),
+        "shared memory": _yes(Path("/dev/shm").is_dir(), "a temporary folder takes its place"),
+        "real-time scheduling": _yes(_may_use_fifo(), "the tick loop runs without it, later under load"),
+    }
+    return Outcome(0, found, table(list(found.items())))
+
+
+def _version(name: str) -> str:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return "missing"
+
+
+def _yes(has: bool, otherwise: str) -> str:
+    return "yes" if has else f"no: {otherwise}"
+
+
+def _may_use_fifo() -> bool:
+    if not sys.platform.startswith("linux"):
+        return False
+    import resource
+
+    return os.geteuid() == 0 or resource.getrlimit(resource.RLIMIT_RTPRIO)[0] != 0

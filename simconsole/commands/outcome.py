@@ -1,0 +1,17 @@
+"""What a command hands back to the command line."""
+
+from typing import Any, NamedTuple
+
+
+class Outcome(NamedTuple):
+    """The end of a command: its exit code (0 good, 1 the check failed), its results for `--json`, its text."""
+
+    code: int
+    results: dict[str, Any]
+    text: str = ""
+
+
+def table(rows: list[tuple[str, str]]) -> str:
+    """Return two aligned columns, one row a line."""
+    width = max((len(name) for name, _ in rows), default=0)
+    return "\n".join(f"  {name:<{width}}  {value}" for name, value in rows)
