@@ -1,0 +1,241 @@
+"""From raw axes to the person: polarity, dead zones, arming, validity, the lever. Pure kernels.
+
+Order of each reading: finite and in range (else refused, the last good one is held), fresh (else stale or lost),
+seen at rest (else unknown), and only then scaled.
+"""
+
+from typing import NamedTuple
+
+from simconsole.devices.cockpit import ABSENT, NOBODY, CockpitSettings
+from simconsole.devices.lever import held_roles, lever_gear, shown_gear, stepped_gear
+from simconsole.devices.validity import axis_good, mask_good, next_validity, trusted
+from simconsole.kernels import clip, kernel
+from simconsole.signals import DeviceSample, DriverInput
+
+__all__ = ["ABSENT", "NOBODY", "CockpitSettings", "calibrate"]
+
+
+class Pedal(NamedTuple):
+    """One pedal after this tick."""
+
+    pressed: float
+    validity: float
+
+
+class Wheel(NamedTuple):
+    """The hand wheel after this tick."""
+
+    rad: float
+    radps: float
+    validity: float
+
+
+class Lever(NamedTuple):
+    """The gear lever after this tick."""
+
+    gear: float
+    validity: float
+    neutral_ticks: float
+
+
+@kernel
+def travel(raw: float, rest_raw: float, full_raw: float) -> float:
+    """Return the share of a pedal's travel, unclipped: 0 at rest, 1 fully pressed, either polarity."""
+    span = full_raw - rest_raw
+    if span == 0.0:
+        return 0.0
+    return (raw - rest_raw) / span
+
+
+@kernel
+def pressed_share(raw: float, rest_raw: float, full_raw: float, dead: float) -> float:
+    """Return a pedal from 0 to 1, continuous at the end of its dead zone (dead < 1)."""
+    return clip((travel(raw, rest_raw, full_raw) - dead) / (1.0 - dead), 0.0, 1.0)
+
+
+@kernel
+def pedal(
+    raw: float,
+    age_ticks: float,
+    refused_ticks: float,
+    before: Pedal,
+    rest_raw: float,
+    full_raw: float,
+    dead: float,
+    settings: CockpitSettings,
+) -> Pedal:
+    """Return one pedal: 0 while it is not trusted, the last good value while a bad reading is held."""
+    good = axis_good(raw)
+    at_rest = good and travel(raw, rest_raw, full_raw) <= settings.arming_limit
+    validity = next_validity(before.validity, age_ticks, 0.0 if good else refused_ticks, settings.stale_ticks, at_rest)
+    if not trusted(validity):
+        return Pedal(0.0, validity)
+    if not good:
+        return Pedal(before.pressed, validity)
+    return Pedal(pressed_share(raw, rest_raw, full_raw, dead), validity)
+
+
+@kernel
+def wheel(
+    raw: float, age_ticks: float, refused_ticks: float, before: Wheel, settings: CockpitSettings, tick_s: float
+) -> Wheel:
+    """Return the hand wheel: held where it was while it is not trusted, its rate through a first-order filter.
+
+    A wheel has no rest: it is armed by its first good reading.
+    """
+    good = axis_good(raw)
+    validity = next_validity(before.validity, age_ticks, 0.0 if good else refused_ticks, settings.stale_ticks, True)
+    if not trusted(validity):
+        return Wheel(before.rad, 0.0, validity)
+    if not good:
+        return Wheel(before.rad, before.radps, validity)
+    rad = (_beyond(raw - settings.wheel_centre_raw, settings.wheel_dead_raw)) * settings.wheel_rad_per_raw
+    if not trusted(before.validity) or tick_s <= 0.0:
+        return Wheel(rad, 0.0, validity)
+    share = tick_s / (tick_s + settings.wheel_rate_filter_s)
+    return Wheel(rad, before.radps + share * ((rad - before.rad) / tick_s - before.radps), validity)
+
+
+@kernel
+def _beyond(value: float, dead: float) -> float:
+    if value > dead:
+        return value - dead
+    if value < -dead:
+        return value + dead
+    return 0.0
+
+
+@kernel
+def lever(sample: DeviceSample, edges: int, refused_ticks: float, before: Lever, settings: CockpitSettings) -> Lever:
+    """Return the gear lever: kept where it was while it is not trusted or shows nonsense."""
+    good = mask_good(sample.shifter_buttons) and mask_good(sample.wheel_buttons)
+    shown = shown_gear(sample.wheel_buttons, sample.shifter_buttons, settings) if good else 0.0
+    at_rest = good and (settings.sequential > 0.0 or shown == 0.0)
+    validity = next_validity(
+        before.validity, sample.shifter_age_ticks, 0.0 if good else refused_ticks, settings.stale_ticks, at_rest
+    )
+    if not trusted(validity) or not good:
+        return Lever(before.gear, validity, before.neutral_ticks)
+    if settings.sequential > 0.0:
+        gear = stepped_gear(before.gear, edges, settings.top_gear)
+        return Lever(gear, validity, before.neutral_ticks + 1.0 if gear == 0.0 else 0.0)
+    neutral_ticks = before.neutral_ticks + 1.0 if shown == 0.0 else 0.0
+    return Lever(lever_gear(before.gear, shown, neutral_ticks, settings.neutral_dwell_ticks), validity, neutral_ticks)
+
+
+@kernel
+def refused(sample: DeviceSample) -> bool:
+    """Return whether any reading of this sample is not finite or out of range."""
+    if not (mask_good(sample.wheel_buttons) and mask_good(sample.shifter_buttons)):
+        return True
+    if not (axis_good(sample.wheel_axis) and axis_good(sample.throttle_axis) and axis_good(sample.brake_axis)):
+        return True
+    return not (axis_good(sample.clutch_axis) and axis_good(sample.handbrake_axis))
+
+
+@kernel
+def calibrate(
+    sample: DeviceSample, before: DeviceSample, previous: DriverInput, settings: CockpitSettings, tick_s: float
+) -> DriverInput:
+    """Return what the person does, from the cockpit as read.
+
+    Args:
+        sample: The cockpit in this tick, raw.
+        before: The cockpit in the tick before, raw: button edges are against it.
+        previous: The result of the tick before; `NOBODY` at the first tick.
+        settings: The device profile as numbers.
+        tick_s: Length of a tick in s.
+
+    Returns:
+        Angles left-positive in rad, pedals 0 to 1, gear -1, 0, 1..7. Inputs that are not trusted command nothing:
+        pedals are 0, wheel and lever stay where they were.
+    """
+    bad_ticks = previous.refused_ticks + 1.0 if refused(sample) else 0.0
+    angle = wheel(
+        sample.wheel_axis,
+        sample.wheel_age_ticks,
+        bad_ticks,
+        Wheel(previous.hand_wheel_rad, previous.hand_wheel_radps, previous.wheel_validity),
+        settings,
+        tick_s,
+    )
+    pedals_age = sample.pedals_age_ticks
+    throttle = pedal(
+        sample.throttle_axis,
+        pedals_age,
+        bad_ticks,
+        Pedal(previous.throttle, previous.throttle_validity),
+        settings.throttle_rest_raw,
+        settings.throttle_full_raw,
+        settings.throttle_dead,
+        settings,
+    )
+    brake = pedal(
+        sample.brake_axis,
+        pedals_age,
+        bad_ticks,
+        Pedal(previous.brake, previous.brake_validity),
+        settings.brake_rest_raw,
+        settings.brake_full_raw,
+        settings.brake_dead,
+        settings,
+    )
+    clutch = pedal(
+        sample.clutch_axis,
+        pedals_age,
+        bad_ticks,
+        Pedal(previous.clutch, previous.clutch_validity),
+        settings.clutch_rest_raw,
+        settings.clutch_full_raw,
+        settings.clutch_dead,
+        settings,
+    )
+    handbrake = pedal(
+        sample.handbrake_axis,
+        pedals_age,
+        bad_ticks,
+        Pedal(previous.handbrake, previous.brake_validity),
+        settings.handbrake_rest_raw,
+        settings.handbrake_full_raw,
+        settings.handbrake_dead,
+        settings,
+    )
+    held = 0
+    if trusted(angle.validity):
+        held = _held(sample, int(previous.pressed), settings)
+    earlier = int(previous.pressed)
+    if trusted(previous.wheel_validity):
+        earlier = _held(before, earlier, settings)
+    edges = held & ~earlier if trusted(previous.wheel_validity) else 0
+    shift = lever(
+        sample,
+        edges,
+        bad_ticks,
+        Lever(previous.gear, previous.shifter_validity, previous.neutral_ticks),
+        settings,
+    )
+    return DriverInput(
+        angle.rad,
+        angle.radps,
+        throttle.pressed,
+        brake.pressed,
+        clutch.pressed,
+        handbrake.pressed,
+        shift.gear,
+        float(held),
+        float(edges),
+        angle.validity,
+        throttle.validity,
+        brake.validity,
+        clutch.validity,
+        shift.validity,
+        shift.neutral_ticks,
+        bad_ticks,
+    )
+
+
+@kernel
+def _held(sample: DeviceSample, otherwise: int, settings: CockpitSettings) -> int:
+    if mask_good(sample.wheel_buttons) and mask_good(sample.shifter_buttons):
+        return held_roles(sample.wheel_buttons, sample.shifter_buttons, settings)
+    return otherwise
