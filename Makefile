@@ -1,0 +1,40 @@
+# Everything this project does with one command. `make` alone lists it.
+.DEFAULT_GOAL := help
+.PHONY: help setup demo test lint format wheel clean
+BIN := .venv/bin
+
+help:  ## This list
+	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1\t\2/p' Makefile
+
+setup: .venv/ready-to-test  ## .venv with all that running and testing needs
+
+demo: .venv/ready-to-run  ## The whole console without hardware: drive, hand over, take back, report
+	$(BIN)/simconsole demo
+
+test: setup lint  ## All checks: format, lint, types, import contracts, tests
+	scripts/system-packages
+	$(BIN)/pytest
+
+lint: .venv/ready-to-test  ## Format, lint, types and import contracts only
+	$(BIN)/ruff format --check --quiet
+	$(BIN)/ruff check --quiet
+	$(BIN)/mypy
+	$(BIN)/lint-imports --no-logo
+
+format: .venv/ready-to-test  ## Rewrite the sources in the project's format
+	$(BIN)/ruff check --fix
+	$(BIN)/ruff format
+
+wheel: .venv/ready-to-test  ## dist/*.whl, profiles included
+	$(BIN)/python -m build --wheel --no-isolation
+
+clean:  ## Remove .venv and all that was built
+	rm -rf .venv build dist out .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
+
+.venv/ready-to-run: pyproject.toml constraints.txt scripts/make-venv
+	@scripts/make-venv
+	@touch $@
+
+.venv/ready-to-test: pyproject.toml constraints.txt scripts/make-venv
+	@scripts/make-venv dev
+	@touch $@ .venv/ready-to-run
