@@ -1,0 +1,61 @@
+"""The bridge section of a session profile: where rosbridge listens, what its topics are called, what it refuses."""
+
+from typing import Annotated, Literal
+
+from msgspec import Meta, Struct, field
+
+TopicName = Annotated[str, Meta(pattern=r"^/[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*$", max_length=256)]
+Namespace = Annotated[str, Meta(pattern=r"^(/[A-Za-z][A-Za-z0-9_]*)*$", max_length=128)]
+Rate = Annotated[float, Meta(ge=0.0, le=1000.0)]
+
+
+class CommandLimits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What a command may ask at most; anything beyond is refused whole, because it is a mistake and not a wish."""
+
+    road_wheel_rad: Annotated[float, Meta(gt=0.0, le=1.2)] = 1.2
+    road_wheel_radps: Annotated[float, Meta(gt=0.0, le=100.0)] = 20.0
+    speed_mps: Annotated[float, Meta(gt=0.0, le=150.0)] = 80.0
+    accel_mps2: Annotated[float, Meta(gt=0.0, le=50.0)] = 12.0
+    yaw_rate_radps: Annotated[float, Meta(gt=0.0, le=20.0)] = 10.0
+    position_m: Annotated[float, Meta(gt=0.0, le=1e6)] = 1e5
+
+
+class BridgeLimits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """How much one client, or all together, may take."""
+
+    clients: Annotated[int, Meta(ge=1, le=1024)] = 64
+    message_bytes: Annotated[int, Meta(ge=1024, le=16_777_216)] = 262_144
+    message_fragments: Annotated[int, Meta(ge=1, le=65_536)] = 256
+    subscriptions: Annotated[int, Meta(ge=1, le=4096)] = 256
+    topics: Annotated[int, Meta(ge=16, le=4096)] = 256
+    queue_length: Annotated[int, Meta(ge=1, le=100_000)] = 1000
+    queued_bytes: Annotated[int, Meta(ge=65_536, le=67_108_864)] = 1_048_576
+
+
+class BridgeProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """One rosbridge server.
+
+    `namespace` is put before every topic but /clock, /tf and /tf_static; `rename` maps a topic's standard name to
+    its name here and wins over the namespace. `rates_hz` changes how often a standard topic is published, 0 never.
+    """
+
+    host: Annotated[str, Meta(min_length=1, max_length=253)] = "127.0.0.1"
+    port: Annotated[int, Meta(ge=0, le=65_535)] = 9090
+    """0 lets the system choose."""
+    namespace: Namespace = ""
+    rename: dict[TopicName, TopicName] = field(default_factory=dict)
+    rates_hz: dict[TopicName, Rate] = field(default_factory=dict)
+    odometry_frame: Annotated[str, Meta(min_length=1, max_length=64)] = "odom"
+    allowed_origins: tuple[Annotated[str, Meta(pattern=r"^https?://[^/\s]+$")], ...] = ()
+    """Web pages that may connect beside those of this machine; programs send no origin and always may."""
+    allowed_hosts: tuple[Annotated[str, Meta(pattern=r"^[A-Za-z0-9.:\[\]-]+$")], ...] = ()
+    """Host names, without port, by which this server may be addressed beside `host` and localhost."""
+    sender_clock: Literal["own", "console"] = "own"
+    """console: senders stamp with /clock, so that stamps from the future and stale ones are refused too."""
+    max_stamp_age_ms: Annotated[float, Meta(gt=0.0, le=10_000.0)] = 200.0
+    lease_ms: Annotated[float, Meta(ge=50.0, le=10_000.0)] = 500.0
+    ping_interval_s: Annotated[float, Meta(gt=0.0, le=60.0)] = 2.0
+    ping_timeout_s: Annotated[float, Meta(gt=0.0, le=60.0)] = 10.0
+    stall_close_s: Annotated[float, Meta(gt=0.0, le=600.0)] = 10.0
+    limits: BridgeLimits = BridgeLimits()
+    commands: CommandLimits = CommandLimits()
