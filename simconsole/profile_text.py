@@ -34,6 +34,7 @@ _INTEGER: Final = re.compile(r"[-+]?(0|[1-9][0-9]*)")
 _HEXADECIMAL: Final = re.compile(r"0x[0-9a-fA-F]+")
 _FLOAT: Final = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
 _NOT_FINITE: Final = re.compile(r"[-+]?\.?(inf|infinity|nan)", re.IGNORECASE)
+_NOT_IN_YAML: Final = re.compile("[\x7f-\x9f\u2028\u2029\ufeff\ufffe\uffff]")
 _LOADER: Final[Any] = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
@@ -45,6 +46,8 @@ def parse(text: str, origin: str) -> Plain:
     """
     try:
         return _Reader(yaml.parse(text, Loader=_LOADER), origin).document()
+    except UnicodeEncodeError as error:
+        raise ProfileError(f"{origin}: text: not YAML: a lone surrogate") from error
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         place = f"line {mark.line + 1}" if mark else "text"
@@ -55,7 +58,8 @@ def parse(text: str, origin: str) -> Plain:
 def to_text(profile: object) -> str:
     """Return a profile as text that `parse` reads back to equal values: JSON, always the same bytes."""
     encoded = msgspec.json.encode(profile, order="deterministic")
-    return msgspec.json.format(encoded, indent=2).decode() + "\n"
+    text = msgspec.json.format(encoded, indent=2).decode()
+    return _NOT_IN_YAML.sub(lambda match: f"\\u{ord(match[0]):04x}", text) + "\n"
 
 
 class _Reader:

@@ -1,0 +1,89 @@
+"""A value that does not fit: one line with file, key, value and what is allowed."""
+
+from enum import Enum
+from typing import Annotated, Literal
+
+import msgspec
+import pytest
+
+from simconsole.errors import ProfileError
+from simconsole.profile_errors import convert
+
+
+class Side(Enum):
+    LEFT = "left"
+    RIGHT = "right"
+
+
+class Axis(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    dead_zone: Annotated[float, msgspec.Meta(ge=0, le=0.5)] = 0.0
+    side: Side = Side.LEFT
+    role: Literal["wheel", "brake"] = "wheel"
+    index: Annotated[int, msgspec.Meta(ge=0)]
+
+    def __post_init__(self) -> None:
+        if self.index == 13:
+            raise ValueError("13 is not an index")
+
+
+class Cockpit(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    name: str
+    axes: dict[str, Axis] = {}
+    order: tuple[Axis, ...] = ()
+    pair: tuple[int, float] = (0, 0.0)
+    spare: Axis | None = None
+    ratio: Annotated[float, msgspec.Meta(gt=0)] = 1.0
+
+
+GOOD = {"name": "rig", "axes": {"wheel": {"index": 0, "dead_zone": 0}}, "spare": {"index": 2}}
+
+
+def test_good_values_become_the_struct() -> None:
+    cockpit = convert(GOOD, Cockpit, "f.yaml")
+    assert cockpit.axes["wheel"].dead_zone == 0.0
+    assert cockpit.spare == Axis(index=2)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"axes": {"wheel": {"index": 0}, "brake": {"index": 1, "dead_zone": 2}}},
+         "axes.brake.dead_zone: value 2: a number from 0 to 0.5"),
+        ({"axes": {"wheel": {"index": -1}}}, "axes.wheel.index: value -1: a whole number, 0 or more"),
+        ({"axes": {"wheel": {"index": True}}}, "axes.wheel.index: value true: a whole number, 0 or more"),
+        ({"axes": {"wheel": {"index": 1.5}}}, "axes.wheel.index: value 1.5: a whole number, 0 or more"),
+        ({"axes": {"wheel": {}}}, "axes.wheel.index: value missing: a whole number, 0 or more"),
+        ({"axes": {"wheel": {"index": 13}}}, 'axes.wheel: value {"index":13}: 13 is not an index'),
+        ({"axes": {"wheel": {"index": 1, "side": "up"}}}, 'axes.wheel.side: value "up": one of left, right'),
+        ({"axes": {"wheel": {"index": 1, "role": "horn"}}}, 'axes.wheel.role: value "horn": one of brake, wheel'),
+        ({"order": [{"index": 1}, {"index": 1, "dead_zone": "0.1"}]},
+         'order[1].dead_zone: value "0.1": a number from 0 to 0.5'),
+        ({"pair": [1, "x"]}, 'pair[1]: value "x": a number'),
+        ({"spare": {"index": 1, "dead_zone": -0.1}}, "spare.dead_zone: value -0.1: a number from 0 to 0.5"),
+        ({"spare": 3}, "spare: value 3: expected mapping | null, got int"),
+        ({"ratio": 0}, "ratio: value 0: a number, above 0"),
+        ({"name": None}, "name: value null: expected str, got null"),
+        ({"axes": {"wheel": {"index": 1, "dead_zon": 0.1}}},
+         "axes.wheel.dead_zon: value 0.1: unknown key, did you mean dead_zone?"),
+        ({"colour": "red"},
+         'colour: value "red": unknown key, one of name, axes, order, pair, spare, ratio'),
+        ({"colour\nname: forged": 1},
+         "colour name: forged: value 1: unknown key, one of name, axes, order, pair, spare, ratio"),
+    ],
+)  # fmt: skip
+def test_message_names_key_value_and_what_is_allowed(change: dict[str, object], message: str) -> None:
+    with pytest.raises(ProfileError) as caught:
+        convert({**GOOD, **change}, Cockpit, "f.yaml")
+    assert str(caught.value) == f"f.yaml: {message}"
+
+
+@pytest.mark.parametrize("values", [None, 3, [1], "text"])
+def test_document_that_is_no_mapping(values: object) -> None:
+    with pytest.raises(ProfileError, match=r"^f\.yaml: file: value .*: expected mapping, got \w+$"):
+        convert(values, Cockpit, "f.yaml")
+
+
+def test_long_value_is_cut() -> None:
+    with pytest.raises(ProfileError) as caught:
+        convert({**GOOD, "ratio": "9" * 1000}, Cockpit, "f.yaml")
+    assert len(str(caught.value)) < 120
