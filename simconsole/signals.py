@@ -53,6 +53,8 @@ class Reason(IntEnum):
     EMERGENCY = 12
     RESET = 13
     ARMED = 14
+    LOOP_STALL = 15
+    COMMANDER_LOST = 16
     REFUSED_NO_COMMAND = 20
     REFUSED_BRAKE_PRESSED = 21
     REFUSED_TOO_FAST = 22
@@ -60,6 +62,10 @@ class Reason(IntEnum):
     REFUSED_NOT_ARMED = 24
     REFUSED_EMERGENCY = 25
     REFUSED_DEVIATION = 26
+    REFUSED_SAFE_STOP = 27
+    REFUSED_THROTTLE_PRESSED = 28
+    REFUSED_MOVING = 29
+    REFUSED_NOT_STABLE = 30
 
 
 class RemoteKind(IntEnum):
@@ -100,6 +106,17 @@ class Button(IntFlag):
     INDICATOR_LEFT = 64
     INDICATOR_RIGHT = 128
     MARK = 256
+
+
+class GateLimit(IntFlag):
+    """What the last gate changed: the bits of `VehicleCommand.gate_active`."""
+
+    NON_FINITE = 1
+    RANGE = 2
+    RATE = 4
+    LATERAL_ACCELERATION = 8
+    BRAKE_OVER_THROTTLE = 16
+    GEAR = 32
 
 
 class DeviceSample(NamedTuple):
@@ -186,20 +203,28 @@ class ArbiterMemory(NamedTuple):
 
     mode_ticks: float  # since the mode was entered
     engage_hand_wheel_rad: float  # where the hand wheel was when autonomy was engaged
-    steering_ticks: float  # how long the hand wheel has been past the take-over threshold
+    steering_ticks: float  # samples in a row past the take-over threshold; -1: no reference yet
+    throttle_override: float  # 1 while the person's accelerator overrides the remote side
+    sequence_seen: float
     refused_seen: float
     invalid_run: float  # refused commands in a row
-    fade_ticks: float  # since the last hand-over
-    speed_integral_mps2: float
-    hold_road_wheel_rad: float
+    fresh_ticks: float  # how long commands have been fresh with none refused
+    refusal_ticks: float  # since a request was refused
     standstill_ticks: float
+    speed_integral_mps2: float
+    stop_accel_mps2: float  # deceleration that a safe stop asks for now (<= 0)
+    hold_road_wheel_rad: float  # where a safe or emergency stop holds the wheels
 
 
 class Arbitration(NamedTuple):
-    """Who had how much authority in this tick, and why. Person's share = 1 - remote's share."""
+    """Who had how much authority in this tick, and why. Person's share = 1 - remote's share.
+
+    The remote side is the controller or, in its place, the console's own safe stop, emergency stop or parking hold.
+    """
 
     mode: float
-    reason: float
+    reason: float  # why the mode last changed
+    refusal: float  # why the latest request was refused (`Reason`), shown for a while; 0: none
     remote_lateral: float
     remote_longitudinal: float
     person_road_wheel_rad: float
@@ -225,7 +250,7 @@ class VehicleCommand(NamedTuple):
     target_x_m: float
     target_y_m: float
     target_yaw_rad: float
-    gate_active: float  # mask of the limits that changed something
+    gate_active: float  # `GateLimit` mask of the limits that changed something
 
 
 class VehicleState(NamedTuple):
