@@ -1,0 +1,50 @@
+"""From a cockpit profile to the numbers the kernels work with. Pure."""
+
+import math
+from typing import Final
+
+from simconsole.devices.cockpit import CockpitSettings
+from simconsole.devices.lever import SHIFTER_SHIFT
+from simconsole.profiles.device import ButtonBinding, Buttons, CockpitProfile, PedalAxis
+from simconsole.units import RAD_PER_DEG
+
+GEARS: Final = 7
+
+
+def settings(profile: CockpitProfile, tick_hz: int) -> CockpitSettings:
+    """Return the profile as plain numbers; limits in time become whole ticks, never longer than stated."""
+    pedals, shifter, wheel = profile.pedals, profile.shifter, profile.wheel
+    sign = -1.0 if wheel.grows_to == "right" else 1.0
+    gears = [_mask(shifter.on, button) for button in shifter.gears]
+    gears += [0.0] * (GEARS - len(gears))
+    sequential = shifter.pattern == "sequential"
+    return CockpitSettings(
+        wheel.centre_raw,
+        wheel.dead_zone,
+        sign * 0.5 * wheel.lock_to_lock_deg * RAD_PER_DEG,
+        wheel.rate_filter_s,
+        *_ends(pedals.throttle),
+        *_ends(pedals.brake),
+        *_ends(pedals.clutch),
+        *_ends(pedals.handbrake),
+        profile.limits.arming,
+        math.floor(profile.limits.stale_s * tick_hz + 1e-9) * 1.0,
+        round(shifter.neutral_dwell_s * tick_hz) * 1.0,
+        1.0 if sequential else 0.0,
+        float(shifter.top_gear if sequential else len(shifter.gears)),
+        0.0 if shifter.reverse is None else _mask(shifter.on, shifter.reverse),
+        *gears,
+        *(_role_mask(getattr(profile.buttons, name)) for name in Buttons.__struct_fields__),
+    )
+
+
+def _ends(pedal: PedalAxis | None) -> tuple[float, float, float]:
+    return (0.0, 0.0, 0.0) if pedal is None else (pedal.rest_raw, pedal.full_raw, pedal.dead_zone)
+
+
+def _role_mask(binding: ButtonBinding | None) -> float:
+    return 0.0 if binding is None else _mask(binding.on, binding.button)
+
+
+def _mask(on: str, button: int) -> float:
+    return float(1 << (button + (SHIFTER_SHIFT if on == "shifter" else 0)))

@@ -1,0 +1,67 @@
+"""The inverse of calibration: what the axes would read if a person did this. Pure; for scripts and simulated people."""
+
+from typing import Final, NamedTuple
+
+from simconsole.devices.cockpit import CockpitSettings
+from simconsole.devices.lever import SHIFTER_SHIFT
+from simconsole.signals import DeviceSample
+
+WHEEL_MASK: Final = (1 << SHIFTER_SHIFT) - 1
+
+
+class Intent(NamedTuple):
+    """What a person does, in a person's terms: left-positive, pedals 0 to 1, lever -1, 0, 1..7, a `Button` mask."""
+
+    hand_wheel_rad: float = 0.0
+    throttle: float = 0.0
+    brake: float = 0.0
+    clutch: float = 0.0
+    handbrake: float = 0.0
+    gear: float = 0.0
+    pressed: int = 0
+
+
+def pedal_raw(pressed: float, rest_raw: float, full_raw: float, dead: float) -> float:
+    """Return the raw axis of a pedal pressed by this share; 0 is the rest position itself, not the dead zone's end."""
+    share = min(1.0, max(0.0, pressed))
+    return rest_raw if share == 0.0 else rest_raw + (dead + share * (1.0 - dead)) * (full_raw - rest_raw)
+
+
+def wheel_raw(hand_wheel_rad: float, settings: CockpitSettings) -> float:
+    """Return the raw axis of the hand wheel, stopped at the ends of the axis as the real one is."""
+    offset = hand_wheel_rad / settings.wheel_rad_per_raw
+    dead = settings.wheel_dead_raw if offset > 0.0 else -settings.wheel_dead_raw if offset < 0.0 else 0.0
+    return min(1.0, max(-1.0, settings.wheel_centre_raw + offset + dead))
+
+
+def button_masks(gear: float, pressed: int, settings: CockpitSettings) -> tuple[int, int]:
+    """Return the raw masks (wheel, shifter) of a lever in this gear and these roles held."""
+    mask = 0
+    for bit, role in enumerate(settings[-9:]):
+        if pressed >> bit & 1:
+            mask |= int(role)
+    if not settings.sequential and gear:
+        levers = {-1.0: settings.gear_reverse_mask}
+        levers.update({float(number): getattr(settings, f"gear_{number}_mask") for number in range(1, 8)})
+        mask |= int(levers[float(gear)])
+    return mask & WHEEL_MASK, mask >> SHIFTER_SHIFT
+
+
+def uncalibrate(intent: Intent, settings: CockpitSettings) -> DeviceSample:
+    """Return the raw sample, of age 0, from which `calibrate` reads `intent` back."""
+    wheel_buttons, shifter_buttons = button_masks(intent.gear, intent.pressed, settings)
+    s = settings
+    return DeviceSample(
+        wheel_raw(intent.hand_wheel_rad, s),
+        pedal_raw(intent.throttle, s.throttle_rest_raw, s.throttle_full_raw, s.throttle_dead),
+        pedal_raw(intent.brake, s.brake_rest_raw, s.brake_full_raw, s.brake_dead),
+        pedal_raw(intent.clutch, s.clutch_rest_raw, s.clutch_full_raw, s.clutch_dead),
+        pedal_raw(intent.handbrake, s.handbrake_rest_raw, s.handbrake_full_raw, s.handbrake_dead),
+        float(wheel_buttons),
+        float(shifter_buttons),
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+    )

@@ -1,0 +1,217 @@
+"""The cockpit profile: which devices make one cockpit and what their axes and buttons mean; the script of a drive."""
+
+from typing import Annotated, Literal, TypeAlias
+
+from msgspec import Meta, Struct
+
+RoleName: TypeAlias = Literal["wheel", "pedals", "shifter"]
+UsbId: TypeAlias = Annotated[int, Meta(ge=0, le=0xFFFF)]
+AxisIndex: TypeAlias = Annotated[int, Meta(ge=0, le=31)]
+ButtonIndex: TypeAlias = Annotated[int, Meta(ge=0, le=23)]
+Raw: TypeAlias = Annotated[float, Meta(ge=-1.0, le=1.0)]
+Share: TypeAlias = Annotated[float, Meta(ge=0.0, le=1.0)]
+Title: TypeAlias = Annotated[str, Meta(max_length=200)]
+
+MIN_TRAVEL_RAW = 0.2
+"""A pedal whose ends lie closer together than this cannot be told from its own noise."""
+
+
+class RoleBinding(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """One role and the device that plays it, found by its USB identity, never by its number or name."""
+
+    role: RoleName
+    vendor_id: UsbId
+    product_id: UsbId
+    name: Title  # as the firmware says it; shown to people, never matched
+    axes: Annotated[int, Meta(ge=0, le=32)]
+    buttons: Annotated[int, Meta(ge=0, le=24)]
+    hats: Annotated[int, Meta(ge=0, le=4)] = 0
+
+
+class BootMode(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """An identity under which a device of this cockpit answers while it cannot drive."""
+
+    vendor_id: UsbId
+    product_id: UsbId
+    cure: Title
+
+
+class WheelAxis(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The hand wheel."""
+
+    axis: AxisIndex
+    lock_to_lock_deg: Annotated[float, Meta(ge=40.0, le=2520.0)]
+    grows_to: Literal["left", "right"] = "right"
+    centre_raw: Annotated[float, Meta(ge=-0.5, le=0.5)] = 0.0
+    dead_zone: Annotated[float, Meta(ge=0.0, le=0.1)] = 0.0
+    rate_filter_s: Annotated[float, Meta(ge=0.0, le=0.5)] = 0.02
+
+
+class PedalAxis(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """One pedal. `rest_raw` and `full_raw` carry the polarity."""
+
+    axis: AxisIndex
+    rest_raw: Raw
+    full_raw: Raw
+    dead_zone: Annotated[float, Meta(ge=0.0, le=0.3)] = 0.02
+
+    def __post_init__(self) -> None:
+        """Refuse a pedal without travel.
+
+        Raises:
+            ValueError: the ends lie too close together.
+        """
+        if abs(self.full_raw - self.rest_raw) < MIN_TRAVEL_RAW:
+            raise ValueError(
+                f"rest_raw {self.rest_raw} and full_raw {self.full_raw} must lie at least {MIN_TRAVEL_RAW} apart"
+            )
+
+
+class Pedals(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The pedals, all on the device of the role `pedals`."""
+
+    throttle: PedalAxis
+    brake: PedalAxis
+    clutch: PedalAxis | None = None
+    handbrake: PedalAxis | None = None
+
+
+class Shifter(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The lever: one button per gear (H pattern) or two that step."""
+
+    pattern: Literal["h", "sequential"]
+    on: Literal["wheel", "shifter"] = "shifter"
+    gears: Annotated[list[ButtonIndex], Meta(max_length=7)] = []  # button of gear 1, 2, ...
+    reverse: ButtonIndex | None = None
+    top_gear: Annotated[int, Meta(ge=1, le=7)] = 6
+    neutral_dwell_s: Annotated[float, Meta(ge=0.0, le=1.0)] = 0.1
+
+
+class ButtonBinding(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A button by its number on the device of a role."""
+
+    on: Literal["wheel", "shifter"] = "wheel"
+    button: ButtonIndex
+
+
+class Buttons(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What the buttons mean; one left out has no button."""
+
+    autonomous: ButtonBinding | None = None
+    manual: ButtonBinding | None = None
+    emergency_stop: ButtonBinding | None = None
+    reset: ButtonBinding | None = None
+    shift_up: ButtonBinding | None = None
+    shift_down: ButtonBinding | None = None
+    indicator_left: ButtonBinding | None = None
+    indicator_right: ButtonBinding | None = None
+    mark: ButtonBinding | None = None
+
+
+class Limits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """When an input counts as at rest, and how long a silent one is held (facts: 100 ms)."""
+
+    arming: Annotated[float, Meta(gt=0.0, le=0.2)] = 0.05
+    stale_s: Annotated[float, Meta(gt=0.0, le=0.5)] = 0.1
+
+
+class Provenance(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Where a part of the profile comes from, so that nobody takes a guess for a measurement."""
+
+    status: Literal["captured", "documented", "unverified", "chosen"]
+    source: Title
+
+
+class CockpitProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Devices that make one cockpit, in whatever order they are plugged in."""
+
+    schema: Literal[1]
+    title: Title
+    roles: list[RoleBinding] = []
+    boot_modes: list[BootMode] = []
+    wheel: WheelAxis
+    pedals: Pedals
+    shifter: Shifter
+    buttons: Buttons = Buttons()
+    limits: Limits = Limits()
+    provenance: dict[str, Provenance] = {}  # by dotted key, the longest prefix counts
+
+    def __post_init__(self) -> None:
+        """Refuse a profile in which a role is bound twice, only some roles are bound, or two gears share a button.
+
+        Raises:
+            ValueError: one of these; the message names the key.
+        """
+        names = [binding.role for binding in self.roles]
+        if names and sorted(names) != ["pedals", "shifter", "wheel"]:
+            raise ValueError("roles must bind wheel, pedals and shifter once each, or none of them")
+        lever = [*self.shifter.gears, *([] if self.shifter.reverse is None else [self.shifter.reverse])]
+        if len(set(lever)) != len(lever):
+            raise ValueError("shifter.gears and shifter.reverse must be different buttons")
+        if self.shifter.pattern == "h" and not self.shifter.gears:
+            raise ValueError("shifter.gears must name at least one button where shifter.pattern is h")
+        for binding in self.roles:
+            _check_indices(binding, self)
+
+
+def _check_indices(binding: RoleBinding, profile: CockpitProfile) -> None:
+    pedals = profile.pedals
+    if binding.role == "wheel" and profile.wheel.axis >= binding.axes:
+        raise ValueError(f"wheel.axis {profile.wheel.axis} must be below {binding.axes}, the axes of {binding.name}")
+    if binding.role == "pedals":
+        for name in ("throttle", "brake", "clutch", "handbrake"):
+            pedal: PedalAxis | None = getattr(pedals, name)
+            if pedal is not None and pedal.axis >= binding.axes:
+                raise ValueError(f"pedals.{name}.axis {pedal.axis} must be below {binding.axes}")
+    for key, bound in ((name, getattr(profile.buttons, name)) for name in Buttons.__struct_fields__):
+        if bound is not None and bound.on == binding.role and bound.button >= binding.buttons:
+            raise ValueError(f"buttons.{key}.button {bound.button} must be below {binding.buttons}")
+    if profile.shifter.on == binding.role:
+        for button in (*profile.shifter.gears, profile.shifter.reverse):
+            if button is not None and button >= binding.buttons:
+                raise ValueError(f"shifter button {button} must be below {binding.buttons}")
+
+
+ButtonName: TypeAlias = Literal[
+    "autonomous",
+    "manual",
+    "emergency_stop",
+    "reset",
+    "shift_up",
+    "shift_down",
+    "indicator_left",
+    "indicator_right",
+    "mark",
+]
+
+
+class ScriptPoint(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What the person does at one instant. A key left out goes on as before, on the line to its next mention."""
+
+    time_s: Annotated[float, Meta(ge=0.0, le=86_400.0)]
+    throttle: Share | None = None
+    brake: Share | None = None
+    clutch: Share | None = None
+    handbrake: Share | None = None
+    hand_wheel_deg: Annotated[float, Meta(ge=-1260.0, le=1260.0)] | None = None
+    gear: Annotated[int, Meta(ge=-1, le=7)] | None = None
+    press: list[ButtonName] = []  # held for 0.2 s
+
+
+class ScriptProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A person as a script: pedals and wheel go in straight lines from mention to mention, the lever in steps."""
+
+    schema: Literal[1] = 1
+    title: Title = ""
+    points: Annotated[list[ScriptPoint], Meta(min_length=1, max_length=100_000)]
+
+    def __post_init__(self) -> None:
+        """Refuse points whose time does not grow.
+
+        Raises:
+            ValueError: names the first such point.
+        """
+        for index in range(1, len(self.points)):
+            earlier, later = self.points[index - 1].time_s, self.points[index].time_s
+            if later <= earlier:
+                raise ValueError(f"points[{index}].time_s {later} must be above {earlier}, time only goes forward")
