@@ -1,0 +1,65 @@
+"""Spellings of other rosbridge dialects, brought to the one the generated classes read.
+
+Called only for a value that did not fit. It looks at nothing but the fields its definition names, so that a hostile
+depth or width costs no more than the definition allows.
+"""
+
+from typing import TYPE_CHECKING, Any, Final
+
+from simconsole.bridge.messages.definition import DURATION, FLOATS, HEADER, TIME, Field
+from simconsole.units import NS_PER_S
+
+if TYPE_CHECKING:
+    from simconsole.bridge.messages.registry import Registry
+
+_NAN: Final = float("nan")
+_ROS1_TIME: Final = {"secs": "sec", "nsecs": "nanosec"}
+
+
+def mend(registry: "Registry", name: str, value: Any, gaps: bool, now_ns: int) -> Any:
+    """Return a copy of `value` in which known other spellings are replaced; what is simply wrong stays wrong.
+
+    Replaced: secs and nsecs of a time, "now" as a time, a header's seq (ROS 1 has it, ROS 2 not), null as NaN for a
+    float if `gaps`, a list of integers for an array of bytes.
+    """
+    if name in (TIME, DURATION):
+        return _mend_time(value, now_ns)
+    if not isinstance(value, dict):
+        return value
+    mended = dict(value)
+    if name == HEADER:
+        mended.pop("seq", None)
+    for field in registry.definition(name).fields:
+        if field.name in mended:
+            mended[field.name] = _mend_field(registry, field, mended[field.name], gaps, now_ns)
+    return mended
+
+
+def _mend_field(registry: "Registry", field: Field, value: Any, gaps: bool, now_ns: int) -> Any:
+    kind = field.type
+    if kind.is_message:
+        if kind.array and isinstance(value, list):
+            return [mend(registry, kind.base, item, gaps, now_ns) for item in value]
+        return mend(registry, kind.base, value, gaps, now_ns)
+    if kind.is_octets:
+        return _mend_octets(value)
+    if gaps and kind.base in FLOATS:
+        if value is None and not kind.array:
+            return _NAN
+        if kind.array and isinstance(value, list):
+            return [_NAN if item is None else item for item in value]
+    return value
+
+
+def _mend_octets(value: Any) -> Any:
+    if isinstance(value, list) and all(type(item) is int and 0 <= item <= 255 for item in value):
+        return bytes(value)
+    return value
+
+
+def _mend_time(value: Any, now_ns: int) -> Any:
+    if value == "now":
+        return {"sec": now_ns // NS_PER_S, "nanosec": now_ns % NS_PER_S}
+    if isinstance(value, dict):
+        return {_ROS1_TIME.get(key, key): part for key, part in value.items()}
+    return value

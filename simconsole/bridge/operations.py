@@ -1,0 +1,136 @@
+"""The operations of the rosbridge v2 protocol that this bridge speaks: their fields, read and written.
+
+Source: ROSBRIDGE_PROTOCOL.md of rosbridge_suite. Fields a peer adds to an operation (latch, qos, ...) are ignored
+unless named here.
+"""
+
+from typing import Annotated, Any, Final, Literal
+
+import msgspec
+import orjson
+from msgspec import Meta, Struct
+
+from simconsole.errors import RemoteProtocolError
+
+Id = str | int | None
+Level = Literal["none", "error", "warning", "info"]
+SEVERITY: Final[dict[str, int]] = {"none": 0, "error": 1, "warning": 2, "info": 3}
+DEFAULT_LEVEL: Final = "error"
+
+
+class Advertise(Struct):
+    """A client will publish."""
+
+    topic: str
+    type: str
+    id: Id = None
+    latch: bool = False
+
+
+class Unadvertise(Struct):
+    """A client will no longer publish."""
+
+    topic: str
+    id: Id = None
+
+
+class Publish(Struct):
+    """One message, either way."""
+
+    topic: str
+    msg: Any
+    id: Id = None
+    latch: bool = False
+
+
+class Subscribe(Struct):
+    """A client wants a topic: at most one message per `throttle_rate` ms, `queue_length` kept while it waits."""
+
+    topic: str
+    type: str | None = None
+    id: Id = None
+    throttle_rate: Annotated[float, Meta(ge=0.0, le=3.6e6)] = 0.0
+    queue_length: Annotated[int, Meta(ge=0)] = 0
+    compression: Literal["none", "png", "cbor", "cbor-raw"] = "none"
+
+
+class Unsubscribe(Struct):
+    """A client no longer wants a topic; without id all its subscriptions of the topic end."""
+
+    topic: str
+    id: Id = None
+
+
+class Status(Struct):
+    """A remark on something the receiver sent."""
+
+    level: Level
+    msg: str
+    id: Id = None
+
+
+class SetLevel(Struct):
+    """How severe a status must be to be sent to this client."""
+
+    level: Level
+    id: Id = None
+
+
+Operation = Advertise | Unadvertise | Publish | Subscribe | Unsubscribe | Status | SetLevel
+
+OPERATIONS: Final[dict[str, type[Operation]]] = {
+    "advertise": Advertise,
+    "unadvertise": Unadvertise,
+    "publish": Publish,
+    "subscribe": Subscribe,
+    "unsubscribe": Unsubscribe,
+    "status": Status,
+    "set_level": SetLevel,
+}
+
+
+def read_operation(fields: dict[str, Any]) -> Operation:
+    """Return the typed operation of a decoded message.
+
+    Raises:
+        RemoteProtocolError: no `op`, an unknown one, or a field of the wrong type.
+    """
+    name = fields.get("op")
+    if not isinstance(name, str):
+        raise RemoteProtocolError("message has no op")
+    if name == "publish" and "msg" in fields and type(fields.get("topic")) is str:
+        # The one that comes a hundred times a second is spared the conversion of its untyped payload.
+        return Publish(fields["topic"], fields["msg"], id_of(fields), fields.get("latch") is True)
+    operation = OPERATIONS.get(name)
+    if operation is None:
+        raise RemoteProtocolError(f"op {name[:40]!r} is not supported here, only {', '.join(OPERATIONS)}")
+    try:
+        return msgspec.convert(fields, operation)
+    except msgspec.ValidationError as error:
+        raise RemoteProtocolError(f"{name}: {error}") from None
+
+
+def id_of(fields: dict[str, Any]) -> Id:
+    """Return the id of a message if it has a usable one: a refusal carries it back."""
+    value = fields.get("id")
+    if isinstance(value, str):
+        return value[:256]
+    return value if type(value) is int else None
+
+
+def write_status(level: str, text: str, identifier: Id = None) -> bytes:
+    """Return a status operation as text."""
+    fields: dict[str, Any] = {"op": "status", "level": level, "msg": text[:1000]}
+    if identifier is not None:
+        fields["id"] = identifier
+    return orjson.dumps(fields)
+
+
+def publish_head(topic: str) -> bytes:
+    """Return a publish operation up to its message: message and a closing brace follow."""
+    return b'{"op":"publish","topic":' + orjson.dumps(topic) + b',"msg":'
+
+
+def write_publish(topic: str, message: Any) -> bytes:
+    """Return a publish operation. NaN and infinities become null, so that it is JSON whatever is in it."""
+    return publish_head(topic) + msgspec.json.encode(message) + b"}"
