@@ -1,0 +1,191 @@
+"""A bundle: the folder that holds one drive, with a manifest of what belongs to it.
+
+`drive.log` and the resolved profiles are the drive itself; report.html, scene.rrd and other exports are made from
+them and may be missing. The manifest is written twice: at the start, so that a killed drive is still a bundle, and
+at the end with sizes and checksums.
+"""
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Final
+
+import msgspec
+
+from simconsole.errors import RecordingError
+from simconsole.recording.framing import START_OF_CHAIN, LogHeader, chain
+from simconsole.recording.log import LogReader, LogWriter
+from simconsole.recording.manifest import (
+    MANIFEST,
+    Manifest,
+    checksum_problem,
+    file_entry,
+    plain_name,
+    read_manifest,
+    size_problem,
+    write_manifest,
+)
+
+LOG: Final = "drive.log"
+
+
+class Bundle:
+    """A bundle opened for reading.
+
+    Attributes:
+        folder: where it is.
+        manifest: what it says of itself.
+        log: the recorded rows.
+    """
+
+    def __init__(self, folder: Path, manifest: Manifest) -> None:
+        self.folder = folder
+        self.manifest = manifest
+        self.log = LogReader(folder / LOG)
+
+    def text(self, name: str) -> str:
+        """Return one of the recorded profiles.
+
+        Raises:
+            RecordingError: the manifest does not list it, or it cannot be read.
+        """
+        if name not in self.manifest.files:
+            raise RecordingError(f"{self.folder / name}: not in {MANIFEST}, which lists {sorted(self.manifest.files)}")
+        try:
+            return (self.folder / name).read_text("utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise RecordingError(f"{self.folder / name}: cannot be read: {error}") from None
+
+
+class BundleWriter:
+    """Records one drive. Leaving it without `finish` keeps an unfinished but readable bundle.
+
+    Attributes:
+        folder: where it is.
+        log: append one row per tick here; look at `log.failure` for a disk that gave up.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        header: LogHeader,
+        texts: Mapping[str, str],
+        versions: Mapping[str, str] | None = None,
+        labels: Mapping[str, str] | None = None,
+    ) -> None:
+        """Make the folder, write `texts` (resolved profiles, file name to content) and open the log.
+
+        Raises:
+            RecordingError: the folder exists and is not empty, or cannot be written.
+        """
+        self.folder = folder
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            if any(folder.iterdir()):
+                raise RecordingError(f"{folder}: cannot be recorded to: the folder is not empty")
+            for name, text in texts.items():
+                (folder / plain_name(name, folder)).write_text(text, "utf-8")
+            self.manifest = Manifest(
+                files={name: file_entry(folder / name) for name in texts},
+                versions=dict(versions or {}),
+                labels=dict(labels or {}),
+            )
+            write_manifest(folder, self.manifest)
+        except OSError as error:
+            raise RecordingError(f"{folder}: cannot be recorded to: {error.strerror}") from None
+        self.log = LogWriter(folder / LOG, header)
+
+    def finish(self, summary: Mapping[str, Any]) -> Manifest:
+        """Close the log and write the manifest with its checksums; `summary` holds JSON values.
+
+        Raises:
+            RecordingError: the manifest cannot be written (the unfinished one stays).
+        """
+        self.log.close()
+        try:
+            self.manifest = msgspec.structs.replace(
+                self.manifest,
+                finished=True,
+                files={**self.manifest.files, LOG: file_entry(self.folder / LOG)},
+                ticks=self.log.ticks,
+                digest=self.log.digest.hex(),
+                recording_failure=self.log.failure,
+                summary=dict(summary),
+            )
+            write_manifest(self.folder, self.manifest)
+        except OSError as error:
+            raise RecordingError(f"{self.folder}: {MANIFEST} cannot be written: {error.strerror}") from None
+        return self.manifest
+
+    def __enter__(self) -> "BundleWriter":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.log.close()
+
+
+def open_bundle(folder: Path) -> Bundle:
+    """Open a bundle after checking that everything the drive needs is there in full size.
+
+    Raises:
+        RecordingError: no bundle, a file missing or truncated, a newer schema, another byte order.
+    """
+    manifest = read_manifest(folder)
+    for name, entry in manifest.files.items():
+        if not entry.export and (problem := size_problem(folder / name, entry)):
+            raise RecordingError(problem)
+    return Bundle(folder, manifest)
+
+
+def add_export(folder: Path, name: str) -> None:
+    """List a file made from the drive (report.html, scene.rrd), already in the folder, in its manifest.
+
+    Raises:
+        RecordingError: no bundle, or the file is not there.
+    """
+    manifest = read_manifest(folder)
+    try:
+        entry = msgspec.structs.replace(file_entry(folder / plain_name(name, folder)), export=True)
+        write_manifest(folder, msgspec.structs.replace(manifest, files={**manifest.files, name: entry}))
+    except OSError as error:
+        raise RecordingError(f"{folder / name}: cannot be added to {MANIFEST}: {error.strerror}") from None
+
+
+def verify(folder: Path) -> list[str]:
+    """Check every file, checksum, record and hash; return one line for each problem, none if all is well.
+
+    Raises:
+        RecordingError: the folder has no manifest that can be read.
+    """
+    manifest = read_manifest(folder)
+    problems = [] if manifest.finished else [f"{folder / MANIFEST}: the drive was not finished"]
+    if manifest.recording_failure:
+        problems.append(manifest.recording_failure)
+    for name, entry in manifest.files.items():
+        if problem := size_problem(folder / name, entry) or checksum_problem(folder / name, entry):
+            problems.append(problem)
+    problems += _log_problems(folder / LOG, manifest)
+    return problems
+
+
+def _log_problems(path: Path, manifest: Manifest) -> Iterator[str]:
+    try:
+        log = LogReader(path)
+    except RecordingError as error:
+        yield str(error)
+        return
+    digest, ticks, broken = START_OF_CHAIN, 0, None
+    for record in log:
+        digest = chain(digest, record.tick, record.row.tobytes())
+        if broken is None and digest != record.digest:
+            broken = record.tick
+        digest = record.digest
+        ticks += 1
+    yield from (f"{path}: {part}" for part in log.breaks)
+    if broken is not None:
+        yield f"{path}: the chained hash does not hold at tick {broken}"
+    found, stated = f"{ticks} ticks, hash {digest.hex()}", f"{manifest.ticks} ticks, hash {manifest.digest}"
+    if manifest.finished and found != stated:
+        yield f"{path}: {found}, {MANIFEST} says {stated}"

@@ -1,0 +1,89 @@
+"""Replay: make every tick again from its recorded inputs and ask for the same bytes."""
+
+import math
+from collections.abc import Callable, Iterable
+from typing import NamedTuple
+
+import numpy as np
+
+from simconsole.errors import RecordingError
+from simconsole.kernels import Row
+from simconsole.recording.framing import START_OF_CHAIN, LogHeader, Record, chain
+
+AdvanceRow = Callable[[int, Row, Row], Row]
+"""`advance(tick, previous_row, input_row) -> row`: makes row `tick` from the row before it and recorded inputs."""
+
+
+class Difference(NamedTuple):
+    """Where two rows first differ. `field` is a column, or 'hash' where only the recorded hash does not fit."""
+
+    tick: int
+    field: str
+    recorded: float
+    replayed: float
+
+    def __str__(self) -> str:
+        """One line for a person."""
+        if self.field == "hash":
+            return f"tick {self.tick}: the row is equal, but the recorded hash does not belong to it"
+        return f"tick {self.tick}: {self.field}: recorded {self.recorded!r}, replayed {self.replayed!r}"
+
+
+class ReplayResult(NamedTuple):
+    """What a replay found: `equal` only if every recorded tick gave the same bytes and the same hash."""
+
+    equal: bool
+    ticks: int  # compared and found equal
+    difference: Difference | None
+    digest: bytes  # chained hash of the replayed rows
+
+
+def replay(
+    records: Iterable[Record],
+    header: LogHeader,
+    columns: tuple[str, ...],
+    initial: Row,
+    advance: AdvanceRow,
+    first_tick: int | None = None,
+) -> ReplayResult:
+    """Make every row of `records` again from its first `header.input_columns` columns and compare the bytes.
+
+    Args:
+        records: the recorded ticks, in order and without gaps (a `LogReader`).
+        header: of the recording.
+        columns: of the rows that `advance` makes; must be the recorded ones.
+        initial: the row before the first recorded tick.
+        advance: see `AdvanceRow`.
+        first_tick: the tick after `initial`, where the caller knows it.
+
+    Returns:
+        The result, up to and including the first differing tick.
+
+    Raises:
+        RecordingError: the recording has other columns, or its ticks have a gap.
+    """
+    if header.columns != columns:
+        unlike = next((pair for pair in zip(header.columns, columns, strict=False) if pair[0] != pair[1]), None)
+        detail = f"{unlike[0]!r} where this version has {unlike[1]!r}" if unlike else "another number of columns"
+        raise RecordingError(f"the recording's columns are not this version's: {detail}")
+    row, digest, ticks, expected = initial, START_OF_CHAIN, 0, first_tick
+    for record in records:
+        if expected is not None and record.tick != expected:
+            raise RecordingError(f"the recording cannot be replayed from tick {expected} on: it is missing")
+        inputs = record.row[: header.input_columns].copy()  # a read-only view would be another type to numba
+        row = advance(record.tick, row, inputs)
+        digest = chain(digest, record.tick, row.tobytes())
+        if (field := first_unequal(record.row, row)) is not None:
+            found = Difference(record.tick, columns[field], float(record.row[field]), float(row[field]))
+            return ReplayResult(False, ticks, found, digest)
+        if digest != record.digest:
+            return ReplayResult(False, ticks, Difference(record.tick, "hash", math.nan, math.nan), digest)
+        ticks, expected = ticks + 1, record.tick + 1
+    return ReplayResult(True, ticks, None, digest)
+
+
+def first_unequal(left: Row, right: Row) -> int | None:
+    """Return the index of the first value whose bytes differ (0.0 and -0.0 differ, equal NaNs do not), or None."""
+    if left.tobytes() == right.tobytes():
+        return None
+    return int(np.flatnonzero(left.view(np.uint64) != right.view(np.uint64))[0])
