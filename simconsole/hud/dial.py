@@ -1,0 +1,125 @@
+"""The dial in the middle: engine speed on the ring, road speed in digits, the gear below."""
+
+import math
+from typing import Final
+
+from simconsole.hud.draw import (
+    CAUTION,
+    LINE,
+    MUTED,
+    PANEL,
+    TEXT,
+    WARNING_LINE,
+    Arc,
+    Box,
+    Colour,
+    DrawItem,
+    Polygon,
+    Rect,
+    Text,
+    at_clock,
+)
+from simconsole.hud.screen import DRIVING_ARCMIN, SECONDARY_ARCMIN, SPEED_ARCMIN
+from simconsole.hud.view import HudView
+
+START_DEG: Final = -130.0
+SWEEP_DEG: Final = 260.0
+FLAT: Final = -0.78
+"""Height of the dial's flat foot below its centre, in radii (upwards positive)."""
+
+
+def dial(view: HudView, box: Box) -> list[DrawItem]:
+    """Return ring, needle, speed and gear."""
+    radius = min(0.5 * box.w, box.h / (1.0 - FLAT))
+    cx, cy = box.cx, box.y + 0.5 * (box.h - (1.0 - FLAT) * radius) + radius
+    return [
+        *_face(cx, cy, radius),
+        *_band(view, cx, cy, radius),
+        *_scale(view, cx, cy, radius),
+        *_speed(view, cx, cy, radius),
+        *_gear(view, cx, cy, radius),
+    ]
+
+
+def _clock_deg(view: HudView, rpm: float) -> float:
+    return START_DEG + SWEEP_DEG * min(1.0, max(0.0, rpm / view.rpm_max))
+
+
+def _face(cx: float, cy: float, radius: float) -> list[DrawItem]:
+    """Return the dial's ground: a disc with a flat foot."""
+    half = math.degrees(math.acos(FLAT))
+    points = tuple(at_clock(cx, cy, radius, half * step / 90.0) for step in range(-90, 91))
+    return [Polygon(points, PANEL, "dial.face")]
+
+
+def _band(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]:
+    """Return the band that fills with the engine's speed, and the needle at its end."""
+    end = START_DEG + SWEEP_DEG
+    track = Arc(cx, cy, 0.90 * radius, 0.85 * radius, START_DEG, end, LINE, "dial.track")
+    if view.stale:
+        return [track]
+    clock = _clock_deg(view, view.rpm)
+    colour = WARNING_LINE if view.rpm >= view.rpm_red else TEXT
+    needle = tuple(
+        at_clock(cx, cy, distance * radius, clock + offset)
+        for distance, offset in ((0.82, -0.9), (0.985, -0.45), (0.985, 0.45), (0.82, 0.9))
+    )
+    items: list[DrawItem] = [track]
+    if clock - START_DEG >= 0.2:
+        items.append(Arc(cx, cy, 0.90 * radius, 0.85 * radius, START_DEG, clock, MUTED, "dial.band"))
+    return [*items, Polygon(needle, colour, "dial.needle")]
+
+
+def _scale(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]:
+    red = _clock_deg(view, view.rpm_red)
+    end = START_DEG + SWEEP_DEG
+    items: list[DrawItem] = [Arc(cx, cy, 0.955 * radius, 0.925 * radius, red, end, WARNING_LINE, "dial.red")]
+    for half in range(2 * int(view.rpm_max // 1000.0) + 1):
+        clock = _clock_deg(view, 500.0 * half)
+        whole = half % 2 == 0
+        colour = WARNING_LINE if clock >= red - 1e-6 else MUTED
+        items.append(_tick(cx, cy, 0.925 * radius, (0.97 if whole else 0.95) * radius, clock, whole, colour))
+        if whole:
+            x, y = at_clock(cx, cy, 0.735 * radius, clock)
+            items.append(Text(x, y, f"{half // 2}", 0.075 * radius, TEXT, "dial.number", "c", SECONDARY_ARCMIN))
+    unit = Text(cx, cy - 0.48 * radius, "x1000 rpm", 0.045 * radius, MUTED, "dial.unit", "c", SECONDARY_ARCMIN)
+    return [*items, unit]
+
+
+def _tick(cx: float, cy: float, inner: float, outer: float, clock_deg: float, whole: bool, colour: Colour) -> DrawItem:
+    half_deg = 0.55 if whole else 0.3
+    corners = ((inner, -half_deg), (outer, -half_deg), (outer, half_deg), (inner, half_deg))
+    points = tuple(at_clock(cx, cy, distance, clock_deg + offset) for distance, offset in corners)
+    return Polygon(points, colour, "dial.tick")
+
+
+def _speed(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]:
+    if view.stale:
+        return [Text(cx, cy - 0.06 * radius, "NO DATA", 0.17 * radius, MUTED, "speed", "c", DRIVING_ARCMIN)]
+    return [
+        Text(cx, cy - 0.06 * radius, f"{view.shown_kmh}", 0.42 * radius, TEXT, "speed", "c", SPEED_ARCMIN),
+        Text(cx, cy + 0.28 * radius, "km/h", 0.07 * radius, MUTED, "speed.unit", "c", DRIVING_ARCMIN),
+    ]
+
+
+def _gear(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]:
+    side = 0.31 * radius
+    box = Box(cx - 0.5 * side, cy + 0.42 * radius, side, side)
+    gear = "-" if view.stale else view.gear
+    ink = MUTED if view.stale else TEXT
+    items: list[DrawItem] = [
+        Rect(box, LINE, "gear.frame", 0.14 * side, max(2.0, 0.02 * radius)),
+        Text(box.cx, box.cy, gear, 0.56 * side, ink, "gear", "c", DRIVING_ARCMIN),
+    ]
+    if view.automatic and not view.stale:
+        x = box.right + 0.07 * radius
+        items.append(Text(x, box.cy, "AUTO", 0.06 * radius, MUTED, "gear.automatic", "l", SECONDARY_ARCMIN))
+    elif view.rpm >= view.rpm_red and not view.stale:
+        items += _shift_up(Box(box.right + 0.07 * radius, box.cy - 0.06 * radius, 0.12 * radius, 0.12 * radius))
+    return items
+
+
+def _shift_up(box: Box) -> list[DrawItem]:
+    arrow = ((box.cx, box.y), (box.right, box.bottom), (box.x, box.bottom))
+    label = Text(box.right + 0.3 * box.w, box.cy, "UP", 0.6 * box.h, CAUTION, "shift", "l", DRIVING_ARCMIN)
+    return [Polygon(arrow, CAUTION, "shift.arrow"), label]

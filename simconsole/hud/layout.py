@@ -1,0 +1,110 @@
+"""The driver's instrument cluster: `layout` turns a view into a draw list. Pure; no graphics library.
+
+Top to bottom inside the safe area: who drives (mode in words and shape), one slot for the one alert, then pedals,
+dial and steering side by side, then a strip of lamps. Each thing has one place at all times.
+"""
+
+from typing import Final, NamedTuple
+
+from simconsole.errors import ProfileError
+from simconsole.hud.banner import alert_of, banner, slot
+from simconsole.hud.dial import dial
+from simconsole.hud.draw import BACKGROUND, Box, DrawItem, Rect, Text, bounds
+from simconsole.hud.panels import pedals, status, steering
+from simconsole.hud.screen import Screen
+from simconsole.hud.view import HudView
+from simconsole.signals import Mode, Reason
+from simconsole.words import is_refusal, mode_words, reason_words
+
+GAP: Final = 0.02
+
+
+class Places(NamedTuple):
+    """Where each part of the cluster stands."""
+
+    banner: Box
+    slot: Box
+    left: Box
+    dial: Box
+    right: Box
+    status: Box
+
+
+def places(screen: Screen) -> Places:
+    """Divide the driver's screen."""
+    area = screen.content()
+    middle = area.row(0.275, 0.88)
+    dial_width = min(1.125 * middle.h, 0.50 * area.w)
+    gap = GAP * area.h
+    side = 0.5 * (area.w - dial_width) - gap
+    left = Box(area.cx - 0.5 * dial_width - gap - side, middle.y, side, middle.h)
+    right = Box(area.cx + 0.5 * dial_width + gap, middle.y, side, middle.h)
+    return Places(
+        banner=area.row(0.0, 0.135),
+        slot=area.row(0.15, 0.26),
+        left=left,
+        dial=Box(area.cx - 0.5 * dial_width, middle.y, dial_width, middle.h),
+        right=right,
+        status=area.row(0.90, 1.0),
+    )
+
+
+def layout(view: HudView, screen: Screen) -> list[DrawItem]:
+    """Return everything to draw, back to front, in pixels of `screen`."""
+    place = places(screen)
+    alert = alert_of(view)
+    ground = Rect(Box(0.0, 0.0, screen.width_px, screen.height_px), BACKGROUND, "ground")
+    return [
+        ground,
+        *pedals(view, place.left),
+        *dial(view, place.dial),
+        *steering(view, place.right),
+        *status(view, place.status),
+        *slot(view, alert, place.slot, screen),
+        *banner(view, alert, place.banner),
+    ]
+
+
+def check_screen(screen: Screen, name: str) -> None:
+    """Fail at start-up when some text would be too small to read, or something would leave the safe area.
+
+    Args:
+        screen: the screen to check.
+        name: what to call its profile in the message.
+
+    Raises:
+        ProfileError: names the keys to change (facts/visuals 4, rules 1 and 15).
+    """
+    safe = screen.safe()
+    for view in sample_views():
+        for item in layout(view, screen):
+            if isinstance(item, Text) and item.cap_px < item.arcmin * screen.px_per_arcmin:
+                have = item.cap_px / screen.px_per_arcmin
+                raise ProfileError(
+                    f"{name}: screen_width_m {screen.screen_width_m:g} at eye_distance_m {screen.eye_distance_m:g} "
+                    f"and {screen.width_px}x{screen.height_px} px draws '{item.text}' {have:.1f} arc minutes high; "
+                    f"allowed: at least {item.arcmin:g}"
+                )
+            box = bounds(item)
+            outside = box.x < safe.x or box.y < safe.y or box.right > safe.right or box.bottom > safe.bottom
+            if item.role != "ground" and outside:
+                raise ProfileError(
+                    f"{name}: width_px {screen.width_px}, height_px {screen.height_px}: {item.role} leaves the screen; "
+                    "allowed: aspect ratio 4:3, 16:9 or three of these side by side"
+                )
+
+
+def sample_views() -> list[HudView]:
+    """Return a view of every mode, reason, take-over stage and of stale data, with the widest numbers."""
+    wide = HudView(shown_kmh=288, rpm=6500.0, engine_running=True, gear="6", automatic=True, distance_m=123456.0)
+    wide = wide._replace(t_s=36000.0, link_age_s=0.9, remote_lateral=1.0, throttle=1.0, brake=1.0, clutch=1.0)
+    views = [wide._replace(mode=float(mode), mode_words=mode_words(mode)) for mode in Mode]
+    for reason in Reason:
+        words = reason_words(reason)
+        views.append(wide._replace(refusal_words=words) if is_refusal(reason) else wide._replace(reason_words=words))
+    asked = wide._replace(mode=float(Mode.TAKEOVER_REQUESTED), mode_words=mode_words(Mode.TAKEOVER_REQUESTED))
+    views += [asked._replace(takeover_stage=stage, remaining_s=10.0) for stage in (1, 2)]
+    validities = (0.0, 1.0, 2.0, 3.0, 4.0)
+    views += [wide._replace(wheel_validity=v, pedals_validity=v, shifter_validity=v) for v in validities]
+    views += [wide._replace(link_age_s=None, handbrake=1.0, engine_running=False, road_wheel_rad=-0.6)]
+    return [*views, wide._replace(stale=True)]

@@ -1,0 +1,207 @@
+"""The panels beside and below the dial: pedals, steering and link, lamps."""
+
+from typing import Final
+
+from simconsole.hud.draw import (
+    ACTIVE,
+    CAUTION,
+    LINE,
+    MUTED,
+    PANEL,
+    TEXT,
+    Arc,
+    Box,
+    Colour,
+    DrawItem,
+    Polygon,
+    Rect,
+    Text,
+    around,
+    fit_cap_px,
+)
+from simconsole.hud.screen import DRIVING_ARCMIN, SECONDARY_ARCMIN
+from simconsole.hud.shapes import exclamation
+from simconsole.hud.view import HudView
+from simconsole.signals import Validity
+from simconsole.units import DEG_PER_RAD
+from simconsole.words import validity_words
+
+FULL_STEERING_DEG: Final = 40.0
+"""Road-wheel angle at the end of the steering scale."""
+
+
+def _panel(box: Box, title: str) -> list[DrawItem]:
+    cap = min(0.030 * box.h, 0.05 * box.w)
+    return [
+        Rect(box, PANEL, "panel", 0.04 * box.w),
+        Text(box.x + 0.07 * box.w, box.y + 0.065 * box.h, title, cap, MUTED, "panel.title", "l", SECONDARY_ARCMIN),
+    ]
+
+
+def pedals(view: HudView, box: Box) -> list[DrawItem]:
+    """Return clutch, brake and throttle as on the floor: the bar is what the car gets, the mark what the foot does."""
+    items = _panel(box, "PEDALS")
+    rows = (
+        ("CLUTCH", view.clutch, view.driver_clutch),
+        ("BRAKE", view.brake, view.driver_brake),
+        ("GAS", view.throttle, view.driver_throttle),
+    )
+    inside = Box(box.x + 0.06 * box.w, box.y + 0.13 * box.h, 0.88 * box.w, 0.82 * box.h)
+    for index, (name, value, foot) in enumerate(rows):
+        items += _pedal(name, value, foot, view.stale, inside.column(index / 3.0, (index + 1) / 3.0))
+    return items
+
+
+def _pedal(name: str, value: float, foot: float, stale: bool, box: Box) -> list[DrawItem]:
+    cap = fit_cap_px("CLUTCH", 0.036 * box.h, 0.86 * box.w)
+    width = 0.42 * box.w
+    slot = Box(box.cx - 0.5 * width, box.y + 0.13 * box.h, width, 0.74 * box.h)
+    number = "--" if stale else f"{100.0 * value:.0f}"
+    role = f"pedal.{name.lower()}"
+    ink = MUTED if stale else TEXT
+    items: list[DrawItem] = [
+        Text(box.cx, box.y + 0.055 * box.h, number, 1.25 * cap, ink, f"{role}.number", "c", DRIVING_ARCMIN),
+        Rect(slot, LINE, f"{role}.slot", 0.14 * width),
+        Text(box.cx, box.bottom - 0.045 * box.h, name, cap, MUTED, f"{role}.name", "c", SECONDARY_ARCMIN),
+    ]
+    if stale:
+        return items
+    height = min(1.0, max(0.0, value)) * slot.h
+    if height >= 1.0:
+        items.append(Rect(Box(slot.x, slot.bottom - height, width, height), TEXT, f"{role}.bar", 0.14 * width))
+    mark = slot.bottom - min(1.0, max(0.0, foot)) * slot.h
+    reach = 0.3 * width
+    points = ((slot.x - 0.08 * width, mark), (slot.x - 0.08 * width - reach, mark - 0.6 * reach))
+    return [*items, Polygon((*points, (points[1][0], mark + 0.6 * reach)), MUTED, f"{role}.foot")]
+
+
+def steering(view: HudView, box: Box) -> list[DrawItem]:
+    """Return who steers, how far, and the link to the autopilot."""
+    items = _panel(box, "STEERING")
+    inside = Box(box.x + 0.08 * box.w, box.y, 0.84 * box.w, box.h)
+    items += _angle(view, inside.row(0.12, 0.40))
+    items += _share(view, inside.row(0.42, 0.66))
+    line = Box(inside.x, box.y + 0.685 * box.h, inside.w, 2.0)
+    return [*items, Rect(line, LINE, "panel.line"), *_link(view, inside.row(0.70, 0.96))]
+
+
+def _angle(view: HudView, box: Box) -> list[DrawItem]:
+    degrees = view.road_wheel_rad * DEG_PER_RAD
+    side = "" if abs(degrees) < 0.05 else (" L" if degrees > 0.0 else " R")
+    words = "--" if view.stale else f"{abs(degrees):.1f} deg{side}"
+    cap = fit_cap_px("00.0 deg R", 0.24 * box.h, 0.88 * box.w)
+    bar = Box(box.x, box.y + 0.62 * box.h, box.w, 0.16 * box.h)
+    items: list[DrawItem] = [
+        Text(box.cx, box.y + 0.3 * box.h, words, cap, MUTED if view.stale else TEXT, "steering", "c", DRIVING_ARCMIN),
+        Rect(bar, LINE, "steering.slot", 0.5 * bar.h),
+    ]
+    if not view.stale:
+        part = min(1.0, max(-1.0, degrees / FULL_STEERING_DEG))
+        x = bar.cx - part * 0.5 * bar.w
+        left, right = min(x, bar.cx), max(x, bar.cx)
+        if right - left >= 1.0:
+            items.append(Rect(Box(left, bar.y, right - left, bar.h), TEXT, "steering.bar"))
+    middle = Box(bar.cx - 0.08 * bar.h, bar.y - 0.4 * bar.h, max(2.0, 0.16 * bar.h), 1.8 * bar.h)
+    return [*items, Rect(middle, MUTED, "steering.middle")]
+
+
+def _share(view: HudView, box: Box) -> list[DrawItem]:
+    remote = min(1.0, max(0.0, view.remote_lateral))
+    bar = Box(box.x, box.y + 0.58 * box.h, box.w, 0.2 * box.h)
+    you = "--" if view.stale else f"{100.0 * (1.0 - remote):.0f} %"
+    pilot = "--" if view.stale else f"{100.0 * remote:.0f} %"
+    cap = fit_cap_px("AUTOPILOT", 0.12 * box.h, 0.58 * box.w)
+    top, below = box.y + 0.14 * box.h, box.y + 0.38 * box.h
+    items: list[DrawItem] = [
+        Text(box.x, top, "YOU", cap, MUTED, "share.label", "l", SECONDARY_ARCMIN),
+        Text(box.right, top, "AUTOPILOT", cap, MUTED, "share.label", "r", SECONDARY_ARCMIN),
+        Text(box.x, below, you, 1.15 * cap, TEXT, "share.you", "l", DRIVING_ARCMIN),
+        Text(box.right, below, pilot, 1.15 * cap, TEXT, "share.autopilot", "r", DRIVING_ARCMIN),
+        Rect(bar, LINE, "share.slot", 0.3 * bar.h),
+    ]
+    if view.stale:
+        return items
+    cut = bar.x + (1.0 - remote) * bar.w
+    if cut - bar.x >= 1.0:
+        items.append(Rect(Box(bar.x, bar.y, cut - bar.x, bar.h), TEXT, "share.person", 0.3 * bar.h))
+    if bar.right - cut >= 1.0:
+        items.append(Rect(Box(cut, bar.y, bar.right - cut, bar.h), ACTIVE, "share.remote", 0.3 * bar.h))
+    return items
+
+
+def _link(view: HudView, box: Box) -> list[DrawItem]:
+    words, age, colour = _link_words(view)
+    side = 0.2 * box.h
+    sign = Box(box.x, box.y + 0.48 * box.h - 0.5 * side, side, side)
+    cap = fit_cap_px("SILENT", 0.17 * box.h, box.w - 1.6 * side)
+    x = sign.right + 0.6 * side
+    title = Text(
+        box.x, box.y + 0.14 * box.h, "AUTOPILOT LINK", fit_cap_px("AUTOPILOT LINK", 0.11 * box.h, box.w),
+        MUTED, "link.title", "l", SECONDARY_ARCMIN,
+    )  # fmt: skip
+    return [
+        title,
+        *_link_shape(words, sign, colour),
+        Text(x, box.y + 0.48 * box.h, words, cap, TEXT if words != "--" else MUTED, "link", "l", DRIVING_ARCMIN),
+        Text(x, box.y + 0.80 * box.h, age, min(cap, 0.12 * box.h), MUTED, "link.age", "l", SECONDARY_ARCMIN),
+    ]
+
+
+def _link_words(view: HudView) -> tuple[str, str, Colour]:
+    if view.stale:
+        return "--", "--", MUTED
+    if view.link_age_s is None:
+        return "NONE", "no command yet", MUTED
+    shown = f"{1000.0 * view.link_age_s:.0f} ms old" if view.link_age_s < 10.0 else "over 10 s old"
+    return ("SILENT", shown, CAUTION) if view.link_age_s > view.link_stale_s else ("LIVE", shown, ACTIVE)
+
+
+def _link_shape(words: str, box: Box, colour: Colour) -> list[DrawItem]:
+    if words == "SILENT":
+        return exclamation(box, colour, PANEL, "link.shape")
+    inner = 0.0 if words == "LIVE" else 0.36 * box.w
+    return [Arc(box.cx, box.cy, 0.5 * box.w, inner, 0.0, 360.0, colour, "link.shape")]
+
+
+def status(view: HudView, box: Box) -> list[DrawItem]:
+    """Return the lamps: the three devices, engine and hand brake."""
+    cells = (
+        ("WHEEL", *_device(view.wheel_validity)),
+        ("PEDALS", *_device(view.pedals_validity)),
+        ("SHIFTER", *_device(view.shifter_validity)),
+        ("ENGINE", "running", "good") if view.engine_running else ("ENGINE", "off", "plain"),
+        ("HAND BRAKE", "on", "warn") if view.handbrake > 0.05 else ("HAND BRAKE", "off", "plain"),
+    )
+    items: list[DrawItem] = [Rect(box, PANEL, "status", 0.12 * box.h)]
+    for index, (name, words, level) in enumerate(cells):
+        cell = box.inset(0.01 * box.w).column(index / len(cells), (index + 1) / len(cells))
+        items += _cell(name, "--" if view.stale else words, "plain" if view.stale else level, cell, box)
+    return items
+
+
+def _device(validity: float) -> tuple[str, str]:
+    bad = validity in (Validity.STALE, Validity.LOST)
+    good = validity in (Validity.LIVE, Validity.ARMED)
+    return validity_words(validity), "warn" if bad else ("good" if good else "plain")
+
+
+def _cell(name: str, words: str, level: str, cell: Box, box: Box) -> list[DrawItem]:
+    role = f"status.{name.lower().replace(' ', '_')}"
+    label = fit_cap_px("HAND BRAKE", 0.14 * box.h, 0.92 * cell.w)
+    side = 0.22 * box.h
+    x = cell.x + 0.04 * cell.w
+    items: list[DrawItem] = [Text(x, box.y + 0.28 * box.h, name, label, MUTED, f"{role}.name", "l", SECONDARY_ARCMIN)]
+    y = box.y + 0.68 * box.h
+    if level != "plain":
+        items += _lamp(level, Box(x, y - 0.5 * side, side, side), f"{role}.lamp")
+        x += 1.35 * side
+    cap = fit_cap_px(words, 0.19 * box.h, cell.right - x - 0.03 * cell.w)
+    ink = CAUTION if level == "warn" else TEXT
+    return [*items, Text(x, y, words, cap, ink, f"{role}.words", "l", DRIVING_ARCMIN)]
+
+
+def _lamp(level: str, box: Box, role: str) -> list[DrawItem]:
+    if level == "warn":
+        return exclamation(box, CAUTION, PANEL, role)
+    check = around(box.cx, box.cy, 0.36 * box.w, 24)
+    return [Polygon(check, ACTIVE, role)]

@@ -1,0 +1,149 @@
+"""Draw lists to pixels with pygame-ce: the only place where the cluster meets a graphics library.
+
+Shapes are drawn larger than wanted and scaled down, which smooths their edges; the results are kept, so a frame
+costs the few items that moved. Needs neither a display nor a video driver.
+"""
+
+import math
+from collections import OrderedDict
+from collections.abc import Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import Final
+
+import pygame
+import pygame.font
+
+from simconsole.hud.draw import Arc, Box, Colour, DrawItem, Polygon, Rect, Text, at_clock, bounds
+from simconsole.hud.layout import layout
+from simconsole.hud.screen import Screen, screen_of
+from simconsole.hud.view import HudMemory, HudView, view
+from simconsole.profiles.view import HudProfile
+from simconsole.rows import Snapshot
+
+CAP_PER_SIZE: Final = 0.501
+"""Height of a capital in pygame's own font at size 1."""
+KEPT: Final = 600
+"""Drawn shapes and words kept for the next frame."""
+LARGE_PX: Final = 200.0
+"""Shapes above this size are smoothed two times instead of four."""
+ARC_STEP_DEG: Final = 1.5
+WORDS_SCALE: Final = 4
+"""How much larger words are drawn before they are scaled down."""
+
+
+class Painter:
+    """Draws lists on surfaces and remembers what it has drawn."""
+
+    def __init__(self) -> None:
+        pygame.font.init()
+        self._fonts: dict[int, pygame.font.Font] = {}
+        self._kept: OrderedDict[DrawItem, tuple[pygame.Surface, tuple[int, int]]] = OrderedDict()
+
+    def paint(self, surface: pygame.Surface, items: Sequence[DrawItem]) -> None:
+        """Draw `items` in order."""
+        for item in items:
+            if isinstance(item, Rect) and item.line == 0.0:
+                _rectangle(surface, item)
+                continue
+            sprite = self._kept.get(item)
+            if sprite is None:
+                sprite = self._kept[item] = self._sprite(item)
+                if len(self._kept) > KEPT:
+                    self._kept.popitem(last=False)
+            else:
+                self._kept.move_to_end(item)
+            surface.blit(*sprite)
+
+    def _sprite(self, item: DrawItem) -> tuple[pygame.Surface, tuple[int, int]]:
+        return self._words(item) if isinstance(item, Text) else _shape(item)
+
+    def _words(self, item: Text) -> tuple[pygame.Surface, tuple[int, int]]:
+        size = max(1, math.ceil(WORDS_SCALE * item.cap_px / CAP_PER_SIZE - 1e-6))
+        font = self._fonts.get(size) or self._fonts.setdefault(size, pygame.font.Font(None, size))
+        large = font.render(item.text, True, item.colour)
+        # Small sizes are drawn large and scaled down: the font's own hinting would space the letters unevenly.
+        width, height = round(large.get_width() / WORDS_SCALE), round(large.get_height() / WORDS_SCALE)
+        drawn = pygame.transform.smoothscale(large, (max(1, width), max(1, height)))
+        shift = {"l": 0.0, "c": 0.5, "r": 1.0}[item.anchor] * width
+        # The line's top is one ascent above the baseline, and the baseline half a capital below the middle.
+        top = item.y + 0.5 * item.cap_px - font.get_ascent() / WORDS_SCALE
+        return drawn, (round(item.x - shift), round(top))
+
+
+def _rectangle(surface: pygame.Surface, item: Rect) -> None:
+    left, top = round(item.box.x), round(item.box.y)
+    area = pygame.Rect(left, top, round(item.box.right) - left, round(item.box.bottom) - top)
+    radius = min(round(item.radius), area.w // 2, area.h // 2)
+    if radius < 1:
+        surface.fill(item.colour, area)
+        return
+    surface.fill(item.colour, area.inflate(-2 * radius, 0))
+    surface.fill(item.colour, area.inflate(0, -2 * radius))
+    disc = _disc(radius, item.colour)
+    for column, x in enumerate((area.left, area.right - radius)):
+        for row, y in enumerate((area.top, area.bottom - radius)):
+            surface.blit(disc, (x, y), (column * radius, row * radius, radius, radius))
+
+
+@lru_cache(maxsize=64)
+def _disc(radius: int, colour: Colour) -> pygame.Surface:
+    """Return a smooth disc, the source of rounded corners."""
+    large = pygame.Surface((8 * radius, 8 * radius), pygame.SRCALPHA)
+    large.fill((*colour, 0))
+    pygame.draw.circle(large, colour, (4 * radius, 4 * radius), 4 * radius)
+    return pygame.transform.smoothscale(large, (2 * radius, 2 * radius))
+
+
+def _shape(item: Rect | Polygon | Arc) -> tuple[pygame.Surface, tuple[int, int]]:
+    """Return a smooth picture of one shape and where it goes."""
+    box = _extent(item)
+    left, top = math.floor(box.x) - 1, math.floor(box.y) - 1
+    width, height = math.ceil(box.right) + 2 - left, math.ceil(box.bottom) + 2 - top
+    scale = 2 if max(width, height) > LARGE_PX else 4
+    # Transparent pixels carry the shape's own colour, so that scaling down never darkens its edge.
+    large = pygame.Surface((width * scale, height * scale), pygame.SRCALPHA)
+    large.fill((*item.colour, 0))
+    if isinstance(item, Rect):
+        corner = Box((item.box.x - left) * scale, (item.box.y - top) * scale, item.box.w * scale, item.box.h * scale)
+        line = max(1, round(item.line * scale))
+        pygame.draw.rect(large, item.colour, tuple(round(value) for value in corner), line, round(item.radius * scale))
+    else:
+        points = item.points if isinstance(item, Polygon) else _arc_points(item)
+        line = round(item.line * scale) if isinstance(item, Polygon) else 0
+        pygame.draw.polygon(large, item.colour, [((x - left) * scale, (y - top) * scale) for x, y in points], line)
+    return pygame.transform.smoothscale(large, (width, height)), (left, top)
+
+
+def _extent(item: Rect | Polygon | Arc) -> Box:
+    if isinstance(item, Arc):
+        return bounds(Polygon(_arc_points(item), item.colour, item.role))
+    return bounds(item)
+
+
+def _arc_points(arc: Arc) -> tuple[tuple[float, float], ...]:
+    steps = max(2, math.ceil((arc.end_deg - arc.start_deg) / ARC_STEP_DEG))
+    clock = [arc.start_deg + (arc.end_deg - arc.start_deg) * step / steps for step in range(steps + 1)]
+    rim = [at_clock(arc.cx, arc.cy, arc.outer, degrees) for degrees in clock]
+    if arc.inner <= 0.0:
+        return (*rim, (arc.cx, arc.cy)) if arc.end_deg - arc.start_deg < 360.0 else tuple(rim)
+    return (*rim, *(at_clock(arc.cx, arc.cy, arc.inner, degrees) for degrees in reversed(clock)))
+
+
+def render(shown: HudView, screen: Screen, painter: Painter | None = None) -> pygame.Surface:
+    """Return a picture of `shown` on a surface of its own."""
+    surface = pygame.Surface((screen.width_px, screen.height_px))
+    (painter or Painter()).paint(surface, layout(shown, screen))
+    return surface
+
+
+def render_png(shown: HudView, path: Path, screen: Screen) -> None:
+    """Write a picture of `shown` as PNG."""
+    pygame.image.save(render(shown, screen), str(path))
+
+
+def snapshot_png(snapshot: Snapshot, path: Path, profile: HudProfile | None = None, age_s: float = 0.0) -> None:
+    """Write the cluster as it shows `snapshot`, `age_s` old, as PNG."""
+    profile = profile or HudProfile()
+    shown, _ = view(snapshot, age_s, HudMemory(), profile)
+    render_png(shown, path, screen_of(profile))

@@ -1,0 +1,66 @@
+"""The screen in front of the driver: how many pixels a character needs to be read from the seat."""
+
+import math
+from typing import Final, NamedTuple
+
+from simconsole.hud.draw import Box
+from simconsole.profiles.view import HudProfile
+
+DRIVING_ARCMIN: Final = 20.0
+"""Cap height of text needed while driving, minutes of arc (facts/visuals 4, rule 1: 20' best)."""
+SECONDARY_ARCMIN: Final = 16.0
+"""Cap height of labels and units (rule 1: 16' at least)."""
+SPEED_ARCMIN: Final = 60.0
+"""Cap height of the speed digits (rule 1)."""
+BORDER: Final = 0.05
+"""Part of each side that stays empty: a beamer's keystone may cut it (rule 15)."""
+TRIPLE_ASPECT: Final = 2.4
+"""From this aspect ratio on, the picture is three screens side by side and the driver sits before the middle one."""
+
+
+class Screen(NamedTuple):
+    """A screen of `width_px` by `height_px` that is `screen_width_m` wide, seen from `eye_distance_m`."""
+
+    width_px: int
+    height_px: int
+    screen_width_m: float
+    eye_distance_m: float
+
+    @property
+    def px_per_arcmin(self) -> float:
+        """Pixels per minute of arc straight ahead of the eye."""
+        return self.width_px / self.screen_width_m * self.eye_distance_m * math.tan(math.radians(1.0 / 60.0))
+
+    @property
+    def is_triple(self) -> bool:
+        """Whether the picture spans three screens."""
+        return self.width_px > TRIPLE_ASPECT * self.height_px
+
+    def safe(self) -> Box:
+        """Return what is left inside the border."""
+        left, top = math.ceil(self.width_px * BORDER), math.ceil(self.height_px * BORDER)
+        return Box(left, top, self.width_px - 2 * left, self.height_px - 2 * top)
+
+    def panels(self) -> tuple[Box, ...]:
+        """Return the safe area of each physical screen, left to right: one, or three."""
+        safe = self.safe()
+        if not self.is_triple:
+            return (safe,)
+        third = self.width_px / 3.0
+        margin = third * BORDER
+        left, right = safe.x, safe.right
+        return (
+            Box(left, safe.y, third - margin - left, safe.h),
+            Box(third + margin, safe.y, third - 2.0 * margin, safe.h),
+            Box(2.0 * third + margin, safe.y, right - 2.0 * third - margin, safe.h),
+        )
+
+    def content(self) -> Box:
+        """Return where the cluster stands: before the driver."""
+        panels = self.panels()
+        return panels[len(panels) // 2]
+
+
+def screen_of(profile: HudProfile) -> Screen:
+    """Return the screen that a profile describes."""
+    return Screen(profile.width_px, profile.height_px, profile.screen_width_m, profile.eye_distance_m)

@@ -1,0 +1,138 @@
+"""From a snapshot to what the driver is shown: values ready to be laid out, and the little a display must remember."""
+
+from typing import Final, NamedTuple
+
+from simconsole.profiles.view import HudProfile
+from simconsole.rows import MEMORY_AT, MEMORY_WIDTH, Snapshot
+from simconsole.signals import NEVER_TICKS, ArbiterMemory, Mode
+from simconsole.units import KMH_PER_MPS, RPM_PER_RADPS
+from simconsole.words import gear_words, is_refusal, mode_words, reason_words
+
+STALE_S: Final = 0.5
+"""Older snapshots are not shown: NO DATA (facts/visuals 4, rule 9)."""
+SPEED_HYSTERESIS_KMH: Final = 0.5
+"""The shown integer follows only when the speed has left it by this much more than rounding (rule 11)."""
+SPEED_PERIOD_S: Final = 0.2
+"""The speed's digits change at most this often (rule 11)."""
+REFUSAL_S: Final = 4.0
+"""How long a refused request stays on the screen."""
+
+
+class HudMemory(NamedTuple):
+    """What the display remembers from one picture to the next."""
+
+    shown_kmh: int = 0
+    shown_s: float = -1e9
+    reason: float = -1.0
+    reason_s: float = -1e9
+
+
+class HudView(NamedTuple):
+    """One picture's content. Pedals 0 to 1; `driver_*` is the person, the others what the car does."""
+
+    t_s: float = 0.0
+    stale: bool = False
+    shown_kmh: int = 0
+    rpm: float = 0.0
+    rpm_max: float = 7000.0
+    rpm_red: float = 6000.0
+    engine_running: bool = False
+    gear: str = "N"
+    automatic: bool = False
+    mode: float = float(Mode.PARKED)
+    mode_words: str = "PARKED"
+    reason_words: str = ""
+    refusal_words: str = ""
+    takeover_stage: int = 0
+    remaining_s: float = 0.0
+    takeover_window_s: float = 10.0
+    throttle: float = 0.0
+    brake: float = 0.0
+    clutch: float = 0.0
+    handbrake: float = 0.0
+    driver_throttle: float = 0.0
+    driver_brake: float = 0.0
+    driver_clutch: float = 0.0
+    road_wheel_rad: float = 0.0
+    remote_lateral: float = 0.0
+    link_age_s: float | None = None
+    link_stale_s: float = 0.2
+    wheel_validity: float = 0.0
+    pedals_validity: float = 0.0
+    shifter_validity: float = 0.0
+    distance_m: float = 0.0
+
+
+def shown_speed(speed_mps: float, t_s: float, memory: HudMemory) -> tuple[int, float]:
+    """Return the integer km/h to show and since when it is shown: hysteresis, and at most five changes a second."""
+    kmh = abs(speed_mps) * KMH_PER_MPS
+    if not 0.0 <= t_s - memory.shown_s < 1e8:  # the first picture, or a drive that started anew
+        return int(kmh + 0.5), t_s
+    if t_s - memory.shown_s < SPEED_PERIOD_S or abs(kmh - memory.shown_kmh) < 0.5 + SPEED_HYSTERESIS_KMH:
+        return memory.shown_kmh, memory.shown_s
+    return int(kmh + 0.5), t_s
+
+
+def view(snapshot: Snapshot, age_s: float, memory: HudMemory, profile: HudProfile) -> tuple[HudView, HudMemory]:
+    """Return the content of one picture.
+
+    Args:
+        snapshot: the newest tick.
+        age_s: how long ago its ring slot was last seen to change, in s of the display's own clock.
+        memory: what the previous picture left.
+        profile: screen, dial and time limits.
+    """
+    vehicle, command, driver = snapshot.vehicle, snapshot.command, snapshot.driver
+    arbitration, remote, sample = snapshot.arbitration, snapshot.remote, snapshot.sample
+    arbiter = ArbiterMemory(*snapshot.row[MEMORY_AT : MEMORY_AT + MEMORY_WIDTH].tolist())
+    t_s = snapshot.t_s
+    kmh, shown_s = shown_speed(vehicle.vx_mps, t_s, memory)
+    changed = arbitration.reason != memory.reason or t_s < memory.reason_s
+    reason_s = t_s if changed else memory.reason_s
+    refused = is_refusal(arbitration.reason)
+    asked = arbitration.mode == Mode.TAKEOVER_REQUESTED
+    waited_s = arbiter.mode_ticks / snapshot.tick_hz
+    shown = HudView(
+        t_s=t_s,
+        stale=age_s > STALE_S,
+        shown_kmh=kmh,
+        rpm=max(0.0, vehicle.engine_radps * RPM_PER_RADPS),
+        rpm_max=profile.rpm_max,
+        rpm_red=profile.rpm_red,
+        engine_running=vehicle.engine_running != 0.0,
+        gear=gear_words(vehicle.gear),
+        automatic=command.automatic != 0.0,
+        mode=arbitration.mode,
+        mode_words=mode_words(arbitration.mode),
+        reason_words="" if refused else reason_words(arbitration.reason),
+        refusal_words=reason_words(arbitration.reason) if refused and t_s - reason_s <= REFUSAL_S else "",
+        takeover_stage=int(arbitration.takeover_stage),
+        remaining_s=max(0.0, profile.takeover_window_s - waited_s) if asked else 0.0,
+        takeover_window_s=profile.takeover_window_s,
+        throttle=command.throttle,
+        brake=command.brake,
+        clutch=vehicle.clutch,
+        handbrake=command.handbrake,
+        driver_throttle=driver.throttle,
+        driver_brake=driver.brake,
+        driver_clutch=driver.clutch,
+        road_wheel_rad=vehicle.road_wheel_rad,
+        remote_lateral=arbitration.remote_lateral,
+        link_age_s=None
+        if remote.age_ticks >= NEVER_TICKS or remote.sequence == 0
+        else remote.age_ticks / snapshot.tick_hz,
+        link_stale_s=profile.link_stale_s,
+        wheel_validity=driver.wheel_validity,
+        pedals_validity=_worst(driver.throttle_validity, driver.brake_validity, driver.clutch_validity),
+        shifter_validity=driver.shifter_validity if sample.shifter_age_ticks < NEVER_TICKS else 0.0,
+        distance_m=vehicle.distance_m,
+    )
+    return shown, HudMemory(kmh, shown_s, arbitration.reason, reason_s)
+
+
+def _worst(*validities: float) -> float:
+    """Return the least trusted of several axes: lost before stale before unknown before the rest."""
+    for bad in (4.0, 3.0, 0.0):
+        if bad in validities:
+            return bad
+    return min(validities)

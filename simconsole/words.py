@@ -1,0 +1,79 @@
+"""The words people read: one place for the driver's view, the operators' view, the report and the command line.
+
+Words are short enough for a glance (facts: at most seven per alert) and never depend on colour.
+"""
+
+from typing import Final
+
+from simconsole.signals import Mode, Reason, Validity
+
+_MODES: Final[dict[float, str]] = {
+    Mode.PARKED: "PARKED",
+    Mode.MANUAL: "MANUAL",
+    Mode.SHARED: "SHARED",
+    Mode.AUTONOMOUS: "AUTONOMOUS",
+    Mode.TAKEOVER_REQUESTED: "TAKE OVER",
+    Mode.MINIMAL_RISK: "MINIMAL RISK",
+    Mode.STOPPED: "STOPPED",
+    Mode.EMERGENCY_STOP: "EMERGENCY STOP",
+}
+
+_REASONS: Final[dict[float, str]] = {
+    Reason.START: "drive started",
+    Reason.PERSON_ASKED: "driver asked",
+    Reason.OPERATOR_ASKED: "operator asked",
+    Reason.REMOTE_ASKED: "autopilot asked",
+    Reason.STEERING_OVERRIDE: "driver turned the wheel",
+    Reason.BRAKE_OVERRIDE: "driver braked",
+    Reason.THROTTLE_OVERRIDE: "driver pressed the throttle",
+    Reason.COMMAND_STALE: "autopilot went silent",
+    Reason.COMMAND_INVALID: "autopilot sent invalid commands",
+    Reason.DEVICE_LOST: "wheel or pedals lost",
+    Reason.NO_REACTION: "no reaction from the driver",
+    Reason.STANDSTILL: "standing still",
+    Reason.EMERGENCY: "emergency stop pressed",
+    Reason.RESET: "reset",
+    Reason.ARMED: "controls ready",
+    Reason.REFUSED_NO_COMMAND: "refused: no autopilot",
+    Reason.REFUSED_BRAKE_PRESSED: "refused: brake is pressed",
+    Reason.REFUSED_TOO_FAST: "refused: too fast",
+    Reason.REFUSED_LATERAL_ACCELERATION: "refused: cornering too hard",
+    Reason.REFUSED_NOT_ARMED: "refused: controls not ready",
+    Reason.REFUSED_EMERGENCY: "refused: emergency stop is latched",
+    Reason.REFUSED_DEVIATION: "refused: too far off the path",
+}
+
+_VALIDITIES: Final[dict[float, str]] = {
+    Validity.UNKNOWN: "not seen yet",
+    Validity.ARMED: "ready",
+    Validity.LIVE: "live",
+    Validity.STALE: "stale",
+    Validity.LOST: "lost",
+}
+
+
+def mode_words(mode: float) -> str:
+    """Return the name of a mode as shown to people, in capitals; an unknown number names itself."""
+    return _MODES.get(mode, f"MODE {mode:g}")
+
+
+def reason_words(reason: float) -> str:
+    """Return why the mode changed, or why a request was refused ("refused: ..."), in at most seven words."""
+    return _REASONS.get(reason, f"reason {reason:g}")
+
+
+def validity_words(validity: float) -> str:
+    """Return how far a device is trusted, in words."""
+    return _VALIDITIES.get(validity, f"validity {validity:g}")
+
+
+def is_refusal(reason: float) -> bool:
+    """Return whether `reason` tells of a request that was refused."""
+    return reason_words(reason).startswith("refused")
+
+
+def gear_words(gear: float) -> str:
+    """Return the lever as printed on its knob: R, N, 1 to 7."""
+    if gear < 0.0:
+        return "R"
+    return f"{gear:.0f}" if gear > 0.0 else "N"
