@@ -128,12 +128,18 @@ def initial_state(console: Console) -> ConsoleState:
 
 def advance(state: ConsoleState, inputs: TickInputs, console: Console) -> tuple[ConsoleState, Snapshot]:
     """Advance the console by one tick. Neither `state` nor its row is changed."""
-    row = np.empty(console.width)
-    row[:INPUT_WIDTH] = (*inputs.sample, *inputs.remote, *inputs.events)
-    console.decide(state.row, row, console.settings, console.tick_s)
-    console.step(state.row, row, console.platform.parameters, console.substeps)
+    row = advance_row(state.row, (*inputs.sample, *inputs.remote, *inputs.events), console)
     tick = state.tick + 1
     return ConsoleState(tick, row), Snapshot(tick, console.tick_hz, row)
+
+
+def advance_row(previous: Row, inputs: Row | tuple[float, ...], console: Console) -> Row:
+    """Return the row after `previous` for the INPUT_WIDTH values `inputs`: `advance` as a replay wants it."""
+    row = np.empty(console.width)
+    row[:INPUT_WIDTH] = inputs
+    console.decide(previous, row, console.settings, console.tick_s)
+    console.step(previous, row, console.platform.parameters, console.substeps)
+    return row
 
 
 @kernel

@@ -1,0 +1,65 @@
+"""`simconsole replay | verify | compare | report | view`: what can be done with a bundle."""
+
+from argparse import Namespace
+from pathlib import Path
+
+from simconsole.commands.outcome import Outcome
+from simconsole.recording.bundle import open_bundle
+from simconsole.recording.bundle import verify as verify_bundle
+from simconsole.recording.compare import compare as compare_logs
+
+
+def replay(words: Namespace) -> Outcome:
+    """Re-simulate a bundle from its recorded inputs; code 1 and the first differing tick and field otherwise."""
+    from simconsole.replaying import replay_bundle
+
+    result = replay_bundle(Path(words.bundle))
+    results = {
+        "equal": result.equal,
+        "ticks": result.ticks,
+        "digest": result.digest.hex(),
+        "difference": None if result.difference is None else result.difference._asdict(),
+    }
+    if result.equal:
+        return Outcome(0, results, f"{words.bundle}: {result.ticks} ticks replayed, every hash equal")
+    return Outcome(1, results, f"{words.bundle}: differs at {result.difference}")
+
+
+def verify(words: Namespace) -> Outcome:
+    """Check a bundle's manifest, checksums and hash chain; code 1 with one line for each problem."""
+    problems = verify_bundle(Path(words.bundle))
+    if problems:
+        return Outcome(1, {"good": False, "problems": problems}, "\n".join(problems))
+    return Outcome(0, {"good": True, "problems": []}, f"{words.bundle}: whole")
+
+
+def compare(words: Namespace) -> Outcome:
+    """Compare two bundles tick by tick; code 1 with the first differing tick and field and a window around it."""
+    first, second = open_bundle(Path(words.bundle)).log, open_bundle(Path(words.other)).log
+    found = compare_logs(first, first.header, second, second.header)
+    results = {
+        "equal": found.equal,
+        "ticks": found.ticks,
+        "difference": None if found.difference is None else found.difference._asdict(),
+    }
+    if found.equal:
+        return Outcome(0, results, f"{found.ticks} ticks, all equal")
+    return Outcome(1, results, f"{found.difference or 'not equal'}\n{found.window}")
+
+
+def report(words: Namespace) -> Outcome:
+    """Write report.html into the bundle."""
+    from simconsole.exports import write_report
+
+    metrics = write_report(Path(words.bundle))
+    return Outcome(0, metrics, str(Path(words.bundle) / "report.html"))
+
+
+def view(words: Namespace) -> Outcome:
+    """Write scene.rrd into the bundle and open it in rerun, unless told not to."""
+    from simconsole.exports import open_viewer, write_scene
+
+    path = write_scene(Path(words.bundle))
+    if not words.no_open:
+        open_viewer(path)
+    return Outcome(0, {"scene": str(path)}, str(path))

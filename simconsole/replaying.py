@@ -1,0 +1,40 @@
+"""Replay of a bundle: build the console that the bundle describes and make every tick again."""
+
+from pathlib import Path
+
+from simconsole.assembly import ResolvedSession, assemble
+from simconsole.compiling import compiled
+from simconsole.pipeline import advance_row
+from simconsole.profile_files import parse
+from simconsole.recording.bundle import Bundle, open_bundle
+from simconsole.recording.replay import ReplayResult, replay
+
+SESSION_FILE = "session.json"
+
+
+def recorded_session(bundle: Bundle) -> ResolvedSession:
+    """Return the session as it was driven, every profile in full.
+
+    Raises:
+        RecordingError: the bundle does not hold it.
+        ProfileError: it was altered into something that is no session.
+    """
+    return parse(bundle.text(SESSION_FILE), ResolvedSession, str(bundle.folder / SESSION_FILE))
+
+
+def replay_bundle(folder: Path) -> ReplayResult:
+    """Make every tick of the bundle in `folder` again from its recorded inputs.
+
+    Raises:
+        RecordingError: not a bundle, truncated, or of another version.
+    """
+    bundle = open_bundle(folder)
+    console, state = assemble(recorded_session(bundle), compiled)
+    return replay(
+        bundle.log,
+        bundle.log.header,
+        console.columns,
+        state.row,
+        lambda tick, previous, inputs: advance_row(previous, inputs, console),
+        first_tick=1,
+    )

@@ -1,0 +1,71 @@
+"""From a session's name to a resolved session: every profile it names, read and checked."""
+
+from pathlib import Path
+
+import msgspec
+
+from simconsole.assembly import ResolvedSession
+from simconsole.errors import ProfileError
+from simconsole.profile_files import MAX_DATA_BYTES, find, load
+from simconsole.profiles.device import CockpitProfile, ScriptProfile
+from simconsole.profiles.scenario import ScenarioProfile
+from simconsole.profiles.session import SessionProfile
+from simconsole.profiles.vehicle import VehicleProfile
+from simconsole.profiles.world import WorldProfile
+
+
+def resolve(session: SessionProfile) -> ResolvedSession:
+    """Return the session with the profiles it names.
+
+    Raises:
+        ProfileError: one of them is missing or wrong; names its file, key, value and range.
+    """
+    world = session.environment.world
+    return ResolvedSession(
+        session=session,
+        cockpit=load("devices", session.devices.cockpit, CockpitProfile),
+        vehicle=load("vehicles", session.scenario.vehicle, VehicleProfile),  # type: ignore[arg-type]  # a union
+        world=None if world is None else load("worlds", world, WorldProfile, max_bytes=MAX_DATA_BYTES),
+    )
+
+
+def load_session(name_or_path: str) -> SessionProfile:
+    """Return the session profile of that name or file.
+
+    Raises:
+        ProfileError: missing or wrong.
+    """
+    return load("sessions", name_or_path, SessionProfile)
+
+
+def load_scenario(name_or_path: str) -> tuple[ScenarioProfile, Path]:
+    """Return the scenario and its file, beside which its golden lies.
+
+    Raises:
+        ProfileError: missing, wrong, or it checks a column that no row has.
+    """
+    return load("scenarios", name_or_path, ScenarioProfile), find("scenarios", name_or_path)
+
+
+def load_script(name_or_path: str) -> ScriptProfile:
+    """Return a person's script by the file the user named.
+
+    Raises:
+        ProfileError: missing or wrong.
+    """
+    return load("scenarios", name_or_path, ScriptProfile)
+
+
+def override(session: SessionProfile, **sections: dict[str, object]) -> SessionProfile:
+    """Return `session` with keys of its sections replaced, as command-line options do.
+
+    Raises:
+        ProfileError: a value is outside its bounds; names section and key.
+    """
+    plain = msgspec.to_builtins(session)
+    for section, keys in sections.items():
+        plain[section].update({key: value for key, value in keys.items() if value is not None})
+    try:
+        return msgspec.convert(plain, SessionProfile)
+    except msgspec.ValidationError as error:
+        raise ProfileError(f"command line: {error}") from None
