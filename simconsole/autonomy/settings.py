@@ -1,0 +1,62 @@
+"""What the path tracker knows of its car and wants of the drive."""
+
+from typing import Final, NamedTuple
+
+
+class CarModel(NamedTuple):
+    """The controller's linear single-track model: nominal values of a compact hatchback, not the plant's own."""
+
+    mass_kg: float = 1290.0
+    yaw_inertia_kgm2: float = 1900.0
+    front_m: float = 1.06  # centre of gravity to front axle
+    rear_m: float = 1.54  # centre of gravity to rear axle
+    front_stiffness_nprad: float = 110_000.0  # both wheels of the axle
+    rear_stiffness_nprad: float = 110_000.0
+    steering_lag_s: float = 0.05
+    max_road_wheel_rad: float = 0.6
+
+    @property
+    def wheelbase_m(self) -> float:
+        """Distance of the axles."""
+        return self.front_m + self.rear_m
+
+    @property
+    def understeer_radps2pm(self) -> float:
+        """Road-wheel angle per lateral acceleration beyond the kinematic angle (rad s2/m), > 0: understeering.
+
+        m/L (l_r/C_f - l_f/C_r), any text on the linear single-track model (Riekert and Schunck, 1940).
+        """
+        balance = self.rear_m / self.front_stiffness_nprad - self.front_m / self.rear_stiffness_nprad
+        return self.mass_kg / self.wheelbase_m * balance
+
+
+class Comfort(NamedTuple):
+    """Limits of the speed profile."""
+
+    lateral_mps2: float = 2.5
+    accelerate_mps2: float = 1.6
+    brake_mps2: float = 2.0
+    smoothing_s: float = 1.0  # window of the moving average: jerk is bounded by the change of acceleration over it
+    margin_mps: float = 0.3  # kept below the speed limit, so that overshoot does not exceed it
+
+
+class Timing(NamedTuple):
+    """The control loop's time structure."""
+
+    period_s: float = 0.02
+    delay_s: float = 0.01  # from the pose's time stamp to the command at the actuator; at most one period
+    preview_steps: int = 60
+
+
+class Weights(NamedTuple):
+    """The quadratic cost: per m2 of offset, per (m/s)2 of drift, per rad2 of steering change in one period."""
+
+    offset: float = 1.0
+    drift: float = 0.05
+    change: float = 5.0
+
+
+HATCHBACK: Final = CarModel()
+COMFORT: Final = Comfort()
+TIMING: Final = Timing()
+WEIGHTS: Final = Weights()

@@ -1,0 +1,188 @@
+"""The path tracker: linear-quadratic steering with preview of the path's curvature, and a planned speed.
+
+Model, in the frame of the path at base_link: offset, heading error, lateral speed and yaw rate of a linear
+single-track car, first-order steering, a command that takes effect `delay_s` late; the input is the change of the
+command per period, so that a constant curve costs nothing. The known curvature ahead enters as the model's
+disturbance. Gains are designed per speed and interpolated.
+"""
+
+import math
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simconsole.autonomy.riccati import Gains, design, discretised
+from simconsole.autonomy.settings import COMFORT, HATCHBACK, TIMING, WEIGHTS, CarModel, Comfort, Timing, Weights
+from simconsole.autonomy.speed_profile import plan_speed
+from simconsole.kernels import approach, clip
+from simconsole.world.course import Course
+
+Array = NDArray[np.float64]
+
+_SPEEDS_MPS: Final = (1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5, 8.5, 10.0, 11.5, 13.0, 14.5, 17.0, 20.0)
+_CURVATURE_STEP_M: Final = 0.1
+_SPEED_GAIN_1PS: Final = 1.2
+_SPEED_LEAD_S: Final = 0.2
+_JERK_MPS3: Final = 4.0
+_BRAKE_MPS2: Final = -3.5
+_STEERING_RATE_RADPS: Final = 0.8
+
+
+class Sighting(NamedTuple):
+    """What the tracker is told: pose and body velocities of base_link."""
+
+    x_m: float
+    y_m: float
+    yaw_rad: float
+    vx_mps: float
+    vy_mps: float
+    yaw_rate_radps: float
+
+
+class Steering(NamedTuple):
+    """What the tracker asks for."""
+
+    road_wheel_rad: float
+    road_wheel_radps: float
+    speed_mps: float
+    accel_mps2: float
+    jerk_mps3: float
+
+
+class Tracker:
+    """Follows a course. One `step` per control period; it remembers its last commands and where it was."""
+
+    def __init__(
+        self,
+        course: Course,
+        car: CarModel = HATCHBACK,
+        comfort: Comfort = COMFORT,
+        timing: Timing = TIMING,
+        weights: Weights = WEIGHTS,
+    ) -> None:
+        self.course = course
+        self.profile = plan_speed(course, comfort)
+        self.s_m: float | None = None
+        self.lateral_m = 0.0
+        self._car, self._comfort, self._timing = car, comfort, timing
+        designs = [_design(car, timing, weights, speed) for speed in _SPEEDS_MPS]
+        self._feedback = np.array([gains.feedback for gains in designs])
+        self._preview = np.array([gains.preview for gains in designs])
+        self._ahead_s = (np.arange(timing.preview_steps) + 0.5) * timing.period_s
+        count = round(course.length_m / _CURVATURE_STEP_M)
+        self._curvature_step_m = course.length_m / count
+        self._curvature = np.array([course.curvature_at((i + 0.5) * self._curvature_step_m) for i in range(count)])
+        self._command = 0.0  # the last command, as the tangent of the road-wheel angle
+        self._wheel = 0.0  # where the wheels should be by the model, as a tangent too
+        self._accel = 0.0
+
+    def step(self, seen: Sighting, engaged: bool = True) -> Steering:
+        """Return the command for the coming period.
+
+        While not `engaged` the command stays the one that would be right to begin with: the memory of steering and
+        acceleration follows the car instead of the own commands.
+        """
+        place = self.course.project(seen.x_m, seen.y_m, self.s_m, seen.yaw_rad)
+        self.s_m, self.lateral_m = place.s_m, place.lateral_m
+        speed = max(seen.vx_mps, 0.0)
+        if not engaged:
+            self._follow(seen, speed)
+        before = self._command
+        self._command = self._steer(seen, place.s_m, place.lateral_m, place.heading_error_rad, speed)
+        self._settle(before)
+        target, accel = self._accelerate(place.s_m, speed)
+        period = self._timing.period_s
+        change = (math.atan(self._command) - math.atan(before)) / period
+        jerk, self._accel = (accel - self._accel) / period, accel
+        return Steering(math.atan(self._command), change, target, accel, jerk)
+
+    def _steer(self, seen: Sighting, s_m: float, lateral_m: float, heading_rad: float, speed: float) -> float:
+        index, share = _between(speed)
+        feedback = self._feedback[index] * (1.0 - share) + self._feedback[index + 1] * share
+        preview = self._preview[index] * (1.0 - share) + self._preview[index + 1] * share
+        way = s_m + self._ahead_s * (speed + 0.5 * self._accel * self._ahead_s)
+        cells = (way / self._curvature_step_m).astype(np.int64) % len(self._curvature)
+        state = (lateral_m, heading_rad, seen.vy_mps, seen.yaw_rate_radps, self._wheel, self._command)
+        change = -float(feedback @ state) - float(preview @ self._curvature[cells])
+        step = _STEERING_RATE_RADPS * self._timing.period_s
+        limit = math.tan(self._car.max_road_wheel_rad)
+        return clip(self._command + clip(change, -step, step), -limit, limit)
+
+    def _settle(self, before: float) -> None:
+        """Move the modelled wheels through the coming period: the old command until the delay has passed."""
+        lag, delay = self._car.steering_lag_s, self._timing.delay_s
+        self._wheel = before + (self._wheel - before) * math.exp(-delay / lag)
+        rest = self._timing.period_s - delay
+        self._wheel = self._command + (self._wheel - self._command) * math.exp(-rest / lag)
+
+    def _follow(self, seen: Sighting, speed: float) -> None:
+        """Take steering and acceleration from the car's motion: someone else drives it."""
+        if speed > _SPEEDS_MPS[0]:
+            needed = self._car.wheelbase_m + self._car.understeer_radps2pm * speed * speed
+            limit = math.tan(self._car.max_road_wheel_rad)
+            self._wheel = self._command = clip(seen.yaw_rate_radps / speed * needed, -limit, limit)
+        else:
+            self._wheel = self._command = 0.0
+        self._accel = 0.0
+
+    def _accelerate(self, s_m: float, speed: float) -> tuple[float, float]:
+        target, _ = self.profile.at(s_m)
+        _, planned = self.profile.at(s_m + speed * _SPEED_LEAD_S)
+        wanted = planned + _SPEED_GAIN_1PS * (target - speed)
+        wanted = clip(wanted, _BRAKE_MPS2, self._comfort.accelerate_mps2)
+        return target, approach(self._accel, wanted, _JERK_MPS3 * self._timing.period_s)
+
+
+def _between(speed: float) -> tuple[int, float]:
+    for index in range(len(_SPEEDS_MPS) - 1):
+        low, high = _SPEEDS_MPS[index], _SPEEDS_MPS[index + 1]
+        if speed < high:
+            return index, clip((speed - low) / (high - low), 0.0, 1.0)
+    return len(_SPEEDS_MPS) - 2, 1.0
+
+
+def _design(car: CarModel, timing: Timing, weights: Weights, speed: float) -> Gains:
+    """Return the gains at one speed; states: offset, heading, lateral speed, yaw rate, wheels, last command."""
+    a, b, d = _car(car, speed)
+    inputs = np.hstack((b, d))
+    early, early_in = discretised(a, inputs, timing.delay_s)
+    late, late_in = discretised(a, inputs, timing.period_s - timing.delay_s)
+    n = len(a)
+    whole = np.zeros((n + 1, n + 1))
+    whole[:n, :n] = late @ early
+    whole[:n, n:] = late @ early_in[:, :1] + late_in[:, :1]
+    whole[n, n] = 1.0
+    command = np.vstack((late_in[:, :1], ((1.0,),)))
+    curvature = np.vstack((late @ early_in[:, 1:] + late_in[:, 1:], ((0.0,),)))
+    drift = np.zeros(n + 1)
+    drift[1], drift[2] = speed, 1.0
+    cost = weights.drift * np.outer(drift, drift)
+    cost[0, 0] += weights.offset
+    return design(whole, command, curvature, cost, weights.change, timing.preview_steps)
+
+
+def _car(car: CarModel, speed: float) -> tuple[Array, Array, Array]:
+    """Return (a, b, d) of the continuous model for states offset, heading, lateral speed and yaw rate, wheels.
+
+    Lateral speed is base_link's: the centre of gravity's is vy + l_r r.
+    """
+    m, j, lf, lr = car.mass_kg, car.yaw_inertia_kgm2, car.front_m, car.rear_m
+    cf, cr = car.front_stiffness_nprad, car.rear_stiffness_nprad
+    # Slip angles: front (vy + L r)/v - wheel, rear vy/v.
+    front, rear = np.zeros(5), np.zeros(5)
+    front[2], front[3], front[4] = -cf / speed, -cf * car.wheelbase_m / speed, cf
+    rear[2] = -cr / speed
+    yaw = (lf * front - lr * rear) / j
+    across = (front + rear) / m
+    across[3] -= speed
+    a = np.zeros((5, 5))
+    a[0, 1], a[0, 2] = speed, 1.0
+    a[1, 3] = 1.0
+    a[2] = across - lr * yaw
+    a[3] = yaw
+    a[4, 4] = -1.0 / car.steering_lag_s
+    b, d = np.zeros((5, 1)), np.zeros((5, 1))
+    b[4, 0] = 1.0 / car.steering_lag_s
+    d[1, 0] = -speed
+    return a, b, d

@@ -1,0 +1,63 @@
+"""The plan of a course: what a person writes down, before the geometry is solved (world/planning.py)."""
+
+from typing import Annotated, Literal
+
+from msgspec import Meta, Struct
+
+Length = Annotated[float, Meta(gt=0.0, le=1e4)]
+Radius = Annotated[float, Meta(ge=8.0, le=1e4)]
+
+
+class PlanSection(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Base of every part: unknown keys are errors."""
+
+
+class PlannedCrossing(PlanSection, frozen=True, kw_only=True, tag_field="feature", tag="crossing"):
+    """A pedestrian crossing, `at_m` from the beginning of its straight."""
+
+    at_m: Annotated[float, Meta(ge=0.0, le=1e4)]
+    width_m: Annotated[float, Meta(ge=1.0, le=20.0)] = 4.0
+
+
+class PlannedIntersection(PlanSection, frozen=True, kw_only=True, tag_field="feature", tag="intersection"):
+    """A road that crosses at right angles, its middle `at_m` from the beginning of the straight."""
+
+    at_m: Annotated[float, Meta(ge=0.0, le=1e4)]
+    arm_m: Annotated[float, Meta(ge=10.0, le=500.0)] = 60.0
+    signalled: bool = True
+
+
+class Straight(PlanSection, frozen=True, kw_only=True, tag_field="element", tag="straight"):
+    """A straight. Exactly three straights of a plan are `free`: their lengths close the loop at its total length."""
+
+    length_m: Length | Literal["free"]
+    features: tuple[PlannedCrossing | PlannedIntersection, ...] = ()
+
+
+class Curve(PlanSection, frozen=True, kw_only=True, tag_field="element", tag="curve"):
+    """A curve of `radius_m` with a curvature ramp (clothoid) at each end; left positive, `angle_deg` in total."""
+
+    radius_m: Radius
+    angle_deg: Annotated[float, Meta(ge=-180.0, le=180.0)]
+    ramp_m: Length = 9.0
+
+
+class PlannedRoundabout(PlanSection, frozen=True, kw_only=True, tag_field="element", tag="roundabout"):
+    """A roundabout, entered and left by right curves; the course leaves it `turn_deg` to the left of its entry."""
+
+    radius_m: Radius
+    entry_radius_m: Radius
+    turn_deg: Annotated[float, Meta(ge=-90.0, le=180.0)]
+    ramp_m: Length = 9.0
+    swing_m: Length = 14.0  # clothoid from the entry's right curve to the ring's left curve
+
+
+class CoursePlan(PlanSection, frozen=True, kw_only=True):
+    """A closed course from the map's origin along +x."""
+
+    schema: Literal[1]
+    title: str
+    lane_width_m: Annotated[float, Meta(ge=2.0, le=6.0)]
+    speed_limit_kmh: Annotated[float, Meta(ge=5.0, le=200.0)]
+    length_m: Annotated[float, Meta(ge=100.0, le=1e5)]
+    elements: Annotated[tuple[Straight | Curve | PlannedRoundabout, ...], Meta(min_length=3, max_length=1000)]

@@ -1,0 +1,15 @@
+import pytest
+
+from simconsole.profile_files import load
+from simconsole.profiles.world import WorldProfile
+from simconsole.world.course import Course
+
+
+@pytest.fixture(scope="session")
+def urban() -> WorldProfile:
+    return load("worlds", "urban", WorldProfile)
+
+
+@pytest.fixture(scope="session")
+def course(urban: WorldProfile) -> Course:
+    return Course(urban)

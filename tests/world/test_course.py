@@ -1,0 +1,77 @@
+import math
+import random
+
+import numpy as np
+import pytest
+
+from simconsole.profiles.world import WorldProfile
+from simconsole.vehicle.platform import Pose
+from simconsole.world.course import CELL_M, Course
+from simconsole.world.geometry import Piece, travel
+
+SEED = 20260
+
+
+def test_cells_are_half_a_metre_or_finer(course: Course) -> None:
+    assert float(np.diff(course.s).max()) <= CELL_M + 1e-9
+    assert float(np.diff(course.s).min()) > 0.0
+    assert course.length_m == pytest.approx(2600.0)
+    assert course.speed_limit_mps == pytest.approx(50.0 / 3.6)
+
+
+def test_path_and_projection_agree_with_the_exact_primitives(urban: WorldProfile, course: Course) -> None:
+    print("seed", SEED)
+    dice = random.Random(SEED)
+    for _ in range(1500):
+        part = dice.choice(urban.path)
+        u = dice.uniform(0.0, part.length_m)
+        piece = Piece(part.length_m, part.curvature_start_1pm, part.curvature_end_1pm)
+        exact = travel(Pose(part.x_m, part.y_m, part.yaw_rad), piece, u)
+        assert course.at(part.s_m + u)[:3] == pytest.approx(exact, abs=2e-8)
+        lateral = dice.uniform(-3.0, 3.0)
+        x = exact.x_m - lateral * math.sin(exact.yaw_rad)
+        y = exact.y_m + lateral * math.cos(exact.yaw_rad)
+        found = course.project(x, y, part.s_m + u + dice.uniform(-2.0, 2.0), exact.yaw_rad + 0.1)
+        assert found == pytest.approx((part.s_m + u, lateral, 0.1), abs=1e-7)
+
+
+def test_curvature_is_that_of_the_heading(course: Course) -> None:
+    for s in np.arange(0.3, 2600.0, 7.7).tolist():
+        slope = (course.at(s + 1e-4).yaw_rad - course.at(s - 1e-4).yaw_rad) / 2e-4
+        assert course.curvature_at(s) == pytest.approx(slope, abs=1e-5)
+        assert course.curvature_at(s) == course.at(s).curvature_1pm
+
+
+def test_projection_without_hint_searches_the_course(course: Course) -> None:
+    point = course.at(1700.25)
+    assert course.project(point.x_m, point.y_m).s_m == pytest.approx(1700.25, abs=1e-6)
+    assert course.project(point.x_m, point.y_m, 800.0).s_m == pytest.approx(1700.25, abs=1e-6)
+
+
+def test_distance_runs_on_over_laps(course: Course) -> None:
+    s = 2590.0
+    for _ in range(40):
+        point = course.at(s + 0.5)
+        s = course.project(point.x_m, point.y_m, s).s_m
+    assert s == pytest.approx(2610.0, abs=1e-5)
+    assert course.at(2610.0)[:2] == pytest.approx(course.at(10.0)[:2])
+    assert course.unwrap(10.0, 2605.0) == pytest.approx(2610.0)
+
+
+def test_heading_error_is_the_smallest_angle(course: Course) -> None:
+    point = course.at(2599.0)  # here the path's heading has grown to a whole turn
+    assert course.project(point.x_m, point.y_m, 2599.0, 0.02).heading_error_rad == pytest.approx(0.02, abs=1e-9)
+    assert course.project(point.x_m, point.y_m, 2599.0).heading_error_rad == 0.0
+
+
+def test_offset_lines_keep_their_distance(course: Course) -> None:
+    line = course.offset(-1.75, 600.0, 640.0)
+    assert line.shape == (41, 2)
+    for x, y in line.tolist():
+        assert course.project(x, y, 620.0).lateral_m == pytest.approx(-1.75, abs=1e-6)
+
+
+def test_far_away_points_still_get_an_answer(course: Course) -> None:
+    found = course.project(5000.0, 5000.0)
+    assert 0.0 <= found.s_m % course.length_m < course.length_m
+    assert math.isfinite(found.lateral_m)
