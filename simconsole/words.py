@@ -34,13 +34,19 @@ _REASONS: Final[dict[float, str]] = {
     Reason.EMERGENCY: "emergency stop pressed",
     Reason.RESET: "reset",
     Reason.ARMED: "controls ready",
+    Reason.LOOP_STALL: "console was held up",
+    Reason.COMMANDER_LOST: "autopilot left",
     Reason.REFUSED_NO_COMMAND: "refused: no autopilot",
     Reason.REFUSED_BRAKE_PRESSED: "refused: brake is pressed",
     Reason.REFUSED_TOO_FAST: "refused: too fast",
     Reason.REFUSED_LATERAL_ACCELERATION: "refused: cornering too hard",
     Reason.REFUSED_NOT_ARMED: "refused: controls not ready",
     Reason.REFUSED_EMERGENCY: "refused: emergency stop is latched",
-    Reason.REFUSED_DEVIATION: "refused: too far off the path",
+    Reason.REFUSED_DEVIATION: "refused: autopilot commands differ too much",
+    Reason.REFUSED_SAFE_STOP: "refused: safe stop is running",
+    Reason.REFUSED_THROTTLE_PRESSED: "refused: throttle is pressed",
+    Reason.REFUSED_MOVING: "refused: car is moving",
+    Reason.REFUSED_NOT_STABLE: "refused: autopilot not steady yet",
 }
 
 _VALIDITIES: Final[dict[float, str]] = {
@@ -65,11 +71,6 @@ def reason_words(reason: float) -> str:
 def validity_words(validity: float) -> str:
     """Return how far a device is trusted, in words."""
     return _VALIDITIES.get(validity, f"validity {validity:g}")
-
-
-def is_refusal(reason: float) -> bool:
-    """Return whether `reason` tells of a request that was refused."""
-    return reason_words(reason).startswith("refused")
 
 
 def gear_words(gear: float) -> str:

@@ -14,7 +14,7 @@ from simconsole.hud.panels import pedals, status, steering
 from simconsole.hud.screen import Screen
 from simconsole.hud.view import HudView
 from simconsole.signals import Mode, Reason
-from simconsole.words import is_refusal, mode_words, reason_words
+from simconsole.words import mode_words, reason_words
 
 GAP: Final = 0.02
 
@@ -101,7 +101,7 @@ def sample_views() -> list[HudView]:
     views = [wide._replace(mode=float(mode), mode_words=mode_words(mode)) for mode in Mode]
     for reason in Reason:
         words = reason_words(reason)
-        views.append(wide._replace(refusal_words=words) if is_refusal(reason) else wide._replace(reason_words=words))
+        views.append(wide._replace(reason_words=words, refusal_words=words))
     asked = wide._replace(mode=float(Mode.TAKEOVER_REQUESTED), mode_words=mode_words(Mode.TAKEOVER_REQUESTED))
     views += [asked._replace(takeover_stage=stage, remaining_s=10.0) for stage in (1, 2)]
     validities = (0.0, 1.0, 2.0, 3.0, 4.0)

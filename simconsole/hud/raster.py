@@ -17,7 +17,7 @@ import pygame.font
 from simconsole.hud.draw import Arc, Box, Colour, DrawItem, Polygon, Rect, Text, at_clock, bounds
 from simconsole.hud.layout import layout
 from simconsole.hud.screen import Screen, screen_of
-from simconsole.hud.view import HudMemory, HudView, view
+from simconsole.hud.view import HudMemory, HudSettings, HudView, view
 from simconsole.profiles.view import HudProfile
 from simconsole.rows import Snapshot
 
@@ -142,8 +142,13 @@ def render_png(shown: HudView, path: Path, screen: Screen) -> None:
     pygame.image.save(render(shown, screen), str(path))
 
 
-def snapshot_png(snapshot: Snapshot, path: Path, profile: HudProfile | None = None, age_s: float = 0.0) -> None:
+def snapshot_png(
+    snapshot: Snapshot,
+    path: Path,
+    profile: HudProfile | None = None,
+    settings: HudSettings | None = None,
+    age_s: float = 0.0,
+) -> None:
     """Write the cluster as it shows `snapshot`, `age_s` old, as PNG."""
-    profile = profile or HudProfile()
-    shown, _ = view(snapshot, age_s, HudMemory(), profile)
-    render_png(shown, path, screen_of(profile))
+    shown, _ = view(snapshot, age_s, HudMemory(), settings or HudSettings())
+    render_png(shown, path, screen_of(profile or HudProfile()))

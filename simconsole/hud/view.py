@@ -2,11 +2,12 @@
 
 from typing import Final, NamedTuple
 
+from simconsole.profiles.control import ControlProfile
 from simconsole.profiles.view import HudProfile
 from simconsole.rows import MEMORY_AT, MEMORY_WIDTH, Snapshot
 from simconsole.signals import NEVER_TICKS, ArbiterMemory, Mode
 from simconsole.units import KMH_PER_MPS, RPM_PER_RADPS
-from simconsole.words import gear_words, is_refusal, mode_words, reason_words
+from simconsole.words import gear_words, mode_words, reason_words
 
 STALE_S: Final = 0.5
 """Older snapshots are not shown: NO DATA (facts/visuals 4, rule 9)."""
@@ -14,8 +15,15 @@ SPEED_HYSTERESIS_KMH: Final = 0.5
 """The shown integer follows only when the speed has left it by this much more than rounding (rule 11)."""
 SPEED_PERIOD_S: Final = 0.2
 """The speed's digits change at most this often (rule 11)."""
-REFUSAL_S: Final = 4.0
-"""How long a refused request stays on the screen."""
+
+
+class HudSettings(NamedTuple):
+    """What the cluster must know of the car and of the rules it drives under."""
+
+    rpm_max: float = 7000.0
+    rpm_red: float = 6000.0
+    takeover_window_s: float = 10.0
+    link_stale_s: float = 0.2
 
 
 class HudMemory(NamedTuple):
@@ -23,8 +31,6 @@ class HudMemory(NamedTuple):
 
     shown_kmh: int = 0
     shown_s: float = -1e9
-    reason: float = -1.0
-    reason_s: float = -1e9
 
 
 class HudView(NamedTuple):
@@ -73,42 +79,43 @@ def shown_speed(speed_mps: float, t_s: float, memory: HudMemory) -> tuple[int, f
     return int(kmh + 0.5), t_s
 
 
-def view(snapshot: Snapshot, age_s: float, memory: HudMemory, profile: HudProfile) -> tuple[HudView, HudMemory]:
+def settings_of(hud: HudProfile, control: ControlProfile) -> HudSettings:
+    """Return the cluster's settings; the times are the arbitration's own, so the countdown ends when it acts."""
+    return HudSettings(hud.rpm_max, hud.rpm_red, control.minimal_risk_after_s, control.command_stale_s)
+
+
+def view(snapshot: Snapshot, age_s: float, memory: HudMemory, settings: HudSettings) -> tuple[HudView, HudMemory]:
     """Return the content of one picture.
 
     Args:
         snapshot: the newest tick.
-        age_s: how long ago its ring slot was last seen to change, in s of the display's own clock.
+        age_s: how long ago the display last saw a new tick, in s of its own clock.
         memory: what the previous picture left.
-        profile: screen, dial and time limits.
+        settings: the dial's and the rules' numbers.
     """
     vehicle, command, driver = snapshot.vehicle, snapshot.command, snapshot.driver
-    arbitration, remote, sample = snapshot.arbitration, snapshot.remote, snapshot.sample
+    arbitration = snapshot.arbitration
     arbiter = ArbiterMemory(*snapshot.row[MEMORY_AT : MEMORY_AT + MEMORY_WIDTH].tolist())
-    t_s = snapshot.t_s
-    kmh, shown_s = shown_speed(vehicle.vx_mps, t_s, memory)
-    changed = arbitration.reason != memory.reason or t_s < memory.reason_s
-    reason_s = t_s if changed else memory.reason_s
-    refused = is_refusal(arbitration.reason)
+    kmh, shown_s = shown_speed(vehicle.vx_mps, snapshot.t_s, memory)
     asked = arbitration.mode == Mode.TAKEOVER_REQUESTED
     waited_s = arbiter.mode_ticks / snapshot.tick_hz
     shown = HudView(
-        t_s=t_s,
+        t_s=snapshot.t_s,
         stale=age_s > STALE_S,
         shown_kmh=kmh,
         rpm=max(0.0, vehicle.engine_radps * RPM_PER_RADPS),
-        rpm_max=profile.rpm_max,
-        rpm_red=profile.rpm_red,
+        rpm_max=settings.rpm_max,
+        rpm_red=settings.rpm_red,
         engine_running=vehicle.engine_running != 0.0,
         gear=gear_words(vehicle.gear),
         automatic=command.automatic != 0.0,
         mode=arbitration.mode,
         mode_words=mode_words(arbitration.mode),
-        reason_words="" if refused else reason_words(arbitration.reason),
-        refusal_words=reason_words(arbitration.reason) if refused and t_s - reason_s <= REFUSAL_S else "",
+        reason_words=reason_words(arbitration.reason),
+        refusal_words=reason_words(arbitration.refusal) if arbitration.refusal else "",
         takeover_stage=int(arbitration.takeover_stage),
-        remaining_s=max(0.0, profile.takeover_window_s - waited_s) if asked else 0.0,
-        takeover_window_s=profile.takeover_window_s,
+        remaining_s=max(0.0, settings.takeover_window_s - waited_s) if asked else 0.0,
+        takeover_window_s=settings.takeover_window_s,
         throttle=command.throttle,
         brake=command.brake,
         clutch=vehicle.clutch,
@@ -118,16 +125,21 @@ def view(snapshot: Snapshot, age_s: float, memory: HudMemory, profile: HudProfil
         driver_clutch=driver.clutch,
         road_wheel_rad=vehicle.road_wheel_rad,
         remote_lateral=arbitration.remote_lateral,
-        link_age_s=None
-        if remote.age_ticks >= NEVER_TICKS or remote.sequence == 0
-        else remote.age_ticks / snapshot.tick_hz,
-        link_stale_s=profile.link_stale_s,
+        link_age_s=_link_age_s(snapshot),
+        link_stale_s=settings.link_stale_s,
         wheel_validity=driver.wheel_validity,
         pedals_validity=_worst(driver.throttle_validity, driver.brake_validity, driver.clutch_validity),
-        shifter_validity=driver.shifter_validity if sample.shifter_age_ticks < NEVER_TICKS else 0.0,
+        shifter_validity=driver.shifter_validity,
         distance_m=vehicle.distance_m,
     )
-    return shown, HudMemory(kmh, shown_s, arbitration.reason, reason_s)
+    return shown, HudMemory(kmh, shown_s)
+
+
+def _link_age_s(snapshot: Snapshot) -> float | None:
+    """Return how old the newest accepted remote command is, None before the first."""
+    remote = snapshot.remote
+    never = remote.sequence == 0.0 or remote.age_ticks >= NEVER_TICKS
+    return None if never else remote.age_ticks / snapshot.tick_hz
 
 
 def _worst(*validities: float) -> float:

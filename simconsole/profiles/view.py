@@ -19,8 +19,6 @@ class HudProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     rate_hz: Annotated[int, Meta(ge=1, le=240)] = 60
     rpm_max: Annotated[float, Meta(ge=1000.0, le=20000.0)] = 7000.0
     rpm_red: Annotated[float, Meta(ge=500.0, le=20000.0)] = 6000.0
-    takeover_window_s: Annotated[float, Meta(gt=0.0, le=60.0)] = 10.0
-    link_stale_s: Annotated[float, Meta(gt=0.0, le=10.0)] = 0.2
 
 
 class SceneProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
