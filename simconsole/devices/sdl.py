@@ -1,0 +1,239 @@
+"""The real cockpit through pygame's joysticks: roles bound by USB identity, whatever is plugged in when and where.
+
+State is read, not events: SDL's first events are zeros, and an axis that never moved sends none. A batch of events
+is taken as a whole, because SDL centres all axes *before* it tells that a device is gone (SDL#3616), which on pedals
+that rest at 1.0 reads as half throttle and half brake.
+"""
+
+from typing import Any, Final, NamedTuple
+
+from simconsole.devices import sdl_runtime
+from simconsole.devices.calibration import travel
+from simconsole.errors import DeviceError, DeviceModeError, DeviceNotFound
+from simconsole.profiles.device import CockpitProfile, RoleBinding, RoleName
+from simconsole.signals import NEVER_TICKS, DeviceSample
+
+INVERTED_SHARE: Final = 0.95
+"""All pedals beyond this at the start: nobody stands on all of them, the profile has their ends swapped."""
+
+
+class Found(NamedTuple):
+    """A joystick that is plugged in."""
+
+    vendor_id: int
+    product_id: int
+    name: str
+    instance_id: int
+    axes: int
+    buttons: int
+    hats: int
+
+
+class _Bound:
+    """A joystick that plays one or more roles."""
+
+    def __init__(self, joystick: Any) -> None:
+        self.joystick = joystick
+        self.instance_id: int = joystick.get_instance_id()
+        self.buttons = min(joystick.get_numbuttons(), 24)
+        self.hats: int = joystick.get_numhats()
+        self.fresh = False  # SDL reads the first values at the first pump after opening
+        self.clicks = 0  # presses since the last poll, also those already released
+
+
+def identity(guid: str) -> tuple[int, int]:
+    """Return (vendor id, product id) from SDL's 32-digit joystick GUID: little-endian words 2 and 4."""
+    return (
+        int.from_bytes(bytes.fromhex(guid[8:12]), "little"),
+        int.from_bytes(bytes.fromhex(guid[16:20]), "little"),
+    )
+
+
+def found(pygame: Any) -> list[tuple[Found, Any]]:
+    """Return every plugged-in joystick with its open pygame object."""
+    joysticks = []
+    for index in range(pygame.joystick.get_count()):
+        joystick = pygame.joystick.Joystick(index)
+        entry = Found(
+            *identity(joystick.get_guid()),
+            joystick.get_name(),
+            joystick.get_instance_id(),
+            joystick.get_numaxes(),
+            joystick.get_numbuttons(),
+            joystick.get_numhats(),
+        )
+        joysticks.append((entry, joystick))
+    return joysticks
+
+
+class SdlSource:
+    """The cockpit of a profile, read through SDL. Survives unplugging; comes back by identity."""
+
+    def __init__(self, cockpit: CockpitProfile) -> None:
+        """Open the cockpit.
+
+        Raises:
+            DeviceNotFound: a device that the profile binds is not plugged in.
+            DeviceModeError: it is there in a mode that cannot drive.
+            DeviceError: SDL does not work, or the pedals are calibrated the wrong way round.
+        """
+        if not cockpit.roles:
+            raise DeviceError(f"{cockpit.title}: roles: value empty: a cockpit with devices")
+        self._cockpit = cockpit
+        self._bound: dict[tuple[int, int], _Bound] = {}
+        self._keys = {binding.role: (binding.vendor_id, binding.product_id) for binding in cockpit.roles}
+        pedals = cockpit.pedals
+        self._axes = tuple(
+            None if pedal is None else pedal.axis
+            for pedal in (pedals.throttle, pedals.brake, pedals.clutch, pedals.handbrake)
+        )
+        self._wheel = [cockpit.wheel.centre_raw, 0.0, 0.0, 0.0]  # axis, buttons, hat x, hat y: last good
+        self._pedals = [0.0, 0.0, 0.0, 0.0]
+        self._shifter = 0.0
+        self._count = 0
+        self._pygame = sdl_runtime.acquire()
+        self._open = True
+        try:
+            self._start()
+        except BaseException:
+            self.close()
+            raise
+
+    def poll(self, tick: int) -> DeviceSample:
+        """Return the cockpit now. Ages are 0, or NEVER_TICKS for a device that is gone; its last values stay."""
+        arrived = self._take_events()
+        for bound in self._bound.values():
+            bound.fresh = True
+        wheel = self._readable("wheel")
+        if wheel is not None:
+            self._read_wheel(wheel)
+        pedals = self._readable("pedals")
+        if pedals is not None:
+            self._read_pedals(pedals)
+        shifter = self._readable("shifter")
+        if shifter is not None:
+            self._shifter = float(_held(shifter))
+        for bound in self._bound.values():
+            bound.clicks = 0
+        if arrived:
+            self._bind()
+        angle, wheel_buttons, hat_x, hat_y = self._wheel
+        throttle, brake, clutch, handbrake = self._pedals
+        return DeviceSample(
+            angle,
+            throttle,
+            brake,
+            clutch,
+            handbrake,
+            wheel_buttons,
+            self._shifter,
+            hat_x,
+            hat_y,
+            NEVER_TICKS if wheel is None else 0.0,
+            NEVER_TICKS if pedals is None else 0.0,
+            NEVER_TICKS if shifter is None else 0.0,
+        )
+
+    def close(self) -> None:
+        """Let the devices go. Twice is harmless."""
+        if self._open:
+            self._open = False
+            self._bound.clear()
+            sdl_runtime.release()
+
+    def _start(self) -> None:
+        self._pygame.event.get()
+        self._bind()
+        for binding in self._cockpit.roles:
+            if (binding.vendor_id, binding.product_id) not in self._bound:
+                raise self._missing(binding)
+        self._check_polarity(self.poll(0))
+
+    def _take_events(self) -> bool:
+        """Empty the queue; drop removed devices before anything of theirs is read. Return whether one arrived."""
+        pygame, arrived = self._pygame, False
+        presses: list[tuple[int, int]] = []
+        for event in pygame.event.get():
+            if event.type == pygame.JOYDEVICEREMOVED:
+                self._bound = {k: bound for k, bound in self._bound.items() if bound.instance_id != event.instance_id}
+            elif event.type == pygame.JOYDEVICEADDED:
+                arrived = True
+            elif event.type == pygame.JOYBUTTONDOWN:
+                presses.append((event.instance_id, event.button))
+        count = pygame.joystick.get_count()
+        if count != self._count:  # also where someone else in this process has emptied the queue
+            self._count, arrived = count, True
+            present = {entry.instance_id for entry, _ in found(pygame)}
+            self._bound = {k: bound for k, bound in self._bound.items() if bound.instance_id in present}
+        for bound in self._bound.values():
+            for instance_id, button in presses:
+                if instance_id == bound.instance_id:
+                    bound.clicks |= 1 << button
+        return arrived
+
+    def _bind(self) -> None:
+        wanted = {(binding.vendor_id, binding.product_id): binding for binding in self._cockpit.roles}
+        for entry, joystick in found(self._pygame):
+            key = (entry.vendor_id, entry.product_id)
+            if key in wanted and key not in self._bound and _fits(entry, wanted[key]):
+                self._bound[key] = _Bound(joystick)
+
+    def _readable(self, role: RoleName) -> _Bound | None:
+        bound = self._bound.get(self._keys[role])
+        return bound if bound is not None and bound.fresh else None
+
+    def _read_wheel(self, bound: _Bound) -> None:
+        hat_x, hat_y = bound.joystick.get_hat(0) if bound.hats else (0, 0)
+        axis = bound.joystick.get_axis(self._cockpit.wheel.axis)
+        self._wheel = [axis, float(_held(bound)), float(hat_x), float(hat_y)]
+
+    def _read_pedals(self, bound: _Bound) -> None:
+        self._pedals = [0.0 if axis is None else bound.joystick.get_axis(axis) for axis in self._axes]
+
+    def _missing(self, binding: RoleBinding) -> DeviceError:
+        wanted = f"{binding.vendor_id:04x}:{binding.product_id:04x}"
+        present = [entry for entry, _ in found(self._pygame)]
+        for mode in self._cockpit.boot_modes:
+            if any((entry.vendor_id, entry.product_id) == (mode.vendor_id, mode.product_id) for entry in present):
+                boot = f"{mode.vendor_id:04x}:{mode.product_id:04x}"
+                return DeviceModeError(f"{binding.name}: mode: value {boot} (boot mode): {wanted}; {mode.cure}")
+        for entry in present:
+            if (entry.vendor_id, entry.product_id) == (binding.vendor_id, binding.product_id):
+                return DeviceModeError(
+                    f"{binding.name} ({wanted}): axes and buttons: value {entry.axes} and {entry.buttons}: "
+                    f"at least {binding.axes} and {binding.buttons}"
+                )
+        seen = ", ".join(f"{entry.vendor_id:04x}:{entry.product_id:04x} {entry.name}" for entry in present)
+        return DeviceNotFound(
+            f"{self._cockpit.title}: role {binding.role}: value {wanted} ({binding.name}) not connected: "
+            f"connected are {seen or 'no devices'}"
+        )
+
+    def _check_polarity(self, sample: DeviceSample) -> None:
+        pedals = self._cockpit.pedals
+        shares = [
+            travel(raw, pedal.rest_raw, pedal.full_raw)
+            for raw, pedal in zip(
+                (sample.throttle_axis, sample.brake_axis, sample.clutch_axis),
+                (pedals.throttle, pedals.brake, pedals.clutch),
+                strict=True,
+            )
+            if pedal is not None
+        ]
+        if min(shares) >= INVERTED_SHARE:
+            raise DeviceError(
+                f"{self._cockpit.title}: pedals: value all read {min(shares):.0%} pressed at rest: below "
+                f"{INVERTED_SHARE:.0%}; rest_raw and full_raw of the profile look swapped"
+            )
+
+
+def _fits(entry: Found, binding: RoleBinding) -> bool:
+    return entry.axes >= binding.axes and entry.buttons >= binding.buttons
+
+
+def _held(bound: _Bound) -> int:
+    mask = bound.clicks
+    for button in range(bound.buttons):
+        if bound.joystick.get_button(button):
+            mask |= 1 << button
+    return mask & 0xFFFFFF

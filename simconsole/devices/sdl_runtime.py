@@ -1,0 +1,63 @@
+"""SDL's joystick half, started once per process and stopped when its last user lets go."""
+
+import os
+from typing import Any, Final
+
+from simconsole.errors import DeviceError
+
+_ENVIRONMENT: Final = {
+    "SDL_VIDEODRIVER": "dummy",  # this process shows no window; the driver's view has its own process
+    "SDL_JOYSTICK_ALLOW_BACKGROUND_EVENTS": "1",  # without it input is dead as long as no window has the focus
+    "SDL_NO_SIGNAL_HANDLERS": "1",  # SIGINT and SIGTERM belong to the session
+    "PYGAME_HIDE_SUPPORT_PROMPT": "1",  # standard output belongs to --json
+}
+
+
+class _Runtime:
+    """Who uses SDL, and what this module itself started."""
+
+    users = 0
+    started_display = False
+
+
+def acquire() -> Any:
+    """Start SDL's joysticks and return the pygame module. Every call needs one `release`.
+
+    The environment is completed, never changed, and before pygame is imported: SDL reads it then.
+
+    Raises:
+        DeviceError: pygame is missing or SDL refuses.
+    """
+    for name, value in _ENVIRONMENT.items():
+        os.environ.setdefault(name, value)
+    try:
+        import pygame
+    except ImportError as error:
+        raise DeviceError(f"pygame-ce: module: {error}: an installed pygame-ce") from error
+    if _Runtime.users == 0:
+        try:
+            _Runtime.started_display = not pygame.display.get_init()
+            pygame.display.init()  # the event queue hangs on it
+            pygame.joystick.init()
+        except pygame.error as error:
+            raise DeviceError(f"SDL: joysticks: {error}: a working SDL") from error
+        # State is read, not events: without these the queue holds nothing but arrivals, removals and presses.
+        pygame.event.set_blocked((pygame.JOYAXISMOTION, pygame.JOYHATMOTION, pygame.JOYBUTTONUP))
+    _Runtime.users += 1
+    return pygame
+
+
+def release() -> None:
+    """Let go; the last user's call stops what the first one's started."""
+    if _Runtime.users == 0:
+        return
+    _Runtime.users -= 1
+    if _Runtime.users:
+        return
+    import pygame
+
+    pygame.event.set_allowed((pygame.JOYAXISMOTION, pygame.JOYHATMOTION, pygame.JOYBUTTONUP))
+    pygame.event.clear()
+    pygame.joystick.quit()
+    if _Runtime.started_display:
+        pygame.display.quit()
