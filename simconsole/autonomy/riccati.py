@@ -1,15 +1,16 @@
 """Discrete linear-quadratic design in plain numpy: exponential, Riccati equation, preview gains."""
 
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-_TERMS = 12
-_DOUBLINGS = 40
-_SETTLED = 1e-12
+_TERMS: Final = 12
+_DOUBLINGS: Final = 40
+_SETTLED: Final = 1e-12
+_DIVERGED: Final = 1e60
 
 
 class Gains(NamedTuple):
@@ -54,6 +55,8 @@ def riccati(a: Array, b: Array, q: Array, r: float) -> Array:
     for _ in range(_DOUBLINGS):
         inner = np.linalg.solve(eye + g @ h, np.hstack((a, g)))
         wa, wg = inner[:, : len(a)], inner[:, len(a) :]
+        if not float(np.abs(inner).max()) < _DIVERGED:
+            break
         after = h + a.T @ h @ wa
         g, a = g + a @ wg @ a.T, a @ wa
         moved, h = float(np.abs(after - h).max()), 0.5 * (after + after.T)

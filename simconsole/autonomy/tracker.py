@@ -3,7 +3,8 @@
 Model, in the frame of the path at base_link: offset, heading error, lateral speed and yaw rate of a linear
 single-track car, first-order steering, a command that takes effect `delay_s` late; the input is the change of the
 command per period, so that a constant curve costs nothing. The known curvature ahead enters as the model's
-disturbance. Gains are designed per speed and interpolated.
+disturbance. Gains are designed per speed and interpolated. Errors are small by construction: a car that is handed
+over beside the path, or is pushed off it, is led back along a smooth line (approach.py), which is what is tracked.
 """
 
 import math
@@ -12,6 +13,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from simconsole.autonomy.approach import ON_PATH, approach_from
 from simconsole.autonomy.riccati import Gains, design, discretised
 from simconsole.autonomy.settings import COMFORT, HATCHBACK, TIMING, WEIGHTS, CarModel, Comfort, Timing, Weights
 from simconsole.autonomy.speed_profile import plan_speed
@@ -22,6 +24,7 @@ Array = NDArray[np.float64]
 
 _SPEEDS_MPS: Final = (1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5, 8.5, 10.0, 11.5, 13.0, 14.5, 17.0, 20.0)
 _CURVATURE_STEP_M: Final = 0.1
+_PUSHED_OFF_M: Final = 0.3
 _SPEED_GAIN_1PS: Final = 1.2
 _SPEED_LEAD_S: Final = 0.2
 _JERK_MPS3: Final = 4.0
@@ -76,6 +79,7 @@ class Tracker:
         self._command = 0.0  # the last command, as the tangent of the road-wheel angle
         self._wheel = 0.0  # where the wheels should be by the model, as a tangent too
         self._accel = 0.0
+        self._line = ON_PATH
 
     def step(self, seen: Sighting, engaged: bool = True) -> Steering:
         """Return the command for the coming period.
@@ -88,8 +92,14 @@ class Tracker:
         speed = max(seen.vx_mps, 0.0)
         if not engaged:
             self._follow(seen, speed)
+        offset, slope = self._line.at(place.s_m)
+        if not engaged or abs(place.lateral_m - offset) > _PUSHED_OFF_M:
+            course_rad = place.heading_error_rad + (seen.vy_mps / speed if speed > 1.0 else 0.0)
+            self._line = approach_from(place.s_m, place.lateral_m, course_rad, speed)
+            offset, slope = self._line.at(place.s_m)
         before = self._command
-        self._command = self._steer(seen, place.s_m, place.lateral_m, place.heading_error_rad, speed)
+        heading = place.heading_error_rad - math.atan(slope)
+        self._command = self._steer(seen, place.s_m, place.lateral_m - offset, heading, speed)
         self._settle(before)
         target, accel = self._accelerate(place.s_m, speed)
         period = self._timing.period_s
@@ -103,8 +113,9 @@ class Tracker:
         preview = self._preview[index] * (1.0 - share) + self._preview[index + 1] * share
         way = s_m + self._ahead_s * (speed + 0.5 * self._accel * self._ahead_s)
         cells = (way / self._curvature_step_m).astype(np.int64) % len(self._curvature)
+        ahead = self._curvature[cells] + self._line.curvature(way)
         state = (lateral_m, heading_rad, seen.vy_mps, seen.yaw_rate_radps, self._wheel, self._command)
-        change = -float(feedback @ state) - float(preview @ self._curvature[cells])
+        change = -float(feedback @ state) - float(preview @ ahead)
         step = _STEERING_RATE_RADPS * self._timing.period_s
         limit = math.tan(self._car.max_road_wheel_rad)
         return clip(self._command + clip(change, -step, step), -limit, limit)

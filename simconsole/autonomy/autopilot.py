@@ -1,0 +1,127 @@
+"""The driver on the ROS side: a program that speaks nothing but rosbridge and follows a course (shell).
+
+It answers every odometry with one command that carries the odometry's own stamp, so that a console in lockstep knows
+which state the command was made for; also while a person drives, so that engagement finds a fresh command.
+"""
+
+import math
+import time
+from collections.abc import Callable
+from typing import Any, Final
+
+from simconsole.autonomy.tally import Tally
+from simconsole.autonomy.tracker import Sighting, Steering, Tracker
+from simconsole.bridge.client import BridgeClient
+from simconsole.errors import BridgeError
+from simconsole.profile_files import MAX_DATA_BYTES, load
+from simconsole.profiles.world import WorldProfile
+from simconsole.world.course import Course
+
+ODOMETRY: Final = "/odom"
+ARBITRATION: Final = "/console/arbitration"
+COMMAND: Final = "/control/command/control_cmd"
+CONTROL: Final = "autoware_control_msgs/Control"
+
+_PATIENCE_S: Final = 10.0  # for the console to open its port
+_RETRY_S: Final = 0.05
+_WAIT_S: Final = 0.25  # how often `stop` is asked while nothing comes
+
+
+def run(
+    url: str,
+    course_name: str,
+    *,
+    stop: Callable[[], bool] | None = None,
+    namespace: str = "",
+    patience_s: float = _PATIENCE_S,
+) -> dict[str, Any]:
+    """Drive until the server closes the connection or `stop()` says so; return statistics.
+
+    Args:
+        url: the rosbridge server, `ws://HOST:PORT`.
+        course_name: a world profile, by name or path.
+        stop: asked after every message and four times a second.
+        namespace: put before every topic, `/car1`.
+        patience_s: how long to try to connect.
+
+    Raises:
+        ProfileError: the course cannot be read.
+        BridgeError: nobody answers at `url`.
+    """
+    tracker = Tracker(Course(load("worlds", course_name, WorldProfile, max_bytes=MAX_DATA_BYTES)))
+    tally = Tally()
+    with BridgeClient(url) as client:
+        client.advertise(namespace + COMMAND, CONTROL)
+        client.subscribe(namespace + ODOMETRY, "nav_msgs/Odometry")
+        client.subscribe(namespace + ARBITRATION, "simconsole_msgs/Arbitration")
+        _connect(client, patience_s)
+        try:
+            _answer(client, tracker, tally, namespace, stop or _never)
+            ended = "stopped"
+        except BridgeError as error:
+            ended = str(error)
+    return {"url": url, "course": course_name, "ended": ended, **tally.results()}
+
+
+def _answer(client: BridgeClient, tracker: Tracker, tally: Tally, namespace: str, stop: Callable[[], bool]) -> None:
+    """Answer odometry until `stop`. Raises BridgeError when the connection ends."""
+    command = client.registry.struct(CONTROL)()
+    odometry_topic, command_topic = namespace + ODOMETRY, namespace + COMMAND
+    # A console says who drives; a server that says nothing has given us the car.
+    engaged = True
+    while not stop():
+        received = client.receive(_WAIT_S)
+        if received is None:
+            continue
+        topic, message = received
+        if topic != odometry_topic:
+            engaged = message.remote_lateral > 0.0
+            continue
+        seen = sighting(message)
+        if seen is None:
+            tally.skipped += 1
+            continue
+        answer = tracker.step(seen, engaged)
+        fill(command, message.header.stamp, answer)
+        client.publish(command_topic, command)
+        tally.add(engaged, tracker.s_m or 0.0, tracker.lateral_m, seen.vx_mps)
+
+
+def sighting(odometry: Any) -> Sighting | None:
+    """Return what a nav_msgs/Odometry says of base_link, None if a value is not finite."""
+    pose, twist = odometry.pose.pose, odometry.twist.twist
+    q = pose.orientation
+    yaw = math.atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z))
+    seen = Sighting(pose.position.x, pose.position.y, yaw, twist.linear.x, twist.linear.y, twist.angular.z)
+    return seen if all(map(math.isfinite, seen)) else None
+
+
+def fill(command: Any, stamp: Any, answer: Steering) -> None:
+    """Write an answer into an autoware_control_msgs/Control; all its stamps are the odometry's."""
+    lateral, longitudinal = command.lateral, command.longitudinal
+    command.stamp = lateral.stamp = longitudinal.stamp = stamp
+    command.control_time = lateral.control_time = longitudinal.control_time = stamp
+    lateral.steering_tire_angle = answer.road_wheel_rad
+    lateral.steering_tire_rotation_rate = answer.road_wheel_radps
+    lateral.is_defined_steering_tire_rotation_rate = True
+    longitudinal.velocity = answer.speed_mps
+    longitudinal.acceleration = answer.accel_mps2
+    longitudinal.jerk = answer.jerk_mps3
+    longitudinal.is_defined_acceleration = True
+    longitudinal.is_defined_jerk = True
+
+
+def _connect(client: BridgeClient, patience_s: float) -> None:
+    deadline = time.monotonic() + patience_s
+    while True:
+        try:
+            client.connect()
+            return
+        except BridgeError:
+            if time.monotonic() >= deadline:
+                raise
+        time.sleep(_RETRY_S)
+
+
+def _never() -> bool:
+    return False

@@ -1,0 +1,121 @@
+"""The autopilot over a real WebSocket, against a small server that knows nothing of simconsole's own."""
+
+import json
+import math
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import pytest
+from websockets.sync.server import ServerConnection, serve
+
+from simconsole.autonomy.autopilot import run
+from simconsole.errors import BridgeError, ProfileError
+
+WHEELBASE_M = 2.6
+
+
+def odometry(step: int, x: float, y: float, yaw: float, speed: float | None, yaw_rate: float) -> str:
+    stamp = {"sec": step // 50, "nanosec": step % 50 * 20_000_000}
+    pose = {
+        "position": {"x": x, "y": y, "z": 0.0},
+        "orientation": {"x": 0.0, "y": 0.0, "z": math.sin(yaw / 2), "w": math.cos(yaw / 2)},
+    }
+    twist = {"linear": {"x": speed, "y": 0.0, "z": 0.0}, "angular": {"x": 0.0, "y": 0.0, "z": yaw_rate}}
+    message = {
+        "header": {"stamp": stamp, "frame_id": "map"},
+        "child_frame_id": "base_link",
+        "pose": {"pose": pose, "covariance": [0.0] * 36},
+        "twist": {"twist": twist, "covariance": [0.0] * 36},
+    }
+    return json.dumps({"op": "publish", "topic": "/odom", "msg": message})
+
+
+def arbitration(share: float) -> str:
+    return json.dumps({"op": "publish", "topic": "/console/arbitration", "msg": {"remote_lateral": share}})
+
+
+class Server:
+    """In lockstep: one odometry out, one command in; the car of a kinematic single-track model."""
+
+    def __init__(self, steps: int, engage_at: int) -> None:
+        self.steps, self.engage_at = steps, engage_at
+        self.wishes: list[dict[str, Any]] = []
+        self.stamps: list[bool] = []
+        self.lateral: list[float] = []
+        self.failure: BaseException | None = None
+
+    def __call__(self, socket: ServerConnection) -> None:
+        try:
+            self.drive(socket)
+        except BaseException as error:  # noqa: BLE001  # shown by the test, which runs in another thread
+            self.failure = error
+
+    def drive(self, socket: ServerConnection) -> None:
+        while len(self.wishes) < 3:
+            self.wishes.append(json.loads(socket.recv()))
+        x, y, yaw, speed, wheel = 100.0, 0.3, 0.0, 8.0, 0.0
+        for step in range(self.steps):
+            engaged = step >= self.engage_at
+            socket.send(arbitration(1.0 if engaged else 0.0))
+            socket.send(odometry(step, x, y, yaw, speed, speed * math.tan(wheel) / WHEELBASE_M))
+            command = json.loads(socket.recv())["msg"]
+            self.stamps.append(command["stamp"] == {"sec": step // 50, "nanosec": step % 50 * 20_000_000})
+            if engaged:
+                wheel += 0.33 * (command["lateral"]["steering_tire_angle"] - wheel)
+                speed += 0.02 * command["longitudinal"]["acceleration"]
+            x, y = x + 0.02 * speed * math.cos(yaw), y + 0.02 * speed * math.sin(yaw)
+            yaw += 0.02 * speed * math.tan(wheel) / WHEELBASE_M
+            self.lateral.append(y)
+        socket.send(odometry(self.steps, x, y, yaw, None, 0.0))  # null is NaN: must not be answered
+        socket.close()
+
+
+@contextmanager
+def serving(handler: Any) -> Iterator[str]:
+    with serve(handler, "127.0.0.1", 0, compression=None) as server:
+        thread = threading.Thread(target=server.serve_forever)
+        thread.start()
+        try:
+            yield f"ws://127.0.0.1:{server.socket.getsockname()[1]}"
+        finally:
+            server.shutdown()
+            thread.join()
+
+
+def test_every_odometry_gets_one_command_with_its_stamp() -> None:
+    server = Server(steps=400, engage_at=50)
+    with serving(server) as url:
+        results = run(url, "urban")
+    assert server.failure is None
+    assert server.stamps == [True] * 400
+    assert results["commands"] == 400
+    assert results["engaged_commands"] == 350
+    assert results["skipped"] == 1
+    assert "closed by the server" in results["ended"]
+    assert abs(server.lateral[-1]) < 0.02  # from 0.3 m beside the path
+    assert 40.0 < results["engaged_distance_m"] < 140.0
+    assert 0.0 < results["lateral_rms_m"] < results["lateral_max_m"] <= 0.31
+    operations = sorted((wish["op"], wish["topic"], wish["type"].replace("/msg/", "/")) for wish in server.wishes)
+    assert operations == [
+        ("advertise", "/control/command/control_cmd", "autoware_control_msgs/Control"),
+        ("subscribe", "/console/arbitration", "simconsole_msgs/Arbitration"),
+        ("subscribe", "/odom", "nav_msgs/Odometry"),
+    ]
+
+
+def test_stop_ends_it() -> None:
+    asked = []
+    server = Server(steps=30, engage_at=0)
+    with serving(server) as url:
+        results = run(url, "urban", stop=lambda: len(asked) >= 10 or asked.append(0) is not None)
+    assert results["ended"] == "stopped"
+    assert results["commands"] <= 10
+
+
+def test_nobody_there_and_unknown_course_are_one_line() -> None:
+    with pytest.raises(BridgeError, match="cannot connect"):
+        run("ws://127.0.0.1:1", "urban", patience_s=0.0)
+    with pytest.raises(ProfileError, match="worlds profile"):
+        run("ws://127.0.0.1:1", "nowhere")
