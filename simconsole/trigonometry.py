@@ -111,10 +111,7 @@ def _cosine_series(x: float) -> float:
 def atan(slope: float) -> float:
     """Return the angle in rad, -pi/2 to pi/2, whose tangent is `slope`."""
     size = abs(slope)
-    if size > 1.0:
-        angle = HALF_PI - (_atan_unit(1.0 / size) - _HALF_PI_TAIL)
-    else:
-        angle = _atan_unit(size)
+    angle = _atan_unit(size) if size <= 1.0 else HALF_PI - (_atan_unit(1.0 / size) - _HALF_PI_TAIL)
     if slope < 0.0:
         return -angle
     return angle

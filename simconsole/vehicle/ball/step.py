@@ -1,0 +1,195 @@
+"""One tick of the ball: it rolls to the desired pose with at most the desired speed, or as a person pushes it.
+
+With a target speed above 0 it follows the target; otherwise the person's pedals and wheel push, brake and turn it, and
+released it coasts to rest. The brake always works. A ball that rolls without slipping carries 2/7 of its energy in its
+spin, so a slope moves it with 5/7 of gravity.
+"""
+
+from math import sqrt
+from typing import Final, NamedTuple
+
+from simconsole.kernels import Row, approach, clip, is_finite, kernel, put, take
+from simconsole.rows import COMMAND_AT, COMMAND_WIDTH, PLATFORM_AT, VEHICLE_AT
+from simconsole.signals import VehicleCommand, VehicleState
+from simconsole.trigonometry import atan2, cos, sin, wrap_angle
+
+STEP_S: Final = 0.001
+ROLLING_MPS: Final = 0.05
+"""Below this speed the heading stays as it is: the direction of hardly any motion means nothing."""
+
+
+class BallState(NamedTuple):
+    """State after a step of 1 ms, in map; the height follows the plane of the ground."""
+
+    x_m: float
+    y_m: float
+    yaw_rad: float
+    vx_map_mps: float
+    vy_map_mps: float
+    yaw_rate_radps: float
+    rolled_rad: float  # about its left axis, unwrapped
+    ax_map_mps2: float
+    ay_map_mps2: float
+    distance_m: float
+
+
+class BallParameters(NamedTuple):
+    """What stays constant over a drive, in SI."""
+
+    radius_m: float
+    max_accel_mps2: float
+    brake_mps2: float
+    rolling_mps2: float
+    approach_s: float
+    turn_per_s: float
+    max_road_wheel_rad: float
+    slope_x: float
+    slope_y: float
+    gravity_x_mps2: float
+    gravity_y_mps2: float
+
+
+BALL_WIDTH: Final = len(BallState._fields)
+PARAMETERS_WIDTH: Final = len(BallParameters._fields)
+
+
+class Velocity(NamedTuple):
+    """A velocity in map."""
+
+    x_mps: float
+    y_mps: float
+
+
+@kernel
+def step(previous: Row, row: Row, parameters: Row, substeps: int) -> None:
+    """Advance the ball by one tick: the platform interface of vehicle/platform.py."""
+    p = BallParameters(*take(parameters, 0, PARAMETERS_WIDTH))
+    command = VehicleCommand(*take(row, COMMAND_AT, COMMAND_WIDTH))
+    state = BallState(*take(previous, PLATFORM_AT, BALL_WIDTH))
+    brake = clip(command.brake, 0.0, 1.0) if is_finite(command.brake) else 0.0
+    following = is_finite(command.target_speed_mps) and command.target_speed_mps > 0.0
+    following = following and is_finite(command.target_x_m) and is_finite(command.target_y_m)
+    for _ in range(substeps):
+        state = follow(state, p, command, brake) if following else pushed(state, p, command, brake)
+    put(row, PLATFORM_AT, state)
+    put(row, VEHICLE_AT, vehicle_state(state, p, command.road_wheel_rad))
+
+
+@kernel
+def towards(from_x: float, from_y: float, to_x: float, to_y: float, most: float) -> Velocity:
+    """Return the vector moved towards another by at most `most`."""
+    x = to_x - from_x
+    y = to_y - from_y
+    length = sqrt(x * x + y * y)
+    if length <= most:
+        return Velocity(to_x, to_y)
+    return Velocity(from_x + x * (most / length), from_y + y * (most / length))
+
+
+@kernel
+def desired(s: BallState, p: BallParameters, command: VehicleCommand, brake: float) -> Velocity:
+    """Return the velocity wanted now: the desired speed, less near the target so that the ball can stop there.
+
+    sqrt(a * d) needs half of the deceleration a over the distance d, which leaves room to be late; the last bit is
+    exponential with `approach_s`.
+    """
+    x = command.target_x_m - s.x_m
+    y = command.target_y_m - s.y_m
+    left = sqrt(x * x + y * y)
+    if left == 0.0:
+        return Velocity(0.0, 0.0)
+    speed = command.target_speed_mps * (1.0 - brake)
+    stopping = sqrt(p.max_accel_mps2 * left)
+    arriving = left / p.approach_s
+    if stopping < speed:
+        speed = stopping
+    if arriving < speed:
+        speed = arriving
+    return Velocity(x * (speed / left), y * (speed / left))
+
+
+@kernel
+def follow(s: BallState, p: BallParameters, command: VehicleCommand, brake: float) -> BallState:
+    """Return the ball 1 ms later, driven towards its target; it turns to face the way it rolls."""
+    wanted = desired(s, p, command, brake)
+    most = STEP_S * (p.max_accel_mps2 + brake * p.brake_mps2)
+    v = towards(
+        s.vx_map_mps + STEP_S * p.gravity_x_mps2,
+        s.vy_map_mps + STEP_S * p.gravity_y_mps2,
+        wanted.x_mps,
+        wanted.y_mps,
+        most,
+    )
+    turn = 0.0
+    if v.x_mps * v.x_mps + v.y_mps * v.y_mps > ROLLING_MPS * ROLLING_MPS:
+        ahead = wrap_angle(atan2(v.y_mps, v.x_mps) - s.yaw_rad)
+        turn = approach(0.0, ahead, STEP_S * p.turn_per_s)
+    return rolled(s, p, v, turn)
+
+
+@kernel
+def pushed(s: BallState, p: BallParameters, command: VehicleCommand, brake: float) -> BallState:
+    """Return the ball 1 ms later under the person: throttle pushes along the heading, the wheel turns it."""
+    throttle = clip(command.throttle, 0.0, 1.0) if is_finite(command.throttle) else 0.0
+    angle = command.road_wheel_rad if is_finite(command.road_wheel_rad) else 0.0
+    turn = STEP_S * p.turn_per_s * clip(angle, -p.max_road_wheel_rad, p.max_road_wheel_rad)
+    way = -1.0 if command.gear < 0.0 else 1.0
+    push = STEP_S * way * throttle * p.max_accel_mps2
+    c = cos(turn)
+    d = sin(turn)
+    # Turning takes the velocity along: a ball has no side grip that could do it.
+    x = s.vx_map_mps * c - s.vy_map_mps * d + STEP_S * p.gravity_x_mps2 + push * cos(s.yaw_rad)
+    y = s.vx_map_mps * d + s.vy_map_mps * c + STEP_S * p.gravity_y_mps2 + push * sin(s.yaw_rad)
+    return rolled(s, p, towards(x, y, 0.0, 0.0, STEP_S * (p.rolling_mps2 + brake * p.brake_mps2)), turn)
+
+
+@kernel
+def rolled(s: BallState, p: BallParameters, v: Velocity, turn: float) -> BallState:
+    """Return the state after rolling 1 ms with velocity `v` and turning by `turn`."""
+    along = v.x_mps * cos(s.yaw_rad) + v.y_mps * sin(s.yaw_rad)
+    return BallState(
+        s.x_m + STEP_S * v.x_mps,
+        s.y_m + STEP_S * v.y_mps,
+        wrap_angle(s.yaw_rad + turn),
+        v.x_mps,
+        v.y_mps,
+        turn / STEP_S,
+        s.rolled_rad + STEP_S * along / p.radius_m,
+        (v.x_mps - s.vx_map_mps) / STEP_S,
+        (v.y_mps - s.vy_map_mps) / STEP_S,
+        s.distance_m + STEP_S * sqrt(v.x_mps * v.x_mps + v.y_mps * v.y_mps),
+    )
+
+
+@kernel
+def vehicle_state(s: BallState, p: BallParameters, road_wheel_rad: float) -> VehicleState:
+    """Return the ball as others see it: its centre, and its spin as pitch."""
+    c = cos(s.yaw_rad)
+    d = sin(s.yaw_rad)
+    vx = s.vx_map_mps * c + s.vy_map_mps * d
+    slope = p.gravity_x_mps2 * c + p.gravity_y_mps2 * d
+    coast = slope - p.rolling_mps2 * vx / (abs(vx) + ROLLING_MPS)
+    angle = clip(road_wheel_rad, -p.max_road_wheel_rad, p.max_road_wheel_rad) if is_finite(road_wheel_rad) else 0.0
+    return VehicleState(
+        s.x_m,
+        s.y_m,
+        p.slope_x * s.x_m + p.slope_y * s.y_m + p.radius_m,
+        s.yaw_rad,
+        wrap_angle(s.rolled_rad),
+        0.0,
+        vx,
+        s.vy_map_mps * c - s.vx_map_mps * d,
+        s.yaw_rate_radps,
+        s.ax_map_mps2 * c + s.ay_map_mps2 * d,
+        s.ay_map_mps2 * c - s.ax_map_mps2 * d,
+        angle,
+        0.0,
+        0.0,
+        1.0,
+        1.0,
+        0.0,
+        s.distance_m,
+        coast,
+        coast + p.max_accel_mps2,
+        coast - p.brake_mps2,
+    )

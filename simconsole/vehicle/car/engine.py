@@ -1,0 +1,62 @@
+"""Engine torque: a map of ramps, an idle governor that can hold little, a limiter, a starter."""
+
+from typing import NamedTuple
+
+from simconsole.kernels import clip, kernel
+from simconsole.vehicle.car.parameters import EngineParameters
+
+
+class EngineDrive(NamedTuple):
+    """What burns in this step. Friction is separate: it works even when nothing burns."""
+
+    torque_nm: float
+    friction_nm: float
+    running: float
+
+
+@kernel
+def ramp(speed_radps: float, from_radps: float, slope_nms: float) -> float:
+    """Return one ramp of the torque map."""
+    return (speed_radps - from_radps) * slope_nms if speed_radps > from_radps else 0.0
+
+
+@kernel
+def full_torque(p: EngineParameters, speed_radps: float) -> float:
+    """Return the net torque at full throttle in N m (brake torque, friction already taken off), limiter included."""
+    torque = (
+        ramp(speed_radps, p.ramp_1_radps, p.ramp_1_nms)
+        + ramp(speed_radps, p.ramp_2_radps, p.ramp_2_nms)
+        + ramp(speed_radps, p.ramp_3_radps, p.ramp_3_nms)
+        + ramp(speed_radps, p.ramp_4_radps, p.ramp_4_nms)
+        + ramp(speed_radps, p.ramp_5_radps, p.ramp_5_nms)
+        + ramp(speed_radps, p.ramp_6_radps, p.ramp_6_nms)
+        + ramp(speed_radps, p.ramp_7_radps, p.ramp_7_nms)
+        + ramp(speed_radps, p.ramp_8_radps, p.ramp_8_nms)
+    )
+    friction = engine_friction(p, speed_radps)
+    cut = clip((p.limit_radps - speed_radps) / p.limit_band_radps, 0.0, 1.0)
+    return (torque + friction) * cut - friction
+
+
+@kernel
+def engine_friction(p: EngineParameters, speed_radps: float) -> float:
+    """Return the friction and pumping torque in N m, always positive."""
+    return p.drag_nm + p.drag_nms * abs(speed_radps)
+
+
+@kernel
+def engine_drive(
+    p: EngineParameters, speed_radps: float, running: float, throttle: float, driveline_open: bool
+) -> EngineDrive:
+    """Return the torque of one step.
+
+    Below `stall_radps` a running engine dies; then its compression adds to its friction. A dead engine is cranked by
+    the starter as long as the driveline is open (clutch pressed, or no gear engaged), and burns again from
+    `fire_radps`, also when the wheels turn it: there is no ignition key.
+    """
+    friction = engine_friction(p, speed_radps)
+    if speed_radps < (p.stall_radps if running != 0.0 else p.fire_radps):
+        return EngineDrive(p.starter_nm if driveline_open else 0.0, friction + p.hold_nm, 0.0)
+    burned = throttle * (full_torque(p, speed_radps) + friction)
+    idle = clip(friction + p.idle_gain_nms * (p.idle_radps - speed_radps), 0.0, p.idle_max_nm)
+    return EngineDrive(burned if burned > idle else idle, friction, 1.0)

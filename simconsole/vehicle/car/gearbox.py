@@ -1,0 +1,166 @@
+"""Clutch and gears: what the person's lever and pedal do, and the automatic that works both by itself.
+
+Rules of the lever: a gear goes in only with the clutch open or with matching speeds, and only if the engine would turn
+neither beyond its limit nor backwards; otherwise the gearbox stays in neutral until it may. After automatic driving the
+engaged gear and the automatic clutch stay until the person takes them back: by pressing the clutch, or by putting the
+lever where the gearbox is while the clutch is closed.
+"""
+
+from typing import NamedTuple
+
+from simconsole.kernels import approach, clip, kernel
+from simconsole.vehicle.car.parameters import GearParameters
+
+BACKWARDS_RADPS = -40.0
+"""How fast a gear may turn the engine's side backwards when it goes in: rolling at a slow walking pace."""
+
+ROLLING_MPS = 1.0
+"""Above this speed the automatic does not engage a gear of the other direction (a slow walking pace)."""
+
+
+class Gearbox(NamedTuple):
+    """Clutch and gears after one step."""
+
+    gear: float
+    clutch: float
+    lever_adopted: float
+    wanted_gear: float
+    shift_left_s: float
+    since_shift_s: float
+
+
+@kernel
+def gear_ratio(p: GearParameters, gear: float) -> float:
+    """Return engine speed per wheel speed, 0 in neutral and for a gear that this car has not."""
+    if gear == 0.0:
+        return 0.0
+    if gear < 0.0:
+        return p.ratio_reverse
+    if gear < 3.5:
+        return p.ratio_1 if gear < 1.5 else (p.ratio_2 if gear < 2.5 else p.ratio_3)
+    if gear < 5.5:
+        return p.ratio_4 if gear < 4.5 else p.ratio_5
+    return p.ratio_6 if gear < 6.5 else p.ratio_7
+
+
+@kernel
+def bite(p: GearParameters, clutch: float) -> float:
+    """Return the share of its torque that the clutch can transmit at a pedal position."""
+    share = clip((p.bite_open - clutch) / (p.bite_open - p.bite_closed), 0.0, 1.0)
+    return share * share
+
+
+@kernel
+def by_lever(
+    p: GearParameters, box: Gearbox, lever: float, pedal: float, engine_radps: float, wheel_radps: float
+) -> Gearbox:
+    """Return the gearbox under the person's lever and clutch pedal."""
+    if lever == box.gear:
+        return Gearbox(lever, pedal, 1.0, lever, 0.0, box.since_shift_s)
+    ratio = gear_ratio(p, lever)
+    speed = ratio * wheel_radps
+    free = pedal >= p.bite_open or abs(speed - engine_radps) < p.synchro_radps
+    fits = BACKWARDS_RADPS < speed < p.limit_radps
+    gear = lever if lever == 0.0 or (ratio != 0.0 and free and fits) else 0.0
+    return Gearbox(gear, pedal, 1.0, gear, 0.0, 0.0)
+
+
+@kernel
+def gear_for(p: GearParameters, box: Gearbox, direction: float, throttle: float, vx_mps: float) -> float:
+    """Return the gear that the automatic wants: up and down by engine speed, wider apart than one step of the gears."""
+    if direction == 0.0:
+        return 0.0
+    if direction < 0.0:
+        return -1.0 if vx_mps < ROLLING_MPS else 0.0
+    if vx_mps < -ROLLING_MPS:
+        return 0.0
+    wheel = vx_mps / p.wheel_radius_m
+    up = p.up_radps + p.up_per_throttle_radps * throttle
+    if box.gear < 1.0:
+        gear = 1.0
+        while gear < p.gears and gear_ratio(p, gear) * wheel > up:
+            gear += 1.0
+        return gear
+    if vx_mps < ROLLING_MPS:
+        return 1.0
+    if box.since_shift_s < p.shift_pause_s:
+        return box.gear
+    speed = gear_ratio(p, box.gear) * wheel
+    if speed > up and box.gear < p.gears:
+        return box.gear + 1.0
+    if speed < p.down_radps + p.down_per_throttle_radps * throttle and box.gear > 1.0:
+        return box.gear - 1.0
+    return box.gear
+
+
+@kernel
+def automatic_clutch(p: GearParameters, box: Gearbox, engine_radps: float, wheel_radps: float, step_s: float) -> float:
+    """Return the pedal position of the automatic clutch.
+
+    It bites with engine speed like a centrifugal clutch (so that a launch holds the engine where clutch and engine
+    torque are equal) and closes with gearbox speed; below both it is open, so it can never stall the engine.
+    """
+    closed = 0.0
+    if box.shift_left_s <= 0.0 and box.gear != 0.0:
+        launch = (engine_radps - p.launch_from_radps) / (p.launch_to_radps - p.launch_from_radps)
+        speed = gear_ratio(p, box.gear) * wheel_radps
+        lock = (speed - p.lock_from_radps) / (p.lock_to_radps - p.lock_from_radps)
+        closed = clip(launch if launch > lock else lock, 0.0, 1.0)
+    target = p.bite_open - closed * (p.bite_open - p.bite_closed)
+    rate = p.clutch_opening_per_s if target > box.clutch else p.clutch_closing_per_s
+    return approach(box.clutch, target, rate * step_s)
+
+
+@kernel
+def by_itself(
+    p: GearParameters, box: Gearbox, wanted: float, engine_radps: float, wheel_radps: float, step_s: float
+) -> Gearbox:
+    """Return the gearbox under the automatic: a shift opens the clutch, changes the gear half-way and closes again."""
+    gear = box.gear
+    left = box.shift_left_s
+    target = box.wanted_gear
+    since = clip(box.since_shift_s + step_s, 0.0, 10.0)
+    if left > 0.0:
+        left -= step_s
+        if left < 0.5 * p.shift_s:
+            gear = target
+        if left <= 0.0:
+            left = 0.0
+            since = 0.0
+    elif wanted != gear:
+        target = wanted
+        left = p.shift_s
+    shifted = Gearbox(gear, box.clutch, 0.0, target, left, since)
+    clutch = automatic_clutch(p, shifted, engine_radps, wheel_radps, step_s)
+    return Gearbox(gear, clutch, 0.0, target, left, since)
+
+
+@kernel
+def work_gearbox(
+    p: GearParameters,
+    box: Gearbox,
+    automatic: float,
+    lever: float,
+    pedal: float,
+    throttle: float,
+    engine_radps: float,
+    wheel_radps: float,
+    vx_mps: float,
+    step_s: float,
+) -> Gearbox:
+    """Advance clutch and gears by one step: automatic, person, or the wait in between."""
+    if automatic != 0.0:
+        wanted = gear_for(p, box, lever, throttle, vx_mps)
+        return by_itself(p, box, wanted, engine_radps, wheel_radps, step_s)
+    closed = box.gear == 0.0 or (box.clutch <= p.bite_closed and box.shift_left_s <= 0.0)
+    if box.lever_adopted != 0.0 or pedal >= p.bite_open or (lever == box.gear and closed):
+        return by_lever(p, box, lever, pedal, engine_radps, wheel_radps)
+    kept = by_itself(p, box, box.gear, engine_radps, wheel_radps, step_s)
+    return Gearbox(
+        kept.gear,
+        pedal if pedal > kept.clutch else kept.clutch,
+        0.0,
+        kept.wanted_gear,
+        kept.shift_left_s,
+        kept.since_shift_s,
+    )

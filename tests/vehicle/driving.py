@@ -1,0 +1,69 @@
+"""A short way to drive a vehicle in tests: a person or an automatic at the command, no pipeline around it."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from simconsole.compiling import compiled
+from simconsole.kernels import Row, put
+from simconsole.profile_files import load
+from simconsole.profiles.vehicle import VehicleProfile
+from simconsole.rows import COMMAND_AT, PLATFORM_AT, VEHICLE_AT
+from simconsole.signals import VehicleCommand, VehicleState
+from simconsole.vehicle.platform import Ground, Platform, Pose
+from simconsole.vehicle.registry import build
+
+IDLE = VehicleCommand(*(0.0,) * len(VehicleCommand._fields))
+LEVEL = Ground(friction=1.0, slope_x=0.0, slope_y=0.0)
+ORIGIN = Pose(0.0, 0.0, 0.0)
+TICK_S = 0.004
+SUBSTEPS = 4
+
+
+def platform(name: str = "hatchback", ground: Ground = LEVEL, pose: Pose = ORIGIN) -> Platform:
+    profile: Any = load("vehicles", name, VehicleProfile)  # type: ignore[arg-type]  # a union
+    return build(profile, pose, ground)
+
+
+class Drive:
+    """One vehicle under command, 250 ticks a second."""
+
+    def __init__(self, vehicle: Platform, execution: Callable[..., Any] = compiled) -> None:
+        self.vehicle = vehicle
+        self.step = execution(vehicle.step)
+        self.row: Row = np.zeros(PLATFORM_AT + len(vehicle.initial_state))
+        put(self.row, VEHICLE_AT, vehicle.initial_vehicle)
+        put(self.row, PLATFORM_AT, vehicle.initial_state)
+        self.time_s = 0.0
+
+    @property
+    def seen(self) -> VehicleState:
+        return VehicleState(*self.row[VEHICLE_AT:PLATFORM_AT].tolist())
+
+    @property
+    def state(self) -> Any:
+        return self.vehicle.state(*self.row[PLATFORM_AT:].tolist())
+
+    def tick(self, command: VehicleCommand) -> None:
+        row = self.row.copy()
+        put(row, COMMAND_AT, command)
+        self.step(self.row, row, self.vehicle.parameters, SUBSTEPS)
+        self.row = row
+        self.time_s += TICK_S
+
+    def hold(self, seconds: float, **command: float) -> VehicleState:
+        """Hold one command."""
+        wanted = IDLE._replace(**command)
+        for _ in range(round(seconds / TICK_S)):
+            self.tick(wanted)
+        return self.seen
+
+    def until(self, done: Callable[[VehicleState], bool], limit_s: float, **command: float) -> VehicleState:
+        """Hold one command until `done`; fail after `limit_s`."""
+        wanted = IDLE._replace(**command)
+        for _ in range(round(limit_s / TICK_S)):
+            self.tick(wanted)
+            if done(self.seen):
+                return self.seen
+        raise AssertionError(f"not reached in {limit_s} s: {self.seen}")
