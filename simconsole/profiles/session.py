@@ -6,6 +6,7 @@ from msgspec import Meta, Struct
 
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.control import ControlProfile
+from simconsole.profiles.person import PersonPlan
 
 Name = Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$")]
 """A bare profile name: no path, so that one profile can never reach outside the profile folder."""
@@ -44,6 +45,8 @@ class Features(Section):
     """What the console does beside driving: who may command, and how it supervises them."""
 
     control: ControlProfile = ControlProfile()
+    autopilot: Name | None = None
+    """Start `simconsole autopilot` on this course, as a program of its own that only speaks rosbridge."""
 
 
 class Outputs(Section):
@@ -60,7 +63,8 @@ class Devices(Section):
 
     cockpit: Name = "t500rs_th8rs"
     driver: Annotated[str, Meta(pattern=r"^(none|sdl|keyboard|virtual|(trace|script):.+)$")] = "sdl"
-    script: Name | None = None
+    person: PersonPlan | None = None
+    """What the simulated person does where `driver` is virtual."""
 
 
 class ModeSection(Section):
