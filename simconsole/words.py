@@ -43,7 +43,7 @@ _REASONS: Final[dict[float, str]] = {
     Reason.REFUSED_NOT_ARMED: "refused: controls not ready",
     Reason.REFUSED_EMERGENCY: "refused: emergency stop is latched",
     Reason.REFUSED_DEVIATION: "refused: autopilot commands differ too much",
-    Reason.REFUSED_SAFE_STOP: "refused: safe stop is running",
+    Reason.REFUSED_MODE: "refused: not from this mode",
     Reason.REFUSED_THROTTLE_PRESSED: "refused: throttle is pressed",
     Reason.REFUSED_MOVING: "refused: car is moving",
     Reason.REFUSED_NOT_STABLE: "refused: autopilot not steady yet",

@@ -1,0 +1,138 @@
+"""The cluster in a window, in a process of its own: reads the newest snapshot, draws, reports the keys held.
+
+Everything outside comes in as three callables (`Ports`), so the loop runs the same on shared memory and in a test.
+"""
+
+import time
+from collections.abc import Callable
+from typing import Final, NamedTuple
+
+import pygame
+
+from simconsole.errors import StationError
+from simconsole.hud.draw import DrawItem
+from simconsole.hud.layout import check_screen, layout
+from simconsole.hud.raster import Painter
+from simconsole.hud.screen import Screen, screen_of
+from simconsole.hud.view import HudMemory, HudSettings, HudView, view
+from simconsole.keys import Key
+from simconsole.profiles.view import HudProfile
+from simconsole.rows import Snapshot
+
+KEYS: Final[dict[int, Key]] = {
+    pygame.K_LEFT: Key.STEER_LEFT,
+    pygame.K_a: Key.STEER_LEFT,
+    pygame.K_RIGHT: Key.STEER_RIGHT,
+    pygame.K_d: Key.STEER_RIGHT,
+    pygame.K_UP: Key.THROTTLE,
+    pygame.K_w: Key.THROTTLE,
+    pygame.K_DOWN: Key.BRAKE,
+    pygame.K_s: Key.BRAKE,
+    pygame.K_LSHIFT: Key.CLUTCH,
+    pygame.K_SPACE: Key.HANDBRAKE,
+    pygame.K_e: Key.GEAR_UP,
+    pygame.K_q: Key.GEAR_DOWN,
+    pygame.K_RETURN: Key.AUTONOMOUS,
+    pygame.K_BACKSPACE: Key.MANUAL,
+    pygame.K_ESCAPE: Key.EMERGENCY_STOP,
+    pygame.K_r: Key.RESET,
+    pygame.K_COMMA: Key.INDICATOR_LEFT,
+    pygame.K_PERIOD: Key.INDICATOR_RIGHT,
+    pygame.K_m: Key.MARK,
+}
+
+
+class Ports(NamedTuple):
+    """What the window needs of the world outside."""
+
+    latest: Callable[[], Snapshot | None]  # the newest tick, None before the first
+    report_keys: Callable[[int], None]  # takes a `Key` mask at every frame: its silence means the keyboard is gone
+    stop: Callable[[], bool]  # True ends the window
+
+
+class Freshness:
+    """Says how long ago the tick last changed, by the display's own clock: a frozen ring is stale data."""
+
+    def __init__(self) -> None:
+        self._tick = -1
+        self._changed_s = 0.0
+
+    def age_s(self, tick: int, now_s: float) -> float:
+        """Return the age of `tick` in s, seen at `now_s` of any steady clock."""
+        if tick != self._tick:
+            self._tick, self._changed_s = tick, now_s
+        return now_s - self._changed_s
+
+
+class Window:
+    """One window with one cluster."""
+
+    def __init__(self, profile: HudProfile, settings: HudSettings) -> None:
+        """Open the window.
+
+        Raises:
+            ProfileError: the screen is too small or too far away to be read.
+            StationError: no window can be opened here.
+        """
+        self._screen: Screen = screen_of(profile)
+        check_screen(self._screen, "hud")
+        self._settings = settings
+        self._memory = HudMemory()
+        self._freshness = Freshness()
+        self._painter = Painter()
+        self._drawn: list[DrawItem] = []
+        flags = pygame.FULLSCREEN | pygame.SCALED if profile.fullscreen else 0
+        try:
+            pygame.display.init()
+            self._surface = pygame.display.set_mode((self._screen.width_px, self._screen.height_px), flags)
+        except pygame.error as problem:
+            raise StationError(f"hud: no window can be opened: {problem}") from None
+        pygame.display.set_caption("simconsole")
+        if profile.fullscreen:
+            pygame.mouse.set_visible(False)
+
+    def frame(self, snapshot: Snapshot | None, now_s: float) -> None:
+        """Draw one frame; a picture equal to the last one costs nothing."""
+        items = layout(self._content(snapshot, now_s), self._screen)
+        if items == self._drawn:
+            return
+        self._painter.paint(self._surface, items)
+        pygame.display.flip()
+        self._drawn = items
+
+    def _content(self, snapshot: Snapshot | None, now_s: float) -> HudView:
+        if snapshot is None:
+            return HudView(stale=True)
+        age_s = self._freshness.age_s(snapshot.tick, now_s)
+        shown, self._memory = view(snapshot, age_s, self._memory, self._settings)
+        return shown
+
+    def close(self) -> None:
+        """Close the window."""
+        pygame.display.quit()
+
+
+def held_keys() -> int:
+    """Return the mask of all keys held now; call after the events were pumped."""
+    pressed = pygame.key.get_pressed()
+    mask = 0
+    for code, key in KEYS.items():
+        if pressed[code]:
+            mask |= key
+    return mask
+
+
+def run(ports: Ports, profile: HudProfile, settings: HudSettings) -> None:
+    """Show the cluster until `ports.stop` says so or the window is closed."""
+    window = Window(profile, settings)
+    clock = pygame.time.Clock()
+    try:
+        while not ports.stop():
+            if any(event.type == pygame.QUIT for event in pygame.event.get()):
+                break
+            ports.report_keys(held_keys())
+            window.frame(ports.latest(), time.monotonic())
+            clock.tick(profile.rate_hz)
+    finally:
+        ports.report_keys(0)
+        window.close()

@@ -1,0 +1,159 @@
+"""The world and the car as shapes for the operators: triangles, lines and boxes in `map`. Pure arrays, no rerun."""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simconsole.signals import Mode
+from simconsole.world.drawing import Drawing
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.uint32]
+Colour = tuple[int, int, int]
+
+ASPHALT: Final[Colour] = (52, 56, 62)
+GREEN: Final[Colour] = (58, 92, 62)
+PAINT: Final[Colour] = (226, 228, 230)
+THEORETICAL: Final[Colour] = (120, 140, 165)
+BODY: Final[Colour] = (214, 126, 44)
+GLASS: Final[Colour] = (60, 70, 84)
+LAMPS: Final[tuple[Colour, ...]] = ((150, 40, 40), (150, 110, 30), (40, 130, 70))
+
+MODE_COLOURS: Final[dict[float, Colour]] = {
+    Mode.PARKED: (128, 138, 150),
+    Mode.MANUAL: (226, 232, 238),
+    Mode.SHARED: (150, 222, 176),
+    Mode.AUTONOMOUS: (54, 217, 123),
+    Mode.TAKEOVER_REQUESTED: (255, 176, 32),
+    Mode.MINIMAL_RISK: (255, 110, 60),
+    Mode.STOPPED: (98, 108, 120),
+    Mode.EMERGENCY_STOP: (235, 45, 60),
+}
+"""The driven path's colour says who drove; the mode lane names it in words."""
+
+DASH_M: Final = 3.0
+GAP_M: Final = 4.0
+LIFT_M: Final = 0.02
+"""Height between two layers of paint, so that the nearer one is seen."""
+POST_M: Final = 3.4
+HEAD_M: Final = 0.9
+
+
+class Mesh(NamedTuple):
+    """Triangles: vertices [N, 3] in m and their indices [M, 3]."""
+
+    vertices: Array
+    triangles: Indices
+
+
+class Solid(NamedTuple):
+    """A box along the axes of its own frame, in m."""
+
+    centre: tuple[float, float, float]
+    half_size: tuple[float, float, float]
+    colour: Colour
+
+
+class Dimensions(NamedTuple):
+    """A vehicle's outer size in m; base_link is `rear_overhang_m` from its rear end."""
+
+    length_m: float
+    width_m: float
+    height_m: float
+    rear_overhang_m: float
+
+
+class WorldShapes(NamedTuple):
+    """What stands still: everything to draw of a course."""
+
+    surfaces: Mesh
+    islands: Mesh
+    paint: Mesh
+    edges: tuple[Array, ...]
+    centre_dashes: tuple[Array, ...]
+    light_posts: Array
+    light_lamps: Array
+    path: Array
+
+
+def world_shapes(drawing: Drawing) -> WorldShapes:
+    """Return the shapes of a course; lines come as [N, 3]."""
+    posts, lamps = _lights(np.array([(light.x_m, light.y_m, light.yaw_rad) for light in drawing.lights]).reshape(-1, 3))
+    return WorldShapes(
+        surfaces=mesh(drawing.surfaces, 0.0),
+        islands=mesh(drawing.islands, LIFT_M),
+        paint=mesh((*drawing.zebras, *drawing.stop_lines), 2.0 * LIFT_M),
+        edges=tuple(lifted(line, 2.0 * LIFT_M) for line in drawing.edges),
+        centre_dashes=tuple(lifted(dash, 2.0 * LIFT_M) for line in drawing.centre_lines for dash in dashes(line)),
+        light_posts=posts,
+        light_lamps=lamps,
+        path=lifted(drawing.path, 3.0 * LIFT_M),
+    )
+
+
+def lifted(line: Array, z_m: float) -> Array:
+    """Return [N, 2] as [N, 3] at one height."""
+    return np.column_stack((line, np.full(len(line), z_m)))
+
+
+def raised(points: Array, height_m: float) -> Array:
+    """Return points [N, 3] a little higher."""
+    return np.asarray(points + np.array((0.0, 0.0, height_m)))
+
+
+def on_map(points: Array) -> Array:
+    """Return points [N, 2 or 3] for a picture whose y axis points down: north stays up."""
+    return np.column_stack((points[:, 0], -points[:, 1]))
+
+
+def mesh(polygons: tuple[Array, ...], z_m: float) -> Mesh:
+    """Return the triangles of polygons [N, 2], each a closed outline that its vertices' middle sees whole."""
+    vertices: list[Array] = []
+    triangles: list[Indices] = []
+    count = 0
+    for polygon in polygons:
+        size = len(polygon)
+        vertices.append(lifted(np.vstack((polygon, polygon.mean(axis=0))), z_m))
+        rim = np.arange(size)
+        fan = np.column_stack((rim, (rim + 1) % size, np.full(size, size))) + count
+        triangles.append(fan.astype(np.uint32))
+        count += size + 1
+    if not vertices:
+        return Mesh(np.empty((0, 3)), np.empty((0, 3), np.uint32))
+    return Mesh(np.vstack(vertices), np.vstack(triangles))
+
+
+def dashes(line: Array) -> list[Array]:
+    """Return the dashes of a line [N, 2]: DASH_M painted, GAP_M not."""
+    steps = np.hypot(*np.diff(line, axis=0).T)
+    way = np.concatenate(((0.0,), np.cumsum(steps)))
+    found: list[Array] = []
+    start = 0.0
+    while start + 0.5 * DASH_M < way[-1]:
+        at = np.array((start, start + 0.5 * DASH_M, min(start + DASH_M, float(way[-1]))))
+        found.append(np.column_stack((np.interp(at, way, line[:, 0]), np.interp(at, way, line[:, 1]))))
+        start += DASH_M + GAP_M
+    return found
+
+
+def _lights(lights: Array) -> tuple[Array, Array]:
+    """Return post feet [N, 3] and lamps [N, 3, 3] (red, amber, green) of traffic lights [N, (x, y, yaw)]."""
+    posts = np.column_stack((lights[:, :2], np.zeros(len(lights))))
+    # A light faces the traffic: its lamps sit on the side from which that traffic comes.
+    face = posts - 0.22 * np.column_stack((np.cos(lights[:, 2]), np.sin(lights[:, 2]), np.zeros(len(lights))))
+    heights = (POST_M + 0.3, POST_M, POST_M - 0.3)
+    lamps = np.stack([raised(face, height) for height in heights], axis=1)
+    return posts, lamps
+
+
+def car_solids(size: Dimensions) -> tuple[Solid, ...]:
+    """Return the car's body and cabin in the frame of base_link."""
+    middle = 0.5 * size.length_m - size.rear_overhang_m
+    width = 0.5 * size.width_m
+    low = 0.6 * size.height_m
+    clearance = 0.08 * size.height_m
+    body = Solid((middle, 0.0, 0.5 * (low + clearance)), (0.5 * size.length_m, width, 0.5 * (low - clearance)), BODY)
+    high = 0.5 * (size.height_m - low)
+    at = (middle - 0.06 * size.length_m, 0.0, low + high)
+    return body, Solid(at, (0.27 * size.length_m, 0.9 * width, high), GLASS)

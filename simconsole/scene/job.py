@@ -1,0 +1,91 @@
+"""What a scene process is given, as one .npz file: the drive's rows (or none, for a live one), the course, the car."""
+
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+import msgspec
+import numpy as np
+
+from simconsole.errors import StationError
+from simconsole.profiles.view import SceneProfile
+from simconsole.scene.entities import Array, Dimensions
+from simconsole.scene.timeline import NEEDED, Ticks
+from simconsole.world.drawing import Drawing
+from simconsole.world.sheet import Light
+
+_LINES: Final = ("surfaces", "islands", "edges", "centre_lines", "zebras", "stop_lines")
+
+
+class Job(NamedTuple):
+    """A drive to show. A live job has no rows: they come through the ring."""
+
+    rows: Array  # [N, columns]
+    ticks: Ticks  # [N]
+    columns: tuple[str, ...]
+    tick_hz: int
+    dimensions: Dimensions
+    drawing: Drawing | None
+    profile: SceneProfile
+
+
+def save_job(path: Path, job: Job) -> None:
+    """Write a job; of its rows only the columns that the scene reads.
+
+    Raises:
+        StationError: the file cannot be written.
+    """
+    columns = tuple(name for name in job.columns if name in NEEDED)
+    rows = job.rows[:, [job.columns.index(name) for name in columns]]
+    content: dict[str, Any] = {
+        "rows": rows,
+        "ticks": job.ticks,
+        "columns": np.array(columns),
+        "tick_hz": job.tick_hz,
+        "dimensions": np.array(job.dimensions),
+        "profile": np.frombuffer(msgspec.json.encode(job.profile), dtype=np.uint8),
+    }
+    if job.drawing is not None:
+        content |= _packed(job.drawing)
+    try:
+        with path.open("wb") as file:
+            np.savez(file, **content)
+    except OSError as problem:
+        raise StationError(f"{path}: cannot be written: {problem.strerror}") from None
+
+
+def load_job(path: Path) -> Job:
+    """Read a job.
+
+    Raises:
+        StationError: missing, or not a scene job.
+    """
+    try:
+        with np.load(path, allow_pickle=False) as content:
+            return Job(
+                content["rows"],
+                content["ticks"],
+                tuple(content["columns"].tolist()),
+                int(content["tick_hz"]),
+                Dimensions(*content["dimensions"].tolist()),
+                _unpacked(content) if "path" in content else None,
+                msgspec.json.decode(content["profile"].tobytes(), type=SceneProfile),
+            )
+    except OSError as problem:
+        raise StationError(f"{path}: cannot be read: {problem.strerror or problem}") from None
+    except (ValueError, KeyError, TypeError, EOFError) as problem:
+        raise StationError(f"{path}: is not a scene job: {problem}") from None
+
+
+def _packed(drawing: Drawing) -> dict[str, Any]:
+    content: dict[str, Any] = {"path": drawing.path, "lights": np.array(drawing.lights).reshape(-1, 3)}
+    for name in _LINES:
+        lines = getattr(drawing, name)
+        content[name] = np.vstack(lines) if lines else np.empty((0, 2))
+        content[f"{name}_ends"] = np.cumsum([len(line) for line in lines], dtype=np.int64)
+    return content
+
+
+def _unpacked(content: Any) -> Drawing:
+    lines = {name: tuple(np.split(content[name], content[f"{name}_ends"])[:-1]) for name in _LINES}
+    lights = tuple(Light(*light) for light in content["lights"].tolist())
+    return Drawing(**lines, lights=lights, path=content["path"])

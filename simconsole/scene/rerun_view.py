@@ -1,0 +1,202 @@
+"""The scene in rerun: the only place that calls it, and only ever in a process of its own.
+
+rerun's log() may block for good (facts/visuals 1), so nothing here may run beside the tick loop.
+"""
+
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+import rerun as rr
+
+from simconsole.errors import StationError
+from simconsole.profiles.view import SceneProfile
+from simconsole.scene.blueprint import MAP, TIMELINE, blueprint
+from simconsole.scene.entities import (
+    ASPHALT,
+    GREEN,
+    HEAD_M,
+    LAMPS,
+    MODE_COLOURS,
+    PAINT,
+    POST_M,
+    THEORETICAL,
+    Array,
+    Dimensions,
+    Mesh,
+    WorldShapes,
+    car_solids,
+    on_map,
+    raised,
+)
+from simconsole.scene.timeline import PLOTS, Entry, Lane, Piece, Strip, Ticks
+from simconsole.words import mode_words
+
+APPLICATION: Final = "simconsole"
+DRIVEN_PX: Final = 2.0
+
+
+class RerunView:
+    """One recording being written."""
+
+    def __init__(self, path: Path, profile: SceneProfile, dimensions: Dimensions, world: WorldShapes | None) -> None:
+        """Open the file and write what stands still.
+
+        Raises:
+            StationError: the file cannot be written.
+        """
+        self._flush_s = profile.flush_s
+        self._length_m = dimensions.length_m
+        self._stream = rr.RecordingStream(APPLICATION, recording_id=path.stem, send_properties=True)
+        rr.set_strict_mode(True)
+        try:
+            self._stream.save(path, default_blueprint=blueprint(profile, None if world is None else world.path))
+        except (OSError, RuntimeError) as problem:
+            raise StationError(f"{path}: the scene cannot be written: {problem}") from None
+        self._still("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
+        self._car(dimensions)
+        for plot in PLOTS:
+            names = [line.name for line in plot.series]
+            self._still(plot.path, rr.SeriesLines(names=names, colors=[line.colour for line in plot.series]))
+        modes = {mode_words(mode): colour for mode, colour in MODE_COLOURS.items()}
+        self._still("lanes/mode", rr.StateConfiguration(values=list(modes), colors=list(modes.values())))
+        if world is not None:
+            self._world(world)
+
+    def add(self, piece: Piece) -> None:
+        """Write what a piece of the drive adds, one call per entity."""
+        if len(piece.ticks):
+            self._poses(piece)
+            self._plots(piece)
+        for lane in piece.lanes:
+            self._lane(lane)
+        self._driven(piece.strips)
+        self._entries(piece.entries)
+
+    def close(self) -> None:
+        """Write what is still queued, but never wait longer than the profile says.
+
+        Raises:
+            StationError: the queue could not be written in time; the file holds what came before.
+        """
+        try:
+            self._stream.flush(timeout_sec=self._flush_s)
+        except (RuntimeError, TimeoutError, ValueError) as problem:
+            raise StationError(f"the scene was not written whole within {self._flush_s:g} s: {problem}") from None
+        self._stream.disconnect()
+
+    def _still(self, path: str, *shapes: Any) -> None:
+        self._stream.log(path, *shapes, static=True)
+
+    def _car(self, dimensions: Dimensions) -> None:
+        solids = car_solids(dimensions)
+        self._still(
+            "world/ego/body",
+            rr.Boxes3D(
+                centers=[solid.centre for solid in solids],
+                half_sizes=[solid.half_size for solid in solids],
+                colors=[solid.colour for solid in solids],
+                fill_mode="solid",
+            ),
+        )
+
+    def _world(self, world: WorldShapes) -> None:
+        for name, mesh, colour in (
+            ("surface", world.surfaces, ASPHALT),
+            ("island", world.islands, GREEN),
+            ("paint", world.paint, PAINT),
+        ):
+            self._mesh(f"world/road/{name}", mesh, colour)
+        self._lines("road/edges", world.edges, PAINT, 0.07, 1.0)
+        self._still("world/road/centre", _strips3d(world.centre_dashes, PAINT, 0.07))
+        self._lines("path/theoretical", (world.path,), THEORETICAL, 0.12, 4.0)
+        self._lights(world)
+
+    def _mesh(self, path: str, mesh: Mesh, colour: tuple[int, int, int]) -> None:
+        if len(mesh.triangles):
+            up = np.tile((0.0, 0.0, 1.0), (len(mesh.vertices), 1))
+            shape = rr.Mesh3D(
+                vertex_positions=mesh.vertices,
+                triangle_indices=mesh.triangles,
+                vertex_normals=up,
+                albedo_factor=colour,
+                face_rendering="DoubleSided",
+            )
+            self._still(path, shape)
+
+    def _lines(
+        self, name: str, lines: tuple[Array, ...], colour: tuple[int, int, int], radius_m: float, radius_px: float
+    ) -> None:
+        """Write lines to both views: metres wide in the world, pixels wide on the map."""
+        self._still(f"world/{name}", _strips3d(lines, colour, radius_m))
+        flat = [on_map(line) for line in lines]
+        self._still(f"{MAP}/{name}", rr.LineStrips2D(flat, colors=[colour], radii=rr.Radius.ui_points(radius_px)))
+
+    def _lights(self, world: WorldShapes) -> None:
+        if not len(world.light_posts):
+            return
+        posts = raised(world.light_posts, 0.5 * POST_M)
+        heads = raised(world.light_posts, POST_M)
+        count = len(posts)
+        self._still(
+            "world/lights/posts",
+            rr.Boxes3D(
+                centers=np.vstack((posts, heads)),
+                half_sizes=[(0.06, 0.06, 0.5 * POST_M)] * count + [(0.17, 0.17, 0.5 * HEAD_M + 0.05)] * count,
+                colors=[(70, 76, 84)],
+                fill_mode="solid",
+            ),
+        )
+        lamps = world.light_lamps.reshape(-1, 3)
+        self._still("world/lights/lamps", rr.Points3D(lamps, colors=list(LAMPS) * count, radii=[0.11]))
+        spots = on_map(world.light_posts)
+        self._still(f"{MAP}/lights", rr.Points2D(spots, colors=[(255, 176, 32)], radii=rr.Radius.ui_points(3.5)))
+
+    def _send(self, path: str, times_ns: Ticks | list[int], columns: Any) -> None:
+        duration = np.asarray(times_ns, dtype=np.int64).astype("timedelta64[ns]")
+        self._stream.send_columns(path, [rr.TimeColumn(TIMELINE, duration=duration)], columns)
+
+    def _poses(self, piece: Piece) -> None:
+        pose = rr.Transform3D.columns(translation=piece.positions, quaternion=piece.quaternions)
+        self._send("world/ego", piece.times_ns, pose)
+        count = len(piece.ticks)
+        origins = np.tile((0.62 * self._length_m, 0.0, 0.35), (count, 1))
+        arrow = rr.Arrows3D.columns(
+            vectors=2.0 * piece.wheel_arrows, origins=origins, colors=[PAINT] * count, radii=[0.06] * count
+        )
+        self._send("world/ego/front_wheels", piece.times_ns, arrow)
+        spot = rr.Points2D.columns(
+            positions=on_map(piece.positions), colors=[(255, 176, 32)] * count, radii=[-7.0] * count
+        )
+        self._send(f"{MAP}/ego", piece.times_ns, spot)
+
+    def _plots(self, piece: Piece) -> None:
+        for path, values in piece.plots.items():
+            lengths = [values.shape[1]] * values.shape[0]
+            columns = rr.Scalars.columns(scalars=values.reshape(-1)).partition(lengths)
+            self._send(path, piece.times_ns, columns)
+
+    def _lane(self, lane: Lane) -> None:
+        if lane.times_ns:
+            self._send(lane.path, lane.times_ns, rr.StateChange.columns(state=lane.states))
+
+    def _driven(self, strips: tuple[Strip, ...]) -> None:
+        if not strips:
+            return
+        times_ns = [strip.t_ns for strip in strips]
+        colours = [MODE_COLOURS.get(strip.mode, PAINT) for strip in strips]
+        above = [raised(strip.points, 0.1) for strip in strips]
+        radii = [0.09] * len(strips)
+        self._send("world/path/driven", times_ns, rr.LineStrips3D.columns(strips=above, colors=colours, radii=radii))
+        flat = [on_map(strip.points) for strip in strips]
+        radii = [-DRIVEN_PX] * len(strips)  # negative: pixels
+        self._send(f"{MAP}/path/driven", times_ns, rr.LineStrips2D.columns(strips=flat, colors=colours, radii=radii))
+
+    def _entries(self, entries: tuple[Entry, ...]) -> None:
+        if entries:
+            lines = rr.TextLog.columns(text=[entry.text for entry in entries], level=[entry.level for entry in entries])
+            self._send("log", [entry.t_ns for entry in entries], lines)
+
+
+def _strips3d(lines: tuple[Array, ...], colour: tuple[int, int, int], radius_m: float) -> Any:
+    return rr.LineStrips3D(lines, colors=[colour], radii=[radius_m])
