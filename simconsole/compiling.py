@@ -1,20 +1,31 @@
 """Compile kernels with numba: the fast twin of the plain functions.
 
-Each kernel is copied with the kernels it calls replaced by their compiled twins. The cache folder carries the hash
-of all of simconsole's sources, because numba does not notice an edited callee in another file.
+Each kernel is copied with the kernels it calls replaced by their compiled twins. numba's own cache does not notice an
+edited callee or constant in another file, so each twin is cached in a folder named by the digest of everything that
+its machine code depends on: its code, its constants, and the same of every kernel it calls.
 """
 
+import dis
 import hashlib
 import os
+import shutil
+import sys
+import time
 import types
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache
+from importlib import import_module
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Final, TypeVar
+
+import numpy as np
 
 from simconsole.kernels import is_kernel, take
 
 F = TypeVar("F", bound=Callable[..., Any])
+
+KEEP_UNUSED_S: Final = 30 * 24 * 3600.0
+"""Compiled code that nobody has loaded for a month is removed when something new is compiled."""
 
 
 def plain(function: F) -> F:
@@ -23,52 +34,154 @@ def plain(function: F) -> F:
 
 
 def compiled(function: F) -> F:
-    """Return the compiled twin of a kernel. Compiles at its first call, or loads from the user's cache."""
-    return _dispatcher(function)  # type: ignore[no-any-return]
+    """Return the compiled twin of a kernel. Compiles at its first call, or loads from the user's cache.
+
+    Raises:
+        TypeError: `function` is not a kernel, or uses something that the digest cannot see through.
+    """
+    return _entry(function)  # type: ignore[no-any-return]
 
 
 def cache_folder() -> Path:
-    """Return the numba cache folder of exactly these sources (`XDG_CACHE_HOME` is honoured)."""
-    digest = hashlib.sha256()
-    package = Path(__file__).parent
-    for source in sorted(package.rglob("*.py")):
-        digest.update(source.relative_to(package).as_posix().encode())
-        digest.update(source.read_bytes())
-    base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    return base / "simconsole" / "numba" / digest.hexdigest()[:16]
+    """Return the folder of all compiled kernels of this user (`XDG_CACHE_HOME` is honoured)."""
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "simconsole" / "numba"
 
 
 @cache
-def _dispatcher(function: Callable[..., Any]) -> Any:
-    if not is_kernel(function):
-        raise TypeError(f"{function.__qualname__} is not a kernel")
+def digest(function: Callable[..., Any]) -> str:
+    """Return 16 hex digits that change with anything that changes what `function` compiles to.
+
+    Raises:
+        TypeError: it uses a global that is neither a kernel nor a constant.
+    """
+    text = hashlib.sha256(f"{function.__module__}.{function.__qualname__}{sys.version}".encode())
+    text.update(Path(__file__).read_bytes())
+    text.update(repr(function.__defaults__).encode())
+    for code in _codes(function.__code__):
+        text.update(code.co_code)
+        text.update(repr([c for c in code.co_consts if not isinstance(c, types.CodeType)]).encode())
+        text.update(repr((code.co_names, code.co_varnames)).encode())
+    for name in _global_names(function):
+        text.update(f"{name}={_stamp(function.__globals__[name], function)};".encode())
+    return text.hexdigest()[:16]
+
+
+def _codes(code: types.CodeType) -> Iterator[types.CodeType]:
+    yield code
+    for constant in code.co_consts:
+        if isinstance(constant, types.CodeType):
+            yield from _codes(constant)
+
+
+def _global_names(function: Callable[..., Any]) -> list[str]:
+    instructions = (step for code in _codes(function.__code__) for step in dis.get_instructions(code))
+    used = {step.argval for step in instructions if step.opname == "LOAD_GLOBAL"}
+    return sorted(used & function.__globals__.keys())
+
+
+def _stamp(value: object, user: Callable[..., Any]) -> str:
+    """Return text that identifies the value of a global, the same in every process."""
+    if value is user or value is take:
+        return "itself"
+    if is_kernel(value):
+        return digest(value)
+    if isinstance(value, bool | int | float | str | None):
+        return repr(value)
+    if isinstance(value, tuple):
+        return f"({','.join(_stamp(item, user) for item in value)})"
+    if isinstance(value, np.ndarray):
+        return f"{value.dtype}{value.shape}{hashlib.sha256(value.tobytes()).hexdigest()}"
+    if isinstance(value, type):
+        return f"{value.__module__}.{value.__qualname__}{getattr(value, '_fields', ())}"
+    if isinstance(value, types.ModuleType | types.BuiltinFunctionType):
+        return value.__name__
+    raise TypeError(f"{user.__qualname__} uses {value!r}, which is neither a kernel nor a constant")
+
+
+@cache
+def _entry(function: Callable[..., Any]) -> Any:
+    """Return the dispatcher that Python calls: cached. The kernels inside it are in its code, not cached again."""
+    twin = _twin(function)
     numba = _numba()
-    namespace = dict(function.__globals__)
-    for name in function.__code__.co_names:
-        value = namespace.get(name)
-        if is_kernel(value) and value is not function:
-            namespace[name] = _dispatcher(value)  # type: ignore[arg-type]
-    twin = types.FunctionType(function.__code__, namespace, function.__name__, function.__defaults__)
-    twin.__module__ = function.__module__
-    twin.__qualname__ = function.__qualname__
+    numba.config.CACHE_DIR = str(_own_folder(digest(function)))
     return numba.njit(cache=True, fastmath=False)(twin)
 
 
 @cache
-def _numba() -> Any:
-    import numba
-    from numba.extending import overload
-    from numba.np.unsafe.ndarray import to_fixed_tuple
+def _inner(function: Callable[..., Any]) -> Any:
+    return _numba().njit(fastmath=False)(_twin(function))
 
-    folder = cache_folder()
+
+def _twin(function: Callable[..., Any]) -> types.FunctionType:
+    """Return a copy of a kernel in which the kernels that it calls are dispatchers."""
+    if not is_kernel(function):
+        raise TypeError(f"{function.__qualname__} is not a kernel")
+    namespace = dict(function.__globals__)
+    for name in _global_names(function):
+        value = namespace[name]
+        if is_kernel(value) and value is not function:
+            namespace[name] = _inner(value)
+    twin = types.FunctionType(function.__code__, namespace, function.__name__, function.__defaults__)
+    twin.__module__ = function.__module__
+    twin.__qualname__ = function.__qualname__
+    return twin
+
+
+def _own_folder(name: str) -> Path:
+    """Return the cache folder of one kernel, marked as used now. Making a new one removes old ones."""
+    base = cache_folder()
+    folder = base / name
+    if folder.is_dir():
+        os.utime(folder)
+        return folder
     folder.mkdir(parents=True, exist_ok=True)
-    numba.config.CACHE_DIR = str(folder)
+    _prune(base)
+    return folder
 
-    @overload(take)
-    def _take(row: Any, start: Any, count: Any) -> Any:
-        def implementation(row: Any, start: Any, count: Any) -> Any:
-            return to_fixed_tuple(row[start : start + count], count)
 
-        return implementation
+@cache
+def _prune(base: Path) -> None:
+    """Remove what has not been used for KEEP_UNUSED_S; once in a process. Another process may do the same."""
+    oldest = time.time() - KEEP_UNUSED_S
+    for folder in base.iterdir():
+        try:
+            if folder.stat().st_mtime < oldest:
+                shutil.rmtree(folder, ignore_errors=True)
+        except FileNotFoundError:
+            continue
 
+
+@cache
+def _numba() -> Any:
+    numba: Any = import_module("numba")
+    _lower_take()
     return numba
+
+
+def _lower_take() -> None:
+    """Teach numba `kernels.take`: plain loads into a tuple, which compile faster than a generic slice."""
+    types: Any = import_module("numba.core.types")
+    cgutils: Any = import_module("numba.core.cgutils")
+    extending: Any = import_module("numba.extending")
+
+    def typing(_context: Any) -> Any:
+        def typer(row: Any, start: Any, count: Any) -> Any:
+            vector = isinstance(row, types.Array) and row.ndim == 1 and row.layout == "C"
+            if vector and isinstance(start, types.Integer) and isinstance(count, types.IntegerLiteral):
+                return types.UniTuple(row.dtype, count.literal_value)
+            return None  # numba then says that no such call is known
+
+        return typer
+
+    def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        row, start, _ = signature.args
+        data = context.make_array(row)(context, builder, arguments[0]).data
+        first = context.cast(builder, arguments[1], start, types.intp)
+        values = []
+        for index in range(signature.return_type.count):
+            at = builder.add(first, context.get_constant(types.intp, index))
+            values.append(context.unpack_value(builder, row.dtype, cgutils.gep(builder, data, at)))
+        return context.make_tuple(builder, signature.return_type, values)
+
+    extending.type_callable(take)(typing)
+    extending.lower_builtin(take, types.Array, types.Integer, types.IntegerLiteral)(lower)

@@ -1,0 +1,102 @@
+"""The twin: what it compiles, what its cache depends on, what it refuses."""
+
+import os
+import subprocess
+import sys
+import types
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from simconsole import compiling
+from simconsole.compiling import compiled, digest, plain
+from simconsole.kernels import Row, kernel, take
+
+SCALE = 2.0
+WIDTH = 3
+TABLE = (1.0, 2.0, 4.0)
+
+
+@kernel
+def scaled(value: float) -> float:
+    return SCALE * value
+
+
+@kernel
+def summed(row: Row, start: int) -> float:
+    a, b, c = take(row, start, WIDTH)
+    return scaled(a) + b * TABLE[1] + c
+
+
+@pytest.fixture(autouse=True)
+def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    for cached in (compiling.digest, compiling._entry, compiling._inner, compiling._prune):
+        cached.cache_clear()
+    return tmp_path / "simconsole" / "numba"
+
+
+def altered(function: types.FunctionType, **replaced: object) -> types.FunctionType:
+    """Return the same function among other globals, as if its sources had been edited."""
+    copy = types.FunctionType(function.__code__, {**function.__globals__, **replaced}, function.__name__)
+    copy.__qualname__ = function.__qualname__
+    copy.__module__ = function.__module__
+    return kernel(copy)
+
+
+def test_twin_gives_what_the_plain_function_gives() -> None:
+    row = np.array([0.5, 1.5, 2.5, 3.5, 4.5])
+    assert plain(summed) is summed
+    for start in (0, 1, 2):
+        assert compiled(summed)(row, start) == summed(row, start)
+
+
+def test_compiled_code_is_cached_for_the_entry_only(own_cache: Path) -> None:
+    compiled(summed)(np.ones(3), 0)
+    assert [folder.name for folder in own_cache.iterdir()] == [digest(summed)]
+    assert list((own_cache / digest(summed)).rglob("*.nbc"))
+
+
+def test_digest_follows_callees_and_constants() -> None:
+    assert isinstance(scaled, types.FunctionType)
+    assert isinstance(summed, types.FunctionType)
+    other_scaled = altered(scaled, SCALE=3.0)
+    before = digest(summed)
+    assert digest(altered(summed, SCALE=3.0)) == before, "a constant it does not use"
+    assert digest(altered(summed, scaled=other_scaled)) != before, "a constant of a kernel that it calls"
+    assert digest(altered(summed, TABLE=(1.0, 2.5, 4.0))) != before
+    assert digest(altered(summed, WIDTH=2)) != before
+
+
+def test_digest_is_the_same_in_another_process() -> None:
+    code = "from simconsole.compiling import digest; from simconsole.trigonometry import sin; print(digest(sin))"
+    from simconsole.trigonometry import sin
+
+    environment = {**os.environ, "PYTHONHASHSEED": "7", "PYTHONPATH": os.pathsep.join(sys.path)}
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment)
+    assert done.stdout.strip() == digest(sin)
+
+
+def test_only_kernels_and_constants_are_accepted() -> None:
+    assert isinstance(summed, types.FunctionType)
+    with pytest.raises(TypeError, match="is not a kernel"):
+        compiled(plain)
+    with pytest.raises(TypeError, match="neither a kernel nor a constant"):
+        digest(altered(summed, TABLE=[1.0, 2.0]))
+
+
+def test_unused_folders_are_removed_after_a_month(own_cache: Path) -> None:
+    old, recent = own_cache / "old", own_cache / "recent"
+    old.mkdir(parents=True)
+    recent.mkdir()
+    os.utime(old, (0.0, 0.0))
+    compiled(scaled)
+    assert not old.exists()
+    assert recent.exists()
+
+
+def test_importing_loads_no_numba() -> None:
+    code = "import sys, simconsole.compiling, simconsole.vehicle.car.step; sys.exit('numba' in sys.modules)"
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    subprocess.run([sys.executable, "-c", code], check=True, env=environment)
