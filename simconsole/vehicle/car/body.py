@@ -6,6 +6,7 @@ from typing import NamedTuple
 from simconsole.kernels import clip, kernel
 from simconsole.trigonometry import cos, sin
 from simconsole.vehicle.car.parameters import BodyParameters
+from simconsole.vehicle.car.state import CarState
 
 
 class Motion(NamedTuple):
@@ -36,53 +37,36 @@ def front_load(p: BodyParameters, transfer_ax_mps2: float) -> float:
 
 @kernel
 def move(
-    p: BodyParameters,
-    x_m: float,
-    y_m: float,
-    yaw_rad: float,
-    vx_mps: float,
-    vy_mps: float,
-    yaw_rate_radps: float,
-    distance_m: float,
-    force_x_n: float,
-    force_y_n: float,
-    moment_nm: float,
-    step_s: float,
+    p: BodyParameters, before: CarState, force_x_n: float, force_y_n: float, moment_nm: float, step_s: float
 ) -> Motion:
     """Advance the body by one semi-implicit step: velocities from the forces, then the pose from the new velocities.
 
     Args:
         p: body and ground.
-        x_m: base_link in map.
-        y_m: base_link in map.
-        yaw_rad: heading.
-        vx_mps: centre of gravity, forwards.
-        vy_mps: centre of gravity, to the left.
-        yaw_rate_radps: left-positive.
-        distance_m: odometer.
+        before: the car before the step.
         force_x_n: sum of the tyre forces, forwards.
         force_y_n: sum of the tyre forces, to the left.
         moment_nm: of the tyre forces about the centre of gravity.
         step_s: length of the step.
     """
-    c = cos(yaw_rad)
-    s = sin(yaw_rad)
-    air = p.drag_nsspmm * sqrt(vx_mps * vx_mps + vy_mps * vy_mps)
-    ax = (force_x_n - air * vx_mps) / p.mass_kg - p.gravity_plane_mps2 * (p.slope_x * c + p.slope_y * s)
-    ay = (force_y_n - air * vy_mps) / p.mass_kg - p.gravity_plane_mps2 * (p.slope_y * c - p.slope_x * s)
+    c = cos(before.yaw_rad)
+    s = sin(before.yaw_rad)
+    air = p.drag_nsspmm * sqrt(before.vx_mps * before.vx_mps + before.vy_mps * before.vy_mps)
+    ax = (force_x_n - air * before.vx_mps) / p.mass_kg - p.gravity_plane_mps2 * (p.slope_x * c + p.slope_y * s)
+    ay = (force_y_n - air * before.vy_mps) / p.mass_kg - p.gravity_plane_mps2 * (p.slope_y * c - p.slope_x * s)
     # One after the other, not both from the old values: turning the body then neither adds nor takes energy.
-    vx = vx_mps + step_s * (ax + yaw_rate_radps * vy_mps)
-    vy = vy_mps + step_s * (ay - yaw_rate_radps * vx)
-    yaw_rate = yaw_rate_radps + step_s * moment_nm / p.yaw_inertia_kgm2
+    vx = before.vx_mps + step_s * (ax + before.yaw_rate_radps * before.vy_mps)
+    vy = before.vy_mps + step_s * (ay - before.yaw_rate_radps * vx)
+    yaw_rate = before.yaw_rate_radps + step_s * moment_nm / p.yaw_inertia_kgm2
     rear_vy = vy - p.cg_to_rear_m * yaw_rate
     return Motion(
-        x_m + step_s * (vx * c - rear_vy * s),
-        y_m + step_s * (vx * s + rear_vy * c),
-        yaw_rad + step_s * yaw_rate,
+        before.x_m + step_s * (vx * c - rear_vy * s),
+        before.y_m + step_s * (vx * s + rear_vy * c),
+        before.yaw_rad + step_s * yaw_rate,
         vx,
         vy,
         yaw_rate,
         ax,
         ay,
-        distance_m + step_s * sqrt(vx * vx + rear_vy * rear_vy),
+        before.distance_m + step_s * sqrt(vx * vx + rear_vy * rear_vy),
     )

@@ -9,6 +9,7 @@ lever where the gearbox is while the clutch is closed.
 from typing import NamedTuple
 
 from simconsole.kernels import approach, clip, kernel
+from simconsole.signals import Request
 from simconsole.vehicle.car.parameters import GearParameters
 
 BACKWARDS_RADPS = -40.0
@@ -139,28 +140,20 @@ def by_itself(
 def work_gearbox(
     p: GearParameters,
     box: Gearbox,
-    automatic: float,
-    lever: float,
-    pedal: float,
-    throttle: float,
+    request: Request,
     engine_radps: float,
     wheel_radps: float,
     vx_mps: float,
     step_s: float,
 ) -> Gearbox:
     """Advance clutch and gears by one step: automatic, person, or the wait in between."""
-    if automatic != 0.0:
-        wanted = gear_for(p, box, lever, throttle, vx_mps)
+    if request.automatic != 0.0:
+        wanted = gear_for(p, box, request.gear, request.throttle, vx_mps)
         return by_itself(p, box, wanted, engine_radps, wheel_radps, step_s)
     closed = box.gear == 0.0 or (box.clutch <= p.bite_closed and box.shift_left_s <= 0.0)
-    if box.lever_adopted != 0.0 or pedal >= p.bite_open or (lever == box.gear and closed):
-        return by_lever(p, box, lever, pedal, engine_radps, wheel_radps)
+    taken_back = request.clutch >= p.bite_open or (request.gear == box.gear and closed)
+    if box.lever_adopted != 0.0 or taken_back:
+        return by_lever(p, box, request.gear, request.clutch, engine_radps, wheel_radps)
     kept = by_itself(p, box, box.gear, engine_radps, wheel_radps, step_s)
-    return Gearbox(
-        kept.gear,
-        pedal if pedal > kept.clutch else kept.clutch,
-        0.0,
-        kept.wanted_gear,
-        kept.shift_left_s,
-        kept.since_shift_s,
-    )
+    clutch = request.clutch if request.clutch > kept.clutch else kept.clutch
+    return Gearbox(kept.gear, clutch, 0.0, kept.wanted_gear, kept.shift_left_s, kept.since_shift_s)

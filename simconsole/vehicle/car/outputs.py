@@ -27,7 +27,8 @@ def pedals(s: CarState, car: CarParameters, automatic: float) -> Pedals:
     """Return what released pedals, full throttle and full brake would give now.
 
     Steady balance of forces in the gear in force, along the body (in reverse gear throttle is negative, brake
-    positive). Smooth and finite at standstill: a held car counts as if it were just moving the way of its gear. In automatic the clutch counts as the automatic would have it, also during a shift.
+    positive). Smooth and finite at standstill: a held car counts as if it were just moving the way of its gear. In
+    automatic the clutch counts as the automatic would have it, also during a shift.
     """
     body = car.body
     gear = s.wanted_gear if automatic != 0.0 else s.gear
