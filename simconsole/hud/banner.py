@@ -45,7 +45,7 @@ class Alert(IntEnum):
 
 ALERT_WORDS: Final[dict[Alert, tuple[str, str]]] = {
     Alert.TAKE_OVER: ("TAKE OVER", "take the wheel"),
-    Alert.MINIMAL_RISK: ("CAR IS STOPPING", "steer or brake to take over"),
+    Alert.MINIMAL_RISK: ("CAR IS STOPPING", "steer or brake"),
     Alert.TAKE_OVER_NOW: ("TAKE OVER NOW", "steer or brake"),
     Alert.EMERGENCY: ("EMERGENCY STOP", "stand still, then reset"),
     Alert.NO_DATA: ("NO DATA", "display is blind"),

@@ -14,7 +14,7 @@ from typing import Final
 import pygame
 import pygame.font
 
-from simconsole.hud.draw import Arc, Box, Colour, DrawItem, Polygon, Rect, Text, at_clock, bounds
+from simconsole.hud.draw import Arc, Box, Colour, DrawItem, Polygon, Rect, Text, at_clock, bounds, text_width_px
 from simconsole.hud.layout import layout
 from simconsole.hud.screen import Screen, screen_of
 from simconsole.hud.view import HudMemory, HudSettings, HudView, view
@@ -62,8 +62,9 @@ class Painter:
         size = max(1, math.ceil(WORDS_SCALE * item.cap_px / CAP_PER_SIZE - 1e-6))
         font = self._fonts.get(size) or self._fonts.setdefault(size, pygame.font.Font(None, size))
         large = font.render(item.text, True, item.colour)
-        # Small sizes are drawn large and scaled down: the font's own hinting would space the letters unevenly.
-        width, height = round(large.get_width() / WORDS_SCALE), round(large.get_height() / WORDS_SCALE)
+        # Drawn large and scaled to the width the layout counts on: hinting would space small letters unevenly.
+        width = round(text_width_px(item.text, item.cap_px))
+        height = round(large.get_height() / WORDS_SCALE)
         drawn = pygame.transform.smoothscale(large, (max(1, width), max(1, height)))
         shift = {"l": 0.0, "c": 0.5, "r": 1.0}[item.anchor] * width
         # The line's top is one ascent above the baseline, and the baseline half a capital below the middle.

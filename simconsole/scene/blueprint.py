@@ -12,6 +12,7 @@ TIMELINE: Final = "sim_time"
 MAP: Final = "map"
 """Root of the flat copies: a picture's y axis points down, the map's up, so they have coordinates of their own."""
 DARK: Final = (13, 17, 23)
+SKY: Final = (38, 48, 60)
 
 
 def blueprint(profile: SceneProfile, path: Array | None) -> rrb.Blueprint:
@@ -25,7 +26,7 @@ def blueprint(profile: SceneProfile, path: Array | None) -> rrb.Blueprint:
         name="chase",
         origin="/world/ego",
         contents="/world/**",
-        background=DARK,
+        background=SKY,
         line_grid=rrb.LineGrid3D(visible=False),
         # The origin moves with the car and turns with it, so a camera that stands still follows.
         eye_controls=rrb.EyeControls3D(

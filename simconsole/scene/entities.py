@@ -13,8 +13,10 @@ Indices = NDArray[np.uint32]
 Colour = tuple[int, int, int]
 
 ASPHALT: Final[Colour] = (52, 56, 62)
+GROUND: Final[Colour] = (30, 38, 34)
 GREEN: Final[Colour] = (58, 92, 62)
 PAINT: Final[Colour] = (226, 228, 230)
+MAP_EDGE: Final[Colour] = (84, 92, 102)
 THEORETICAL: Final[Colour] = (120, 140, 165)
 BODY: Final[Colour] = (214, 126, 44)
 GLASS: Final[Colour] = (60, 70, 84)
@@ -32,10 +34,14 @@ MODE_COLOURS: Final[dict[float, Colour]] = {
 }
 """The driven path's colour says who drove; the mode lane names it in words."""
 
+TAKEOVER_COLOURS: Final[tuple[Colour, ...]] = ((72, 80, 90), (255, 176, 32), (235, 45, 60))
+"""No take-over asked for, asked, escalated."""
+
 DASH_M: Final = 3.0
 GAP_M: Final = 4.0
 LIFT_M: Final = 0.02
 """Height between two layers of paint, so that the nearer one is seen."""
+GROUND_MARGIN_M: Final = 400.0
 POST_M: Final = 3.4
 HEAD_M: Final = 0.9
 
@@ -67,6 +73,7 @@ class Dimensions(NamedTuple):
 class WorldShapes(NamedTuple):
     """What stands still: everything to draw of a course."""
 
+    ground: Mesh
     surfaces: Mesh
     islands: Mesh
     paint: Mesh
@@ -81,6 +88,7 @@ def world_shapes(drawing: Drawing) -> WorldShapes:
     """Return the shapes of a course; lines come as [N, 3]."""
     posts, lamps = _lights(np.array([(light.x_m, light.y_m, light.yaw_rad) for light in drawing.lights]).reshape(-1, 3))
     return WorldShapes(
+        ground=mesh((_ground(drawing.path),), -5.0 * LIFT_M),
         surfaces=mesh(drawing.surfaces, 0.0),
         islands=mesh(drawing.islands, LIFT_M),
         paint=mesh((*drawing.zebras, *drawing.stop_lines), 2.0 * LIFT_M),
@@ -135,6 +143,12 @@ def dashes(line: Array) -> list[Array]:
         found.append(np.column_stack((np.interp(at, way, line[:, 0]), np.interp(at, way, line[:, 1]))))
         start += DASH_M + GAP_M
     return found
+
+
+def _ground(path: Array) -> Array:
+    """Return the rectangle of land around the course."""
+    (west, south), (east, north) = path.min(axis=0) - GROUND_MARGIN_M, path.max(axis=0) + GROUND_MARGIN_M
+    return np.array(((west, south), (east, south), (east, north), (west, north)))
 
 
 def _lights(lights: Array) -> tuple[Array, Array]:

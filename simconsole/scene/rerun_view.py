@@ -15,11 +15,14 @@ from simconsole.scene.blueprint import MAP, TIMELINE, blueprint
 from simconsole.scene.entities import (
     ASPHALT,
     GREEN,
+    GROUND,
     HEAD_M,
     LAMPS,
+    MAP_EDGE,
     MODE_COLOURS,
     PAINT,
     POST_M,
+    TAKEOVER_COLOURS,
     THEORETICAL,
     Array,
     Dimensions,
@@ -29,7 +32,7 @@ from simconsole.scene.entities import (
     on_map,
     raised,
 )
-from simconsole.scene.timeline import PLOTS, Entry, Lane, Piece, Strip, Ticks
+from simconsole.scene.timeline import PLOTS, TAKEOVER_WORDS, Entry, Lane, Piece, Strip, Ticks
 from simconsole.words import mode_words
 
 APPLICATION: Final = "simconsole"
@@ -46,7 +49,6 @@ class RerunView:
             StationError: the file cannot be written.
         """
         self._flush_s = profile.flush_s
-        self._length_m = dimensions.length_m
         self._stream = rr.RecordingStream(APPLICATION, recording_id=path.stem, send_properties=True)
         rr.set_strict_mode(True)
         try:
@@ -54,12 +56,16 @@ class RerunView:
         except (OSError, RuntimeError) as problem:
             raise StationError(f"{path}: the scene cannot be written: {problem}") from None
         self._still("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
+        self._still(f"{MAP}/path/driven", rr.LineStrips2D.from_fields(draw_order=2.0))
+        self._still(f"{MAP}/ego", rr.Points2D.from_fields(draw_order=3.0))
         self._car(dimensions)
         for plot in PLOTS:
             names = [line.name for line in plot.series]
             self._still(plot.path, rr.SeriesLines(names=names, colors=[line.colour for line in plot.series]))
         modes = {mode_words(mode): colour for mode, colour in MODE_COLOURS.items()}
-        self._still("lanes/mode", rr.StateConfiguration(values=list(modes), colors=list(modes.values())))
+        stages = dict(zip(TAKEOVER_WORDS, TAKEOVER_COLOURS, strict=True))
+        for lane, colours in (("lanes/mode", modes), ("lanes/takeover", stages)):
+            self._still(lane, rr.StateConfiguration(values=list(colours), colors=list(colours.values())))
         if world is not None:
             self._world(world)
 
@@ -102,14 +108,17 @@ class RerunView:
 
     def _world(self, world: WorldShapes) -> None:
         for name, mesh, colour in (
+            ("ground", world.ground, GROUND),
             ("surface", world.surfaces, ASPHALT),
             ("island", world.islands, GREEN),
             ("paint", world.paint, PAINT),
         ):
             self._mesh(f"world/road/{name}", mesh, colour)
-        self._lines("road/edges", world.edges, PAINT, 0.07, 1.0)
+        self._still("world/road/edges", _strips3d(world.edges, PAINT, 0.07))
         self._still("world/road/centre", _strips3d(world.centre_dashes, PAINT, 0.07))
-        self._lines("path/theoretical", (world.path,), THEORETICAL, 0.12, 4.0)
+        self._still("world/path/theoretical", _strips3d((world.path,), THEORETICAL, 0.12))
+        self._flat("road/edges", world.edges, MAP_EDGE, 0.5, 0.0)
+        self._flat("path/theoretical", (world.path,), THEORETICAL, 3.0, 1.0)
         self._lights(world)
 
     def _mesh(self, path: str, mesh: Mesh, colour: tuple[int, int, int]) -> None:
@@ -124,13 +133,16 @@ class RerunView:
             )
             self._still(path, shape)
 
-    def _lines(
-        self, name: str, lines: tuple[Array, ...], colour: tuple[int, int, int], radius_m: float, radius_px: float
+    def _flat(
+        self, name: str, lines: tuple[Array, ...], colour: tuple[int, int, int], radius_px: float, order: float
     ) -> None:
-        """Write lines to both views: metres wide in the world, pixels wide on the map."""
-        self._still(f"world/{name}", _strips3d(lines, colour, radius_m))
-        flat = [on_map(line) for line in lines]
-        self._still(f"{MAP}/{name}", rr.LineStrips2D(flat, colors=[colour], radii=rr.Radius.ui_points(radius_px)))
+        strips = rr.LineStrips2D(
+            [on_map(line) for line in lines],
+            colors=[colour],
+            radii=rr.Radius.ui_points(radius_px),
+            draw_order=order,
+        )
+        self._still(f"{MAP}/{name}", strips)
 
     def _lights(self, world: WorldShapes) -> None:
         if not len(world.light_posts):
@@ -160,11 +172,6 @@ class RerunView:
         pose = rr.Transform3D.columns(translation=piece.positions, quaternion=piece.quaternions)
         self._send("world/ego", piece.times_ns, pose)
         count = len(piece.ticks)
-        origins = np.tile((0.62 * self._length_m, 0.0, 0.35), (count, 1))
-        arrow = rr.Arrows3D.columns(
-            vectors=2.0 * piece.wheel_arrows, origins=origins, colors=[PAINT] * count, radii=[0.06] * count
-        )
-        self._send("world/ego/front_wheels", piece.times_ns, arrow)
         spot = rr.Points2D.columns(
             positions=on_map(piece.positions), colors=[(255, 176, 32)] * count, radii=[-7.0] * count
         )
@@ -185,7 +192,7 @@ class RerunView:
             return
         times_ns = [strip.t_ns for strip in strips]
         colours = [MODE_COLOURS.get(strip.mode, PAINT) for strip in strips]
-        above = [raised(strip.points, 0.1) for strip in strips]
+        above = [raised(strip.points, 0.2) for strip in strips]
         radii = [0.09] * len(strips)
         self._send("world/path/driven", times_ns, rr.LineStrips3D.columns(strips=above, colors=colours, radii=radii))
         flat = [on_map(strip.points) for strip in strips]

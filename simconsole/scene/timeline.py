@@ -80,10 +80,10 @@ PLOTS: Final[tuple[Plot, ...]] = (
 _LANES: Final = (
     ("lanes/mode", "arbitration.mode"),
     ("lanes/takeover", "arbitration.takeover_stage"),
-    ("lanes/gear", "vehicle.gear"),
+    ("lanes/transmission", "vehicle.gear"),  # rerun sorts lanes by name: who drives comes first
 )
 TAKEOVER_WORDS: Final = ("none", "asked", "escalated")
-_OTHERS: Final = ("x_m", "y_m", "z_m", "yaw_rad", "pitch_rad", "roll_rad", "road_wheel_rad")
+_OTHERS: Final = ("x_m", "y_m", "z_m", "yaw_rad", "pitch_rad", "roll_rad")
 NEEDED: Final[tuple[str, ...]] = tuple(
     dict.fromkeys(
         (
@@ -124,13 +124,12 @@ class Strip(NamedTuple):
 
 
 class Piece(NamedTuple):
-    """Everything that some rows add to the scene; the first five are at the scene's own rate."""
+    """Everything that some rows add to the scene; the first four and the plots are at the scene's own rate."""
 
     ticks: Ticks
     times_ns: Ticks
     positions: Array  # [N, 3] m
     quaternions: Array  # [N, 4] x, y, z, w
-    wheel_arrows: Array  # [N, 3] unit vectors in the car's frame: where the front wheels point
     plots: dict[str, Array]  # entity path -> [N, lines]
     lanes: tuple[Lane, ...]
     strips: tuple[Strip, ...]
@@ -164,14 +163,11 @@ def piece(
     positions = np.column_stack([kept[f"vehicle.{axis}_m"] for axis in "xyz"])
     strips, open_end = _strips(positions, kept["arbitration.mode"], times_ns[keep], memory.open_end)
     lanes, seen = _lanes(table, times_ns, memory.seen)
-    angle = kept["vehicle.road_wheel_rad"]
-    arrows = np.column_stack((np.cos(angle), np.sin(angle), np.zeros(len(keep))))
     return Piece(
         ticks=ticks[keep],
         times_ns=times_ns[keep],
         positions=positions,
         quaternions=quaternions(kept["vehicle.yaw_rad"], kept["vehicle.pitch_rad"], kept["vehicle.roll_rad"]),
-        wheel_arrows=arrows,
         plots={plot.path: np.column_stack([line.factor * kept[line.column] for line in plot.series]) for plot in PLOTS},
         lanes=lanes,
         strips=strips,

@@ -1,0 +1,56 @@
+"""A drive to scene.rrd while it is being driven, in a process of its own."""
+
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from simconsole.rows import Snapshot
+from simconsole.scene.entities import world_shapes
+from simconsole.scene.job import Job
+from simconsole.scene.timeline import Memory, piece
+
+POLL_S = 0.01
+
+
+class Ports(NamedTuple):
+    """What the scene needs of the world outside."""
+
+    new_ticks: Callable[[], Sequence[Snapshot]]  # all ticks since the last call, oldest first; gaps are allowed
+    stop: Callable[[], bool]  # True ends the recording
+
+
+def follow(ports: Ports, job: Job, path: Path) -> None:
+    """Write ticks as they come until `ports.stop` says so; then what is left, and close the file.
+
+    Args:
+        ports: the ring and the end.
+        job: course, car and columns; its rows are not used.
+        path: the file to write.
+
+    Raises:
+        StationError: the file cannot be written.
+    """
+    from simconsole.scene.rerun_view import RerunView
+
+    view = RerunView(path, job.profile, job.dimensions, None if job.drawing is None else world_shapes(job.drawing))
+    memory = Memory()
+    waiting: list[Snapshot] = []
+    written_s = time.monotonic()
+    running = True
+    while running:
+        # Asked before reading, so that ticks from just before the end are still read.
+        running = not ports.stop()
+        waiting += ports.new_ticks()
+        if waiting and (not running or time.monotonic() - written_s >= job.profile.chunk_s):
+            rows = np.array([snapshot.row for snapshot in waiting])
+            ticks = np.array([snapshot.tick for snapshot in waiting], dtype=np.int64)
+            added, memory = piece(rows, job.columns, ticks, job.tick_hz, job.profile.rate_hz, memory)
+            view.add(added)
+            waiting.clear()
+            written_s = time.monotonic()
+        if running:
+            time.sleep(POLL_S)
+    view.close()

@@ -1,0 +1,142 @@
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from simconsole.hud.view import HudMemory, HudSettings, settings_of, shown_speed, view
+from simconsole.profiles.control import ControlProfile
+from simconsole.profiles.view import HudProfile
+from simconsole.rows import PLATFORM_AT, Snapshot, columns
+from simconsole.signals import NEVER_TICKS, Mode, Reason
+from simconsole.units import MPS_PER_KMH
+from simconsole.vehicle.platform import Pose
+
+TICK_HZ = 250
+COLUMNS = columns(Pose)
+
+
+def snapshot(tick: int = 250, **fields: float) -> Snapshot:
+    row = np.zeros(PLATFORM_AT + 3)
+    for name, value in fields.items():
+        row[COLUMNS.index(name.replace("__", "."))] = value
+    return Snapshot(tick, TICK_HZ, row)
+
+
+def speeds(kmh: list[float], step_s: float = 0.25) -> list[int]:
+    memory, shown = HudMemory(), []
+    for index, value in enumerate(kmh):
+        number, since = shown_speed(value * MPS_PER_KMH, index * step_s, memory)
+        memory = HudMemory(number, since)
+        shown.append(number)
+    return shown
+
+
+def test_the_shown_speed_is_an_integer_with_half_a_kmh_of_hysteresis() -> None:
+    assert speeds([36.9, 37.4, 37.6, 37.9, 38.1]) == [37, 37, 37, 37, 38]
+    assert speeds([38.0, 37.4, 37.1, 36.9]) == [38, 38, 38, 37]
+
+
+def test_a_speed_on_the_edge_does_not_flicker() -> None:
+    rng = np.random.default_rng(7)
+    edge = (37.5 + 0.1 * rng.standard_normal(400)).tolist()
+    shown = speeds(edge)
+    assert sum(a != b for a, b in pairwise(shown)) == 0, "seed 7"
+
+
+def test_digits_change_at_most_five_times_a_second() -> None:
+    shown = speeds([float(kmh) for kmh in range(240)], 1.0 / 60.0)
+    assert sum(a != b for a, b in pairwise(shown)) <= 5 * 4
+    assert shown[-1] >= 239 - 13
+
+
+def test_a_speed_that_stays_is_reached_exactly_enough() -> None:
+    for target in np.linspace(0.0, 130.0, 261).tolist():
+        assert abs(speeds([0.0, target, target])[-1] - target) <= 1.0
+
+
+def test_reversing_shows_no_minus() -> None:
+    assert speeds([-7.0]) == [7]
+
+
+def test_a_drive_that_starts_anew_is_shown_at_once() -> None:
+    memory = HudMemory(shown_kmh=80, shown_s=500.0)
+    assert shown_speed(0.0, 1.0, memory) == (0, 1.0)
+
+
+def test_data_is_stale_after_half_a_second() -> None:
+    assert not view(snapshot(), 0.5, HudMemory(), HudSettings())[0].stale
+    assert view(snapshot(), 0.51, HudMemory(), HudSettings())[0].stale
+
+
+def test_the_content_comes_from_the_row() -> None:
+    row = snapshot(
+        tick=500,
+        vehicle__vx_mps=10.0,
+        vehicle__engine_radps=314.159265,
+        vehicle__engine_running=1.0,
+        vehicle__gear=2.0,
+        vehicle__clutch=0.25,
+        vehicle__road_wheel_rad=-0.1,
+        vehicle__distance_m=321.0,
+        command__throttle=0.5,
+        command__brake=0.125,
+        command__handbrake=1.0,
+        driver__throttle=0.75,
+        arbitration__mode=Mode.SHARED,
+        arbitration__reason=Reason.PERSON_ASKED,
+        arbitration__remote_lateral=0.5,
+        remote__sequence=3.0,
+        remote__age_ticks=5.0,
+    )
+    shown, memory = view(row, 0.0, HudMemory(), HudSettings())
+    assert (shown.t_s, shown.shown_kmh, shown.gear) == (2.0, 36, "2")
+    assert shown.rpm == pytest.approx(3000.0)
+    assert (shown.mode_words, shown.reason_words, shown.refusal_words) == ("SHARED", "driver asked", "")
+    assert (shown.throttle, shown.brake, shown.clutch, shown.handbrake) == (0.5, 0.125, 0.25, 1.0)
+    assert (shown.driver_throttle, shown.remote_lateral, shown.road_wheel_rad) == (0.75, 0.5, -0.1)
+    assert shown.link_age_s == pytest.approx(0.02)
+    assert shown.distance_m == 321.0
+    assert memory == HudMemory(36, 2.0)
+
+
+def test_no_command_ever_is_no_link() -> None:
+    never = snapshot(remote__sequence=0.0, remote__age_ticks=0.0)
+    assert view(never, 0.0, HudMemory(), HudSettings())[0].link_age_s is None
+    gone = snapshot(remote__sequence=4.0, remote__age_ticks=NEVER_TICKS)
+    assert view(gone, 0.0, HudMemory(), HudSettings())[0].link_age_s is None
+
+
+def test_a_refusal_is_shown_beside_the_reason_of_the_mode() -> None:
+    row = snapshot(
+        arbitration__mode=Mode.MANUAL,
+        arbitration__reason=Reason.BRAKE_OVERRIDE,
+        arbitration__refusal=Reason.REFUSED_BRAKE_PRESSED,
+    )
+    shown, _ = view(row, 0.0, HudMemory(), HudSettings())
+    assert shown.reason_words == "driver braked"
+    assert shown.refusal_words == "refused: brake is pressed"
+
+
+def test_the_countdown_ends_when_the_arbitration_acts() -> None:
+    settings = settings_of(HudProfile(), ControlProfile(minimal_risk_after_s=8.0))
+    row = snapshot(arbitration__mode=Mode.TAKEOVER_REQUESTED, arbitration__takeover_stage=1.0, memory__mode_ticks=500.0)
+    shown, _ = view(row, 0.0, HudMemory(), settings)
+    assert shown.remaining_s == pytest.approx(6.0)
+    assert shown.takeover_stage == 1
+    later = snapshot(arbitration__mode=Mode.TAKEOVER_REQUESTED, memory__mode_ticks=9999.0)
+    assert view(later, 0.0, HudMemory(), settings)[0].remaining_s == 0.0
+    assert view(snapshot(memory__mode_ticks=500.0), 0.0, HudMemory(), settings)[0].remaining_s == 0.0
+
+
+def test_settings_come_from_their_profiles() -> None:
+    control = ControlProfile(minimal_risk_after_s=12.0, command_stale_s=0.4)
+    assert settings_of(HudProfile(rpm_max=8000.0, rpm_red=6800.0), control) == HudSettings(8000.0, 6800.0, 12.0, 0.4)
+
+
+@pytest.mark.parametrize(
+    ("throttle", "brake", "clutch", "worst"),
+    [(2.0, 2.0, 2.0, 2.0), (2.0, 4.0, 3.0, 4.0), (2.0, 2.0, 3.0, 3.0), (2.0, 0.0, 1.0, 0.0), (1.0, 2.0, 2.0, 1.0)],
+)
+def test_pedals_are_as_good_as_their_worst(throttle: float, brake: float, clutch: float, worst: float) -> None:
+    row = snapshot(driver__throttle_validity=throttle, driver__brake_validity=brake, driver__clutch_validity=clutch)
+    assert view(row, 0.0, HudMemory(), HudSettings())[0].pedals_validity == worst

@@ -1,0 +1,116 @@
+from collections import defaultdict
+from collections.abc import Iterator
+
+import numpy as np
+import pygame
+import pytest
+
+from simconsole.errors import ProfileError
+from simconsole.hud import window
+from simconsole.hud.view import HudSettings
+from simconsole.hud.window import KEYS, Freshness, Ports, Window, run
+from simconsole.keys import Key
+from simconsole.profiles.view import HudProfile
+from simconsole.rows import PLATFORM_AT, Snapshot
+
+PROFILE = HudProfile(width_px=700, height_px=525, screen_width_m=1.6, eye_distance_m=1.1, rate_hz=240)
+
+
+@pytest.fixture(autouse=True)
+def dummy_display(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    yield
+    pygame.display.quit()
+
+
+def snapshot(tick: int) -> Snapshot:
+    return Snapshot(tick, 250, np.zeros(PLATFORM_AT))
+
+
+def stop_after(frames: int) -> Iterator[bool]:
+    yield from (False for _ in range(frames))
+    while True:
+        yield True
+
+
+def picture(opened: Window) -> bytes:
+    return pygame.image.tobytes(opened._surface, "RGB")
+
+
+def test_the_window_runs_reports_keys_and_ends() -> None:
+    ticks, keys, ends = iter(range(100)), [], stop_after(5)
+    run(Ports(lambda: snapshot(next(ticks)), keys.append, lambda: next(ends)), PROFILE, HudSettings())
+    assert keys == [0] * 6  # five frames, and the release at the end
+    assert next(ticks) == 5
+    assert not pygame.display.get_init()
+
+
+def test_closing_the_window_ends_it() -> None:
+    def latest() -> None:
+        pygame.event.post(pygame.event.Event(pygame.QUIT))
+
+    ends = stop_after(1000)
+    run(Ports(latest, lambda mask: None, lambda: next(ends)), PROFILE, HudSettings())
+    assert not next(ends)
+
+
+def test_keys_are_released_when_the_ring_breaks() -> None:
+    keys: list[int] = []
+
+    def broken() -> Snapshot:
+        raise OSError
+
+    with pytest.raises(OSError):  # noqa: PT011 - any failure of the ring will do
+        run(Ports(broken, keys.append, lambda: False), PROFILE, HudSettings())
+    assert keys[-1] == 0
+    assert not pygame.display.get_init()
+
+
+def test_held_keys_become_one_mask(monkeypatch: pytest.MonkeyPatch) -> None:
+    held = defaultdict(bool, {pygame.K_LEFT: True, pygame.K_w: True, pygame.K_ESCAPE: True, pygame.K_z: True})
+    monkeypatch.setattr(window.pygame.key, "get_pressed", lambda: held)
+    assert window.held_keys() == Key.STEER_LEFT | Key.THROTTLE | Key.EMERGENCY_STOP
+
+
+def test_every_meaning_has_a_key_and_fits_a_float() -> None:
+    assert set(KEYS.values()) == set(Key)
+    assert int(float(sum(Key))) == sum(Key)
+
+
+def test_a_frozen_tick_ages_and_a_new_one_is_fresh() -> None:
+    freshness = Freshness()
+    assert freshness.age_s(7, 100.0) == 0.0
+    assert freshness.age_s(7, 100.6) == pytest.approx(0.6)
+    assert freshness.age_s(8, 100.7) == 0.0
+    assert freshness.age_s(3, 100.8) == 0.0  # a drive that starts anew
+
+
+def test_a_ring_that_freezes_shows_no_data_and_recovers() -> None:
+    opened = Window(PROFILE, HudSettings())
+    opened.frame(None, 0.0)
+    nothing = picture(opened)
+    opened.frame(snapshot(1), 1.0)
+    fresh = picture(opened)
+    opened.frame(snapshot(1), 1.4)
+    assert picture(opened) == fresh
+    opened.frame(snapshot(1), 1.6)
+    assert picture(opened) == nothing != fresh
+    opened.frame(snapshot(2), 1.7)
+    assert picture(opened) == fresh
+
+
+def test_an_equal_picture_is_not_drawn_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    opened = Window(PROFILE, HudSettings())
+    opened.frame(snapshot(1), 1.0)
+    painted: list[int] = []
+    monkeypatch.setattr(opened._painter, "paint", lambda surface, items: painted.append(len(items)))
+    opened.frame(snapshot(2), 1.1)
+    assert painted == []
+    opened.frame(None, 1.2)
+    assert len(painted) == 1
+
+
+def test_an_illegible_seat_opens_no_window() -> None:
+    with pytest.raises(ProfileError, match="eye_distance_m 9"):
+        Window(HudProfile(eye_distance_m=9.0), HudSettings())
+    assert not pygame.display.get_init()

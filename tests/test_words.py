@@ -1,0 +1,33 @@
+from simconsole.signals import Mode, Reason, Validity
+from simconsole.words import gear_words, mode_words, reason_words, validity_words
+
+
+def test_every_mode_reason_and_validity_has_words_of_its_own() -> None:
+    for words, members in ((mode_words, Mode), (reason_words, Reason), (validity_words, Validity)):
+        texts = [words(float(member)) for member in members]
+        assert len(set(texts)) == len(members), texts
+        # An unknown number names itself; a known one must not.
+        assert not any(character.isdigit() for text in texts for character in text), texts
+
+
+def test_words_are_short_and_printable() -> None:
+    for reason in Reason:
+        text = reason_words(reason)
+        assert len(text.split()) <= 7
+        assert text.isascii()
+        assert text.isprintable()
+
+
+def test_a_refusal_says_so_and_nothing_else_does() -> None:
+    for reason in Reason:
+        assert reason_words(reason).startswith("refused: ") == reason.name.startswith("REFUSED_")
+
+
+def test_an_unknown_number_names_itself() -> None:
+    assert mode_words(99.0) == "MODE 99"
+    assert reason_words(2.5) == "reason 2.5"
+    assert validity_words(-1.0) == "validity -1"
+
+
+def test_the_lever_reads_as_its_knob() -> None:
+    assert [gear_words(gear) for gear in (-1.0, 0.0, 1.0, 6.0)] == ["R", "N", "1", "6"]
