@@ -87,18 +87,19 @@ class Tracker:
         While not `engaged` the command stays the one that would be right to begin with: the memory of steering and
         acceleration follows the car instead of the own commands.
         """
+        found = self.s_m is not None
         place = self.course.project(seen.x_m, seen.y_m, self.s_m, seen.yaw_rad)
         self.s_m, self.lateral_m = place.s_m, place.lateral_m
         speed = max(seen.vx_mps, 0.0)
         if not engaged:
             self._follow(seen, speed)
         offset, slope = self._line.at(place.s_m)
-        if not engaged or abs(place.lateral_m - offset) > _PUSHED_OFF_M:
+        if not (engaged and found) or abs(place.lateral_m - offset) > _PUSHED_OFF_M:
             course_rad = place.heading_error_rad + (seen.vy_mps / speed if speed > 1.0 else 0.0)
             self._line = approach_from(place.s_m, place.lateral_m, course_rad, speed)
             offset, slope = self._line.at(place.s_m)
-        before = self._command
         heading = place.heading_error_rad - math.atan(slope)
+        before = self._command
         self._command = self._steer(seen, place.s_m, place.lateral_m - offset, heading, speed)
         self._settle(before)
         target, accel = self._accelerate(place.s_m, speed)

@@ -6,7 +6,7 @@ in each cell and position is a short power series from the cell's start (error b
 
 import math
 from bisect import bisect_right
-from typing import Final, NamedTuple
+from typing import Final, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,10 +17,13 @@ from simconsole.vehicle.platform import Pose
 from simconsole.world.geometry import Piece, travel
 
 Array = NDArray[np.float64]
+Number = TypeVar("Number", float, Array)
 
 CELL_M: Final = 0.5
 _NEWTON_STEPS: Final = 8
 _CLOSE_M: Final = 1e-6
+_STRETCH: Final = 0.3  # bound of the Newton step for points near the centre of a curve
+_STRIDE: Final = 20
 _LOST_M: Final = 30.0  # further than this from the hinted place, look at the whole course
 
 
@@ -105,13 +108,54 @@ class Course:
             dx, dy = x_m - point.x_m, y_m - point.y_m
             lateral = dy * cosine - dx * sine
             stretch = 1.0 - point.curvature_1pm * lateral
-            step = (dx * cosine + dy * sine) / (stretch if stretch > 0.3 else 0.3)
+            step = (dx * cosine + dy * sine) / (stretch if stretch > _STRETCH else _STRETCH)
             s += step
             point = self.at(s)
             if abs(step) < _CLOSE_M:
                 break
         heading = 0.0 if yaw_rad is None else math.remainder(yaw_rad - point.yaw_rad, math.tau)
         return Projection(s, lateral, heading)
+
+    def project_all(self, x_m: Array, y_m: Array, s_hint_m: float | None = None) -> tuple[Array, Array]:
+        """Return (s_m, lateral_m), float64 [N] each, of the places that a vehicle passed one after the other.
+
+        As `project` from each place to the next, laps included, but fast: every 20th place is followed along the
+        course, the others start from between those.
+        """
+        if len(x_m) == 0:
+            return np.zeros(0), np.zeros(0)
+        marks = np.unique(np.append(np.arange(0, len(x_m), _STRIDE), len(x_m) - 1))
+        stations, s = [], s_hint_m
+        for x, y in zip(x_m[marks].tolist(), y_m[marks].tolist(), strict=True):
+            s = self.project(x, y, s).s_m
+            stations.append(s)
+        places = np.interp(np.arange(len(x_m)), marks, stations)
+        lateral = along = np.zeros(len(x_m))
+        for _ in range(_NEWTON_STEPS):
+            x, y, yaw, curvature = self._at_all(places)
+            dx, dy, cosine, sine = x_m - x, y_m - y, np.cos(yaw), np.sin(yaw)
+            lateral = dy * cosine - dx * sine
+            along = (dx * cosine + dy * sine) / np.maximum(1.0 - curvature * lateral, _STRETCH)
+            places = places + along
+            if float(np.abs(along).max()) < _CLOSE_M:
+                break
+        for index in np.flatnonzero(np.abs(along) >= _CLOSE_M).tolist():  # a vehicle that was put elsewhere
+            found = self.project(float(x_m[index]), float(y_m[index]), float(places[index]))
+            places[index], lateral[index] = found.s_m, found.lateral_m
+        return places, lateral
+
+    def _at_all(self, s_m: Array) -> tuple[Array, Array, Array, Array]:
+        s = s_m % self.length_m
+        cell = np.searchsorted(self.s, s, side="right") - 1
+        u, yaw, curvature, rate = s - self.s[cell], self.yaw[cell], self.curvature[cell], self.curvature_rate[cell]
+        forward, left = _series(u, curvature, rate)
+        cosine, sine = np.cos(yaw), np.sin(yaw)
+        return (
+            self.x[cell] + forward * cosine - left * sine,
+            self.y[cell] + forward * sine + left * cosine,
+            yaw + u * (curvature + 0.5 * rate * u),
+            curvature + rate * u,
+        )
 
     def unwrap(self, s_m: float, near_m: float) -> float:
         """Return `s_m` plus the whole laps that bring it nearest to `near_m`."""
@@ -149,7 +193,7 @@ def _cells(s_m: float, pose: Pose, piece: Piece) -> list[tuple[float, ...]]:
     return cells
 
 
-def _series(u: float, curvature: float, rate: float) -> tuple[float, float]:
+def _series(u: Number, curvature: Number, rate: Number) -> tuple[Number, Number]:
     """Return (forward, left) after `u` m of linear curvature: the Taylor series of the integral of (cos, sin).
 
     Heading a u + b u^2 with a = curvature, b = rate / 2; terms to u^5 in a. Remainder below a^5 u^6 / 720.

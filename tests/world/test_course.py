@@ -75,3 +75,23 @@ def test_far_away_points_still_get_an_answer(course: Course) -> None:
     found = course.project(5000.0, 5000.0)
     assert 0.0 <= found.s_m % course.length_m < course.length_m
     assert math.isfinite(found.lateral_m)
+
+
+def test_a_whole_way_is_projected_as_its_places_are(course: Course) -> None:
+    s = np.linspace(2300.0, 5400.0, 3001)  # more than a lap
+    lateral = 0.4 * np.sin(s / 9.0)
+    points = [course.at(value) for value in s.tolist()]
+    x = np.array([p.x_m - d * math.sin(p.yaw_rad) for p, d in zip(points, lateral.tolist(), strict=True)])
+    y = np.array([p.y_m + d * math.cos(p.yaw_rad) for p, d in zip(points, lateral.tolist(), strict=True)])
+    found_s, found_lateral = course.project_all(x, y, 2300.0)
+    assert found_s == pytest.approx(s, abs=1e-7)
+    assert found_lateral == pytest.approx(lateral, abs=1e-9)
+    assert [len(part) for part in course.project_all(np.zeros(0), np.zeros(0))] == [0, 0]
+
+
+def test_a_way_with_a_jump_is_projected_before_and_after_it(course: Course) -> None:
+    before, after = course.at(100.0), course.at(1500.0)
+    x = np.array([before.x_m] * 7 + [after.x_m] * 50)
+    y = np.array([before.y_m] * 7 + [after.y_m] * 50)
+    _, lateral = course.project_all(x, y)
+    assert np.abs(lateral).max() < 1e-6

@@ -1,0 +1,121 @@
+"""The map of a drive: driven path over theoretical path."""
+
+from itertools import pairwise
+from typing import Any, Final
+
+import numpy as np
+
+from simconsole.report.colours import END, LIMIT, MODES, NOTE, PERSON, REMOTE, START, THEORY
+from simconsole.report.metrics import JUMP_M, ModeChange, Track
+from simconsole.report.table import Drive
+from simconsole.report.thinning import path_thinned
+from simconsole.signals import Mode
+from simconsole.words import mode_words
+from simconsole.world.course import Course
+
+_STEP_M: Final = 1.0
+_LABEL_M: Final = 26.0  # how far beside the road a label stands
+_NOTED: Final[dict[str, Any]] = {"textcoords": "offset points", "color": NOTE, "fontsize": 7.5}
+
+
+def draw_map(figure: Any, drive: Drive, way: Track, changes: list[ModeChange], course: Course | None) -> None:
+    """Draw the map into a matplotlib figure."""
+    axes = figure.add_subplot()
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_title("Driven path against theoretical path")
+    axes.set_xlabel("x in map / m")
+    axes.set_ylabel("y in map / m")
+    if course is not None:
+        path = course.offset(0.0, 0.0, course.length_m, _STEP_M)
+        axes.plot(*path.T, color=THEORY, linewidth=6.0, solid_capstyle="round", label="theoretical path")
+        _label_features(axes, course)
+    _draw_driven(axes, drive, way)
+    x, y = drive.column("vehicle.x_m"), drive.column("vehicle.y_m")
+    _draw_changes(axes, changes)
+    edge = {"markeredgecolor": "white", "markeredgewidth": 1.2, "linestyle": "none", "zorder": 6}
+    axes.plot(x[0], y[0], "o", color=START, markersize=10, label="start", **edge)
+    axes.plot(x[-1], y[-1], "o", color=END, markersize=10, label="end", **edge)
+    axes.margins(0.08)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=6)
+
+
+def _draw_driven(axes: Any, drive: Drive, way: Track) -> None:
+    x, y = drive.column("vehicle.x_m"), drive.column("vehicle.y_m")
+    jumps = np.hypot(np.diff(x), np.diff(y)) > JUMP_M
+    cuts = np.flatnonzero((np.diff(way.autonomous) != 0.0) | jumps) + 1
+    named: set[str] = set()
+    for start, end in pairwise((0, *cuts.tolist(), len(x))):
+        remote = way.autonomous[start] > 0.0
+        # One point of overlap closes the gap between two parts, unless the vehicle was put elsewhere.
+        last = end + 1 if end < len(x) and not jumps[end - 1] else end
+        kept = start + path_thinned(x[start:last], y[start:last], _STEP_M)
+        label = "driven by the autopilot" if remote else "driven by the person"
+        axes.plot(
+            x[kept],
+            y[kept],
+            color=REMOTE if remote else PERSON,
+            linewidth=1.6,
+            label=None if label in named else label,
+            zorder=4,
+        )
+        named.add(label)
+
+
+def _draw_changes(axes: Any, changes: list[ModeChange]) -> None:
+    named = False
+    for change in changes[1:]:
+        if change.refused or change.mode in (Mode.PARKED, Mode.STOPPED):
+            continue
+        axes.plot(
+            change.x_m,
+            change.y_m,
+            marker="D",
+            markersize=6,
+            color=MODES.get(change.mode, NOTE),
+            markeredgecolor="white",
+            linestyle="none",
+            label=None if named else "mode change",
+            zorder=5,
+        )
+        named = True
+        axes.annotate(
+            mode_words(change.mode),
+            (change.x_m, change.y_m),
+            xytext=(0, 9 if change.mode == Mode.AUTONOMOUS else -15),
+            ha="center",
+            textcoords="offset points",
+            fontsize=7.5,
+            color=MODES.get(change.mode, NOTE),
+        )
+
+
+def _label_features(axes: Any, course: Course) -> None:
+    world = course.world
+    half = 0.5 * world.lane_width_m
+    for crossing in world.crossings:
+        ends = [course.offset(side, crossing.s_m, crossing.s_m + 0.1)[0] for side in (-3 * half, 5 * half)]
+        axes.plot(*np.array(ends).T, color=LIMIT, linewidth=2.4, solid_capstyle="butt", zorder=3)
+        _label(axes, course, crossing.s_m, "crossing")
+    for spot in world.intersections:
+        ends = [course.offset(half + side, spot.s_m, spot.s_m + 0.1)[0] for side in (-spot.arm_m, spot.arm_m)]
+        axes.plot(*np.array(ends).T, color=THEORY, linewidth=3.0, solid_capstyle="butt", zorder=1)
+        _label_junction(axes, course, spot.s_m, "traffic lights" if spot.signalled else "side road")
+    for ring in world.roundabouts:
+        axes.annotate("roundabout", (ring.x_m, ring.y_m), xytext=(16, 12), **_NOTED)
+
+
+def _label(axes: Any, course: Course, s_m: float, text: str) -> None:
+    point = course.at(s_m)
+    upright = abs(np.sin(point.yaw_rad)) > 0.5
+    x, y = course.offset(_LABEL_M * (0.6 if upright else 0.8), s_m, s_m + 0.1)[0].tolist()
+    left = np.sin(point.yaw_rad) > 0.0
+    side = ("right" if left else "left") if upright else "center"
+    axes.annotate(text, (x, y), ha=side, va="center", color=NOTE, fontsize=7.5)
+
+
+def _label_junction(axes: Any, course: Course, s_m: float, text: str) -> None:
+    """Write beside the crossing road, on the left of the course."""
+    point = course.at(s_m)
+    east, north = np.cos(point.yaw_rad) > 0.5, np.sin(point.yaw_rad) > 0.5
+    x, y = course.offset(_LABEL_M, s_m + 5.0, s_m + 5.1)[0].tolist()
+    axes.annotate(text, (x, y), ha="left" if east or north else "right", va="center", color=NOTE, fontsize=7.5)

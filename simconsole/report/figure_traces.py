@@ -1,0 +1,112 @@
+"""A drive over its distance: lateral deviation, speed, steering, mode."""
+
+from itertools import pairwise
+from typing import Any, Final
+
+import numpy as np
+
+from simconsole.report.colours import BAND, END, LIMIT, MODES, NOTE, PERSON, REMOTE
+from simconsole.report.metrics import ModeChange, Track, metrics
+from simconsole.report.table import Array, Drive
+from simconsole.report.thinning import thinned
+from simconsole.signals import Mode
+from simconsole.units import DEG_PER_RAD, KMH_PER_MPS
+from simconsole.words import mode_words
+from simconsole.world.course import Course
+
+_POINTS: Final = 1600
+_CM_PER_M: Final = 100.0
+_ROOM: Final = 1.35  # of the deviation's axis above its largest value
+_NARROW: Final = 0.05  # shares of the drive too short for the mode's word
+
+
+def draw_traces(figure: Any, drive: Drive, way: Track, changes: list[ModeChange], course: Course | None) -> None:
+    """Draw the panels into a matplotlib figure, one distance axis for all."""
+    lateral, speed, wheel, modes = figure.subplots(
+        4, 1, sharex=True, gridspec_kw={"height_ratios": (3.0, 2.6, 2.2, 0.55), "hspace": 0.04}
+    )
+    _draw_lateral(lateral, drive, way, course)
+    _draw_speed(speed, way, course)
+    _draw_steering(wheel, drive, way)
+    _draw_modes(modes, drive, way)
+    for axes in (lateral, speed, wheel):
+        _draw_changes(axes, changes)
+    modes.set_xlabel("distance driven / m")
+    modes.set_xlim(0.0, max(float(way.distance_m[-1]), 1.0))
+
+
+def _draw_lateral(axes: Any, drive: Drive, way: Track, course: Course | None) -> None:
+    axes.set_title("Lateral deviation of base_link from the theoretical path, left positive")
+    axes.set_ylabel("deviation / cm")
+    if course is None:
+        axes.text(0.5, 0.5, "no course in this world", transform=axes.transAxes, ha="center", color=NOTE)
+        return
+    driven = way.autonomous > 0.0
+    if not driven.any():
+        _line(axes, way.distance_m, way.lateral_m * _CM_PER_M, PERSON, "person")
+        axes.legend(loc="upper right")
+        return
+    part = metrics(drive, course, way)["autonomous"]
+    rms, worst = part["lateral_rms_m"] * _CM_PER_M, part["lateral_max_m"] * _CM_PER_M
+    axes.axhspan(-rms, rms, color=BAND, zorder=0, label=f"RMS {rms:.2f} cm")
+    masked = np.where(driven, way.lateral_m * _CM_PER_M, np.nan)
+    person = np.where(driven, np.nan, way.lateral_m * _CM_PER_M)
+    _line(axes, way.distance_m, person, PERSON, "person", linewidth=0.9)
+    _line(axes, way.distance_m, masked, REMOTE, "autopilot")
+    at = int(np.flatnonzero(driven)[np.abs(way.lateral_m[driven]).argmax()])
+    axes.plot(
+        way.distance_m[at], way.lateral_m[at] * _CM_PER_M, "o", color=END, markersize=5, label=f"max {worst:.2f} cm"
+    )
+    axes.set_ylim(-_ROOM * max(worst, 0.1), _ROOM * max(worst, 0.1))
+    axes.legend(loc="upper center", ncols=4)
+
+
+def _draw_speed(axes: Any, way: Track, course: Course | None) -> None:
+    axes.set_title("Speed")
+    axes.set_ylabel("speed / km/h")
+    _line(axes, way.distance_m, way.speed_mps * KMH_PER_MPS, REMOTE, "driven")
+    if course is not None:
+        limit = course.speed_limit_mps * KMH_PER_MPS
+        axes.axhline(limit, color=LIMIT, linestyle=(0, (5, 3)), linewidth=1.1, label=f"limit {limit:.0f} km/h")
+        axes.legend(loc="lower right", ncols=2)
+    axes.set_ylim(0.0, max(1.15 * float(axes.get_ylim()[1]), 1.0))
+
+
+def _draw_steering(axes: Any, drive: Drive, way: Track) -> None:
+    axes.set_title("Road-wheel angle, left positive")
+    axes.set_ylabel("angle / deg")
+    _line(axes, way.distance_m, drive.column("vehicle.road_wheel_rad") * DEG_PER_RAD, REMOTE, None)
+
+
+def _draw_modes(axes: Any, drive: Drive, way: Track) -> None:
+    axes.set_yticks([])
+    axes.set_ylabel("mode", rotation=0, ha="right", va="center")
+    axes.grid(visible=False)
+    axes.spines["left"].set_visible(False)
+    mode = drive.column("arbitration.mode")
+    cuts = np.flatnonzero(np.diff(mode) != 0.0) + 1
+    whole = max(float(way.distance_m[-1]), 1.0)
+    for start, end in pairwise((0, *cuts.tolist(), len(mode))):
+        left, right = float(way.distance_m[start]), float(way.distance_m[min(end, len(mode) - 1)])
+        kind = int(mode[start])
+        axes.barh(0.5, right - left, left=left, height=1.0, color=MODES.get(kind, NOTE), linewidth=0.0)
+        if right - left > _NARROW * whole:
+            words = mode_words(kind)
+            axes.text((left + right) / 2, 0.5, words, ha="center", va="center", color="white", fontsize=7.5)
+    axes.set_ylim(0.0, 1.0)
+
+
+def _draw_changes(axes: Any, changes: list[ModeChange]) -> None:
+    """Mark where the controller got the car and where it lost it."""
+    before = None
+    for change in changes:
+        if change.refused:
+            continue
+        if Mode.AUTONOMOUS in (before, change.mode) and before is not None:
+            axes.axvline(change.distance_m, color=MODES.get(change.mode, NOTE), linewidth=1.0, linestyle=(0, (2, 2)))
+        before = change.mode
+
+
+def _line(axes: Any, x: Array, y: Array, colour: str, label: str | None, linewidth: float = 1.3) -> None:
+    kept = thinned(np.nan_to_num(y), _POINTS)
+    axes.plot(x[kept], y[kept], color=colour, linewidth=linewidth, label=label)

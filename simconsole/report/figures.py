@@ -1,0 +1,61 @@
+"""The pictures of a report, as SVG text that is the same for the same drive, byte for byte (matplotlib, on demand)."""
+
+import io
+from typing import Any, Final
+
+from simconsole.report.figure_map import draw_map
+from simconsole.report.figure_traces import draw_traces
+from simconsole.report.metrics import ModeChange, Track
+from simconsole.report.table import Drive
+from simconsole.world.course import Course
+
+STYLE: Final[dict[str, Any]] = {
+    "font.family": "DejaVu Sans",  # ships with matplotlib, so the same everywhere
+    "font.size": 9.0,
+    "axes.titlesize": 10.0,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.edgecolor": "#9aa0a6",
+    "axes.labelcolor": "#3c4043",
+    "axes.linewidth": 0.8,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "grid.color": "#e8eaed",
+    "grid.linewidth": 0.7,
+    "legend.frameon": False,
+    "legend.fontsize": 8.5,
+    "path.simplify": True,
+    "svg.fonttype": "path",
+    "text.color": "#202124",
+    "xtick.color": "#5f6368",
+    "ytick.color": "#5f6368",
+}
+
+
+def map_svg(drive: Drive, way: Track, changes: list[ModeChange], course: Course | None) -> str:
+    """Return the driven path over the theoretical one, start green and end red (the paper's Fig. 9)."""
+    return _svg("map", (9.2, 7.4), lambda figure: draw_map(figure, drive, way, changes, course))
+
+
+def traces_svg(drive: Drive, way: Track, changes: list[ModeChange], course: Course | None) -> str:
+    """Return lateral deviation, speed and steering over the distance driven, with the mode beneath."""
+    return _svg("traces", (9.2, 7.6), lambda figure: draw_traces(figure, drive, way, changes, course))
+
+
+def _svg(name: str, size_inch: tuple[float, float], draw: Any) -> str:
+    from matplotlib import rc_context
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+    from matplotlib.figure import Figure
+
+    # The salt makes the identifiers inside equal in every run, and different between the figures of one page.
+    settings: Any = {**STYLE, "svg.hashsalt": f"simconsole {name}"}
+    text = io.StringIO()
+    with rc_context(settings):
+        figure = Figure(figsize=size_inch, layout="constrained")
+        FigureCanvasSVG(figure)
+        draw(figure)
+        figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
+    svg = text.getvalue()
+    return svg[svg.index("<svg") :]

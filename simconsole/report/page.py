@@ -1,0 +1,149 @@
+"""The report: one HTML file that needs nothing else (shell: it writes the file)."""
+
+from collections.abc import Mapping, Sequence
+from html import escape
+from pathlib import Path
+from typing import Any, Final
+
+from numpy.typing import ArrayLike
+
+from simconsole.errors import RecordingError
+from simconsole.report.figures import map_svg, traces_svg
+from simconsole.report.metrics import metrics, mode_changes, track
+from simconsole.report.table import drive_of
+from simconsole.world.course import Course
+
+_STYLE: Final = """
+:root{color-scheme:light}
+body{font:15px/1.5 system-ui,-apple-system,"Segoe UI",Roboto,"DejaVu Sans",sans-serif;color:#202124;background:#fff;
+max-width:960px;margin:2rem auto;padding:0 1rem}
+h1{font-size:1.5rem;margin:0 0 .2rem}h2{font-size:1.1rem;margin:2rem 0 .5rem}
+p.note{color:#5f6368;margin:.2rem 0 1rem}
+table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums}
+th,td{text-align:left;padding:.28rem .8rem .28rem 0;border-bottom:1px solid #e8eaed;vertical-align:top}
+th{font-weight:600;color:#5f6368}td.n,th.n{text-align:right}
+ul.tiles{display:flex;flex-wrap:wrap;gap:.8rem;padding:0;margin:1rem 0;list-style:none}
+ul.tiles li{flex:1 1 8rem;border:1px solid #e8eaed;border-radius:6px;padding:.6rem .8rem}
+ul.tiles b{display:block;font-size:1.25rem;font-variant-numeric:tabular-nums}
+ul.tiles span{color:#5f6368;font-size:.85rem}
+figure{margin:1rem 0}svg{width:100%;height:auto}
+"""
+
+_LABELS: Final[tuple[tuple[str, str, str], ...]] = (
+    ("duration_s", "Duration", "{:.1f} s"),
+    ("distance_m", "Distance", "{:.1f} m"),
+    ("mean_speed_kmh", "Mean speed", "{:.1f} km/h"),
+    ("max_speed_kmh", "Highest speed", "{:.1f} km/h"),
+    ("speed_limit_kmh", "Speed limit", "{:.0f} km/h"),
+    ("above_limit_s", "Time above the limit", "{:.2f} s"),
+    ("lateral_rms_m", "Lateral error, RMS", "{:.4f} m"),
+    ("lateral_p95_m", "Lateral error, 95 %", "{:.4f} m"),
+    ("lateral_max_m", "Lateral error, largest", "{:.4f} m"),
+    ("lateral_max_at_m", "Largest error after", "{:.0f} m"),
+    ("max_lateral_accel_mps2", "Highest lateral acceleration", "{:.2f} m/s²"),
+)
+
+
+def write_report(
+    path: Path,
+    rows: ArrayLike,
+    columns: Sequence[str],
+    tick_hz: int,
+    course: Course | None,
+    title: str,
+    extra: Mapping[str, object] | None = None,
+    *,
+    first_tick: int = 1,
+) -> dict[str, Any]:
+    """Write the report of a drive and return its metrics (report/metrics.py).
+
+    Args:
+        path: the HTML file.
+        rows: float64 [ticks, columns], one row per tick from `first_tick`.
+        columns: their names, as of `rows.columns`.
+        tick_hz: ticks per second.
+        course: the theoretical path, None in a world without one.
+        title: heading of the page.
+        extra: further facts for the page, in order. Nothing that differs between equal drives belongs here, if two
+            reports of one drive are to be equal.
+        first_tick: number of the first row's tick.
+
+    Raises:
+        RecordingError: an empty drive, rows that do not fit the columns, or a file that cannot be written.
+    """
+    drive = drive_of(rows, columns, tick_hz, first_tick)
+    way = track(drive, course)
+    found = metrics(drive, course, way)
+    changes = mode_changes(drive, way)
+    svgs = map_svg(drive, way, changes, course), traces_svg(drive, way, changes, course)
+    try:
+        path.write_text(page(title, found, svgs, extra or {}), encoding="utf-8", newline="\n")
+    except OSError as error:
+        raise RecordingError(f"{path}: cannot be written: {error.strerror}") from error
+    return found
+
+
+def page(title: str, found: Mapping[str, Any], svgs: Sequence[str], extra: Mapping[str, object]) -> str:
+    """Return the page's HTML."""
+    parts = [
+        "<!DOCTYPE html>",
+        '<html lang="en"><head><meta charset="utf-8">',
+        '<meta name="viewport" content="width=device-width,initial-scale=1">',
+        f"<title>{escape(title)}</title><style>{_STYLE}</style></head><body>",
+        f"<h1>{escape(title)}</h1>",
+        '<p class="note">simconsole drive report. Lateral errors are those of base_link (centre of the rear axle) '
+        "from the theoretical path, over every tick in which the autopilot drove.</p>",
+        _tiles(found),
+        *(f"<figure>{svg}</figure>" for svg in svgs),
+        "<h2>Metrics</h2>",
+        _metrics_table(found),
+        "<h2>Mode changes</h2>",
+        _changes_table(found),
+        *(("<h2>Drive</h2>", _extra_table(extra)) if extra else ()),
+        "</body></html>",
+        "",
+    ]
+    return "\n".join(parts)
+
+
+def _tiles(found: Mapping[str, Any]) -> str:
+    part = found["autonomous"] or {}
+    shown = [
+        (f"{found['distance_m'] / 1000.0:.2f} km", "driven in all"),
+        (f"{found['duration_s']:.0f} s", "duration"),
+    ]
+    if part:
+        shown.append((f"{part['distance_m'] / 1000.0:.2f} km", "by the autopilot"))
+        shown.append((f"{part['mean_speed_kmh']:.1f} km/h", "mean speed of the autopilot"))
+    if part.get("lateral_rms_m") is not None:
+        shown.append((f"{part['lateral_rms_m'] * 100.0:.2f} cm", "lateral error, RMS"))
+        shown.append((f"{part['lateral_max_m'] * 100.0:.2f} cm", "lateral error, largest"))
+    return f"<ul class=tiles>{''.join(f'<li><b>{value}</b><span>{name}</span></li>' for value, name in shown)}</ul>"
+
+
+def _metrics_table(found: Mapping[str, Any]) -> str:
+    part = found["autonomous"] or {}
+    lines = ["<table><tr><th></th><th class=n>whole drive</th><th class=n>autopilot</th></tr>"]
+    for key, label, form in _LABELS:
+        cells = [form.format(values[key]) if values.get(key) is not None else "-" for values in (found, part)]
+        lines.append(f"<tr><th>{label}</th><td class=n>{cells[0]}</td><td class=n>{cells[1]}</td></tr>")
+    return "\n".join((*lines, "</table>"))
+
+
+def _changes_table(found: Mapping[str, Any]) -> str:
+    lines = [
+        "<table><tr><th class=n>tick</th><th class=n>time</th><th class=n>driven</th><th>mode</th><th>reason</th></tr>"
+    ]
+    for change in found["mode_changes"]:
+        mode = f"stays {change['mode']}" if change["refused"] else change["mode"]
+        lines.append(
+            f"<tr><td class=n>{change['tick']}</td><td class=n>{change['t_s']:.2f} s</td>"
+            f"<td class=n>{change['distance_m']:.1f} m</td><td>{escape(mode)}</td>"
+            f"<td>{escape(change['reason'])}</td></tr>"
+        )
+    return "\n".join((*lines, "</table>"))
+
+
+def _extra_table(extra: Mapping[str, object]) -> str:
+    lines = [f"<tr><th>{escape(str(key))}</th><td>{escape(str(value))}</td></tr>" for key, value in extra.items()]
+    return "\n".join(("<table>", *lines, "</table>"))

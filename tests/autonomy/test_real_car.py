@@ -1,0 +1,55 @@
+"""The tracker drives the house's own car, without bridge and arbitration: what is left is tracking alone."""
+
+import math
+
+import numpy as np
+
+from simconsole.autonomy.tracker import Sighting, Tracker
+from simconsole.compiling import compiled
+from simconsole.profile_files import load
+from simconsole.profiles.vehicle import VehicleProfile
+from simconsole.rows import COMMAND_AT, PLATFORM_AT, VEHICLE_AT
+from simconsole.signals import VehicleCommand, VehicleState
+from simconsole.vehicle.platform import Ground, Pose
+from simconsole.vehicle.registry import build
+from simconsole.world.course import Course
+
+TICK_HZ = 250
+TICKS_PER_COMMAND = 5
+
+
+def pedals(accel_mps2: float, vehicle: VehicleState) -> tuple[float, float]:
+    coast = vehicle.coast_accel_mps2
+    if accel_mps2 > coast:
+        return min(1.0, (accel_mps2 - coast) / max(0.1, vehicle.full_throttle_accel_mps2 - coast)), 0.0
+    return 0.0, min(1.0, (coast - accel_mps2) / max(0.1, coast - vehicle.full_brake_accel_mps2))
+
+
+def test_a_lap_in_the_hatchback_keeps_the_bars(course: Course) -> None:
+    car = build(load("vehicles", "hatchback", VehicleProfile), Pose(0.0, 0.0, 0.0), Ground(1.0, 0.0, 0.0))  # type: ignore[arg-type]
+    step, tracker = compiled(car.step), Tracker(course)
+    row = np.zeros(PLATFORM_AT + len(car.initial_state))
+    row[VEHICLE_AT:PLATFORM_AT], row[PLATFORM_AT:] = car.initial_vehicle, car.initial_state
+    wheel = accel = 0.0
+    lateral: list[float] = []
+    tick = 0
+    while (tracker.s_m or 0.0) < course.length_m:
+        vehicle = VehicleState(*row[VEHICLE_AT:PLATFORM_AT].tolist())
+        if tick % TICKS_PER_COMMAND == 0:
+            motion = (vehicle.vx_mps, vehicle.vy_mps, vehicle.yaw_rate_radps)
+            answer = tracker.step(Sighting(vehicle.x_m, vehicle.y_m, vehicle.yaw_rad, *motion))
+            wheel, accel = answer.road_wheel_rad, answer.accel_mps2
+            lateral.append(tracker.lateral_m)
+        throttle, brake = pedals(accel, vehicle)
+        after = row.copy()
+        after[COMMAND_AT:VEHICLE_AT] = VehicleCommand(
+            wheel, throttle, brake, 0.0, 0.0, gear=1.0, automatic=1.0,
+            target_speed_mps=0.0, target_x_m=0.0, target_y_m=0.0, target_yaw_rad=0.0, gate_active=0.0,
+        )  # fmt: skip
+        step(row, after, car.parameters, 1000 // TICK_HZ)
+        row, tick = after, tick + 1
+        assert tick < 300 * TICK_HZ, "the lap takes too long"
+    errors = np.array(lateral)
+    assert math.sqrt(float(np.mean(errors**2))) < 0.02
+    assert float(np.abs(errors).max()) < 0.08
+    assert course.length_m / (tick / TICK_HZ) > 35.0 / 3.6

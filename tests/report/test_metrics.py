@@ -1,0 +1,78 @@
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from simconsole.report.metrics import metrics, mode_changes, track
+from simconsole.report.table import drive_of
+from simconsole.world.course import Course
+
+
+def test_metrics_of_a_known_drive(sample: Any, course: Course) -> None:
+    found = metrics(drive_of(*sample), course)
+    assert found["ticks"] == 1500
+    assert found["duration_s"] == 30.0
+    assert found["distance_m"] == pytest.approx(300.0, abs=1.5)
+    assert found["mean_speed_kmh"] == pytest.approx(36.0, abs=0.2)
+    assert found["max_speed_kmh"] == pytest.approx(36.0)
+    assert found["speed_limit_kmh"] == pytest.approx(50.0)
+    assert found["above_limit_s"] == 0.0
+    assert found["max_lateral_accel_mps2"] == 1.5
+    assert found["time_in_mode_s"] == {"MANUAL": 10.0, "AUTONOMOUS": 20.0}
+
+
+def test_lateral_errors_are_those_of_the_autonomous_part_only(sample: Any, course: Course) -> None:
+    part = metrics(drive_of(*sample), course)["autonomous"]
+    assert part["duration_s"] == 20.0
+    assert part["distance_m"] == pytest.approx(200.0, abs=1.0)
+    assert part["lateral_rms_m"] == pytest.approx(0.02 / math.sqrt(2.0), rel=0.03)
+    assert part["lateral_max_m"] == pytest.approx(0.02, rel=1e-3)
+    assert part["lateral_p95_m"] == pytest.approx(0.02 * math.sin(0.95 * math.pi / 2.0), rel=0.01)
+    assert 50.0 <= part["lateral_max_at_m"] <= 251.0
+
+
+def test_mode_changes_and_refusals_in_order(sample: Any, course: Course) -> None:
+    drive = drive_of(*sample)
+    changes = metrics(drive, course)["mode_changes"]
+    assert [(c["tick"], c["mode"], c["refused"]) for c in changes] == [
+        (1, "MANUAL", False),
+        (201, "MANUAL", True),
+        (251, "AUTONOMOUS", False),
+        (1251, "MANUAL", False),
+    ]
+    assert [c["reason"] for c in changes] == [
+        "drive started",
+        "refused: brake is pressed",
+        "driver asked",
+        "driver turned the wheel",
+    ]
+    assert changes[2]["t_s"] == pytest.approx(5.02)
+    assert mode_changes(drive, track(drive, course))[2].x_m == pytest.approx(course.at(2640.0).x_m, abs=1e-6)
+
+
+def test_distance_runs_on_over_the_start_line(sample: Any, course: Course) -> None:
+    way = track(drive_of(*sample), course)
+    assert way.s_m[-1] - way.s_m[0] == pytest.approx(10.0 * 1499 / 50, abs=1e-6)
+    assert (np.diff(way.s_m) > 0.0).all()
+
+
+def test_a_vehicle_that_is_put_elsewhere_did_not_drive_there(sample: Any, course: Course) -> None:
+    rows = sample.rows.copy()
+    rows[750:, sample.columns.index("vehicle.y_m")] += 40.0
+    found = metrics(drive_of(rows, sample.columns, 50), course)
+    assert found["distance_m"] == pytest.approx(300.0, abs=2.0)
+
+
+def test_without_course_or_autopilot_those_parts_are_none(sample: Any, course: Course) -> None:
+    alone = metrics(drive_of(*sample), None)
+    assert alone["speed_limit_kmh"] is None
+    assert alone["autonomous"]["lateral_rms_m"] is None
+    assert alone["autonomous"]["distance_m"] == pytest.approx(200.0, abs=1.0)
+    assert metrics(drive_of(sample.rows[:200], sample.columns, 50), course)["autonomous"] is None
+
+
+def test_speeding_is_counted(sample: Any, course: Course) -> None:
+    rows = sample.rows.copy()
+    rows[100:125, sample.columns.index("vehicle.vx_mps")] = 14.0
+    assert metrics(drive_of(rows, sample.columns, 50), course)["above_limit_s"] == 0.5

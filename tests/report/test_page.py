@@ -1,0 +1,65 @@
+import subprocess
+import sys
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from simconsole.errors import RecordingError
+from simconsole.report.page import write_report
+from simconsole.world.course import Course
+
+
+class Outside(HTMLParser):
+    """Collects everything a page would have to fetch, and its elements."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.fetched: list[str] = []
+        self.elements: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append(tag)
+        for key, value in attrs:
+            if key in ("src", "href", "xlink:href", "data") and value and not value.startswith("#"):
+                self.fetched.append(value)
+
+
+def test_page_is_whole_and_needs_nothing_else(tmp_path: Path, sample: Any, course: Course) -> None:
+    path = tmp_path / "report.html"
+    found = write_report(path, *sample, course, "Drive <1> & more", {"Vehicle": "hatchback", "Note": "a < b"})
+    text = path.read_text()
+    page = Outside()
+    page.feed(text)
+    assert page.fetched == []
+    assert page.elements.count("svg") == 2
+    assert "script" not in page.elements
+    assert "Drive &lt;1&gt; &amp; more" in text
+    assert "a &lt; b" in text
+    assert "driver turned the wheel" in text
+    assert f"{found['autonomous']['lateral_rms_m'] * 100:.2f} cm" in text
+    assert len(text) < 400_000
+
+
+def test_same_drive_same_bytes(tmp_path: Path, sample: Any, course: Course) -> None:
+    first, second = tmp_path / "a.html", tmp_path / "b.html"
+    assert write_report(first, *sample, course, "Drive") == write_report(second, *sample, course, "Drive")
+    assert first.read_bytes() == second.read_bytes()
+
+
+def test_drive_without_course_is_reported_too(tmp_path: Path, sample: Any) -> None:
+    found = write_report(tmp_path / "ball.html", *sample, None, "Ball")
+    assert found["autonomous"]["lateral_rms_m"] is None
+    assert "no course in this world" in (tmp_path / "ball.html").read_text()
+
+
+def test_unwritable_file_is_one_line(tmp_path: Path, sample: Any) -> None:
+    with pytest.raises(RecordingError, match="cannot be written") as caught:
+        write_report(tmp_path / "no" / "report.html", *sample, None, "Drive")
+    assert "\n" not in str(caught.value)
+
+
+def test_importing_the_report_loads_no_matplotlib() -> None:
+    code = "import simconsole.report.page, sys; raise SystemExit('matplotlib' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
