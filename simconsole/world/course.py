@@ -139,7 +139,8 @@ class Course:
             places = places + along
             if float(np.abs(along).max()) < _CLOSE_M:
                 break
-        for index in np.flatnonzero(np.abs(along) >= _CLOSE_M).tolist():  # a vehicle that was put elsewhere
+        astray = (np.abs(along) >= _CLOSE_M) | (np.abs(lateral) > _LOST_M)
+        for index in np.flatnonzero(astray).tolist():  # a vehicle that was put elsewhere
             found = self.project(float(x_m[index]), float(y_m[index]), float(places[index]))
             places[index], lateral[index] = found.s_m, found.lateral_m
         return places, lateral
