@@ -11,12 +11,19 @@ from simconsole.scene.timeline import PLOTS
 TIMELINE: Final = "sim_time"
 MAP: Final = "map"
 """Root of the flat copies: a picture's y axis points down, the map's up, so they have coordinates of their own."""
+AHEAD_M: Final = 14.0
 DARK: Final = (13, 17, 23)
 SKY: Final = (38, 48, 60)
 
 
-def blueprint(profile: SceneProfile, path: Array | None) -> rrb.Blueprint:
-    """Return the operators' screen; `path` [N, 2 or 3], if any, is what the map shows whole."""
+def blueprint(profile: SceneProfile, scale: float, path: Array | None) -> rrb.Blueprint:
+    """Return the operators' screen.
+
+    Args:
+        profile: where the camera stands behind a car.
+        scale: size of the vehicle against a car's.
+        path: [N, 2 or 3] m, what the map shows whole, if anything.
+    """
     so_far = rrb.VisibleTimeRanges(
         timeline=TIMELINE,
         start=rrb.TimeRangeBoundary.infinite(),
@@ -30,7 +37,9 @@ def blueprint(profile: SceneProfile, path: Array | None) -> rrb.Blueprint:
         line_grid=rrb.LineGrid3D(visible=False),
         # The origin moves with the car and turns with it, so a camera that stands still follows.
         eye_controls=rrb.EyeControls3D(
-            position=(-profile.chase_back_m, 0.0, profile.chase_up_m), look_target=(14.0, 0.0, 0.0), eye_up=(0, 0, 1)
+            position=(-scale * profile.chase_back_m, 0.0, scale * profile.chase_up_m),
+            look_target=(scale * AHEAD_M, 0.0, 0.0),
+            eye_up=(0, 0, 1),
         ),
         overrides={"world/path/driven": so_far},
     )

@@ -42,6 +42,7 @@ GAP_M: Final = 4.0
 LIFT_M: Final = 0.02
 """Height between two layers of paint, so that the nearer one is seen."""
 GROUND_MARGIN_M: Final = 400.0
+CAR_LENGTH_M: Final = 4.0
 POST_M: Final = 3.4
 HEAD_M: Final = 0.9
 
@@ -68,6 +69,16 @@ class Dimensions(NamedTuple):
     width_m: float
     height_m: float
     rear_overhang_m: float
+
+    @property
+    def is_ball(self) -> bool:
+        """Whether it is as long as wide as high."""
+        return self.length_m == self.width_m == self.height_m
+
+    @property
+    def scale(self) -> float:
+        """Size against a car: how much nearer the camera of a small robot stands."""
+        return min(1.0, max(0.1, self.length_m / CAR_LENGTH_M))
 
 
 class WorldShapes(NamedTuple):

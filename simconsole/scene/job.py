@@ -2,6 +2,7 @@
 
 from pathlib import Path
 from typing import Any, Final, NamedTuple
+from zipfile import BadZipFile
 
 import msgspec
 import numpy as np
@@ -60,7 +61,7 @@ def load_job(path: Path) -> Job:
         StationError: missing, or not a scene job.
     """
     try:
-        with np.load(path, allow_pickle=False) as content:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as content:
             return Job(
                 content["rows"],
                 content["ticks"],
@@ -72,7 +73,7 @@ def load_job(path: Path) -> Job:
             )
     except OSError as problem:
         raise StationError(f"{path}: cannot be read: {problem.strerror or problem}") from None
-    except (ValueError, KeyError, TypeError, EOFError) as problem:
+    except (BadZipFile, ValueError, KeyError, TypeError, EOFError) as problem:
         raise StationError(f"{path}: is not a scene job: {problem}") from None
 
 

@@ -14,6 +14,7 @@ from simconsole.profiles.view import SceneProfile
 from simconsole.scene.blueprint import MAP, TIMELINE, blueprint
 from simconsole.scene.entities import (
     ASPHALT,
+    BODY,
     GREEN,
     GROUND,
     HEAD_M,
@@ -52,7 +53,9 @@ class RerunView:
         self._stream = rr.RecordingStream(APPLICATION, recording_id=path.stem, send_properties=True)
         rr.set_strict_mode(True)
         try:
-            self._stream.save(path, default_blueprint=blueprint(profile, None if world is None else world.path))
+            self._stream.save(
+                path, default_blueprint=blueprint(profile, dimensions.scale, None if world is None else world.path)
+            )
         except (OSError, RuntimeError) as problem:
             raise StationError(f"{path}: the scene cannot be written: {problem}") from None
         self._still("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
@@ -68,6 +71,8 @@ class RerunView:
             self._still(lane, rr.StateConfiguration(values=list(colours), colors=list(colours.values())))
         if world is not None:
             self._world(world)
+        # Single log calls wait in a batch; a process killed from here on leaves at least the world behind.
+        self._flush()
 
     def add(self, piece: Piece) -> None:
         """Write what a piece of the drive adds, one call per entity."""
@@ -85,16 +90,26 @@ class RerunView:
         Raises:
             StationError: the queue could not be written in time; the file holds what came before.
         """
+        self._flush()
+        self._stream.disconnect()
+
+    def _flush(self) -> None:
         try:
             self._stream.flush(timeout_sec=self._flush_s)
         except (RuntimeError, TimeoutError, ValueError) as problem:
             raise StationError(f"the scene was not written whole within {self._flush_s:g} s: {problem}") from None
-        self._stream.disconnect()
 
     def _still(self, path: str, *shapes: Any) -> None:
         self._stream.log(path, *shapes, static=True)
 
     def _car(self, dimensions: Dimensions) -> None:
+        if dimensions.is_ball:
+            half = 0.5 * dimensions.height_m
+            ball = rr.Ellipsoids3D(
+                centers=[(0.0, 0.0, half)], half_sizes=[(half,) * 3], colors=[BODY], fill_mode="solid"
+            )
+            self._still("world/ego/body", ball)
+            return
         solids = car_solids(dimensions)
         self._still(
             "world/ego/body",

@@ -1,0 +1,68 @@
+"""A short made-up drive with one of everything that the scene shows."""
+
+import numpy as np
+
+from simconsole.profiles.view import SceneProfile
+from simconsole.rows import columns
+from simconsole.scene.entities import Dimensions
+from simconsole.scene.job import Job
+from simconsole.signals import Event, Mode, Reason
+from simconsole.vehicle.platform import Pose
+from simconsole.world.drawing import Drawing
+from simconsole.world.sheet import Light
+
+COLUMNS = columns(Pose)
+TICK_HZ = 250
+CHANGES = (  # from tick, mode, reason
+    (1, Mode.PARKED, Reason.START),
+    (300, Mode.MANUAL, Reason.PERSON_ASKED),
+    (1003, Mode.AUTONOMOUS, Reason.PERSON_ASKED),
+    (2001, Mode.TAKEOVER_REQUESTED, Reason.COMMAND_STALE),
+    (2503, Mode.MANUAL, Reason.STEERING_OVERRIDE),
+)
+
+
+def rows(count: int) -> np.ndarray:
+    """Return `count` ticks from tick 1: parked, then driven round a circle of 50 m at up to 10 m/s."""
+    tick = np.arange(1, count + 1)
+    table = np.zeros((count, len(COLUMNS)))
+
+    def put(name: str, values: object) -> None:
+        table[:, COLUMNS.index(name)] = values
+
+    speed = np.clip((tick - 300) / TICK_HZ * 2.0, 0.0, 10.0)
+    angle = np.cumsum(speed) / TICK_HZ / 50.0
+    put("vehicle.x_m", 50.0 * np.sin(angle))
+    put("vehicle.y_m", 50.0 * (1.0 - np.cos(angle)))
+    put("vehicle.yaw_rad", angle)
+    put("vehicle.vx_mps", speed)
+    put("vehicle.road_wheel_rad", 0.05)
+    put("vehicle.engine_radps", 200.0)
+    put("vehicle.gear", np.where(tick < 300, 0.0, np.where(tick < 900, 1.0, 2.0)))
+    put("command.throttle", 0.25)
+    for start, mode, reason in CHANGES:
+        table[start - 1 :, COLUMNS.index("arbitration.mode")] = mode
+        table[start - 1 :, COLUMNS.index("arbitration.reason")] = reason
+    put("arbitration.takeover_stage", (tick >= 2001) * 1.0 - (tick >= 2503))
+    put("arbitration.remote_lateral", (tick >= 1003) * 1.0 - (tick >= 2503))
+    put("arbitration.refusal", np.where((tick >= 800) & (tick < 950), float(Reason.REFUSED_BRAKE_PRESSED), 0.0))
+    put("events.events", np.where(tick == 1501, float(Event.MARK | Event.REQUEST_MANUAL), 0.0))
+    return table
+
+
+def drawing() -> Drawing:
+    """Return a round road."""
+    angle = np.linspace(0.0, 2.0 * np.pi, 121)
+    rim = np.column_stack((np.sin(angle), 1.0 - np.cos(angle)))
+    path = 50.0 * rim
+    square = np.array(((0.0, -2.0), (3.0, -2.0), (3.0, 2.0), (0.0, 2.0)))
+    inside, outside = (np.add(radius * rim, (0.0, 50.0 - radius)) for radius in (48.0, 55.0))
+    return Drawing((square,), (), (inside, outside), (path,), (square + 3.0,), (), (Light(5.0, -3.0, 0.0),), path)
+
+
+def job(count: int = 3000, with_course: bool = True) -> Job:
+    """Return the drive as a scene job."""
+    return Job(
+        rows(count), np.arange(1, count + 1), COLUMNS, TICK_HZ, Dimensions(4.2, 1.8, 1.5, 0.8),
+        drawing() if with_course else None, SceneProfile(),
+    )  # fmt: skip

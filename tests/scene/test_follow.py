@@ -1,0 +1,59 @@
+import subprocess
+import sys
+from pathlib import Path
+
+from simconsole.scene.job import save_job
+
+from .drives import job
+from .test_export import DRIVE, WORLD, contents, rerun_rrd
+
+# The live drive is fed from a job's rows, 100 ticks at a time, as a ring would give them.
+FEEDER = """
+import sys
+from pathlib import Path
+from simconsole.rows import Snapshot
+from simconsole.scene.follow import Ports, follow
+from simconsole.scene.job import load_job
+
+job = load_job(Path(sys.argv[1]))
+given = 0
+def new_ticks():
+    global given
+    start, given = given, min(given + 100, len(job.ticks))
+    return [Snapshot(int(job.ticks[i]), job.tick_hz, job.rows[i]) for i in range(start, given)]
+def stop():
+    return given >= len(job.ticks)
+if sys.argv[3] == "die":
+    def stop():
+        if given >= 2000:
+            import os, signal
+            os.kill(os.getpid(), signal.SIGKILL)
+follow(Ports(new_ticks, stop), job._replace(profile=job.profile.__class__(chunk_s=0.05)), Path(sys.argv[2]))
+"""
+
+
+def follow_apart(folder: Path, ending: str) -> tuple[int, Path]:
+    save_job(folder / "job.npz", job())
+    path = folder / "scene.rrd"
+    done = subprocess.run(
+        [sys.executable, "-c", FEEDER, str(folder / "job.npz"), str(path), ending], capture_output=True, check=False
+    )
+    return done.returncode, path
+
+
+def test_a_live_drive_is_recorded_whole(tmp_path: Path) -> None:
+    code, path = follow_apart(tmp_path, "stop")
+    assert code == 0
+    assert rerun_rrd("verify", str(path)).returncode == 0
+    rows = contents(path)
+    assert set(rows) >= WORLD | DRIVE
+    assert rows["/world/ego"] == 600
+    assert rows["/log"] == 7
+
+
+def test_a_killed_scene_leaves_what_it_had_written(tmp_path: Path) -> None:
+    code, path = follow_apart(tmp_path, "die")
+    assert code == -9
+    printed = rerun_rrd("print", str(path))
+    assert printed.returncode == 0
+    assert "/world/road/surface" in printed.stdout
