@@ -24,6 +24,7 @@ from simconsole.hud.view import HudView
 
 START_DEG: Final = -130.0
 SWEEP_DEG: Final = 260.0
+PIECE_DEG: Final = 20.0
 FLAT: Final = -0.78
 """Height of the dial's flat foot below its centre, in radii (upwards positive)."""
 
@@ -64,10 +65,19 @@ def _band(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]:
         at_clock(cx, cy, distance * radius, clock + offset)
         for distance, offset in ((0.82, -0.9), (0.985, -0.45), (0.985, 0.45), (0.82, 0.9))
     )
-    items: list[DrawItem] = [track]
-    if clock - START_DEG >= 0.2:
-        items.append(Arc(cx, cy, 0.90 * radius, 0.85 * radius, START_DEG, clock, MUTED, "dial.band"))
-    return [*items, Polygon(needle, colour, "dial.needle")]
+    return [track, *_filled(cx, cy, radius, clock), Polygon(needle, colour, "dial.needle")]
+
+
+def _filled(cx: float, cy: float, radius: float, clock_deg: float) -> list[DrawItem]:
+    """Return the filled part of the band in pieces, so that only its last piece changes from frame to frame."""
+    items: list[DrawItem] = []
+    start = START_DEG
+    while clock_deg - start >= 0.2:
+        # Each full piece reaches a little under the next: no gap shows between their smoothed ends.
+        end = min(clock_deg, start + PIECE_DEG)
+        items.append(Arc(cx, cy, 0.90 * radius, 0.85 * radius, start, min(clock_deg, end + 0.4), MUTED, "dial.band"))
+        start += PIECE_DEG
+    return items
 
 
 def _scale(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]:

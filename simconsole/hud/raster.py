@@ -55,6 +55,17 @@ class Painter:
                 self._kept.move_to_end(item)
             surface.blit(*sprite)
 
+    def repaint(
+        self, surface: pygame.Surface, before: Sequence[DrawItem], after: Sequence[DrawItem]
+    ) -> list[pygame.Rect]:
+        """Turn a surface that shows `before` into `after`, drawing only where they differ; return these areas."""
+        areas = _joined([_area(item) for item in set(before) ^ set(after)])
+        for area in areas:
+            surface.set_clip(area)
+            self.paint(surface, [item for item in after if _area(item).colliderect(area)])
+        surface.set_clip(None)
+        return areas
+
     def _sprite(self, item: DrawItem) -> tuple[pygame.Surface, tuple[int, int]]:
         return self._words(item) if isinstance(item, Text) else _shape(item)
 
@@ -70,6 +81,26 @@ class Painter:
         # The line's top is one ascent above the baseline, and the baseline half a capital below the middle.
         top = item.y + 0.5 * item.cap_px - font.get_ascent() / WORDS_SCALE
         return drawn, (round(item.x - shift), round(top))
+
+
+@lru_cache(maxsize=4 * KEPT)
+def _area(item: DrawItem) -> pygame.Rect:
+    """Return the pixels that an item may touch, smoothed edges and letters below the line included."""
+    box = bounds(item) if isinstance(item, Rect | Text) else _extent(item)
+    margin = 3 + (math.ceil(0.5 * item.cap_px) if isinstance(item, Text) else 0)
+    left, top = math.floor(box.x) - margin, math.floor(box.y) - margin
+    return pygame.Rect(left, top, math.ceil(box.right) + margin - left, math.ceil(box.bottom) + margin - top)
+
+
+def _joined(areas: Sequence[pygame.Rect]) -> list[pygame.Rect]:
+    """Return areas that do not overlap and cover all the given ones."""
+    apart: list[pygame.Rect] = []
+    for area in areas:
+        whole = area
+        while (hit := whole.collidelist(apart)) >= 0:
+            whole = whole.union(apart.pop(hit))
+        apart.append(whole)
+    return apart
 
 
 def _rectangle(surface: pygame.Surface, item: Rect) -> None:

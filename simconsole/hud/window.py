@@ -96,8 +96,7 @@ class Window:
         items = layout(self._content(snapshot, now_s), self._screen)
         if items == self._drawn:
             return
-        self._painter.paint(self._surface, items)
-        pygame.display.flip()
+        pygame.display.update(self._painter.repaint(self._surface, self._drawn, items))
         self._drawn = items
 
     def _content(self, snapshot: Snapshot | None, now_s: float) -> HudView:

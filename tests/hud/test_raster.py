@@ -5,7 +5,19 @@ import pygame
 import pytest
 from numpy.typing import NDArray
 
-from simconsole.hud.draw import Arc, Box, Polygon, Rect, Text, around, bounds, contrast, fit_cap_px, text_width_px
+from simconsole.hud.draw import (
+    Arc,
+    Box,
+    DrawItem,
+    Polygon,
+    Rect,
+    Text,
+    around,
+    bounds,
+    contrast,
+    fit_cap_px,
+    text_width_px,
+)
 from simconsole.hud.layout import layout, sample_views
 from simconsole.hud.raster import Painter, render, render_png, snapshot_png
 from simconsole.hud.screen import Screen
@@ -94,6 +106,29 @@ def test_a_painter_draws_the_same_picture_again(painter: Painter) -> None:
         render(other, SCREEN, painter)
     assert pixels(render(shown, SCREEN, painter)).tobytes() == first
     assert pixels(render(shown, SCREEN)).tobytes() == first
+
+
+def test_repainting_what_changed_gives_the_whole_picture(painter: Painter) -> None:
+    rng = np.random.default_rng(11)
+    kinds = list(states().values())
+    shown = kinds[0]
+    surface, before = pygame.Surface((SCREEN.width_px, SCREEN.height_px)), list[DrawItem]()
+    for _ in range(30):
+        shown = kinds[rng.integers(len(kinds))] if rng.random() < 0.4 else shown
+        shown = shown._replace(rpm=float(rng.uniform(0, 7500)), throttle=float(rng.random()), t_s=float(rng.random()))
+        after = layout(shown, SCREEN)
+        painter.repaint(surface, before, after)
+        before = after
+        assert (pixels(surface) == pixels(render(shown, SCREEN, painter))).all(), f"seed 11, {shown}"
+
+
+def test_a_moving_needle_repaints_a_small_part(painter: Painter) -> None:
+    surface = pygame.Surface((SCREEN.width_px, SCREEN.height_px))
+    one, other = (layout(states()["MANUAL"]._replace(rpm=rpm), SCREEN) for rpm in (3200.0, 3230.0))
+    painter.paint(surface, one)
+    areas = painter.repaint(surface, one, other)
+    assert sum(area.w * area.h for area in areas) < 0.2 * SCREEN.width_px * SCREEN.height_px
+    assert painter.repaint(surface, other, other) == []
 
 
 def drawn(item: Rect | Polygon | Arc | Text) -> NDArray[np.bool_]:

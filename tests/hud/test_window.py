@@ -103,7 +103,8 @@ def test_an_equal_picture_is_not_drawn_again(monkeypatch: pytest.MonkeyPatch) ->
     opened = Window(PROFILE, HudSettings())
     opened.frame(snapshot(1), 1.0)
     painted: list[int] = []
-    monkeypatch.setattr(opened._painter, "paint", lambda surface, items: painted.append(len(items)))
+    monkeypatch.setattr(window.pygame.display, "update", lambda areas: None)
+    monkeypatch.setattr(opened._painter, "repaint", lambda surface, before, after: painted.append(len(after)))
     opened.frame(snapshot(2), 1.1)
     assert painted == []
     opened.frame(None, 1.2)
