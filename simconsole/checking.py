@@ -1,0 +1,123 @@
+"""Drive one scenario headless and judge it: bounds on columns, and its golden. Worker of `simconsole check`."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from simconsole import golden
+from simconsole.assembly import assemble
+from simconsole.compiling import compiled
+from simconsole.devices.script import ScriptSource
+from simconsole.devices.settings import settings
+from simconsole.drive import Cast, run
+from simconsole.errors import ProfileError
+from simconsole.kernels import Row
+from simconsole.pacing import UnpacedPacer
+from simconsole.ports import DeviceSource, NobodySeated
+from simconsole.profiles.scenario import Check, ScenarioProfile
+from simconsole.recording.framing import START_OF_CHAIN, chain
+from simconsole.rows import Snapshot
+from simconsole.scripted import ScriptedCommands
+from simconsole.session_files import load_scenario, resolve
+
+
+class Verdict(NamedTuple):
+    """What became of one scenario."""
+
+    scenario: str
+    passed: bool
+    ticks: int
+    digest: str
+    problems: list[str]
+
+
+class MemoryRecorder:
+    """Keeps every row, and the chained hash that a log would have."""
+
+    def __init__(self, ticks: int, width: int) -> None:
+        self.rows = np.empty((ticks, width))
+        self.ticks = 0
+        self.digest = START_OF_CHAIN
+
+    def write(self, snapshot: Snapshot) -> None:
+        """Keep one tick."""
+        self.rows[self.ticks] = snapshot.row
+        self.ticks += 1
+        self.digest = chain(self.digest, snapshot.tick, snapshot.row.tobytes())
+
+
+def check_scenario(name_or_path: str, update_golden: bool = False) -> Verdict:
+    """Drive a scenario and compare; with `update_golden`, what was driven becomes the golden (bounds still count).
+
+    Raises:
+        ProfileError: scenario or golden cannot be read, or a bound names a column that no row has.
+    """
+    scenario, path = load_scenario(name_or_path)
+    recorder, columns = drive_scenario(scenario)
+    problems = [problem for check in scenario.checks if (problem := judge(check, recorder.rows, columns, scenario))]
+    tick_hz = scenario.session.mode.tick_hz
+    driven = golden.sample(recorder.rows, tick_hz, scenario.golden_hz, columns, recorder.digest.hex())
+    golden_path = path.parent / "golden" / f"{path.stem}.csv"
+    if update_golden:
+        golden_path.parent.mkdir(exist_ok=True)
+        golden_path.write_text(golden.write(driven), "utf-8")
+    else:
+        problems += _against_golden(golden_path, driven)
+    return Verdict(path.stem, not problems, recorder.ticks, recorder.digest.hex(), problems)
+
+
+def drive_scenario(scenario: ScenarioProfile) -> tuple[MemoryRecorder, tuple[str, ...]]:
+    """Drive a scenario without files and return its rows and their columns."""
+    resolved = resolve(scenario.session)
+    console, state = assemble(resolved, compiled)
+    tick_hz = console.tick_hz
+    ticks = round(scenario.duration_s * tick_hz)
+    devices: DeviceSource = NobodySeated()
+    if scenario.script is not None:
+        devices = ScriptSource(scenario.script, settings(resolved.cockpit, tick_hz), tick_hz=tick_hz)
+    recorder = MemoryRecorder(ticks, console.width)
+    commands = ScriptedCommands(scenario.remote, scenario.events, tick_hz)
+    run(console, state, Cast(devices, commands, recorder, (), UnpacedPacer()), ticks)
+    return recorder, console.columns
+
+
+def judge(check: Check, rows: Row, columns: tuple[str, ...], scenario: ScenarioProfile) -> str | None:
+    """Return what is wrong with one bound, None if it holds.
+
+    Raises:
+        ProfileError: the bound names a column that no row has.
+    """
+    if check.column not in columns:
+        raise ProfileError(f"{scenario.title}: checks: column {check.column}: value unknown: a column of a row")
+    tick_hz = scenario.session.mode.tick_hz
+    first, last = round(check.from_s * tick_hz), len(rows)
+    if check.at_s is not None:
+        first, last = round(check.at_s * tick_hz) - 1, round(check.at_s * tick_hz)
+    elif check.until_s is not None:
+        last = round(check.until_s * tick_hz)
+    values = rows[max(0, first) : last, columns.index(check.column)]
+    low = -np.inf if check.min is None else check.min
+    high = np.inf if check.max is None else check.max
+    good = (values >= low) & (values <= high)
+    if len(values) and good.all():
+        return None
+    if not len(values):
+        return f"{check.column}: no tick between {check.from_s} s and {check.until_s} s"
+    at = int(np.flatnonzero(~good)[0])
+    return f"tick {max(0, first) + at + 1}: {check.column}: {values[at]!r} not in {low} to {high}"
+
+
+def _against_golden(path: Path, driven: golden.Golden) -> list[str]:
+    if not path.is_file():
+        return [f"{path}: no golden; accept one with --update-golden"]
+    accepted = golden.read(path.read_text("utf-8"), str(path))
+    if accepted.hash == driven.hash and accepted.columns == driven.columns:
+        return []
+    difference = golden.first_difference(accepted, driven)
+    if difference is None:
+        return [f"{path}: hash {driven.hash}, accepted {accepted.hash}; no sampled value differs"]
+    return [
+        f"{path}: tick {difference.tick}: {difference.column}: "
+        f"driven {difference.driven!r}, accepted {difference.accepted!r}"
+    ]

@@ -1,0 +1,40 @@
+"""`simconsole check`: scripted drives, headless, against their bounds and goldens."""
+
+from argparse import Namespace
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+from simconsole.checking import Verdict, check_scenario
+from simconsole.commands.outcome import Outcome
+
+
+def check(words: Namespace) -> Outcome:
+    """Drive every scenario; code 1 if one breaks a bound or leaves its golden."""
+    if words.jobs > 1:
+        with ProcessPoolExecutor(words.jobs, mp_context=get_context("spawn")) as pool:
+            verdicts = list(pool.map(check_scenario, words.scenarios, [words.update_golden] * len(words.scenarios)))
+    else:
+        verdicts = [check_scenario(scenario, words.update_golden) for scenario in words.scenarios]
+    if words.junit:
+        _write_junit(Path(words.junit), verdicts)
+    passed = all(verdict.passed for verdict in verdicts)
+    results: dict[str, Any] = {"passed": passed, "scenarios": [verdict._asdict() for verdict in verdicts]}
+    return Outcome(0 if passed else 1, results, "\n".join(_line(verdict) for verdict in verdicts))
+
+
+def _line(verdict: Verdict) -> str:
+    head = f"{'pass' if verdict.passed else 'FAIL'}  {verdict.scenario}  {verdict.ticks} ticks  {verdict.digest}"
+    return "\n".join((head, *(f"      {problem}" for problem in verdict.problems)))
+
+
+def _write_junit(path: Path, verdicts: list[Verdict]) -> None:
+    failures = sum(not verdict.passed for verdict in verdicts)
+    suite = ElementTree.Element("testsuite", name="simconsole", tests=str(len(verdicts)), failures=str(failures))
+    for verdict in verdicts:
+        case = ElementTree.SubElement(suite, "testcase", name=verdict.scenario)
+        if not verdict.passed:
+            ElementTree.SubElement(case, "failure", message=verdict.problems[0]).text = "\n".join(verdict.problems)
+    ElementTree.ElementTree(suite).write(path, encoding="utf-8", xml_declaration=True)

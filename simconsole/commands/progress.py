@@ -1,0 +1,51 @@
+"""Progress of long work, on a terminal only."""
+
+import sys
+import time
+from types import TracebackType
+from typing import Final, Self
+
+from simconsole.rows import Snapshot
+from simconsole.signals import Mode
+from simconsole.units import KMH_PER_MPS
+from simconsole.words import mode_words
+
+INTERVAL_S: Final = 0.2
+TICKS_BETWEEN_LOOKS: Final = 64
+"""The clock is read once in so many ticks."""
+
+
+class Progress:
+    """One line that is written over; nothing at all where standard error is no terminal."""
+
+    def __init__(self, what: str, length_m: float = 0.0) -> None:
+        self._what = what
+        self._length_m = length_m
+        self._shown = sys.stderr.isatty()
+        self._next_s = 0.0
+
+    def __enter__(self) -> Self:
+        """Say what begins."""
+        self._write(f"{self._what} ...")
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Wipe the line."""
+        self._write("")
+
+    def watch(self, snapshot: Snapshot) -> bool:
+        """See one tick of a drive; never ends it."""
+        if self._shown and snapshot.tick % TICKS_BETWEEN_LOOKS == 0 and time.monotonic() >= self._next_s:
+            self._next_s = time.monotonic() + INTERVAL_S
+            vehicle, mode = snapshot.vehicle, Mode(int(snapshot.arbitration.mode))
+            way = f"{vehicle.distance_m:7.1f} m" + (f" of {self._length_m:.0f} m" if self._length_m else "")
+            speed = f"{vehicle.vx_mps * KMH_PER_MPS:5.1f} km/h"
+            self._write(f"{self._what}: {snapshot.t_s:7.1f} s  {way}  {speed}  {mode_words(float(mode))}")
+        return False
+
+    def _write(self, line: str) -> None:
+        if self._shown:
+            sys.stderr.write(f"\r\x1b[K{line}")
+            sys.stderr.flush()

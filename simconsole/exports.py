@@ -1,0 +1,125 @@
+"""What is made from a bundle afterwards: report.html and scene.rrd. Nothing a replay needs."""
+
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any, Final
+
+from simconsole.assembly import ResolvedSession, assemble
+from simconsole.compiling import plain
+from simconsole.profiles.view import SceneProfile
+from simconsole.recording.bundle import add_export, open_bundle
+from simconsole.recording.log import LogTable
+from simconsole.replaying import recorded_session
+from simconsole.world.course import Course
+
+REPORT: Final = "report.html"
+SCENE: Final = "scene.rrd"
+
+
+def write_exports(folder: Path, report: bool = True, scene: bool = True) -> dict[str, Any]:
+    """Write report and scene of the bundle in `folder`, each where wanted; return the report's metrics.
+
+    The scene is made by a process of its own meanwhile (rerun is never called in this one).
+
+    Raises:
+        RecordingError: not a bundle.
+        StationError: the scene's process failed.
+    """
+    bundle = open_bundle(folder)
+    resolved, table = recorded_session(bundle), bundle.log.table()
+    with ThreadPoolExecutor(1) as beside:
+        pending = beside.submit(_scene, folder, resolved, table) if scene else None
+        metrics = _report(folder, resolved, table, bundle.manifest.summary, report)
+        if pending is not None:
+            pending.result()
+    for name, wanted in ((REPORT, report), (SCENE, scene)):
+        if wanted:
+            add_export(folder, name)
+    return metrics
+
+
+def write_report(folder: Path) -> dict[str, Any]:
+    """Write report.html into the bundle and return its metrics.
+
+    Raises:
+        RecordingError: not a bundle.
+    """
+    return write_exports(folder, scene=False)
+
+
+def write_scene(folder: Path) -> Path:
+    """Write scene.rrd into the bundle and return its path.
+
+    Raises:
+        RecordingError: not a bundle.
+        StationError: the process that writes it failed.
+    """
+    bundle = open_bundle(folder)
+    _scene(folder, recorded_session(bundle), bundle.log.table())
+    add_export(folder, SCENE)
+    return folder / SCENE
+
+
+def open_viewer(path: Path) -> None:
+    """Open a scene in rerun's viewer, in a process of its own."""
+    subprocess.Popen([sys.executable, "-m", "rerun", str(path)], stdin=subprocess.DEVNULL)
+
+
+def _course(resolved: ResolvedSession) -> Course | None:
+    return None if resolved.world is None else Course(resolved.world)
+
+
+def _report(
+    folder: Path, resolved: ResolvedSession, table: LogTable, summary: dict[str, Any], page: bool
+) -> dict[str, Any]:
+    from simconsole.report.metrics import metrics
+    from simconsole.report.page import write_report as write_page
+    from simconsole.report.table import drive_of
+
+    course, title = _course(resolved), resolved.session.title or folder.name
+    first_tick = int(table.ticks[0]) if len(table.ticks) else 1
+    if page:
+        return write_page(
+            folder / REPORT,
+            table.rows,
+            table.columns,
+            table.tick_hz,
+            course,
+            title,
+            _facts(resolved, summary),
+            first_tick=first_tick,
+        )
+    return metrics(drive_of(table.rows, table.columns, table.tick_hz, first_tick), course)
+
+
+def _facts(resolved: ResolvedSession, summary: dict[str, Any]) -> dict[str, object]:
+    session = resolved.session
+    return {
+        "vehicle": session.scenario.vehicle,
+        "world": session.environment.world or "none",
+        "driver": session.devices.driver,
+        "pacing": session.mode.pacing,
+        **{key.replace("_", " "): value for key, value in summary.items() if not isinstance(value, dict | list)},
+    }
+
+
+def _scene(folder: Path, resolved: ResolvedSession, table: LogTable) -> None:
+    from simconsole.scene.entities import Dimensions
+    from simconsole.scene.export import export_apart
+    from simconsole.scene.job import Job
+    from simconsole.world.drawing import draw
+
+    platform, course = assemble(resolved, plain)[0].platform, _course(resolved)
+    dimensions = Dimensions(platform.length_m, platform.width_m, platform.height_m, platform.rear_overhang_m)
+    job = Job(
+        table.rows,
+        table.ticks,
+        table.columns,
+        table.tick_hz,
+        dimensions,
+        None if course is None else draw(course),
+        SceneProfile(),
+    )
+    export_apart(job, folder / SCENE)

@@ -1,0 +1,91 @@
+"""A headless drive's outputs: the bridge on the core's own sockets in lockstep, and programs beside it."""
+
+import subprocess
+import sys
+from contextlib import ExitStack
+from typing import Protocol
+
+from simconsole.errors import BridgeError
+from simconsole.rows import Snapshot
+from simconsole.signals import Event, EventInput, RemoteCommand
+
+PROGRAM_PATIENCE_S = 30.0
+PROGRAM_END_S = 5.0
+
+
+class LockstepServer(Protocol):
+    """What this module needs of bridge.lockstep."""
+
+    def exchange(self, snapshot: Snapshot, timeout_s: float) -> bool:
+        """Publish, then wait for the command that answers this very snapshot."""
+
+    def publish(self, snapshot: Snapshot) -> None:
+        """Publish what is due, without waiting."""
+
+    def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
+        """Return the newest command and the events."""
+
+    @property
+    def clients(self) -> int:
+        """Connected clients."""
+
+
+class LockstepLink:
+    """The bridge as the drive loop sees it: waits for the controller once per control period, never in between.
+
+    After a missing answer (an event in the log) it does not wait again until the controller has spoken: the command
+    grows stale in simulated time and the arbiter stops the car.
+    """
+
+    def __init__(self, bridge: LockstepServer, period_ticks: int, timeout_s: float) -> None:
+        self._bridge = bridge
+        self._period_ticks = period_ticks
+        self._timeout_s = timeout_s
+        self._silent_at: float | None = None  # the command's sequence number when the controller went silent
+        self._sequence = 0.0
+        self._raised = 0
+        self.exchanges = 0
+        self.unanswered = 0
+
+    def publish(self, snapshot: Snapshot) -> None:
+        """Publish; at the end of a control period, wait for the answer."""
+        silent = self._silent_at is not None and self._silent_at == self._sequence
+        if snapshot.tick % self._period_ticks or silent or not self._bridge.clients:
+            self._bridge.publish(snapshot)
+            return
+        self._silent_at = None
+        self.exchanges += 1
+        if not self._bridge.exchange(snapshot, self._timeout_s):
+            self.unanswered += 1
+            self._silent_at = self._sequence
+            self._raised = int(Event.NO_ANSWER)
+
+    def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
+        """Return the newest command, its age in ticks, and the edges, a missing answer among them."""
+        remote, events = self._bridge.take(tick)
+        self._sequence = remote.sequence
+        raised, self._raised = self._raised, 0
+        return remote, EventInput(events=float(int(events.events) | raised))
+
+
+def start_autopilot(url: str, course: str, stack: ExitStack) -> "subprocess.Popen[bytes]":
+    """Start `simconsole autopilot` as a program of its own; `stack` ends it."""
+    words = [sys.executable, "-m", "simconsole", "autopilot", "--url", url, "--course", course]
+    program = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+    stack.callback(_end, program)
+    return program
+
+
+def check_started(program: "subprocess.Popen[bytes]") -> None:
+    """Raise BridgeError if the program has already ended."""
+    if program.poll() is not None:
+        raise BridgeError(f"the autopilot ended with exit code {program.returncode} before it connected")
+
+
+def _end(program: "subprocess.Popen[bytes]") -> None:
+    """Give a program that lost its connection the time to end by itself, then end it."""
+    try:
+        program.wait(PROGRAM_END_S)
+    except subprocess.TimeoutExpired:
+        program.kill()
+        program.wait()

@@ -1,0 +1,91 @@
+"""One session: open everything, drive, close everything, whatever happens in between."""
+
+import hashlib
+from collections.abc import Callable
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from simconsole import __version__
+from simconsole.assembly import ResolvedSession, assemble
+from simconsole.compiling import compiled, source_digest
+from simconsole.drive import Cast, run
+from simconsole.pipeline import NO_COMMAND, NO_EVENTS, NO_SAMPLE, Console, ConsoleState, advance
+from simconsole.profile_files import to_text
+from simconsole.recording.bundle import BundleWriter
+from simconsole.recording.framing import LogHeader
+from simconsole.recording.log import LogWriter
+from simconsole.replaying import SESSION_FILE
+from simconsole.rows import INPUT_WIDTH, Snapshot, TickInputs
+
+ENDLESS_TICKS = 2**53
+
+
+class DriveResult(NamedTuple):
+    """What is left of a drive: the bundle's folder and its summary."""
+
+    folder: Path
+    ticks: int
+    digest: str
+    summary: dict[str, Any]
+
+
+def drive(
+    resolved: ResolvedSession,
+    folder: Path,
+    watch: Callable[[Snapshot], bool] = lambda snapshot: False,
+) -> DriveResult:
+    """Drive a session into a new bundle in `folder`. `watch` sees every tick; True ends the drive.
+
+    Raises:
+        SimConsoleError: a device, port or file cannot be opened; what was opened before is closed again.
+    """
+    console, state = assemble(resolved, compiled)
+    warm_up(console, state)
+    duration_s = resolved.session.scenario.duration_s
+    ticks = ENDLESS_TICKS if duration_s is None else round(duration_s * console.tick_hz)
+    with ExitStack() as stack:
+        bundle = stack.enter_context(_bundle(resolved, console, folder))
+        interrupted = stack.enter_context(Interrupt())
+        opened = opener(resolved)(resolved, console, LogRecorder(bundle.log), stack)
+        started_s = time.monotonic()
+        state = run(
+            console,
+            state,
+            opened.cast,
+            ticks,
+            lambda snapshot: interrupted.raised or watch(snapshot) or opened.finished(snapshot),
+        )
+        wall_s = time.monotonic() - started_s
+        summary = {"wall_s": wall_s, "real_time_factor": state.tick / console.tick_hz / wall_s, **opened.summary()}
+        manifest = bundle.finish(summary)
+    return DriveResult(folder, manifest.ticks, manifest.digest, summary)
+
+
+def warm_up(console: Console, state: ConsoleState) -> None:
+    """Run one tick into nothing: compiled code is made or loaded before any clock runs or client waits."""
+    advance(state, TickInputs(NO_SAMPLE, NO_COMMAND, NO_EVENTS), console)
+
+
+class LogRecorder:
+    """The drive loop's recorder: every tick into the log."""
+
+    def __init__(self, log: LogWriter) -> None:
+        self._log = log
+
+    def write(self, snapshot: Snapshot) -> None:
+        """Append one tick; a failing disk is noted in the log's `failure`."""
+        self._log.append(snapshot.tick, snapshot.row)
+
+
+def _bundle(resolved: ResolvedSession, console: Console, folder: Path) -> BundleWriter:
+    text = to_text(resolved)
+    header = LogHeader(
+        tick_hz=console.tick_hz,
+        columns=console.columns,
+        input_columns=INPUT_WIDTH,
+        console_version=__version__,
+        source_sha256=source_digest(),
+        session_sha256=hashlib.sha256(text.encode()).hexdigest(),
+    )
+    return BundleWriter(folder, header, {SESSION_FILE: text}, {"simconsole": __version__})
