@@ -1,0 +1,214 @@
+"""Command topics: wire messages to `signals.RemoteCommand`, checked before anything of them is used.
+
+A command is refused whole when a required field is missing, a value is not finite or beyond its limit, or its stamp
+is not newer than the last one's. A stamp of 0 is no stamp: such messages are taken in the order they arrive.
+"""
+
+from typing import Any, Final, NamedTuple
+
+from simconsole.bridge.inputs import NO_COMMAND, BridgeInputs
+from simconsole.bridge.protocol import Accept
+from simconsole.errors import RemoteProtocolError
+from simconsole.kernels import is_finite
+from simconsole.profiles.bridge import BridgeProfile
+from simconsole.signals import Event, RemoteKind
+from simconsole.trigonometry import atan2
+from simconsole.units import NS_PER_S
+
+CONTROL: Final = "/control/command/control_cmd"
+GEAR: Final = "/control/command/gear_cmd"
+ACKERMANN: Final = "/ackermann_cmd"
+TWIST: Final = "/cmd_vel"
+TWIST_STAMPED: Final = "/cmd_vel_stamped"
+BALL_POSE: Final = "/ball/desired_pose"
+BALL_SPEED: Final = "/ball/desired_speed"
+REQUEST: Final = "/console/request"
+
+REQUESTS: Final[dict[str, Event]] = {
+    "autonomous": Event.REQUEST_AUTONOMOUS,
+    "manual": Event.REQUEST_MANUAL,
+    "shared": Event.REQUEST_SHARED,
+    "takeover": Event.REQUEST_TAKEOVER,
+    "estop": Event.EMERGENCY_STOP,
+    "reset": Event.RESET,
+    "mark": Event.MARK,
+}
+# autoware_vehicle_msgs/GearCommand: NEUTRAL 1, DRIVE 2 to DRIVE_18 19, REVERSE 20 and 21, PARK 22, LOW 23 and 24.
+DIRECTIONS: Final[dict[int, float]] = {
+    1: 0.0,
+    **dict.fromkeys(range(2, 20), 1.0),
+    20: -1.0,
+    21: -1.0,
+    22: 0.0,
+    23: 1.0,
+    24: 1.0,
+}
+_FUTURE_NS: Final = 50_000_000
+_UNIT_TOLERANCE: Final = 0.1
+
+
+class CommandTopic(NamedTuple):
+    """One row of the table of command topics."""
+
+    name: str
+    type: str
+    accept: Accept
+    leased: bool = True
+
+
+class CommandIntake:
+    """Checks commands and puts what they mean into the slot."""
+
+    def __init__(self, inputs: BridgeInputs, profile: BridgeProfile) -> None:
+        """Check against the limits of `profile` and write to `inputs`."""
+        self._inputs = inputs
+        self._limits = profile.commands
+        self._follows_clock = profile.sender_clock == "console"
+        self._max_age_ns = int(profile.max_stamp_age_ms * 1e6)
+        self._last_stamps: dict[str, int] = {}
+        self._ball_speed_mps = 0.0
+        self.ros_time_ns = 0
+        """What /clock says now; only compared with stamps where senders follow it."""
+
+    def topics(self) -> tuple[CommandTopic, ...]:
+        """Return the table of command topics under their standard names."""
+        return (
+            CommandTopic(CONTROL, "autoware_control_msgs/Control", self._control),
+            CommandTopic(GEAR, "autoware_vehicle_msgs/GearCommand", self._gear),
+            CommandTopic(ACKERMANN, "ackermann_msgs/AckermannDriveStamped", self._ackermann),
+            CommandTopic(TWIST, "geometry_msgs/Twist", self._twist),
+            CommandTopic(TWIST_STAMPED, "geometry_msgs/TwistStamped", self._twist_stamped),
+            CommandTopic(BALL_POSE, "geometry_msgs/PoseStamped", self._ball_pose),
+            CommandTopic(BALL_SPEED, "std_msgs/Float64", self._ball_speed),
+            CommandTopic(REQUEST, "std_msgs/String", self._request, leased=False),
+        )
+
+    def forget_stamps(self) -> None:
+        """Begin a new order of stamps: another commander may have another clock."""
+        self._last_stamps.clear()
+
+    def _control(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
+        _require(plain, "lateral.steering_tire_angle", "longitudinal.acceleration")
+        lateral, longitudinal, limits = message.lateral, message.longitudinal, self._limits
+        command = NO_COMMAND._replace(
+            kind=float(RemoteKind.ACCELERATION),
+            road_wheel_rad=_within("lateral.steering_tire_angle", lateral.steering_tire_angle, limits.road_wheel_rad),
+            road_wheel_radps=_within(
+                "lateral.steering_tire_rotation_rate", lateral.steering_tire_rotation_rate, limits.road_wheel_radps
+            ),
+            speed_mps=_within("longitudinal.velocity", longitudinal.velocity, limits.speed_mps),
+            accel_mps2=_within("longitudinal.acceleration", longitudinal.acceleration, limits.accel_mps2),
+            direction=0.0,
+        )
+        self._inputs.accept(command, self._order(CONTROL, message.stamp), now_ns)
+
+    def _ackermann(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
+        _require(plain, "drive.steering_angle", "drive.speed")
+        drive, limits = message.drive, self._limits
+        speed_mps = _within("drive.speed", drive.speed, limits.speed_mps)
+        command = NO_COMMAND._replace(
+            kind=float(RemoteKind.SPEED),
+            road_wheel_rad=_within("drive.steering_angle", drive.steering_angle, limits.road_wheel_rad),
+            road_wheel_radps=_within(
+                "drive.steering_angle_velocity", drive.steering_angle_velocity, limits.road_wheel_radps
+            ),
+            speed_mps=speed_mps,
+            accel_mps2=_within("drive.acceleration", drive.acceleration, limits.accel_mps2),
+            direction=_sign(speed_mps),
+        )
+        self._inputs.accept(command, self._order(ACKERMANN, message.header.stamp), now_ns)
+
+    def _twist(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
+        _require(plain, "linear.x", "angular.z")
+        self._move(message, "", None, now_ns)
+
+    def _twist_stamped(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
+        _require(plain, "twist.linear.x", "twist.angular.z")
+        self._move(message.twist, "twist.", (TWIST_STAMPED, message.header.stamp), now_ns)
+
+    def _move(self, twist: Any, path: str, stamp: tuple[str, Any] | None, now_ns: int) -> None:
+        speed_mps = _within(f"{path}linear.x", twist.linear.x, self._limits.speed_mps)
+        command = NO_COMMAND._replace(
+            kind=float(RemoteKind.TWIST),
+            speed_mps=speed_mps,
+            yaw_rate_radps=_within(f"{path}angular.z", twist.angular.z, self._limits.yaw_rate_radps),
+            direction=_sign(speed_mps),
+        )
+        self._inputs.accept(command, self._order(*stamp) if stamp is not None else None, now_ns)
+
+    def _ball_pose(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
+        _require(plain, "pose.position.x", "pose.position.y")
+        position, turn = message.pose.position, message.pose.orientation
+        square = turn.x * turn.x + turn.y * turn.y + turn.z * turn.z + turn.w * turn.w
+        if not abs(square - 1.0) <= _UNIT_TOLERANCE:
+            raise RemoteProtocolError("not a unit quaternion - at `$.pose.orientation`")
+        command = NO_COMMAND._replace(
+            kind=float(RemoteKind.POSE),
+            speed_mps=self._ball_speed_mps,
+            x_m=_within("pose.position.x", position.x, self._limits.position_m),
+            y_m=_within("pose.position.y", position.y, self._limits.position_m),
+            yaw_rad=atan2(
+                2.0 * (turn.w * turn.z + turn.x * turn.y), square - 2.0 * (turn.y * turn.y + turn.z * turn.z)
+            ),
+        )
+        self._inputs.accept(command, self._order(BALL_POSE, message.header.stamp), now_ns)
+
+    def _ball_speed(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
+        _require(plain, "data")
+        self._ball_speed_mps = _within("data", message.data, self._limits.speed_mps)
+        command = self._inputs.command
+        if command.kind == RemoteKind.POSE:
+            self._inputs.accept(command._replace(speed_mps=self._ball_speed_mps), self._inputs.stamp_ns, now_ns)
+
+    def _gear(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
+        _require(plain, "command")
+        direction = DIRECTIONS.get(message.command)
+        if direction is None:
+            raise RemoteProtocolError(f"{message.command} is no gear - at `$.command`")
+        self._order(GEAR, message.stamp)
+        self._inputs.set_direction(direction)
+
+    def _request(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
+        event = REQUESTS.get(message.data)
+        if event is None:
+            raise RemoteProtocolError(f"not one of {', '.join(REQUESTS)} - at `$.data`")
+        self._inputs.raise_events(int(event))
+
+    def _order(self, topic: str, stamp: Any) -> int | None:
+        """Return a stamp in ns that is newer than the topic's last one, None for no stamp."""
+        stamp_ns: int = stamp.sec * NS_PER_S + stamp.nanosec
+        if stamp_ns == 0:
+            return None
+        last = self._last_stamps.get(topic)
+        if last is not None and stamp_ns <= last:
+            raise RemoteProtocolError("not newer than the last accepted one - at `$.stamp`")
+        if self._follows_clock:
+            if stamp_ns > self.ros_time_ns + _FUTURE_NS:
+                raise RemoteProtocolError("from the future of /clock - at `$.stamp`")
+            if stamp_ns < self.ros_time_ns - self._max_age_ns:
+                raise RemoteProtocolError(f"older than {self._max_age_ns / 1e6:g} ms by /clock - at `$.stamp`")
+        self._last_stamps[topic] = stamp_ns
+        return stamp_ns
+
+
+def _require(plain: dict[str, Any], *paths: str) -> None:
+    """Refuse a message in which a field was left to its default: a command is never 0 by omission."""
+    for path in paths:
+        value: Any = plain
+        for key in path.split("."):
+            value = value.get(key) if isinstance(value, dict) else None
+        if value is None:
+            raise RemoteProtocolError(f"required in a command - at `$.{path}`")
+
+
+def _within(path: str, value: float, limit: float) -> float:
+    if not is_finite(value):
+        raise RemoteProtocolError(f"not finite - at `$.{path}`")
+    if abs(value) > limit:
+        raise RemoteProtocolError(f"{value:g} is not within -{limit:g} to {limit:g} - at `$.{path}`")
+    return value
+
+
+def _sign(speed_mps: float) -> float:
+    """Return the direction a speed asks for; 0 leaves the direction as it is."""
+    return 1.0 if speed_mps > 0.0 else -1.0 if speed_mps < 0.0 else 0.0

@@ -1,0 +1,116 @@
+"""The console's side of the bridge: snapshots out, commands in, names as the profile wants them. No socket."""
+
+from collections.abc import Callable
+from typing import Any
+
+from simconsole.bridge.commands import CommandIntake
+from simconsole.bridge.inputs import BridgeInputs, OnCommand, OnEvents
+from simconsole.bridge.messages import Registry, standard_registry
+from simconsole.bridge.protocol import Outcome, Router
+from simconsole.bridge.session import Session
+from simconsole.bridge.topics import GLOBAL_TOPICS, ODOMETRY, ONCE, Moment, Outputs, is_due
+from simconsole.errors import ProfileError
+from simconsole.profiles.bridge import BridgeProfile
+from simconsole.rows import Snapshot
+from simconsole.signals import Event
+
+
+class _Output:
+    """One output topic at work."""
+
+    def __init__(self, standard: str, name: str, rate_hz: float, build: Callable[[Moment], Any]) -> None:
+        self.standard = standard
+        self.name = name
+        self.rate_hz = rate_hz
+        self.build = build
+        self.last_tick: int | None = None
+
+
+class ConsoleBridge:
+    """Router, topic table and command slot of one console; server and lockstep bridge put sockets around it."""
+
+    def __init__(
+        self,
+        profile: BridgeProfile,
+        registry: Registry | None = None,
+        on_command: OnCommand | None = None,
+        on_events: OnEvents | None = None,
+    ) -> None:
+        """Build the topics of `profile`.
+
+        Args:
+            profile: names, rates, limits.
+            registry: message types; the standard ones without.
+            on_command: sees each change of the command at once (`BridgeInputs`).
+            on_events: sees each event at once.
+
+        Raises:
+            ProfileError: the profile renames or rates a topic that does not exist, or gives two topics one name.
+        """
+        self.profile = profile
+        self.inputs = BridgeInputs(on_command, on_events)
+        self.router = Router(
+            registry if registry is not None else standard_registry(),
+            profile.limits,
+            int(profile.lease_ms * 1e6),
+            self.inputs.refuse,
+        )
+        self._intake = CommandIntake(self.inputs, profile)
+        self.router.on_new_commander = self._intake.forget_stamps
+        self._out = Outputs(self.router.registry, profile)
+        outputs, commands = self._out.topics(), self._intake.topics()
+        self.names = _names(profile, [*(topic.name for topic in outputs), *(topic.name for topic in commands)])
+        _check_known("rates_hz", profile.rates_hz, [topic.name for topic in outputs])
+        self._outputs = []
+        for output in outputs:
+            rate_hz = profile.rates_hz.get(output.name, output.rate_hz)
+            if rate_hz:
+                name = self.names[output.name]
+                self.router.add_output(name, output.type, latch=output.rate_hz == ONCE)
+                self._outputs.append(_Output(output.name, name, rate_hz, output.build))
+        for command in commands:
+            self.router.add_command(self.names[command.name], command.type, command.accept, command.leased)
+
+    def publish(self, snapshot: Snapshot, now_ns: int, *, odometry: bool = False) -> None:
+        """Queue every message of `snapshot` that is due and wanted; with `odometry`, that in any case."""
+        self.router.ros_time_ns = self._intake.ros_time_ns = snapshot.t_ns
+        moment: Moment | None = None
+        for output in self._outputs:
+            due = is_due(snapshot.tick, output.last_tick, snapshot.tick_hz, output.rate_hz)
+            if not due and not (odometry and output.standard == ODOMETRY):
+                continue
+            output.last_tick = snapshot.tick
+            if self.router.wanted(output.name):
+                moment = moment or self._out.moment(snapshot)
+                self.router.publish(output.name, output.build(moment), now_ns)
+
+    def receive(self, session: Session, text: bytes, now_ns: int) -> Outcome:
+        """Apply one text of a client."""
+        return self.router.receive(session, text, now_ns)
+
+    def disconnect(self, session: Session, now_ns: int) -> bool:
+        """Remove a client; if it was commanding, raise COMMANDER_LOST and return True."""
+        commanded = self.router.disconnect(session, now_ns)
+        if commanded:
+            self.inputs.raise_events(int(Event.COMMANDER_LOST))
+        return commanded
+
+
+def _names(profile: BridgeProfile, standard: list[str]) -> dict[str, str]:
+    _check_known("rename", profile.rename, standard)
+    names = {
+        name: profile.rename.get(name) or (name if name in GLOBAL_TOPICS else profile.namespace + name)
+        for name in standard
+    }
+    seen: dict[str, str] = {}
+    for name, here in names.items():
+        if here in seen:
+            raise ProfileError(f"outputs.bridge.rename: {name} and {seen[here]} would both be {here}")
+        seen[here] = name
+    return names
+
+
+def _check_known(key: str, given: dict[str, Any], known: list[str]) -> None:
+    for name in given:
+        if name not in known:
+            raise ProfileError(f"outputs.bridge.{key}: {name} is no topic of the console, only {', '.join(known)}")

@@ -1,0 +1,91 @@
+"""The newest accepted command and the edges since the last tick: latest wins, however many arrive between two ticks."""
+
+from collections.abc import Callable
+from typing import Final
+
+from simconsole.signals import NEVER_TICKS, EventInput, RemoteCommand
+from simconsole.units import NS_PER_S
+
+NO_COMMAND: Final = RemoteCommand(*(0.0,) * len(RemoteCommand._fields))._replace(age_ticks=NEVER_TICKS, direction=1.0)
+
+OnCommand = Callable[[RemoteCommand, int | None], None]
+"""Takes the command, its age 0, and when it was received in ns (None before the first)."""
+OnEvents = Callable[[int], None]
+"""Takes a mask of `signals.Event`."""
+
+
+class BridgeInputs:
+    """A slot for the command and a mask for the events.
+
+    `on_command` and `on_events` see each change at once: the bridge's own process passes writers of shared memory.
+    A core that serves the sockets itself calls `take` instead.
+    """
+
+    def __init__(self, on_command: OnCommand | None = None, on_events: OnEvents | None = None) -> None:
+        """Start with no command and no events."""
+        self.command = NO_COMMAND
+        self.receipt_ns: int | None = None
+        self.stamp_ns: int | None = None
+        """The stamp of the newest command, None if it had none."""
+        self.tick = 0
+        """The last finished tick, set by whoever calls `take`."""
+        self._receipt_tick = 0
+        self._events = 0
+        self._on_command = on_command
+        self._on_events = on_events
+
+    def accept(self, command: RemoteCommand, stamp_ns: int | None, now_ns: int) -> None:
+        """Put a command into the slot; sequence, refusals, direction and age are this slot's, not the caller's.
+
+        Args:
+            command: kind and values; a direction other than 0 is kept for later commands too.
+            stamp_ns: the message's own stamp, None without.
+            now_ns: when it was received.
+        """
+        before = self.command
+        self.command = command._replace(
+            sequence=before.sequence + 1.0,
+            refused=before.refused,
+            age_ticks=0.0,
+            direction=command.direction or before.direction,
+        )
+        self.receipt_ns, self.stamp_ns, self._receipt_tick = now_ns, stamp_ns, self.tick
+        self._announce()
+
+    def refuse(self) -> None:
+        """Count a refused command."""
+        self.command = self.command._replace(refused=self.command.refused + 1.0)
+        self._announce()
+
+    def set_direction(self, direction: float) -> None:
+        """Set the direction of travel: 1, 0 or -1. It neither renews the command's age nor counts as one."""
+        self.command = self.command._replace(direction=direction)
+        self._announce()
+
+    def raise_events(self, events: int) -> None:
+        """Add edges, a mask of `signals.Event`."""
+        self._events |= events
+        if self._on_events is not None:
+            self._on_events(events)
+
+    def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
+        """Return the command with its age for the coming `tick`, and the events since the last call.
+
+        A command received after tick k has age 0 in tick k + 1.
+        """
+        events, self._events = self._events, 0
+        command = self.command
+        if self.receipt_ns is not None:
+            command = command._replace(age_ticks=float(max(0, tick - 1 - self._receipt_tick)))
+        return command, EventInput(events=float(events))
+
+    def _announce(self) -> None:
+        if self._on_command is not None:
+            self._on_command(self.command, self.receipt_ns)
+
+
+def aged(command: RemoteCommand, receipt_ns: int | None, now_ns: int, tick_hz: int) -> RemoteCommand:
+    """Return a command with its age in whole ticks at `now_ns`, both times from one monotonic clock."""
+    if receipt_ns is None:
+        return command._replace(age_ticks=NEVER_TICKS)
+    return command._replace(age_ticks=float(max(0, now_ns - receipt_ns) * tick_hz // NS_PER_S))

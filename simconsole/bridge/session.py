@@ -1,0 +1,71 @@
+"""One connected client as the router sees it: what it wants, what it announced, what waits for it."""
+
+import re
+from collections.abc import Callable
+from typing import Final
+
+from simconsole.bridge.operations import DEFAULT_LEVEL, SEVERITY, Id, write_status
+from simconsole.bridge.outgoing import Outgoing, Outlet
+from simconsole.errors import RemoteProtocolError
+from simconsole.units import NS_PER_S
+
+MAX_NAME: Final = 256
+_NAME: Final = re.compile(r"/?[A-Za-z_][A-Za-z0-9_]*(?:/[A-Za-z_][A-Za-z0-9_]*)*")
+
+
+class Session:
+    """State of one connection. It is created, changed and removed by its router alone, except for taking texts."""
+
+    def __init__(self, number: int, peer: str, max_bytes: int, wake: Callable[[], None]) -> None:
+        """Start with nothing; `wake` is called whenever there may be something to send."""
+        self.number = number
+        self.peer = peer
+        self.outgoing = Outgoing(max_bytes)
+        self.outlets: dict[str, Outlet] = {}
+        self.advertised: dict[str, set[Id]] = {}
+        self.received = 0
+        self.refused = 0
+        self.sent = 0
+        self._level = SEVERITY[DEFAULT_LEVEL]
+        self._warned_ns: int | None = None
+        self._wake = wake
+
+    def next_text(self, now_ns: int) -> bytes | None:
+        """Return the next text to send to the client, or None when nothing may be sent at `now_ns`."""
+        text = self.outgoing.take(now_ns)
+        if text is not None:
+            self.sent += 1
+        return text
+
+    def due_ns(self) -> int | None:
+        """Return when `next_text` has something (0: now), None while nothing waits."""
+        return self.outgoing.due_ns()
+
+    def set_level(self, level: str) -> None:
+        """Set how severe a status must be to be sent."""
+        self._level = SEVERITY[level]
+
+    def remark(self, level: str, text: str, identifier: Id = None) -> None:
+        """Send a status if the client wants such."""
+        if SEVERITY[level] <= self._level:
+            self.outgoing.reply(write_status(level, text, identifier))
+            self._wake()
+
+    def deliver(self, outlet: Outlet, text: bytes, now_ns: int) -> None:
+        """Queue a message of a subscribed topic; tell the client, at most once a second, when some were dropped."""
+        dropped = self.outgoing.put(outlet, text)
+        self._wake()
+        if dropped and (self._warned_ns is None or now_ns - self._warned_ns >= NS_PER_S):
+            self._warned_ns = now_ns
+            self.remark("warning", f"too slow: {self.outgoing.dropped} messages dropped so far")
+
+
+def resolve_topic(name: str) -> str:
+    """Return the absolute name of a topic; a relative one is taken from the root, as rosbridge does.
+
+    Raises:
+        RemoteProtocolError: not a ROS topic name.
+    """
+    if len(name) > MAX_NAME or not _NAME.fullmatch(name):
+        raise RemoteProtocolError(f"topic {name[:40]!r} is not a topic name of at most {MAX_NAME} characters")
+    return name if name.startswith("/") else f"/{name}"

@@ -1,0 +1,242 @@
+"""Output topics: one finished tick to the wire messages of the table in docs/rosbridge.md.
+
+Every stamp is the tick's simulated time. Frames are REP-105's map, odom and base_link; the console's odometry does
+not drift, so map and odom coincide.
+"""
+
+from collections.abc import Callable
+from typing import Any, Final, NamedTuple
+
+from simconsole.bridge.messages import Registry
+from simconsole.profiles.bridge import BridgeProfile
+from simconsole.rows import Snapshot
+from simconsole.signals import NEVER_TICKS, Mode
+from simconsole.trigonometry import cos, sin
+from simconsole.units import NS_PER_S
+from simconsole.words import mode_words, reason_words
+
+CLOCK: Final = "/clock"
+TF: Final = "/tf"
+TF_STATIC: Final = "/tf_static"
+ODOMETRY: Final = "/odom"
+GROUND_TRUTH: Final = "/ground_truth/odom"
+JOY: Final = "/console/joy"
+ARBITRATION: Final = "/console/arbitration"
+VELOCITY: Final = "/vehicle/status/velocity_status"
+STEERING: Final = "/vehicle/status/steering_status"
+GEAR_STATUS: Final = "/vehicle/status/gear_status"
+CONTROL_MODE: Final = "/vehicle/status/control_mode"
+
+GLOBAL_TOPICS: Final = frozenset({CLOCK, TF, TF_STATIC})
+"""Never put under a namespace: ROS programs look for these names only."""
+
+ONCE: Final = -1.0
+MAP_FRAME: Final = "map"
+BASE_FRAME: Final = "base_link"
+WHEEL_BUTTONS: Final = 13
+SHIFTER_BUTTONS: Final = 10
+"""The T500 RS and the TH8 RS (facts of their HID descriptors)."""
+
+_TYPES: Final = """
+builtin_interfaces/Time std_msgs/Header rosgraph_msgs/Clock nav_msgs/Odometry tf2_msgs/TFMessage sensor_msgs/Joy
+geometry_msgs/TransformStamped geometry_msgs/Transform geometry_msgs/Vector3 geometry_msgs/Point
+geometry_msgs/Quaternion geometry_msgs/Pose geometry_msgs/PoseWithCovariance geometry_msgs/Twist
+geometry_msgs/TwistWithCovariance autoware_vehicle_msgs/VelocityReport autoware_vehicle_msgs/SteeringReport
+autoware_vehicle_msgs/GearReport autoware_vehicle_msgs/ControlModeReport simconsole_msgs/Arbitration
+"""
+_NO_COVARIANCE: Final = [0.0] * 36
+# Numbers of autoware_vehicle_msgs/ControlModeReport.
+_AUTONOMOUS, _STEER_ONLY, _VELOCITY_ONLY, _MANUAL, _DISENGAGED, _NOT_READY = 1, 2, 3, 4, 5, 6
+_CONTROL_MODES: Final[dict[float, int]] = {
+    Mode.PARKED: _NOT_READY,
+    Mode.MANUAL: _MANUAL,
+    Mode.AUTONOMOUS: _AUTONOMOUS,
+    Mode.TAKEOVER_REQUESTED: _AUTONOMOUS,
+    Mode.MINIMAL_RISK: _DISENGAGED,
+    Mode.STOPPED: _DISENGAGED,
+    Mode.EMERGENCY_STOP: _DISENGAGED,
+}
+# Numbers of autoware_vehicle_msgs/GearReport.
+_NEUTRAL, _DRIVE, _REVERSE = 1, 2, 20
+
+
+class OutputTopic(NamedTuple):
+    """One row of the table of output topics; a rate of 0 is never, ONCE is a latched message at the start."""
+
+    name: str
+    type: str
+    rate_hz: float
+    build: Callable[["Moment"], Any]
+
+
+class Moment:
+    """One snapshot with what several messages share, each made at most once."""
+
+    def __init__(self, snapshot: Snapshot, time: Any, header: Any, quaternion: Any) -> None:
+        """Take the generated classes Time, Header and Quaternion."""
+        self.snapshot = snapshot
+        self.vehicle = snapshot.vehicle
+        self.stamp = time(*divmod(snapshot.t_ns, NS_PER_S))
+        self._header = header
+        self._quaternion = quaternion
+        self._orientation: Any = None
+
+    def header(self, frame: str) -> Any:
+        """Return a header in `frame`."""
+        return self._header(self.stamp, frame)
+
+    @property
+    def orientation(self) -> Any:
+        """The vehicle's attitude (z-y-x angles yaw, pitch, roll) as a quaternion."""
+        if self._orientation is None:
+            vehicle = self.vehicle
+            self._orientation = self._quaternion(*quaternion(vehicle.roll_rad, vehicle.pitch_rad, vehicle.yaw_rad))
+        return self._orientation
+
+
+class Outputs:
+    """Builds the messages of the output topics."""
+
+    def __init__(self, registry: Registry, profile: BridgeProfile) -> None:
+        """Generate the classes of all output topics."""
+        self._odometry_frame = profile.odometry_frame
+        names = _TYPES.split()
+        self._types: dict[str, Any] = {name.partition("/")[2]: registry.struct(name) for name in names}
+
+    def topics(self) -> tuple[OutputTopic, ...]:
+        """Return the table under the standard names, odometry last: who acts on it has everything else already."""
+        return (
+            OutputTopic(CLOCK, "rosgraph_msgs/Clock", 100.0, self._clock),
+            OutputTopic(TF_STATIC, "tf2_msgs/TFMessage", ONCE, self._tf_static),
+            OutputTopic(TF, "tf2_msgs/TFMessage", 50.0, self._tf),
+            OutputTopic(JOY, "sensor_msgs/Joy", 100.0, self._joy),
+            OutputTopic(VELOCITY, "autoware_vehicle_msgs/VelocityReport", 30.0, self._velocity),
+            OutputTopic(STEERING, "autoware_vehicle_msgs/SteeringReport", 30.0, self._steering),
+            OutputTopic(GEAR_STATUS, "autoware_vehicle_msgs/GearReport", 30.0, self._gear),
+            OutputTopic(CONTROL_MODE, "autoware_vehicle_msgs/ControlModeReport", 30.0, self._control_mode),
+            OutputTopic(ARBITRATION, "simconsole_msgs/Arbitration", 50.0, self._arbitration),
+            OutputTopic(GROUND_TRUTH, "nav_msgs/Odometry", 50.0, lambda moment: self._odometry(moment, MAP_FRAME)),
+            OutputTopic(
+                ODOMETRY, "nav_msgs/Odometry", 50.0, lambda moment: self._odometry(moment, self._odometry_frame)
+            ),
+        )
+
+    def moment(self, snapshot: Snapshot) -> Moment:
+        """Return what the messages of `snapshot` share."""
+        types = self._types
+        return Moment(snapshot, types["Time"], types["Header"], types["Quaternion"])
+
+    def _clock(self, moment: Moment) -> Any:
+        return self._types["Clock"](moment.stamp)
+
+    def _odometry(self, moment: Moment, frame: str) -> Any:
+        types, vehicle = self._types, moment.vehicle
+        pose = types["Pose"](types["Point"](vehicle.x_m, vehicle.y_m, vehicle.z_m), moment.orientation)
+        vector = types["Vector3"]
+        twist = types["Twist"](vector(vehicle.vx_mps, vehicle.vy_mps, 0.0), vector(0.0, 0.0, vehicle.yaw_rate_radps))
+        return types["Odometry"](
+            moment.header(frame),
+            BASE_FRAME,
+            types["PoseWithCovariance"](pose, _NO_COVARIANCE),
+            types["TwistWithCovariance"](twist, _NO_COVARIANCE),
+        )
+
+    def _tf(self, moment: Moment) -> Any:
+        vehicle = moment.vehicle
+        place = self._types["Vector3"](vehicle.x_m, vehicle.y_m, vehicle.z_m)
+        return self._transform(moment, self._odometry_frame, BASE_FRAME, place, moment.orientation)
+
+    def _tf_static(self, moment: Moment) -> Any:
+        nowhere, unturned = self._types["Vector3"](), self._types["Quaternion"]()
+        return self._transform(moment, MAP_FRAME, self._odometry_frame, nowhere, unturned)
+
+    def _transform(self, moment: Moment, parent: str, child: str, place: Any, turn: Any) -> Any:
+        types = self._types
+        transform = types["TransformStamped"](moment.header(parent), child, types["Transform"](place, turn))
+        return types["TFMessage"]([transform])
+
+    def _joy(self, moment: Moment) -> Any:
+        sample = moment.snapshot.sample
+        wheel, shifter = int(sample.wheel_buttons), int(sample.shifter_buttons)
+        buttons = [wheel >> bit & 1 for bit in range(WHEEL_BUTTONS)]
+        buttons += [shifter >> bit & 1 for bit in range(SHIFTER_BUTTONS)]
+        axes = [*sample[: sample._fields.index("wheel_buttons")], sample.hat_x, sample.hat_y]
+        return self._types["Joy"](moment.header(""), axes, buttons)
+
+    def _velocity(self, moment: Moment) -> Any:
+        vehicle = moment.vehicle
+        report = self._types["VelocityReport"]
+        return report(moment.header(BASE_FRAME), vehicle.vx_mps, vehicle.vy_mps, vehicle.yaw_rate_radps)
+
+    def _steering(self, moment: Moment) -> Any:
+        return self._types["SteeringReport"](moment.stamp, moment.vehicle.road_wheel_rad)
+
+    def _gear(self, moment: Moment) -> Any:
+        gear = moment.vehicle.gear
+        report = _DRIVE if gear > 0.0 else _REVERSE if gear < 0.0 else _NEUTRAL
+        return self._types["GearReport"](moment.stamp, report)
+
+    def _control_mode(self, moment: Moment) -> Any:
+        arbitration = moment.snapshot.arbitration
+        mode = _CONTROL_MODES.get(arbitration.mode)
+        if mode is None:
+            mode = _shared_mode(arbitration.remote_lateral > 0.0, arbitration.remote_longitudinal > 0.0)
+        return self._types["ControlModeReport"](moment.stamp, mode)
+
+    def _arbitration(self, moment: Moment) -> Any:
+        decided, remote = moment.snapshot.arbitration, moment.snapshot.remote
+        age_s = -1.0 if remote.age_ticks >= NEVER_TICKS else remote.age_ticks / moment.snapshot.tick_hz
+        return self._types["Arbitration"](
+            moment.header(BASE_FRAME),
+            int(decided.mode),
+            int(decided.reason),
+            mode_words(decided.mode),
+            reason_words(decided.reason),
+            decided.remote_lateral,
+            decided.remote_longitudinal,
+            decided.person_road_wheel_rad,
+            decided.person_throttle,
+            decided.person_brake,
+            decided.remote_road_wheel_rad,
+            decided.remote_throttle,
+            decided.remote_brake,
+            int(decided.takeover_stage),
+            int(remote.sequence),
+            int(remote.refused),
+            age_s,
+        )
+
+
+def is_due(tick: int, last_tick: int | None, tick_hz: int, rate_hz: float) -> bool:
+    """Return whether a topic of `rate_hz`, published last at `last_tick`, is due at `tick`: drift-free, by ticks alone.
+
+    A tick before the last one is a restart and due.
+    """
+    if rate_hz == ONCE:
+        return last_tick is None
+    if rate_hz <= 0.0:
+        return False
+    if last_tick is None or tick < last_tick:
+        return True
+    return int(tick * rate_hz / tick_hz) > int(last_tick * rate_hz / tick_hz)
+
+
+def quaternion(roll_rad: float, pitch_rad: float, yaw_rad: float) -> tuple[float, float, float, float]:
+    """Return x, y, z, w of the rotation by yaw about z, then pitch about the new y, then roll about the new x."""
+    sr, cr = sin(0.5 * roll_rad), cos(0.5 * roll_rad)
+    sp, cp = sin(0.5 * pitch_rad), cos(0.5 * pitch_rad)
+    sy, cy = sin(0.5 * yaw_rad), cos(0.5 * yaw_rad)
+    return (
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+        cr * cp * cy + sr * sp * sy,
+    )
+
+
+def _shared_mode(steers: bool, drives: bool) -> int:
+    if steers and drives:
+        return _AUTONOMOUS
+    if steers:
+        return _STEER_ONLY
+    return _VELOCITY_ONLY if drives else _MANUAL
