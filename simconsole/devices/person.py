@@ -1,0 +1,39 @@
+"""The simulated person in the seat: works virtual devices by what the last tick showed, never past the joystick."""
+
+from simconsole.devices.cockpit import CockpitSettings
+from simconsole.devices.person_mind import Person
+from simconsole.devices.person_skills import look
+from simconsole.devices.uncalibrate import uncalibrate
+from simconsole.devices.virtual_cockpit import VirtualCockpit
+from simconsole.profiles.person import PersonPlan
+from simconsole.rows import Snapshot
+
+
+class SimulatedPerson:
+    """A `Seat`: `act` once per tick, before the devices are polled."""
+
+    def __init__(self, plan: PersonPlan, cockpit: VirtualCockpit, settings: CockpitSettings, *, tick_hz: int) -> None:
+        """Sit down.
+
+        Args:
+            plan: What to do.
+            cockpit: The virtual devices to work.
+            settings: The cockpit's, as `calibrate` gets them: a person knows their pedals.
+            tick_hz: The session's tick rate.
+        """
+        self.person = Person(plan, tick_hz)
+        self._cockpit = cockpit
+        self._settings = settings
+
+    @property
+    def finished(self) -> bool:
+        """Whether the plan is carried out."""
+        return self.person.finished
+
+    def act(self, snapshot: Snapshot) -> None:
+        """Look at the last tick and move wheel, pedals, lever and buttons.
+
+        Raises:
+            DeviceError: SDL refuses.
+        """
+        self._cockpit.write(uncalibrate(self.person.decide(look(snapshot)), self._settings))

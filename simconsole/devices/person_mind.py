@@ -1,0 +1,290 @@
+"""What the simulated person decides, tick by tick: from what they see to what hands and feet do. Pure."""
+
+import math
+from enum import Enum, auto
+from typing import Final, NamedTuple
+
+from simconsole.devices.person_skills import (
+    Line,
+    View,
+    clutch_through_bite,
+    hold_speed,
+    launch_throttle,
+    steer_along,
+)
+from simconsole.devices.uncalibrate import Intent
+from simconsole.profiles.person import PersonPlan, When
+from simconsole.signals import Button, Mode
+from simconsole.units import MPS_PER_KMH, RAD_PER_DEG, RADPS_PER_RPM
+
+PRESS_S: Final = 0.2
+PRESS_AGAIN_S: Final = 1.5
+GATE_S: Final = 0.15
+"""How long the lever takes through neutral: longer than a bouncing contact, and what a hand needs (80 to 120 ms)."""
+MESH_S: Final = 2.0
+ROLLING_MPS: Final = 2.5
+"""Fast enough for the first gear to turn the engine above idling: the clutch may come up for good."""
+STANDING_MPS: Final = 0.05
+STAND_S: Final = 0.5
+HOLD_BRAKE: Final = 0.3
+CLUTCH_BY_MPS: Final = 6.0
+"""While braking, the clutch goes down at the latest here, before a middle gear labours the engine."""
+
+
+class Phase(Enum):
+    """What the person is busy with."""
+
+    SIT = auto()
+    CLUTCH_DOWN = auto()
+    BITE = auto()
+    DRIVE = auto()
+    SHIFT_OPEN = auto()
+    SHIFT_GATE = auto()
+    SHIFT_MESH = auto()
+    SHIFT_CLOSE = auto()
+    WATCH = auto()
+    TAKE_BACK = auto()
+    BRAKE = auto()
+    STAND = auto()
+    DONE = auto()
+
+
+class _Target(NamedTuple):
+    """Where feet should go; they get there at their own speed."""
+
+    throttle: float
+    brake: float
+    clutch: float
+
+
+NO_FEET: Final = _Target(0.0, 0.0, 0.0)
+
+
+class Person:
+    """One simulated person. `decide` once per tick; `finished` once they have stopped."""
+
+    def __init__(self, plan: PersonPlan, tick_hz: int) -> None:
+        self._plan = plan
+        self._tick_s = 1.0 / tick_hz
+        self.phase = Phase.SIT
+        self._since_s = 0.0
+        self._intent = Intent()
+        self._line: Line | None = None
+        self._next_gear = 1.0
+        self._integral = 0.0
+        self._pressed_s = -PRESS_AGAIN_S
+        self._has_driven_itself = False
+        self._steady_rad = 0.0
+
+    @property
+    def finished(self) -> bool:
+        """Whether the plan is carried out: the car stands, lever in neutral."""
+        return self.phase is Phase.DONE
+
+    @property
+    def intent(self) -> Intent:
+        """Where hands and feet are now."""
+        return self._intent
+
+    def decide(self, view: View) -> Intent:
+        """Look at one tick and move hands and feet towards what the phase wants, at a person's speed."""
+        if self._line is None:
+            self._line = Line(view.x_m, view.y_m, view.yaw_rad)
+        target = self._feet(view)
+        self._move(target, self._wheel(view), view)
+        return self._intent
+
+    def _go(self, phase: Phase, view: View) -> None:
+        self.phase = phase
+        self._since_s = view.time_s
+
+    def _in_phase_s(self, view: View) -> float:
+        return view.time_s - self._since_s
+
+    # What the feet want, and when one phase ends and the next begins.
+
+    def _feet(self, view: View) -> _Target:
+        return {
+            Phase.SIT: self._sit,
+            Phase.CLUTCH_DOWN: self._clutch_down,
+            Phase.BITE: self._bite,
+            Phase.DRIVE: self._drive,
+            Phase.SHIFT_OPEN: self._shift_open,
+            Phase.SHIFT_GATE: self._shift_gate,
+            Phase.SHIFT_MESH: self._shift_mesh,
+            Phase.SHIFT_CLOSE: self._shift_close,
+            Phase.WATCH: self._watch,
+            Phase.TAKE_BACK: self._take_back,
+            Phase.BRAKE: self._brake,
+            Phase.STAND: self._stand,
+            Phase.DONE: self._done,
+        }[self.phase](view)
+
+    def _sit(self, view: View) -> _Target:
+        if self._in_phase_s(view) >= self._plan.sit_s and view.mode == Mode.MANUAL:
+            self._go(Phase.CLUTCH_DOWN, view)
+        return NO_FEET
+
+    def _clutch_down(self, view: View) -> _Target:
+        if self._intent.clutch >= 1.0:
+            self._lever(1.0)
+            if view.engine_running and view.gear == 1.0:
+                self._go(Phase.BITE, view)
+        return _Target(0.0, 0.0, 1.0)
+
+    def _bite(self, view: View) -> _Target:
+        if not view.engine_running:
+            self._go(Phase.CLUTCH_DOWN, view)
+            return _Target(0.0, 0.0, 1.0)
+        habits, foot = self._plan.habits, self._intent.clutch
+        if view.speed_mps > ROLLING_MPS:
+            foot = max(0.0, foot - habits.foot_per_s * self._tick_s)
+        else:
+            foot = clutch_through_bite(foot, view, habits, self._tick_s)
+        if foot == 0.0:
+            self._go(Phase.DRIVE, view)
+        return _Target(launch_throttle(view, habits), 0.0, foot)
+
+    def _drive(self, view: View) -> _Target:
+        if not view.engine_running or view.mode not in (Mode.MANUAL, Mode.AUTONOMOUS, Mode.SHARED):
+            return self._give_up(view)
+        plan = self._plan
+        if self._may_stop(view):
+            self._go(Phase.BRAKE, view)
+            return NO_FEET
+        if not self._has_driven_itself and _reached(plan.autonomy, view):
+            if view.mode == Mode.AUTONOMOUS:
+                self._has_driven_itself = True
+                self._go(Phase.WATCH, view)
+                return NO_FEET
+            if view.time_s - self._pressed_s >= PRESS_AGAIN_S:
+                self._pressed_s = view.time_s
+        elif self._wants_next_gear(view):
+            self._next_gear = self._intent.gear + 1.0
+            self._go(Phase.SHIFT_OPEN, view)
+        return _Target(self._cruise(view), 0.0, 0.0)
+
+    def _wants_next_gear(self, view: View) -> bool:
+        fast = view.engine_radps > self._plan.habits.shift_up_rpm * RADPS_PER_RPM
+        return fast and self._intent.gear < self._plan.top_gear
+
+    def _cruise(self, view: View) -> float:
+        target_mps = self._plan.cruise_kmh * MPS_PER_KMH
+        throttle, self._integral = hold_speed(
+            target_mps, view.speed_mps, self._integral, self._tick_s, self._plan.habits.throttle_max
+        )
+        return throttle
+
+    def _shift_open(self, view: View) -> _Target:
+        if self._intent.clutch >= 1.0:
+            self._lever(0.0)
+            self._go(Phase.SHIFT_GATE, view)
+        return _Target(0.0, 0.0, 1.0)
+
+    def _shift_gate(self, view: View) -> _Target:
+        if self._in_phase_s(view) >= GATE_S:
+            self._lever(self._next_gear)
+            self._go(Phase.SHIFT_MESH, view)
+        return _Target(0.0, 0.0, 1.0)
+
+    def _shift_mesh(self, view: View) -> _Target:
+        if view.gear == self._intent.gear or self._in_phase_s(view) > MESH_S:
+            self._go(Phase.SHIFT_CLOSE, view)
+        return _Target(0.0, 0.0, 1.0)
+
+    def _shift_close(self, view: View) -> _Target:
+        foot = max(0.0, self._intent.clutch - 0.5 * self._plan.habits.foot_per_s * self._tick_s)
+        if foot == 0.0:
+            self._go(Phase.DRIVE, view)
+        return _Target(self._cruise(view) if foot < 0.5 else 0.0, 0.0, foot)
+
+    def _watch(self, view: View) -> _Target:
+        if view.mode in (Mode.STOPPED, Mode.EMERGENCY_STOP, Mode.PARKED):
+            self._go(Phase.STAND, view)
+        elif view.mode != Mode.AUTONOMOUS or _reached(self._plan.take_back, view):
+            self._line = Line(view.x_m, view.y_m, view.yaw_rad)
+            self._steady_rad = self._intent.hand_wheel_rad
+            self._go(Phase.TAKE_BACK, view)
+        return NO_FEET
+
+    def _take_back(self, view: View) -> _Target:
+        if view.mode == Mode.MANUAL:
+            self._line = Line(view.x_m, view.y_m, view.yaw_rad)
+            if self._may_stop(view):
+                self._go(Phase.BRAKE, view)
+            else:
+                self._next_gear = float(self._plan.top_gear)
+                self._go(Phase.SHIFT_OPEN, view)
+        elif view.mode in (Mode.STOPPED, Mode.EMERGENCY_STOP, Mode.PARKED):
+            self._go(Phase.STAND, view)
+        return NO_FEET
+
+    def _brake(self, view: View) -> _Target:
+        if abs(view.speed_mps) < STANDING_MPS:
+            self._go(Phase.STAND, view)
+        clutch = 1.0 if view.speed_mps < CLUTCH_BY_MPS or self._intent.clutch > 0.0 else 0.0
+        if view.gear != self._intent.gear:
+            clutch = 1.0  # the automatic has left another gear in: clutch first, then the lever counts again
+        return _Target(0.0, self._plan.habits.brake, clutch)
+
+    def _stand(self, view: View) -> _Target:
+        if self._intent.clutch >= 1.0:
+            self._lever(0.0)
+        if self._intent.gear == 0.0 and self._in_phase_s(view) >= STAND_S and abs(view.speed_mps) < STANDING_MPS:
+            self._go(Phase.DONE, view)
+        return _Target(0.0, HOLD_BRAKE, 1.0)
+
+    def _done(self, view: View) -> _Target:
+        return _Target(0.0, HOLD_BRAKE, 0.0)
+
+    def _give_up(self, view: View) -> _Target:
+        self._go(Phase.BRAKE, view)
+        return _Target(0.0, self._plan.habits.brake, 1.0)
+
+    def _may_stop(self, view: View) -> bool:
+        """After everything else in the plan; without a moment of its own, as soon as the person has taken back."""
+        plan = self._plan
+        if plan.autonomy is not None and not self._has_driven_itself:
+            return False
+        return _reached(plan.stop, view) if plan.stop is not None else plan.autonomy is not None
+
+    # What the hands want.
+
+    def _wheel(self, view: View) -> float:
+        if self.phase in (Phase.WATCH, Phase.DONE):
+            return self._intent.hand_wheel_rad
+        if self.phase is Phase.TAKE_BACK:
+            return self._steady_rad + self._plan.habits.take_back_deg * RAD_PER_DEG
+        if abs(view.speed_mps) < STANDING_MPS or self._line is None:
+            return self._intent.hand_wheel_rad
+        return steer_along(self._line, view, self._plan.habits)
+
+    # Hands and feet move at their own speed.
+
+    def _lever(self, gear: float) -> None:
+        self._intent = self._intent._replace(gear=gear)
+
+    def _move(self, feet: _Target, hand_wheel_rad: float, view: View) -> None:
+        now, habits = self._intent, self._plan.habits
+        foot = habits.foot_per_s * self._tick_s
+        hand = habits.hand_degps * RAD_PER_DEG * self._tick_s
+        pressing = 0.0 <= view.time_s - self._pressed_s < PRESS_S
+        self._intent = now._replace(
+            hand_wheel_rad=_towards(now.hand_wheel_rad, hand_wheel_rad, hand),
+            throttle=_towards(now.throttle, feet.throttle, foot),
+            brake=_towards(now.brake, feet.brake, foot),
+            clutch=_towards(now.clutch, feet.clutch, foot),
+            pressed=int(Button.AUTONOMOUS) if pressing else 0,
+        )
+
+
+def _towards(value: float, target: float, step: float) -> float:
+    return target if abs(target - value) <= step else value + math.copysign(step, target - value)
+
+
+def _reached(when: When | None, view: View) -> bool:
+    if when is None:
+        return False
+    far = when.distance_m is None or view.distance_m >= when.distance_m
+    late = when.time_s is None or view.time_s >= when.time_s
+    return far and late

@@ -1,0 +1,91 @@
+"""What the simulated person is able to do: keep to a line, hold a speed, let the clutch bite. Pure."""
+
+import math
+from typing import Final, NamedTuple
+
+from simconsole.profiles.person import Habits
+from simconsole.rows import Snapshot
+from simconsole.units import RADPS_PER_RPM
+
+SPEED_GAIN_PER_MPS: Final = 0.12
+SPEED_INTEGRAL_PER_M: Final = 0.03
+STALL_MARGIN_RADPS: Final = 85.0  # 810 rpm: nobody lets the clutch up further with the engine labouring
+LAUNCH_GAIN_S: Final = 0.006
+LAUNCH_THROTTLE: Final = 0.15
+
+
+class View(NamedTuple):
+    """What the person sees and feels in one tick."""
+
+    time_s: float
+    x_m: float
+    y_m: float
+    yaw_rad: float
+    speed_mps: float
+    distance_m: float
+    engine_radps: float
+    engine_running: float
+    gear: float  # in the gearbox
+    mode: float
+
+
+class Line(NamedTuple):
+    """The lane a person keeps to: the straight through a pose."""
+
+    x_m: float
+    y_m: float
+    yaw_rad: float
+
+
+def look(snapshot: Snapshot) -> View:
+    """Return what a snapshot shows."""
+    vehicle = snapshot.vehicle
+    return View(
+        snapshot.t_s,
+        vehicle.x_m,
+        vehicle.y_m,
+        vehicle.yaw_rad,
+        vehicle.vx_mps,
+        vehicle.distance_m,
+        vehicle.engine_radps,
+        vehicle.engine_running,
+        vehicle.gear,
+        snapshot.arbitration.mode,
+    )
+
+
+def steer_along(line: Line, view: View, habits: Habits) -> float:
+    """Return the hand-wheel angle in rad that leads back to the line.
+
+    Pure pursuit: the arc from base_link to the point of the line a look-ahead distance on (Coulter, Implementation of
+    the Pure Pursuit Path Tracking Algorithm, CMU-RI-TR-92-01), through the car's Ackermann angle.
+    """
+    dx, dy = view.x_m - line.x_m, view.y_m - line.y_m
+    offset_m = dy * math.cos(line.yaw_rad) - dx * math.sin(line.yaw_rad)
+    heading_rad = math.remainder(view.yaw_rad - line.yaw_rad, math.tau)
+    ahead_m = max(habits.look_ahead_min_m, abs(view.speed_mps) * habits.look_ahead_s)
+    angle_rad = math.atan2(-offset_m, ahead_m) - heading_rad
+    curvature_per_m = 2.0 * math.sin(angle_rad) / math.hypot(ahead_m, offset_m)
+    return math.atan(habits.wheelbase_m * curvature_per_m) * habits.steering_ratio
+
+
+def hold_speed(target_mps: float, speed_mps: float, integral: float, tick_s: float, most: float) -> tuple[float, float]:
+    """Return (throttle, integral) of a patient PI foot; the integral rests while the pedal is at an end."""
+    missing_mps = target_mps - speed_mps
+    throttle = SPEED_GAIN_PER_MPS * missing_mps + integral
+    if 0.0 < throttle < most:
+        integral += SPEED_INTEGRAL_PER_M * missing_mps * tick_s
+    return min(most, max(0.0, throttle)), min(most, max(0.0, integral))
+
+
+def launch_throttle(view: View, habits: Habits) -> float:
+    """Return the throttle that keeps the engine near the launch speed while the clutch bites."""
+    missing_radps = habits.launch_rpm * RADPS_PER_RPM - view.engine_radps
+    return min(habits.throttle_max, max(0.0, LAUNCH_THROTTLE + LAUNCH_GAIN_S * missing_radps))
+
+
+def clutch_through_bite(foot: float, view: View, habits: Habits, tick_s: float) -> float:
+    """Return the clutch pedal one tick later: let up steadily, held while the engine labours."""
+    if view.engine_radps < STALL_MARGIN_RADPS:
+        return foot
+    return max(0.0, foot - habits.bite_release_per_s * tick_s)

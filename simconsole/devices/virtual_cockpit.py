@@ -1,0 +1,86 @@
+"""A profile's cockpit made of virtual devices: written in raw terms, read back by pygame as any other."""
+
+from simconsole.devices.virtual_sdl import VirtualDevice, VirtualSpec, specs
+from simconsole.errors import DeviceError
+from simconsole.profiles.device import CockpitProfile, RoleName
+from simconsole.signals import DeviceSample
+
+
+class VirtualCockpit:
+    """All devices of a profile, plugged in. Only what changed is written."""
+
+    def __init__(self, profile: CockpitProfile, *, reverse_order: bool = False) -> None:
+        """Plug every device in.
+
+        Args:
+            profile: The cockpit to be.
+            reverse_order: Plug the last one in first, as another boot might.
+
+        Raises:
+            DeviceError: the profile names no devices, or SDL has no virtual ones.
+        """
+        if not profile.roles:
+            raise DeviceError(f"{profile.title}: roles: value empty: a cockpit with devices")
+        self._profile = profile
+        self._keys = {binding.role: (binding.vendor_id, binding.product_id) for binding in profile.roles}
+        self._specs = {(spec.vendor_id, spec.product_id): spec for spec in specs(profile)}
+        self._devices: dict[tuple[int, int], VirtualDevice] = {}
+        self._axes: dict[tuple[RoleName, int], float] = {}
+        self._buttons: dict[RoleName, float] = {}
+        try:
+            for key in sorted(self._specs, reverse=reverse_order):
+                self._devices[key] = VirtualDevice(self._specs[key])
+        except BaseException:
+            self.close()
+            raise
+
+    def write(self, sample: DeviceSample) -> None:
+        """Put axes and buttons where `sample` says. Devices that are unplugged are passed over."""
+        pedals = self._profile.pedals
+        self._set_axis("wheel", self._profile.wheel.axis, sample.wheel_axis)
+        self._set_axis("pedals", pedals.throttle.axis, sample.throttle_axis)
+        self._set_axis("pedals", pedals.brake.axis, sample.brake_axis)
+        if pedals.clutch is not None:
+            self._set_axis("pedals", pedals.clutch.axis, sample.clutch_axis)
+        if pedals.handbrake is not None:
+            self._set_axis("pedals", pedals.handbrake.axis, sample.handbrake_axis)
+        self._set_buttons("wheel", sample.wheel_buttons)
+        self._set_buttons("shifter", sample.shifter_buttons)
+
+    def unplug(self, role: RoleName) -> None:
+        """Pull the plug of the device that plays this role; twice is harmless."""
+        device = self._devices.pop(self._keys[role], None)
+        if device is not None:
+            device.detach()
+
+    def plug(self, role: RoleName) -> None:
+        """Plug it in again, at rest, as a new device; does nothing while it is plugged in."""
+        key = self._keys[role]
+        if key not in self._devices:
+            self._forget(key)
+            self._devices[key] = VirtualDevice(self._specs[key])
+
+    def spec(self, role: RoleName) -> VirtualSpec:
+        """Return what the device of this role claims to be."""
+        return self._specs[self._keys[role]]
+
+    def close(self) -> None:
+        """Unplug everything."""
+        while self._devices:
+            self._devices.popitem()[1].detach()
+
+    def _forget(self, key: tuple[int, int]) -> None:
+        self._axes = {at: value for at, value in self._axes.items() if self._keys[at[0]] != key}
+        self._buttons = {role: mask for role, mask in self._buttons.items() if self._keys[role] != key}
+
+    def _set_axis(self, role: RoleName, axis: int, value: float) -> None:
+        device = self._devices.get(self._keys[role])
+        if device is not None and self._axes.get((role, axis)) != value:
+            device.set_axis(axis, value)
+            self._axes[role, axis] = value
+
+    def _set_buttons(self, role: RoleName, mask: float) -> None:
+        device = self._devices.get(self._keys[role])
+        if device is not None and self._buttons.get(role) != mask:
+            device.set_buttons(int(mask))
+            self._buttons[role] = mask

@@ -1,0 +1,55 @@
+"""The simulated person's plan: what they do in a drive, and how they are used to doing it."""
+
+from typing import Annotated, Literal, TypeAlias
+
+from msgspec import Meta, Struct
+
+Metres: TypeAlias = Annotated[float, Meta(ge=0.0, le=1e6)]
+Seconds: TypeAlias = Annotated[float, Meta(ge=0.0, le=86_400.0)]
+
+
+class When(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A moment: when every limit that is given has been reached."""
+
+    distance_m: Metres | None = None  # driven since the start
+    time_s: Seconds | None = None  # since the start
+
+    def __post_init__(self) -> None:
+        """Refuse a moment that nothing leads to.
+
+        Raises:
+            ValueError: neither limit is given.
+        """
+        if self.distance_m is None and self.time_s is None:
+            raise ValueError("distance_m or time_s must be given")
+
+
+class Habits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """How a person works the cockpit. Rates of hand and foot are those of an unhurried driver."""
+
+    steering_ratio: Annotated[float, Meta(ge=5.0, le=30.0)] = 15.5  # what they are used to
+    wheelbase_m: Annotated[float, Meta(ge=1.0, le=6.0)] = 2.6
+    hand_degps: Annotated[float, Meta(ge=30.0, le=1000.0)] = 240.0
+    foot_per_s: Annotated[float, Meta(ge=0.5, le=20.0)] = 4.0
+    look_ahead_s: Annotated[float, Meta(ge=0.3, le=3.0)] = 1.2
+    look_ahead_min_m: Annotated[float, Meta(ge=2.0, le=50.0)] = 7.0
+    bite_release_per_s: Annotated[float, Meta(ge=0.1, le=2.0)] = 0.45  # the clutch through its bite point
+    launch_rpm: Annotated[float, Meta(ge=900.0, le=4000.0)] = 1800.0
+    shift_up_rpm: Annotated[float, Meta(ge=1200.0, le=7000.0)] = 2300.0
+    throttle_max: Annotated[float, Meta(gt=0.0, le=1.0)] = 0.6
+    brake: Annotated[float, Meta(gt=0.0, le=1.0)] = 0.3
+    take_back_deg: Annotated[float, Meta(ge=1.0, le=90.0)] = 12.0
+
+
+class PersonPlan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """One drive: drive off, hand over, take back, stop. A moment left out never comes (`stop`: at once)."""
+
+    schema: Literal[1] = 1
+    title: Annotated[str, Meta(max_length=200)] = ""
+    sit_s: Seconds = 1.0
+    cruise_kmh: Annotated[float, Meta(ge=5.0, le=130.0)] = 40.0
+    top_gear: Annotated[int, Meta(ge=1, le=7)] = 3
+    autonomy: When | None = None
+    take_back: When | None = None
+    stop: When | None = None
+    habits: Habits = Habits()
