@@ -4,15 +4,15 @@ Shapes are drawn larger than wanted and scaled down, which smooths their edges; 
 costs the few items that moved. Needs neither a display nor a video driver.
 """
 
+from __future__ import annotations
+
 import math
+import os
 from collections import OrderedDict
 from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import Final
-
-import pygame
-import pygame.font
+from typing import TYPE_CHECKING, Final
 
 from simconsole.hud.draw import Arc, Box, Colour, DrawItem, Polygon, Rect, Text, at_clock, bounds, text_width_px
 from simconsole.hud.layout import layout
@@ -20,6 +20,9 @@ from simconsole.hud.screen import Screen, screen_of
 from simconsole.hud.view import HudMemory, HudSettings, HudView, view
 from simconsole.profiles.view import HudProfile
 from simconsole.rows import Snapshot
+
+if TYPE_CHECKING:
+    import pygame
 
 CAP_PER_SIZE: Final = 0.501
 """Height of a capital in pygame's own font at size 1."""
@@ -36,6 +39,9 @@ class Painter:
     """Draws lists on surfaces and remembers what it has drawn."""
 
     def __init__(self) -> None:
+        os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")  # standard output belongs to --json
+        import pygame.font
+
         pygame.font.init()
         self._fonts: dict[int, pygame.font.Font] = {}
         self._kept: OrderedDict[DrawItem, tuple[pygame.Surface, tuple[int, int]]] = OrderedDict()
@@ -70,6 +76,8 @@ class Painter:
         return self._words(item) if isinstance(item, Text) else _shape(item)
 
     def _words(self, item: Text) -> tuple[pygame.Surface, tuple[int, int]]:
+        import pygame
+
         size = max(1, math.ceil(WORDS_SCALE * item.cap_px / CAP_PER_SIZE - 1e-6))
         font = self._fonts.get(size) or self._fonts.setdefault(size, pygame.font.Font(None, size))
         large = font.render(item.text, True, item.colour)
@@ -86,6 +94,8 @@ class Painter:
 @lru_cache(maxsize=4 * KEPT)
 def _area(item: DrawItem) -> pygame.Rect:
     """Return the pixels that an item may touch, smoothed edges and letters below the line included."""
+    import pygame
+
     box = bounds(item) if isinstance(item, Rect | Text) else _extent(item)
     margin = 3 + (math.ceil(0.5 * item.cap_px) if isinstance(item, Text) else 0)
     left, top = math.floor(box.x) - margin, math.floor(box.y) - margin
@@ -104,6 +114,8 @@ def _joined(areas: Sequence[pygame.Rect]) -> list[pygame.Rect]:
 
 
 def _rectangle(surface: pygame.Surface, item: Rect) -> None:
+    import pygame
+
     left, top = round(item.box.x), round(item.box.y)
     area = pygame.Rect(left, top, round(item.box.right) - left, round(item.box.bottom) - top)
     radius = min(round(item.radius), area.w // 2, area.h // 2)
@@ -121,6 +133,8 @@ def _rectangle(surface: pygame.Surface, item: Rect) -> None:
 @lru_cache(maxsize=64)
 def _disc(radius: int, colour: Colour) -> pygame.Surface:
     """Return a smooth disc, the source of rounded corners."""
+    import pygame
+
     large = pygame.Surface((8 * radius, 8 * radius), pygame.SRCALPHA)
     large.fill((*colour, 0))
     pygame.draw.circle(large, colour, (4 * radius, 4 * radius), 4 * radius)
@@ -129,6 +143,8 @@ def _disc(radius: int, colour: Colour) -> pygame.Surface:
 
 def _shape(item: Rect | Polygon | Arc) -> tuple[pygame.Surface, tuple[int, int]]:
     """Return a smooth picture of one shape and where it goes."""
+    import pygame
+
     box = _extent(item)
     left, top = math.floor(box.x) - 1, math.floor(box.y) - 1
     width, height = math.ceil(box.right) + 2 - left, math.ceil(box.bottom) + 2 - top
@@ -164,14 +180,20 @@ def _arc_points(arc: Arc) -> tuple[tuple[float, float], ...]:
 
 def render(shown: HudView, screen: Screen, painter: Painter | None = None) -> pygame.Surface:
     """Return a picture of `shown` on a surface of its own."""
+    painter = painter or Painter()
+    import pygame
+
     surface = pygame.Surface((screen.width_px, screen.height_px))
-    (painter or Painter()).paint(surface, layout(shown, screen))
+    painter.paint(surface, layout(shown, screen))
     return surface
 
 
 def render_png(shown: HudView, path: Path, screen: Screen) -> None:
     """Write a picture of `shown` as PNG."""
-    pygame.image.save(render(shown, screen), str(path))
+    picture = render(shown, screen)
+    import pygame
+
+    pygame.image.save(picture, str(path))
 
 
 def snapshot_png(

@@ -7,8 +7,6 @@ import time
 from collections.abc import Callable
 from typing import Final, NamedTuple
 
-import pygame
-
 from simconsole.errors import StationError
 from simconsole.hud.draw import DrawItem
 from simconsole.hud.layout import check_screen, layout
@@ -19,27 +17,28 @@ from simconsole.keys import Key
 from simconsole.profiles.view import HudProfile
 from simconsole.rows import Snapshot
 
-KEYS: Final[dict[int, Key]] = {
-    pygame.K_LEFT: Key.STEER_LEFT,
-    pygame.K_a: Key.STEER_LEFT,
-    pygame.K_RIGHT: Key.STEER_RIGHT,
-    pygame.K_d: Key.STEER_RIGHT,
-    pygame.K_UP: Key.THROTTLE,
-    pygame.K_w: Key.THROTTLE,
-    pygame.K_DOWN: Key.BRAKE,
-    pygame.K_s: Key.BRAKE,
-    pygame.K_LSHIFT: Key.CLUTCH,
-    pygame.K_SPACE: Key.HANDBRAKE,
-    pygame.K_e: Key.GEAR_UP,
-    pygame.K_q: Key.GEAR_DOWN,
-    pygame.K_RETURN: Key.AUTONOMOUS,
-    pygame.K_BACKSPACE: Key.MANUAL,
-    pygame.K_ESCAPE: Key.EMERGENCY_STOP,
-    pygame.K_r: Key.RESET,
-    pygame.K_COMMA: Key.INDICATOR_LEFT,
-    pygame.K_PERIOD: Key.INDICATOR_RIGHT,
-    pygame.K_m: Key.MARK,
+KEYS: Final[dict[str, Key]] = {
+    "K_LEFT": Key.STEER_LEFT,
+    "K_a": Key.STEER_LEFT,
+    "K_RIGHT": Key.STEER_RIGHT,
+    "K_d": Key.STEER_RIGHT,
+    "K_UP": Key.THROTTLE,
+    "K_w": Key.THROTTLE,
+    "K_DOWN": Key.BRAKE,
+    "K_s": Key.BRAKE,
+    "K_LSHIFT": Key.CLUTCH,
+    "K_SPACE": Key.HANDBRAKE,
+    "K_e": Key.GEAR_UP,
+    "K_q": Key.GEAR_DOWN,
+    "K_RETURN": Key.AUTONOMOUS,
+    "K_BACKSPACE": Key.MANUAL,
+    "K_ESCAPE": Key.EMERGENCY_STOP,
+    "K_r": Key.RESET,
+    "K_COMMA": Key.INDICATOR_LEFT,
+    "K_PERIOD": Key.INDICATOR_RIGHT,
+    "K_m": Key.MARK,
 }
+"""Names of pygame's key constants: the library itself is loaded when a window opens."""
 
 
 class Ports(NamedTuple):
@@ -81,6 +80,8 @@ class Window:
         self._freshness = Freshness()
         self._painter = Painter()
         self._drawn: list[DrawItem] = []
+        import pygame
+
         flags = pygame.FULLSCREEN | pygame.SCALED if profile.fullscreen else 0
         try:
             pygame.display.init()
@@ -93,6 +94,8 @@ class Window:
 
     def frame(self, snapshot: Snapshot | None, now_s: float) -> None:
         """Draw one frame; a picture equal to the last one costs nothing."""
+        import pygame
+
         items = layout(self._content(snapshot, now_s), self._screen)
         if items == self._drawn:
             return
@@ -108,15 +111,19 @@ class Window:
 
     def close(self) -> None:
         """Close the window."""
+        import pygame
+
         pygame.display.quit()
 
 
 def held_keys() -> int:
     """Return the mask of all keys held now; call after the events were pumped."""
+    import pygame
+
     pressed = pygame.key.get_pressed()
     mask = 0
-    for code, key in KEYS.items():
-        if pressed[code]:
+    for name, key in KEYS.items():
+        if pressed[getattr(pygame, name)]:
             mask |= key
     return mask
 
@@ -124,6 +131,8 @@ def held_keys() -> int:
 def run(ports: Ports, profile: HudProfile, settings: HudSettings) -> None:
     """Show the cluster until `ports.stop` says so or the window is closed."""
     window = Window(profile, settings)
+    import pygame
+
     clock = pygame.time.Clock()
     try:
         while not ports.stop():

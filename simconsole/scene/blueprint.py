@@ -1,12 +1,15 @@
 """What the operators see when they open the recording: chase view, map, mode lane, plots, log."""
 
-from typing import Final
+from __future__ import annotations
 
-import rerun.blueprint as rrb
+from typing import TYPE_CHECKING, Final
 
 from simconsole.profiles.view import SceneProfile
 from simconsole.scene.entities import Array, on_map
 from simconsole.scene.timeline import PLOTS
+
+if TYPE_CHECKING:
+    import rerun.blueprint as rrb
 
 TIMELINE: Final = "sim_time"
 MAP: Final = "map"
@@ -24,6 +27,8 @@ def blueprint(profile: SceneProfile, scale: float, path: Array | None) -> rrb.Bl
         scale: size of the vehicle against a car's.
         path: [N, 2 or 3] m, what the map shows whole, if anything.
     """
+    import rerun.blueprint as rrb
+
     so_far = rrb.VisibleTimeRanges(
         timeline=TIMELINE,
         start=rrb.TimeRangeBoundary.infinite(),
@@ -73,6 +78,8 @@ def blueprint(profile: SceneProfile, scale: float, path: Array | None) -> rrb.Bl
 
 
 def _bounds(points: Array) -> rrb.VisualBounds2D:
+    import rerun.blueprint as rrb
+
     low, high = points.min(axis=0), points.max(axis=0)
     margin = 0.06 * float((high - low).max())
     return rrb.VisualBounds2D(

@@ -5,11 +5,11 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from simconsole.scene.triangles import Indices, triangulate
 from simconsole.signals import Mode
 from simconsole.world.drawing import Drawing
 
 Array = NDArray[np.float64]
-Indices = NDArray[np.uint32]
 Colour = tuple[int, int, int]
 
 ASPHALT: Final[Colour] = (52, 56, 62)
@@ -127,17 +127,14 @@ def on_map(points: Array) -> Array:
 
 
 def mesh(polygons: tuple[Array, ...], z_m: float) -> Mesh:
-    """Return the triangles of polygons [N, 2], each a closed outline that its vertices' middle sees whole."""
+    """Return the triangles of simple polygons [N, 2] (closed by this function), all at one height."""
     vertices: list[Array] = []
     triangles: list[Indices] = []
     count = 0
     for polygon in polygons:
-        size = len(polygon)
-        vertices.append(lifted(np.vstack((polygon, polygon.mean(axis=0))), z_m))
-        rim = np.arange(size)
-        fan = np.column_stack((rim, (rim + 1) % size, np.full(size, size))) + count
-        triangles.append(fan.astype(np.uint32))
-        count += size + 1
+        vertices.append(lifted(polygon, z_m))
+        triangles.append(triangulate(polygon) + np.uint32(count))
+        count += len(polygon)
     if not vertices:
         return Mesh(np.empty((0, 3)), np.empty((0, 3), np.uint32))
     return Mesh(np.vstack(vertices), np.vstack(triangles))

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-import rerun as rr
 
 from simconsole.errors import StationError
 from simconsole.profiles.view import SceneProfile
@@ -49,6 +48,8 @@ class RerunView:
         Raises:
             StationError: the file cannot be written.
         """
+        import rerun as rr
+
         self._flush_s = profile.flush_s
         self._stream = rr.RecordingStream(APPLICATION, recording_id=path.stem, send_properties=True)
         rr.set_strict_mode(True)
@@ -103,6 +104,8 @@ class RerunView:
         self._stream.log(path, *shapes, static=True)
 
     def _car(self, dimensions: Dimensions) -> None:
+        import rerun as rr
+
         if dimensions.is_ball:
             half = 0.5 * dimensions.height_m
             ball = rr.Ellipsoids3D(
@@ -137,6 +140,8 @@ class RerunView:
         self._lights(world)
 
     def _mesh(self, path: str, mesh: Mesh, colour: tuple[int, int, int]) -> None:
+        import rerun as rr
+
         if len(mesh.triangles):
             up = np.tile((0.0, 0.0, 1.0), (len(mesh.vertices), 1))
             shape = rr.Mesh3D(
@@ -151,6 +156,8 @@ class RerunView:
     def _flat(
         self, name: str, lines: tuple[Array, ...], colour: tuple[int, int, int], radius_px: float, order: float
     ) -> None:
+        import rerun as rr
+
         strips = rr.LineStrips2D(
             [on_map(line) for line in lines],
             colors=[colour],
@@ -160,6 +167,8 @@ class RerunView:
         self._still(f"{MAP}/{name}", strips)
 
     def _lights(self, world: WorldShapes) -> None:
+        import rerun as rr
+
         if not len(world.light_posts):
             return
         posts = raised(world.light_posts, 0.5 * POST_M)
@@ -180,10 +189,14 @@ class RerunView:
         self._still(f"{MAP}/lights", rr.Points2D(spots, colors=[(255, 176, 32)], radii=rr.Radius.ui_points(3.5)))
 
     def _send(self, path: str, times_ns: Ticks | list[int], columns: Any) -> None:
+        import rerun as rr
+
         duration = np.asarray(times_ns, dtype=np.int64).astype("timedelta64[ns]")
         self._stream.send_columns(path, [rr.TimeColumn(TIMELINE, duration=duration)], columns)
 
     def _poses(self, piece: Piece) -> None:
+        import rerun as rr
+
         pose = rr.Transform3D.columns(translation=piece.positions, quaternion=piece.quaternions)
         self._send("world/ego", piece.times_ns, pose)
         count = len(piece.ticks)
@@ -193,16 +206,22 @@ class RerunView:
         self._send(f"{MAP}/ego", piece.times_ns, spot)
 
     def _plots(self, piece: Piece) -> None:
+        import rerun as rr
+
         for path, values in piece.plots.items():
             lengths = [values.shape[1]] * values.shape[0]
             columns = rr.Scalars.columns(scalars=values.reshape(-1)).partition(lengths)
             self._send(path, piece.times_ns, columns)
 
     def _lane(self, lane: Lane) -> None:
+        import rerun as rr
+
         if lane.times_ns:
             self._send(lane.path, lane.times_ns, rr.StateChange.columns(state=lane.states))
 
     def _driven(self, strips: tuple[Strip, ...]) -> None:
+        import rerun as rr
+
         if not strips:
             return
         times_ns = [strip.t_ns for strip in strips]
@@ -215,10 +234,14 @@ class RerunView:
         self._send(f"{MAP}/path/driven", times_ns, rr.LineStrips2D.columns(strips=flat, colors=colours, radii=radii))
 
     def _entries(self, entries: tuple[Entry, ...]) -> None:
+        import rerun as rr
+
         if entries:
             lines = rr.TextLog.columns(text=[entry.text for entry in entries], level=[entry.level for entry in entries])
             self._send("log", [entry.t_ns for entry in entries], lines)
 
 
 def _strips3d(lines: tuple[Array, ...], colour: tuple[int, int, int], radius_m: float) -> Any:
+    import rerun as rr
+
     return rr.LineStrips3D(lines, colors=[colour], radii=[radius_m])

@@ -68,7 +68,7 @@ def test_keys_are_released_when_the_ring_breaks() -> None:
 
 def test_held_keys_become_one_mask(monkeypatch: pytest.MonkeyPatch) -> None:
     held = defaultdict(bool, {pygame.K_LEFT: True, pygame.K_w: True, pygame.K_ESCAPE: True, pygame.K_z: True})
-    monkeypatch.setattr(window.pygame.key, "get_pressed", lambda: held)
+    monkeypatch.setattr(pygame.key, "get_pressed", lambda: held)
     assert window.held_keys() == Key.STEER_LEFT | Key.THROTTLE | Key.EMERGENCY_STOP
 
 
@@ -103,7 +103,7 @@ def test_an_equal_picture_is_not_drawn_again(monkeypatch: pytest.MonkeyPatch) ->
     opened = Window(PROFILE, HudSettings())
     opened.frame(snapshot(1), 1.0)
     painted: list[int] = []
-    monkeypatch.setattr(window.pygame.display, "update", lambda areas: None)
+    monkeypatch.setattr(pygame.display, "update", lambda areas: None)
     monkeypatch.setattr(opened._painter, "repaint", lambda surface, before, after: painted.append(len(after)))
     opened.frame(snapshot(2), 1.1)
     assert painted == []

@@ -1,0 +1,60 @@
+"""Polygons to triangles by cutting ears: exact for every simple polygon, concave ones included."""
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.uint32]
+
+FLAT_M2: Final = 1e-12
+"""Twice the area below which a corner is a straight line or a repeated point."""
+
+
+def triangulate(polygon: Array) -> Indices:
+    """Return the triangles [at most N - 2, 3] of a simple polygon [N, 2] in m, as indices of its vertices.
+
+    A corner is an ear when it is convex and no other vertex lies inside its triangle; a simple polygon always has
+    one (Meisters 1975). If the outline crosses itself and no ear is left, the rest is drawn as a fan.
+    """
+    points: list[list[float]] = polygon.tolist()
+    left = list(range(len(points)))
+    turn = 1.0 if _area2(polygon) >= 0.0 else -1.0
+    triangles: list[tuple[int, int, int]] = []
+    at = misses = 0
+    while len(left) > 3 and misses < len(left):
+        at %= len(left)
+        corner = (left[at - 1], left[at], left[(at + 1) % len(left)])
+        size = turn * _corner2(*(points[index] for index in corner))
+        flat = abs(size) <= FLAT_M2
+        if flat or (size > 0.0 and _is_empty(polygon, corner, left, turn)):
+            if not flat:
+                triangles.append(corner)
+            del left[at]
+            misses = 0
+        else:
+            at, misses = at + 1, misses + 1
+    triangles += [(left[0], left[i], left[i + 1]) for i in range(1, len(left) - 1)]
+    return np.array(triangles, dtype=np.uint32).reshape(-1, 3)
+
+
+def _area2(points: Array) -> float:
+    """Return twice the signed area, positive for anticlockwise."""
+    x, y = (points - points[:1]).T
+    return float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))
+
+
+def _corner2(a: list[float], b: list[float], c: list[float]) -> float:
+    """Return twice the signed area of one triangle."""
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def _is_empty(polygon: Array, corner: tuple[int, int, int], left: list[int], turn: float) -> bool:
+    """Return whether no other vertex lies inside the corner's triangle; on its border is not inside."""
+    others = polygon[[index for index in left if index not in corner]]
+    inside = np.ones(len(others), dtype=bool)
+    for start, end in zip(corner, (*corner[1:], corner[0]), strict=True):
+        edge, away = polygon[end] - polygon[start], others - polygon[start]
+        inside &= turn * (edge[0] * away[:, 1] - edge[1] * away[:, 0]) > FLAT_M2
+    return not inside.any()
