@@ -1,0 +1,213 @@
+"""How much authority each side has, what each asks for, and the blend of both."""
+
+from typing import Final, NamedTuple
+
+from simconsole.control.decision import Decision
+from simconsole.control.link import Link
+from simconsole.control.person import Person
+from simconsole.control.remote import RemoteRequest
+from simconsole.control.settings import ControlSettings
+from simconsole.control.stops import safe_stop, stop_start
+from simconsole.kernels import approach, kernel
+from simconsole.signals import (
+    ArbiterMemory,
+    Arbitration,
+    DriverInput,
+    Mode,
+    Request,
+    VehicleCommand,
+    VehicleState,
+)
+
+_PARKED: Final = float(Mode.PARKED)
+_MANUAL: Final = float(Mode.MANUAL)
+_SHARED: Final = float(Mode.SHARED)
+_AUTONOMOUS: Final = float(Mode.AUTONOMOUS)
+_TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)
+_MINIMAL_RISK: Final = float(Mode.MINIMAL_RISK)
+_STOPPED: Final = float(Mode.STOPPED)
+_EMERGENCY_STOP: Final = float(Mode.EMERGENCY_STOP)
+
+
+class Shares(NamedTuple):
+    """The remote side's authority, 0 to 1; the person has the rest."""
+
+    lateral: float
+    longitudinal: float
+
+
+class RemoteSide(NamedTuple):
+    """What the remote side asks for, and what it must remember."""
+
+    road_wheel_rad: float
+    throttle: float
+    brake: float
+    direction: float
+    speed_integral_mps2: float
+    stop_accel_mps2: float
+    hold_road_wheel_rad: float
+
+
+class Transmission(NamedTuple):
+    """Clutch, lever and whether the car works them itself."""
+
+    clutch: float
+    gear: float
+    automatic: float
+
+
+@kernel
+def shares_of(mode: float, throttle_override: float, before: Arbitration, settings: ControlSettings) -> Shares:
+    """Move authority by at most one step of the fade; the console's own stops have it at once: they start bumpless."""
+    if mode == _MANUAL:
+        lateral = 0.0
+        longitudinal = 0.0
+    elif mode == _SHARED:
+        lateral = settings.shared_lateral
+        longitudinal = settings.shared_longitudinal
+    elif mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED):
+        lateral = 1.0
+        longitudinal = 1.0 - throttle_override
+    else:
+        return Shares(1.0, 1.0)
+    step = settings.fade_per_tick
+    return Shares(
+        approach(before.remote_lateral, lateral, step), approach(before.remote_longitudinal, longitudinal, step)
+    )
+
+
+@kernel
+def remote_side(
+    decision: Decision,
+    shares: Shares,
+    offered: RemoteRequest,
+    link: Link,
+    memory: ArbiterMemory,
+    before: Arbitration,
+    command_before: VehicleCommand,
+    vehicle: VehicleState,
+    settings: ControlSettings,
+    tick_s: float,
+) -> RemoteSide:
+    """Return what the remote side asks for: the controller or, where it does not drive, the console's own stop.
+
+    While its authority fades out in MANUAL, what it asked for last is held; with none left it is shown for information.
+
+    Args:
+        decision: The mode, and whether it was entered in this tick.
+        shares: Authority of this tick.
+        offered: What the controller's command means.
+        link: Whether that command counts.
+        memory: From the tick before.
+        before: The requests of the tick before.
+        command_before: What left the gate in the tick before: stops start from it.
+        vehicle: State after the tick before.
+        settings: Of this drive.
+        tick_s: Length of a tick in s.
+    """
+    mode = decision.mode
+    entered = decision.changed > 0.0
+    hold = command_before.road_wheel_rad if entered else memory.hold_road_wheel_rad
+    if mode == _MANUAL and (shares.lateral > 0.0 or shares.longitudinal > 0.0):
+        return RemoteSide(
+            before.remote_road_wheel_rad, before.remote_throttle, before.remote_brake, 0.0, 0.0, 0.0, hold
+        )
+    if mode in (_MANUAL, _SHARED, _AUTONOMOUS, _TAKEOVER_REQUESTED):
+        if link.fresh == 0.0:
+            return RemoteSide(command_before.road_wheel_rad, 0.0, 0.0, 0.0, 0.0, 0.0, hold)
+        integral = offered.speed_integral_mps2 if mode != _MANUAL and shares.longitudinal >= 1.0 else 0.0
+        return RemoteSide(
+            offered.road_wheel_rad, offered.throttle, offered.brake, offered.direction, integral, 0.0, hold
+        )
+    if mode == _MINIMAL_RISK:
+        return _safe_side(entered, hold, memory, vehicle, settings, tick_s)
+    brake = settings.emergency_brake if mode == _EMERGENCY_STOP else settings.hold_brake
+    return RemoteSide(hold, 0.0, brake, 0.0, 0.0, 0.0, hold)
+
+
+@kernel
+def _safe_side(
+    entered: bool,
+    hold_rad: float,
+    memory: ArbiterMemory,
+    vehicle: VehicleState,
+    settings: ControlSettings,
+    tick_s: float,
+) -> RemoteSide:
+    accel = stop_start(vehicle, settings) if entered else memory.stop_accel_mps2
+    integral = 0.0 if entered else memory.speed_integral_mps2
+    stop = safe_stop(accel, integral, vehicle, settings, tick_s)
+    road_wheel_rad = approach(hold_rad, 0.0, settings.stop_road_wheel_decay_radps * tick_s)
+    return RemoteSide(
+        road_wheel_rad,
+        0.0,
+        stop.pedals.brake,
+        0.0,
+        stop.integral_mps2,
+        stop.stop_accel_mps2,
+        road_wheel_rad,
+    )
+
+
+@kernel
+def transmission_of(
+    mode: float,
+    direction: float,
+    driver: DriverInput,
+    command_before: VehicleCommand,
+    vehicle: VehicleState,
+    settings: ControlSettings,
+) -> Transmission:
+    """Return who works clutch and gears.
+
+    After autonomy the car goes on doing it until the person's clutch takes them back: the lever stands in any gear.
+    """
+    if mode == _PARKED:
+        return Transmission(0.0, 0.0, 0.0)
+    if mode == _STOPPED:
+        return Transmission(0.0, 0.0, 1.0)
+    if mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED):
+        return Transmission(0.0, direction, 1.0)
+    if mode in (_MINIMAL_RISK, _EMERGENCY_STOP):
+        gear = command_before.gear if command_before.automatic > 0.0 else _sign(vehicle.gear)
+        return Transmission(0.0, gear, 1.0)
+    if mode == _SHARED and settings.shared_longitudinal > 0.0:
+        return Transmission(0.0, direction, 1.0)
+    if settings.manual_automatic > 0.0:
+        return Transmission(0.0, _sign(driver.gear), 1.0)
+    if command_before.automatic > 0.0 and driver.clutch < settings.clutch_pressed:
+        return Transmission(0.0, command_before.gear, 1.0)
+    return Transmission(driver.clutch, driver.gear, 0.0)
+
+
+@kernel
+def _sign(value: float) -> float:
+    if value > 0.0:
+        return 1.0
+    return -1.0 if value < 0.0 else 0.0
+
+
+@kernel
+def blend(
+    mode: float, shares: Shares, side: RemoteSide, person: Person, transmission: Transmission, driver: DriverInput
+) -> Request:
+    """Return the two sides' requests weighted by their shares; the person's brake counts in full."""
+    road_wheel_rad = shares.lateral * side.road_wheel_rad + (1.0 - shares.lateral) * person.road_wheel_rad
+    throttle = shares.longitudinal * side.throttle + (1.0 - shares.longitudinal) * person.throttle
+    brake = shares.longitudinal * side.brake + (1.0 - shares.longitudinal) * person.brake
+    if person.brake > brake:
+        brake = person.brake
+    handbrake = 0.0
+    if mode in (_PARKED, _STOPPED):
+        handbrake = 1.0
+    elif mode in (_MANUAL, _SHARED):
+        handbrake = driver.handbrake
+    return Request(
+        road_wheel_rad,
+        throttle,
+        brake,
+        transmission.clutch,
+        handbrake,
+        transmission.gear,
+        transmission.automatic,
+    )

@@ -1,0 +1,116 @@
+"""The mode of this tick, and why: guards, the mode table, refusals shown for a while."""
+
+from typing import Final, NamedTuple
+
+from simconsole.control.engage import GRANTED, engage_refusal
+from simconsole.control.link import Link
+from simconsole.control.modes import deciding_trigger, next_mode, reason_of
+from simconsole.control.person import Person
+from simconsole.control.remote import RemoteRequest
+from simconsole.control.settings import ControlSettings
+from simconsole.control.triggers import (
+    Asked,
+    asked_of,
+    asked_triggers,
+    fault_triggers,
+    manual_refusal,
+    person_triggers,
+    refusal_of,
+    reset_refusal,
+)
+from simconsole.kernels import kernel
+from simconsole.signals import (
+    ArbiterMemory,
+    Arbitration,
+    DriverInput,
+    Mode,
+    Reason,
+    RemoteCommand,
+    VehicleCommand,
+    VehicleState,
+)
+
+_TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)
+_PERSON_ASKED: Final = float(Reason.PERSON_ASKED)
+_OPERATOR_ASKED: Final = float(Reason.OPERATOR_ASKED)
+
+
+class Decision(NamedTuple):
+    """The mode of this tick."""
+
+    mode: float
+    reason: float
+    changed: float  # 1: entered in this tick
+    refusal: float
+    refusal_ticks: float
+
+
+@kernel
+def decide(
+    driver: DriverInput,
+    remote: RemoteCommand,
+    events: int,
+    vehicle: VehicleState,
+    memory: ArbiterMemory,
+    before: Arbitration,
+    command_before: VehicleCommand,
+    settings: ControlSettings,
+    person: Person,
+    link: Link,
+    offered: RemoteRequest,
+    steering: bool,
+    standing: bool,
+) -> Decision:
+    """Decide the mode of this tick.
+
+    Args:
+        driver: For the wheel's buttons.
+        remote: For the speed that it commands.
+        events: Mask of `Event`.
+        vehicle: State after the tick before.
+        memory: From the tick before.
+        before: Mode and refusal of the tick before.
+        command_before: What left the gate in the tick before.
+        settings: Of this drive.
+        person: The person's side of this tick.
+        link: The controller's side of this tick.
+        offered: What its command would mean.
+        steering: Whether the person has taken the wheel.
+        standing: Whether the vehicle has stood for long enough.
+    """
+    mode = before.mode
+    asked = asked_of(driver, events)
+    manual = manual_refusal(mode, person, settings)
+    reset = reset_refusal(asked, standing)
+    engage = engage_refusal(
+        mode, person, link, remote, offered.road_wheel_rad, command_before.road_wheel_rad, vehicle, settings
+    )
+    shared = engage if engage != GRANTED else manual
+    no_reaction = mode == _TAKEOVER_REQUESTED and memory.mode_ticks + 1.0 >= settings.minimal_risk_ticks
+    present = person_triggers(mode, person, steering, settings)
+    present |= fault_triggers(link, events, no_reaction, standing)
+    present |= asked_triggers(asked, manual, reset, engage, shared)
+    trigger = deciding_trigger(mode, present)
+    if trigger >= 0:
+        return Decision(next_mode(mode, trigger), _reason(trigger, asked), 1.0, GRANTED, 0.0)
+    refusal = refusal_of(mode, asked, manual, reset, engage, shared)
+    if refusal != GRANTED:
+        return Decision(mode, before.reason, 0.0, refusal, 0.0)
+    shown = memory.refusal_ticks + 1.0 < settings.refusal_ticks
+    if before.refusal != GRANTED and shown:
+        return Decision(mode, before.reason, 0.0, before.refusal, memory.refusal_ticks + 1.0)
+    return Decision(mode, before.reason, 0.0, GRANTED, 0.0)
+
+
+@kernel
+def _reason(trigger: int, asked: Asked) -> float:
+    reason = reason_of(trigger)
+    return _OPERATOR_ASKED if reason == _PERSON_ASKED and asked.by_person == 0.0 else reason
+
+
+@kernel
+def takeover_stage(mode: float, mode_ticks: float, settings: ControlSettings) -> float:
+    """Return how urgently the person is asked to take over: 0 not, 1 asked, 2 escalated."""
+    if mode != _TAKEOVER_REQUESTED:
+        return 0.0
+    return 2.0 if mode_ticks >= settings.escalation_ticks else 1.0

@@ -1,0 +1,71 @@
+"""Whether autonomy may be engaged now, and if not, why not. Names and defaults as Autoware's engage limits."""
+
+from typing import Final
+
+from simconsole.control.link import Link
+from simconsole.control.person import Person
+from simconsole.control.settings import ControlSettings
+from simconsole.kernels import clip, kernel
+from simconsole.signals import Mode, Reason, RemoteCommand, RemoteKind, VehicleState
+
+_PARKED: Final = float(Mode.PARKED)
+_MANUAL: Final = float(Mode.MANUAL)
+_SHARED: Final = float(Mode.SHARED)
+_SPEED: Final = float(RemoteKind.SPEED)
+_TWIST: Final = float(RemoteKind.TWIST)
+
+GRANTED: Final = 0.0
+_NO_COMMAND: Final = float(Reason.REFUSED_NO_COMMAND)
+_NOT_STABLE: Final = float(Reason.REFUSED_NOT_STABLE)
+_BRAKE: Final = float(Reason.REFUSED_BRAKE_PRESSED)
+_TOO_FAST: Final = float(Reason.REFUSED_TOO_FAST)
+_LATERAL: Final = float(Reason.REFUSED_LATERAL_ACCELERATION)
+_NOT_ARMED: Final = float(Reason.REFUSED_NOT_ARMED)
+_DEVIATION: Final = float(Reason.REFUSED_DEVIATION)
+
+
+@kernel
+def engage_refusal(
+    mode: float,
+    person: Person,
+    link: Link,
+    remote: RemoteCommand,
+    offered_road_wheel_rad: float,
+    road_wheel_rad: float,
+    vehicle: VehicleState,
+    settings: ControlSettings,
+) -> float:
+    """Return 0 if autonomy may be engaged, else the `Reason` that refuses it. A state that is not finite refuses.
+
+    Args:
+        mode: The mode that would be left; after a fault commands must have been good for longer.
+        person: Must be there and off the brake, unless the drive needs nobody.
+        link: Must be fresh and stable.
+        remote: The command; its speed is compared with the vehicle's where it commands one.
+        offered_road_wheel_rad: Where the command would put the road wheels ...
+        road_wheel_rad: ... and where they are commanded now.
+        vehicle: State after the tick before.
+        settings: Limits.
+    """
+    if settings.person_required > 0.0 and person.trusted == 0.0:
+        return _NOT_ARMED
+    if link.fresh == 0.0 or link.invalid > 0.0:
+        return _NO_COMMAND
+    first = mode in (_PARKED, _MANUAL, _SHARED)
+    if link.fresh_ticks < (settings.engage_stable_ticks if first else settings.reengage_stable_ticks):
+        return _NOT_STABLE
+    if person.brake >= settings.brake_override:
+        return _BRAKE
+    if not abs(vehicle.vx_mps) <= settings.engage_speed_max_mps:
+        return _TOO_FAST
+    if not abs(vehicle.ay_mps2) <= settings.engage_lateral_accel_mps2:
+        return _LATERAL
+    speed_commanded = remote.kind in (_SPEED, _TWIST)
+    speed_apart = abs(clip(remote.speed_mps, -1e3, 1e3) - vehicle.vx_mps)
+    if speed_commanded and speed_apart > settings.engage_speed_deviation_mps:
+        return _DEVIATION
+    if abs(vehicle.vx_mps) < settings.engage_deviation_speed_mps:
+        return GRANTED
+    if abs(offered_road_wheel_rad - road_wheel_rad) > settings.engage_road_wheel_deviation_rad:
+        return _DEVIATION
+    return GRANTED

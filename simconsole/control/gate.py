@@ -1,0 +1,301 @@
+"""The last gate: what no path, manual, autonomous or emergency, may exceed on its way to the vehicle.
+
+Order: finite, range, lateral acceleration, rate. Finiteness comes first because a NaN passes every comparison. The
+rate comes last and therefore wins: nothing ever jumps, not even back into a range that has just become narrower.
+Throttle is the exception downwards: with the brake pressed or in a stop it is cut at once.
+"""
+
+from typing import Final, NamedTuple
+
+from simconsole.control.longitudinal import known
+from simconsole.control.settings import ControlSettings
+from simconsole.kernels import approach, clip, is_finite, kernel
+from simconsole.signals import (
+    Arbitration,
+    GateLimit,
+    Mode,
+    RemoteCommand,
+    RemoteKind,
+    Request,
+    VehicleCommand,
+    VehicleState,
+)
+from simconsole.trigonometry import atan
+
+_PARKED: Final = float(Mode.PARKED)
+_MANUAL: Final = float(Mode.MANUAL)
+_SHARED: Final = float(Mode.SHARED)
+_AUTONOMOUS: Final = float(Mode.AUTONOMOUS)
+_TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)
+_MINIMAL_RISK: Final = float(Mode.MINIMAL_RISK)
+_EMERGENCY_STOP: Final = float(Mode.EMERGENCY_STOP)
+_POSE: Final = float(RemoteKind.POSE)
+_NON_FINITE: Final = int(GateLimit.NON_FINITE)
+_RANGE: Final = int(GateLimit.RANGE)
+_RATE: Final = int(GateLimit.RATE)
+_LATERAL: Final = int(GateLimit.LATERAL_ACCELERATION)
+_OVER: Final = int(GateLimit.BRAKE_OVER_THROTTLE)
+_GEAR: Final = int(GateLimit.GEAR)
+
+_SAFE_BRAKE: Final = 0.3
+"""Stands in for a brake request that is not finite: slows any car, locks none on a dry road."""
+_MOST_MPS: Final = 100.0
+_MOST_YAW_RAD: Final = 1000.0
+
+
+class Limits(NamedTuple):
+    """What the gate lets pass in one mode. A lateral acceleration of 0 is no limit."""
+
+    road_wheel_rad: float
+    road_wheel_radps: float
+    lateral_accel_mps2: float
+    throttle_slew_per_s: float
+    brake_slew_per_s: float
+    target_accel_mps2: float
+
+
+class Passed(NamedTuple):
+    """One value after the gate, and the `GateLimit` bits that changed it."""
+
+    value: float
+    active: int
+
+
+class Target(NamedTuple):
+    """A desired speed and pose after the gate."""
+
+    speed_mps: float
+    x_m: float
+    y_m: float
+    yaw_rad: float
+    active: int
+
+
+@kernel
+def limits_of(mode: float, settings: ControlSettings) -> Limits:
+    """Return the limits of a mode. A person's hands and feet are never noticeably held back, also in SHARED."""
+    slew = settings.manual_pedal_slew_per_s
+    if mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED):
+        return Limits(
+            settings.automatic_road_wheel_rad,
+            settings.automatic_road_wheel_radps,
+            settings.automatic_lateral_accel_mps2,
+            settings.automatic_throttle_slew_per_s,
+            settings.automatic_brake_slew_per_s,
+            settings.target_accel_mps2,
+        )
+    if mode in (_MANUAL, _SHARED):
+        lock = settings.max_road_wheel_rad
+        return Limits(lock, settings.manual_road_wheel_radps, 0.0, slew, slew, settings.target_accel_mps2)
+    emergency = mode == _EMERGENCY_STOP
+    return Limits(
+        settings.max_road_wheel_rad,
+        settings.stop_road_wheel_radps,
+        0.0 if emergency else settings.automatic_lateral_accel_mps2,
+        slew,
+        settings.emergency_brake_slew_per_s if emergency else settings.automatic_brake_slew_per_s,
+        settings.target_accel_mps2 if emergency else settings.stop_decel_mps2,
+    )
+
+
+@kernel
+def gate(
+    request: Request,
+    remote: RemoteCommand,
+    arbitration: Arbitration,
+    before: VehicleCommand,
+    vehicle: VehicleState,
+    settings: ControlSettings,
+    tick_s: float,
+) -> VehicleCommand:
+    """Return the one command that the vehicle gets: finite and inside every limit, whatever comes in.
+
+    Args:
+        request: What arbitration asks for.
+        remote: The newest accepted command: the targets of pose commands pass through here.
+        arbitration: Mode of this tick.
+        before: What left the gate in the tick before.
+        vehicle: State after the tick before, for the limits that depend on speed.
+        settings: Limits.
+        tick_s: Length of a tick in s.
+    """
+    mode = arbitration.mode
+    limits = limits_of(mode, settings)
+    wheel = _road_wheel(request.road_wheel_rad, known(before.road_wheel_rad, 0.0), vehicle, limits, settings, tick_s)
+    brake_step = limits.brake_slew_per_s * tick_s
+    brake = _pedal(request.brake, _SAFE_BRAKE, before.brake, brake_step, brake_step)
+    cut = mode == _PARKED or mode >= _MINIMAL_RISK or _at_least(request.brake, brake.value, settings.brake_override)
+    throttle = _throttle(request.throttle, before.throttle, cut, limits, settings, tick_s)
+    hand_step = settings.manual_pedal_slew_per_s * tick_s
+    clutch = _pedal(request.clutch, 0.0, before.clutch, hand_step, hand_step)
+    handbrake = _pedal(request.handbrake, 0.0, before.handbrake, hand_step, hand_step)
+    automatic = 1.0 if request.automatic > 0.0 else 0.0
+    gear = _gear(request.gear, known(before.gear, 0.0), automatic, vehicle, settings)
+    target = _target(remote, mode, before, vehicle, limits, settings, tick_s)
+    active = wheel.active | brake.active | throttle.active | clutch.active | handbrake.active
+    active |= gear.active | target.active
+    return VehicleCommand(
+        wheel.value,
+        throttle.value,
+        brake.value,
+        clutch.value,
+        handbrake.value,
+        gear.value,
+        automatic,
+        target.speed_mps,
+        target.x_m,
+        target.y_m,
+        target.yaw_rad,
+        float(active),
+    )
+
+
+@kernel
+def _at_least(first: float, second: float, threshold: float) -> bool:
+    return first >= threshold or second >= threshold
+
+
+@kernel
+def _road_wheel(
+    wanted_rad: float,
+    before_rad: float,
+    vehicle: VehicleState,
+    limits: Limits,
+    settings: ControlSettings,
+    tick_s: float,
+) -> Passed:
+    active = 0
+    wanted = wanted_rad
+    if not is_finite(wanted):
+        wanted = before_rad
+        active |= _NON_FINITE
+    ranged = clip(wanted, -limits.road_wheel_rad, limits.road_wheel_rad)
+    if ranged != wanted:
+        active |= _RANGE
+    speed = clip(known(vehicle.vx_mps, 0.0), -_MOST_MPS, _MOST_MPS)
+    gentle = ranged
+    if limits.lateral_accel_mps2 > 0.0 and abs(speed) > settings.standstill_speed_mps:
+        # Kinematic single track: lateral acceleration = v^2 tan(angle) / wheelbase.
+        most = atan(limits.lateral_accel_mps2 * settings.wheelbase_m / (speed * speed))
+        gentle = clip(ranged, -most, most)
+        if gentle != ranged:
+            active |= _LATERAL
+    moved = approach(before_rad, gentle, limits.road_wheel_radps * tick_s)
+    if moved != gentle:
+        active |= _RATE
+    return Passed(clip(moved, -settings.max_road_wheel_rad, settings.max_road_wheel_rad), active)
+
+
+@kernel
+def _pedal(wanted: float, safe: float, before: float, up: float, down: float) -> Passed:
+    active = 0
+    value = wanted
+    if not is_finite(value):
+        value = safe
+        active |= _NON_FINITE
+    ranged = clip(value, 0.0, 1.0)
+    if ranged != value:
+        active |= _RANGE
+    held = clip(known(before, safe), 0.0, 1.0)
+    moved = approach(held, ranged, up if ranged > held else down)
+    if moved != ranged:
+        active |= _RATE
+    return Passed(moved, active)
+
+
+@kernel
+def _throttle(
+    wanted: float, before: float, cut: bool, limits: Limits, settings: ControlSettings, tick_s: float
+) -> Passed:
+    passed = _pedal(wanted, 0.0, before, limits.throttle_slew_per_s * tick_s, settings.manual_pedal_slew_per_s * tick_s)
+    if not cut:
+        return passed
+    over = _OVER if passed.value > 0.0 else 0
+    return Passed(0.0, (passed.active & _NON_FINITE) | over)
+
+
+@kernel
+def _gear(wanted: float, before: float, automatic: float, vehicle: VehicleState, settings: ControlSettings) -> Passed:
+    """Refuse what is no gear, and a change of direction while rolling the other way; neutral is always allowed."""
+    lowest = -1.0
+    highest = 1.0 if automatic > 0.0 else settings.gear_max
+    if not is_finite(wanted):
+        return Passed(clip(before, lowest, highest), _NON_FINITE)
+    if wanted < lowest or wanted > highest or float(int(wanted)) != wanted:
+        return Passed(clip(before, lowest, highest), _GEAR)
+    speed = known(vehicle.vx_mps, 0.0)
+    against = wanted * speed < 0.0 and abs(speed) > settings.reverse_speed_max_mps
+    if against and wanted * before <= 0.0:
+        return Passed(clip(before, lowest, highest), _GEAR)
+    return Passed(wanted, 0)
+
+
+@kernel
+def _target(
+    remote: RemoteCommand,
+    mode: float,
+    before: VehicleCommand,
+    vehicle: VehicleState,
+    limits: Limits,
+    settings: ControlSettings,
+    tick_s: float,
+) -> Target:
+    """Pass a desired speed and pose while the remote side drives by them; else the speed falls to 0.
+
+    The pose holds during a stop (the way ahead is kept) and follows the vehicle while a person drives.
+    """
+    before_mps = clip(
+        known(before.target_speed_mps, 0.0), -settings.target_speed_max_mps, settings.target_speed_max_mps
+    )
+    step = limits.target_accel_mps2 * tick_s
+    driven = mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED, _SHARED)
+    if driven and remote.kind == _POSE:
+        return _pose_target(remote, before, before_mps, step, settings)
+    wanted = remote.speed_mps if driven else 0.0
+    active = 0
+    if not is_finite(wanted):
+        wanted = 0.0
+        active = _NON_FINITE
+    wanted = clip(wanted, -settings.target_speed_max_mps, settings.target_speed_max_mps)
+    speed = approach(before_mps, wanted, step)
+    if mode >= _MINIMAL_RISK:
+        pose = _finite_pose(before.target_x_m, before.target_y_m, before.target_yaw_rad, before, settings)
+    else:
+        pose = _finite_pose(vehicle.x_m, vehicle.y_m, vehicle.yaw_rad, before, settings)
+    return Target(speed, pose.x_m, pose.y_m, pose.yaw_rad, active | pose.active)
+
+
+@kernel
+def _pose_target(
+    remote: RemoteCommand, before: VehicleCommand, before_mps: float, step: float, settings: ControlSettings
+) -> Target:
+    pose = _finite_pose(remote.x_m, remote.y_m, remote.yaw_rad, before, settings)
+    most = settings.target_speed_max_mps
+    active = pose.active
+    wanted = remote.speed_mps
+    if not is_finite(wanted):
+        wanted = 0.0
+        active |= _NON_FINITE
+    ranged = clip(wanted, -most, most)
+    if ranged != wanted:
+        active |= _RANGE
+    speed = approach(before_mps, ranged, step)
+    if speed != ranged:
+        active |= _RATE
+    return Target(speed, pose.x_m, pose.y_m, pose.yaw_rad, active)
+
+
+@kernel
+def _finite_pose(x_m: float, y_m: float, yaw_rad: float, before: VehicleCommand, settings: ControlSettings) -> Target:
+    """Return the pose, or as a whole the one before if any part is not finite or out of range; speed is 0."""
+    most = settings.target_position_max_m
+    if is_finite(x_m) and is_finite(y_m) and is_finite(yaw_rad):
+        if abs(x_m) <= most and abs(y_m) <= most and abs(yaw_rad) <= _MOST_YAW_RAD:
+            return Target(0.0, x_m, y_m, yaw_rad, 0)
+        active = _RANGE
+    else:
+        active = _NON_FINITE
+    x = clip(known(before.target_x_m, 0.0), -most, most)
+    y = clip(known(before.target_y_m, 0.0), -most, most)
+    yaw = clip(known(before.target_yaw_rad, 0.0), -_MOST_YAW_RAD, _MOST_YAW_RAD)
+    return Target(0.0, x, y, yaw, active)

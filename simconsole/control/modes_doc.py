@@ -1,0 +1,68 @@
+"""Draw the mode table: `python -m simconsole.control.modes_doc > docs/modes.md`. A test holds the two equal."""
+
+from simconsole.control.modes import MEANING, REACTIONS, REASONS, Trigger
+from simconsole.signals import Mode
+
+_INTRODUCTION = """# Who drives: the modes
+
+Generated from `simconsole/control/modes.py` by `python -m simconsole.control.modes_doc > docs/modes.md`.
+
+A mode changes by this table and by nothing else. Triggers stand in the order of their strength: of all that are present
+in a tick, the strongest one to which the mode reacts decides. `STOPPED` and `EMERGENCY_STOP` latch: only an act of a
+person or an operator leaves them. Autonomy is only ever entered by such an act, and only if every engage condition of
+`simconsole/control/engage.py` holds; a refusal is shown with its reason and changes nothing.
+"""
+
+_AUTHORITY = """## What each mode does
+
+| mode | steering | throttle and brake | clutch and gears |
+|---|---|---|---|
+| PARKED | held | brake and handbrake on | neutral |
+| MANUAL | person | person | person; after autonomy the car until the person's clutch is pressed |
+| SHARED | blended, fixed authority | blended, fixed authority | person, or the car if the controller has a share |
+| AUTONOMOUS | controller | controller; person while the accelerator is pressed | car |
+| TAKEOVER_REQUESTED | as AUTONOMOUS; escalates after 4 s, MINIMAL_RISK after 10 s | as AUTONOMOUS | car |
+| MINIMAL_RISK | last angle, slowly to straight | 2.5 m/s2 reached with 1.5 m/s3, at most 4 m/s2 | car |
+| STOPPED | held | brake and handbrake on | neutral |
+| EMERGENCY_STOP | held | full service brake | car |
+
+The person's brake counts in full in every mode, and the brake always beats the throttle. Authority moves from one side
+to the other over 0.6 s, starting from the command in force. Every figure is a setting of
+`simconsole/profiles/control.py`, with its source.
+"""
+
+
+def text() -> str:
+    """Return the whole page."""
+    return "\n".join([_INTRODUCTION, _diagram(), _table(), _triggers(), _AUTHORITY])
+
+
+def _diagram() -> str:
+    lines = ["```mermaid", "stateDiagram-v2", f"    [*] --> {Mode.PARKED.name}"]
+    for mode in Mode:
+        for target in Mode:
+            names = [trigger.name for trigger, after in sorted(REACTIONS[mode].items()) if after == target]
+            if names:
+                lines.append(f"    {mode.name} --> {target.name}: {', '.join(names)}")
+    return "\n".join([*lines, "```", ""])
+
+
+def _table() -> str:
+    lines = ["## The table", "", "A dot: the mode stays.", ""]
+    lines.append(f"| trigger, strongest first | {' | '.join(mode.name for mode in Mode)} |")
+    lines.append("|---" * (len(Mode) + 1) + "|")
+    for trigger in Trigger:
+        cells = [REACTIONS[mode][trigger].name if trigger in REACTIONS[mode] else "." for mode in Mode]
+        lines.append(f"| {trigger.name} | {' | '.join(cells)} |")
+    return "\n".join([*lines, ""])
+
+
+def _triggers() -> str:
+    lines = ["## The triggers", "", "| trigger | when | reason given |", "|---|---|---|"]
+    lines += [f"| {trigger.name} | {MEANING[trigger]} | {REASONS[trigger].name} |" for trigger in Trigger]
+    note = "`PERSON_ASKED` becomes `OPERATOR_ASKED` where no button of the wheel was pressed."
+    return "\n".join([*lines, "", note, ""])
+
+
+if __name__ == "__main__":
+    print(text(), end="")

@@ -1,0 +1,55 @@
+"""What the console itself asks for when nobody drives: parked, safe stop, stopped, emergency stop."""
+
+from typing import Final, NamedTuple
+
+from simconsole.control.longitudinal import Pedals, integrate, known, pedals_for
+from simconsole.control.settings import ControlSettings
+from simconsole.kernels import approach, clip, kernel
+from simconsole.signals import VehicleState
+
+
+class Stopping(NamedTuple):
+    """A safe stop after this tick."""
+
+    pedals: Pedals
+    stop_accel_mps2: float  # deceleration asked for (<= 0), along the direction of travel
+    integral_mps2: float
+
+
+_MOST_MPS2: Final = 20.0
+
+
+@kernel
+def slow(vehicle: VehicleState, settings: ControlSettings) -> bool:
+    """Return whether the vehicle moves in no direction faster than standstill; a speed not finite is not slow."""
+    square = vehicle.vx_mps * vehicle.vx_mps + vehicle.vy_mps * vehicle.vy_mps
+    return square <= settings.standstill_speed_mps * settings.standstill_speed_mps
+
+
+@kernel
+def travel_of(vehicle: VehicleState) -> float:
+    """Return 1 if the vehicle rolls forward or stands, -1 if it rolls backward."""
+    return -1.0 if vehicle.vx_mps < 0.0 else 1.0
+
+
+@kernel
+def stop_start(vehicle: VehicleState, settings: ControlSettings) -> float:
+    """Return the deceleration with which a safe stop begins: the present one, within what a safe stop may ask for."""
+    now = known(travel_of(vehicle) * vehicle.ax_mps2, 0.0)
+    return clip(now, -settings.stop_decel_mps2, 0.0)
+
+
+@kernel
+def safe_stop(
+    stop_accel_mps2: float, integral_mps2: float, vehicle: VehicleState, settings: ControlSettings, tick_s: float
+) -> Stopping:
+    """Brake to a standstill: 2.5 m/s2 reached with 1.5 m/s3, corrected by a bounded integral, never beyond 4 m/s2."""
+    if slow(vehicle, settings):
+        return Stopping(Pedals(0.0, settings.hold_brake), stop_accel_mps2, 0.0)
+    accel = approach(stop_accel_mps2, -settings.stop_decel_mps2, settings.stop_jerk_mps3 * tick_s)
+    travel = travel_of(vehicle)
+    measured = clip(known(travel * vehicle.ax_mps2, accel), -_MOST_MPS2, _MOST_MPS2)
+    integral = integrate(integral_mps2, accel - measured, settings, tick_s)
+    wanted = clip(accel + integral, -settings.stop_decel_max_mps2, 0.0)
+    pedals = pedals_for(wanted, travel, vehicle, settings)
+    return Stopping(Pedals(0.0, pedals.brake), accel, integral)
