@@ -1,5 +1,6 @@
 """Profiles of vehicles: what a person would read off a data sheet or set by hand, with bounds and units in the keys."""
 
+from itertools import pairwise
 from typing import Annotated, TypeAlias
 
 import msgspec
@@ -10,6 +11,16 @@ Seconds: TypeAlias = Annotated[float, msgspec.Meta(ge=0.001, le=5.0)]
 Torque: TypeAlias = Annotated[float, msgspec.Meta(ge=0.0, le=20000.0)]
 Rpm: TypeAlias = Annotated[float, msgspec.Meta(ge=0.0, le=20000.0)]
 Ratio: TypeAlias = Annotated[float, msgspec.Meta(ge=0.3, le=8.0)]
+
+
+def require(good: bool, what: str) -> None:
+    """Refuse a profile whose values are each in bounds but contradict each other.
+
+    Raises:
+        ValueError: not `good`; `what` names the key, its value and what it must be. The reader adds file and path.
+    """
+    if not good:
+        raise ValueError(what)
 
 
 class BodyProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -83,6 +94,20 @@ class EngineProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
     starter_nm: Torque
     limit_rpm: Annotated[float, msgspec.Meta(ge=1000.0, le=20000.0)]
 
+    def __post_init__(self) -> None:
+        """Refuse speeds out of order.
+
+        Raises:
+            ValueError: names the key.
+        """
+        speeds = [point.at_rpm for point in self.curve]
+        require(speeds[0] > 0.0, "curve[0].at_rpm must be above 0")
+        require(all(a < b for a, b in pairwise(speeds)), f"curve at_rpm {speeds} must rise from point to point")
+        require(self.stall_rpm < self.fire_rpm, f"stall_rpm {self.stall_rpm} must be below fire_rpm {self.fire_rpm}")
+        require(self.fire_rpm < self.idle_rpm, f"fire_rpm {self.fire_rpm} must be below idle_rpm {self.idle_rpm}")
+        most = 0.5 * self.limit_rpm
+        require(self.idle_rpm < most, f"idle_rpm {self.idle_rpm} must be below half of limit_rpm {self.limit_rpm}")
+
 
 class GearboxProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Clutch, gears and final drive."""
@@ -94,6 +119,16 @@ class GearboxProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_f
     clutch_nm: Torque
     bite_closed: Share  # pedal position below which the clutch transmits everything
     bite_open: Share  # pedal position above which it transmits nothing
+
+    def __post_init__(self) -> None:
+        """Refuse gears out of order and a clutch without travel.
+
+        Raises:
+            ValueError: names the key.
+        """
+        require(all(a > b for a, b in pairwise(self.forward)), f"forward {self.forward} must fall from gear to gear")
+        least = self.bite_closed + 0.05
+        require(self.bite_open >= least, f"bite_open {self.bite_open} must be {least} or more: bite_closed + 0.05")
 
 
 class AutomaticProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -112,6 +147,21 @@ class AutomaticProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown
     clutch_opening_s: Seconds
     clutch_closing_s: Seconds
 
+    def __post_init__(self) -> None:
+        """Refuse thresholds out of order.
+
+        Raises:
+            ValueError: names the key.
+        """
+        for low, high in (
+            ("down_rpm", "up_rpm"),
+            ("down_full_rpm", "up_full_rpm"),
+            ("launch_from_rpm", "launch_to_rpm"),
+            ("lock_from_rpm", "lock_to_rpm"),
+        ):
+            below, above = getattr(self, low), getattr(self, high)
+            require(below < above, f"{high} {above} must be above {low} {below}")
+
 
 class CarProfile(
     msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, tag_field="platform", tag="car"
@@ -125,6 +175,21 @@ class CarProfile(
     engine: EngineProfile
     gearbox: GearboxProfile
     automatic: AutomaticProfile
+
+    def __post_init__(self) -> None:
+        """Refuse an automatic that does not fit the engine.
+
+        Raises:
+            ValueError: names the key.
+        """
+        auto, engine = self.automatic, self.engine
+        for key, speed in (
+            ("automatic.launch_from_rpm", auto.launch_from_rpm),
+            ("automatic.lock_from_rpm", auto.lock_from_rpm),
+        ):
+            require(speed > engine.idle_rpm, f"{key} {speed} must be above engine.idle_rpm {engine.idle_rpm}")
+        up = auto.up_full_rpm
+        require(up < engine.limit_rpm, f"automatic.up_full_rpm {up} must be below engine.limit_rpm {engine.limit_rpm}")
 
 
 class BallProfile(

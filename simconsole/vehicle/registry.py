@@ -5,11 +5,7 @@ from simconsole.vehicle.platform import Ground, Platform, Pose
 
 
 def build(profile: VehicleProfile, pose: Pose, ground: Ground) -> Platform:
-    """Return the vehicle of `profile`, standing at `pose` (m, rad, of base_link in map) on `ground`.
-
-    Raises:
-        ProfileError: values of the profile contradict each other.
-    """
+    """Return the vehicle of `profile`, standing at `pose` (m, rad, of base_link in map) on `ground`."""
     if isinstance(profile, BallProfile):
         from simconsole.vehicle.ball.assembly import build_ball
 

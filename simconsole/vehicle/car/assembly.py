@@ -1,12 +1,10 @@
 """From a car's profile to a platform: units, derived figures, and the checks that need more than one value."""
 
 import math
-from itertools import pairwise
 from typing import Final
 
 import numpy as np
 
-from simconsole.errors import ProfileError
 from simconsole.profiles.vehicle import AutomaticProfile, AxleProfile, CarProfile, EngineProfile, GearboxProfile
 from simconsole.trigonometry import wrap_angle
 from simconsole.units import RAD_PER_DEG, RADPS_PER_RPM, STANDARD_GRAVITY_MPS2
@@ -31,12 +29,7 @@ LIMIT_BAND_RPM: Final = 100.0
 
 
 def build_car(profile: CarProfile, pose: Pose, ground: Ground) -> Platform:
-    """Return the car at rest with its engine idling, in neutral.
-
-    Raises:
-        ProfileError: values contradict each other.
-    """
-    check(profile)
+    """Return the car at rest with its engine idling, in neutral."""
     car = car_parameters(profile, ground)
     initial = CarState(*(0.0,) * CAR_WIDTH)._replace(
         x_m=pose.x_m,
@@ -61,44 +54,6 @@ def build_car(profile: CarProfile, pose: Pose, ground: Ground) -> Platform:
         height_m=body.height_m,
         rear_overhang_m=body.rear_overhang_m,
     )
-
-
-def check(profile: CarProfile) -> None:
-    """Refuse values that are each in bounds but contradict each other.
-
-    Raises:
-        ProfileError: names the key and what it must be.
-    """
-    engine, box, auto = profile.engine, profile.gearbox, profile.automatic
-    speeds = [point.at_rpm for point in engine.curve]
-    rules = [
-        ("engine.curve", speeds, all(a < b for a, b in pairwise(speeds)), "speeds that rise"),
-        ("engine.stall_rpm", engine.stall_rpm, engine.stall_rpm < engine.fire_rpm, "below fire_rpm"),
-        ("engine.fire_rpm", engine.fire_rpm, engine.fire_rpm < engine.idle_rpm, "below idle_rpm"),
-        ("engine.idle_rpm", engine.idle_rpm, engine.idle_rpm < 0.5 * engine.limit_rpm, "below half of limit_rpm"),
-        (
-            "gearbox.forward",
-            list(box.forward),
-            list(box.forward) == sorted(box.forward, reverse=True),
-            "falling ratios",
-        ),
-        ("gearbox.bite_open", box.bite_open, box.bite_open >= box.bite_closed + 0.05, "above bite_closed by 0.05"),
-        ("automatic.up_rpm", auto.up_rpm, auto.up_rpm > auto.down_rpm, "above down_rpm"),
-        ("automatic.up_full_rpm", auto.up_full_rpm, auto.up_full_rpm > auto.down_full_rpm, "above down_full_rpm"),
-        ("automatic.up_full_rpm", auto.up_full_rpm, auto.up_full_rpm < engine.limit_rpm, "below engine.limit_rpm"),
-        ("automatic.launch_from_rpm", auto.launch_from_rpm, auto.launch_from_rpm > engine.idle_rpm, "above idle_rpm"),
-        (
-            "automatic.launch_to_rpm",
-            auto.launch_to_rpm,
-            auto.launch_to_rpm > auto.launch_from_rpm,
-            "above launch_from_rpm",
-        ),
-        ("automatic.lock_from_rpm", auto.lock_from_rpm, auto.lock_from_rpm > engine.idle_rpm, "above idle_rpm"),
-        ("automatic.lock_to_rpm", auto.lock_to_rpm, auto.lock_to_rpm > auto.lock_from_rpm, "above lock_from_rpm"),
-    ]
-    for key, value, good, allowed in rules:
-        if not good:
-            raise ProfileError(f"vehicle profile: {key}: value {value}: {allowed}")
 
 
 def car_parameters(profile: CarProfile, ground: Ground) -> CarParameters:

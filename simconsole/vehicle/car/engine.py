@@ -45,6 +45,21 @@ def engine_friction(p: EngineParameters, speed_radps: float) -> float:
 
 
 @kernel
+def above_idle(p: EngineParameters, speed_radps: float) -> float:
+    """Return 0 at idle speed and below, 1 where a closed throttle gives the full engine brake: half as fast again."""
+    return clip((speed_radps - p.idle_radps) / (0.5 * p.idle_radps), 0.0, 1.0)
+
+
+@kernel
+def idle_torque(p: EngineParameters, speed_radps: float, friction_nm: float) -> float:
+    """Return what burns at closed throttle: just the friction at idle speed, more below, less and less above."""
+    below = p.idle_radps - speed_radps
+    if below <= 0.0:
+        return friction_nm * (1.0 - above_idle(p, speed_radps))
+    return clip(friction_nm + p.idle_gain_nms * below, 0.0, p.idle_max_nm)
+
+
+@kernel
 def engine_drive(
     p: EngineParameters, speed_radps: float, running: float, throttle: float, driveline_open: bool
 ) -> EngineDrive:
@@ -57,6 +72,5 @@ def engine_drive(
     friction = engine_friction(p, speed_radps)
     if speed_radps < (p.stall_radps if running != 0.0 else p.fire_radps):
         return EngineDrive(p.starter_nm if driveline_open else 0.0, friction + p.hold_nm, 0.0)
-    burned = throttle * (full_torque(p, speed_radps) + friction)
-    idle = clip(friction + p.idle_gain_nms * (p.idle_radps - speed_radps), 0.0, p.idle_max_nm)
-    return EngineDrive(burned if burned > idle else idle, friction, 1.0)
+    closed = idle_torque(p, speed_radps, friction)
+    return EngineDrive(closed + throttle * (full_torque(p, speed_radps) + friction - closed), friction, 1.0)

@@ -5,7 +5,7 @@ from typing import Final, NamedTuple
 from simconsole.kernels import clip, kernel
 from simconsole.signals import VehicleState
 from simconsole.trigonometry import atan, cos, sin
-from simconsole.vehicle.car.engine import engine_friction, full_torque
+from simconsole.vehicle.car.engine import above_idle, engine_friction, full_torque
 from simconsole.vehicle.car.gearbox import bite, gear_ratio
 from simconsole.vehicle.car.parameters import CarParameters
 from simconsole.vehicle.car.state import CarState
@@ -39,16 +39,15 @@ def pedals(s: CarState, car: CarParameters, automatic: float) -> Pedals:
     grip = 1.0 if automatic != 0.0 else bite(car.gears, s.clutch)
     held = grip * car.gears.clutch_nm
     shaft = ratio * speed / radius
-    idle = car.engine.idle_radps
-    above_idle = clip((shaft - idle) / (0.5 * idle), 0.0, 1.0)
+    driven = above_idle(car.engine, shaft)
     launch = shaft if shaft > car.gears.launch_to_radps else car.gears.launch_to_radps
     burned = full_torque(car.engine, launch) if s.engine_running != 0.0 else 0.0
     push = clip(burned, -held, held) * ratio / radius
-    drag = clip(engine_friction(car.engine, shaft) * above_idle, 0.0, held) * ratio / radius
+    drag = clip(engine_friction(car.engine, shaft) * driven, 0.0, held) * ratio / radius
     mass = body.mass_kg + (
         car.front.wheel_inertia_kgm2
         + car.rear.wheel_inertia_kgm2
-        + above_idle * grip * car.engine.inertia_kgm2 * ratio * ratio
+        + driven * grip * car.engine.inertia_kgm2 * ratio * ratio
     ) / (radius * radius)
     load = body.mass_kg * body.gravity_plane_mps2
     front_n = load * body.cg_to_rear_m / (body.cg_to_front_m + body.cg_to_rear_m)

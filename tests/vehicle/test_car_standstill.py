@@ -1,0 +1,87 @@
+"""The car at rest: the tyre law must hold it with no clamp of speed and no switch to kinematics."""
+
+import pytest
+
+from simconsole.vehicle.platform import Ground, Pose
+
+from .driving import Drive, platform
+
+CREEP_M = 1e-4  # 0.1 mm
+SETTLING_S = 10.0
+WATCHED_S = 60.0
+
+
+def creep(drive: Drive, **command: float) -> float:
+    """Return how far the car moves in a minute, after the sway of stopping is over."""
+    before = drive.hold(SETTLING_S, **command)
+    after = drive.hold(WATCHED_S, **command)
+    print(f"creep {after.x_m - before.x_m:.3g} m along x, {after.y_m - before.y_m:.3g} m along y")
+    assert abs(after.vx_mps) < 1e-9
+    return max(abs(after.x_m - before.x_m), abs(after.y_m - before.y_m))
+
+
+@pytest.mark.parametrize("slope", [-0.15, 0.0, 0.15])
+@pytest.mark.parametrize("yaw_rad", [0.0, 0.8])
+def test_foot_brake_holds_without_creep(slope: float, yaw_rad: float) -> None:
+    drive = Drive(platform(ground=Ground(1.0, slope, 0.0), pose=Pose(5.0, -3.0, yaw_rad)))
+    assert creep(drive, brake=0.5) < CREEP_M
+
+
+def test_hand_brake_holds_twenty_percent() -> None:
+    assert creep(Drive(platform(ground=Ground(1.0, 0.2, 0.0))), handbrake=1.0) < CREEP_M
+
+
+def test_brake_holds_across_the_slope_with_turned_wheels() -> None:
+    assert creep(Drive(platform(ground=Ground(1.0, 0.0, 0.15))), brake=0.5, road_wheel_rad=0.5) < CREEP_M
+
+
+def test_rolls_back_then_brakes_and_holds() -> None:
+    drive = Drive(platform(ground=Ground(1.0, 0.10, 0.0)))
+    assert drive.hold(1.0).vx_mps == pytest.approx(-0.84, abs=0.05)
+    assert creep(drive, brake=0.6) < CREEP_M
+
+
+def test_stops_uphill_and_holds_in_gear_with_the_engine_off() -> None:
+    drive = Drive(platform(ground=Ground(1.0, 0.10, 0.0)))
+    drive.until(lambda seen: seen.vx_mps > 8.0, 20.0, automatic=1, gear=1, throttle=1.0)
+    drive.until(lambda seen: seen.vx_mps < 0.01, 10.0, gear=drive.seen.gear, clutch=1.0, brake=0.6)
+    drive.hold(1.0, gear=0, clutch=1.0, brake=1.0)
+    drive.hold(1.0, gear=1, clutch=1.0, brake=1.0)
+    assert drive.hold(2.0, gear=1, brake=1.0).engine_running == 0.0
+    assert drive.seen.gear == 1.0
+    assert creep(drive, gear=1) < CREEP_M
+
+
+def test_level_ground_needs_no_brake() -> None:
+    drive = Drive(platform())
+    assert creep(drive) == 0.0
+
+
+def test_ice_does_not_hold_what_asphalt_holds() -> None:
+    drive = Drive(platform(ground=Ground(0.1, 0.15, 0.0)))
+    assert drive.hold(5.0, brake=1.0).vx_mps < -1.0
+
+
+def test_steering_to_and_fro_on_a_slope_leaves_the_car_in_place() -> None:
+    drive = Drive(platform(ground=Ground(1.0, 0.15, 0.0)))
+    before = drive.hold(SETTLING_S, brake=0.5)
+    for _ in range(15):
+        drive.hold(1.0, brake=0.5, road_wheel_rad=0.4)
+        drive.hold(1.0, brake=0.5, road_wheel_rad=-0.4)
+    after = drive.hold(SETTLING_S, brake=0.5)
+    print(f"walked {after.x_m - before.x_m:.3g} m")
+    assert abs(after.x_m - before.x_m) < CREEP_M
+
+
+def test_same_law_forwards_and_backwards() -> None:
+    """A car that rolls down backwards must brake like one that rolls down forwards, apart from its weight balance."""
+    results = []
+    for slope in (0.1, -0.1):
+        drive = Drive(platform(ground=Ground(1.0, slope, 0.0)))
+        drive.hold(4.0)
+        speed = drive.seen.vx_mps
+        drive.hold(10.0, brake=0.3)
+        results.append((speed, drive.seen.x_m, drive.seen.vx_mps))
+    assert results[0][0] == pytest.approx(-results[1][0], rel=1e-3)
+    assert results[0][1] == pytest.approx(-results[1][1], rel=1e-2)
+    assert abs(results[0][2]) < 1e-6
