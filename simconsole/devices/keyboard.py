@@ -1,0 +1,92 @@
+"""The keyboard as a cockpit: held keys become axes that move at a person's speed of hand and foot. Pure.
+
+The keys come from the window's process with an age; when it falls silent this source goes stale like any other.
+"""
+
+from collections.abc import Callable
+from typing import Final
+
+from simconsole.devices.cockpit import CockpitSettings
+from simconsole.devices.uncalibrate import Intent, uncalibrate
+from simconsole.keys import Key
+from simconsole.signals import Button, DeviceSample
+from simconsole.units import RAD_PER_DEG
+
+Keys = Callable[[], tuple[int, int]]
+"""Returns (mask of `Key` held now, its age in whole ticks)."""
+
+STEER_MAX_RAD: Final = 200.0 * RAD_PER_DEG
+STEER_RADPS: Final = 220.0 * RAD_PER_DEG
+CENTRE_RADPS: Final = 400.0 * RAD_PER_DEG
+"""The hands let go faster than they turn, as the self-aligning torque would."""
+
+# (rising, falling) share per s of each pedal: half a second for a full throttle, a second for the clutch to come up
+THROTTLE_PER_S: Final = (2.0, 5.0)
+BRAKE_PER_S: Final = (2.5, 6.0)
+CLUTCH_PER_S: Final = (6.0, 1.0)
+HANDBRAKE_PER_S: Final = (4.0, 6.0)
+
+_BUTTONS: Final = (
+    (Key.AUTONOMOUS, Button.AUTONOMOUS),
+    (Key.MANUAL, Button.MANUAL),
+    (Key.EMERGENCY_STOP, Button.EMERGENCY_STOP),
+    (Key.RESET, Button.RESET),
+    (Key.GEAR_UP, Button.SHIFT_UP),
+    (Key.GEAR_DOWN, Button.SHIFT_DOWN),
+    (Key.INDICATOR_LEFT, Button.INDICATOR_LEFT),
+    (Key.INDICATOR_RIGHT, Button.INDICATOR_RIGHT),
+    (Key.MARK, Button.MARK),
+)
+
+
+class KeyboardSource:
+    """Turns held keys into raw samples. A gear key also works the clutch for as long as it is held."""
+
+    def __init__(self, keys: Keys, settings: CockpitSettings, *, tick_hz: int) -> None:
+        """Take a source of keys; `settings` are those of a sequential cockpit (profile `keyboard`)."""
+        self._keys = keys
+        self._settings = settings
+        self._tick_s = 1.0 / tick_hz
+        self._intent = Intent()
+
+    def poll(self, tick: int) -> DeviceSample:
+        """Return the cockpit one tick on. While the keys are not fresh nothing moves; the age tells."""
+        mask, age_ticks = self._keys()
+        if age_ticks == 0:
+            self._intent = self._moved(Key(mask))
+        age = float(age_ticks)
+        return uncalibrate(self._intent, self._settings)._replace(
+            wheel_age_ticks=age, pedals_age_ticks=age, shifter_age_ticks=age
+        )
+
+    def close(self) -> None:
+        """Nothing to release: the window owns the keyboard."""
+
+    def _moved(self, held: Key) -> Intent:
+        now, step = self._intent, self._tick_s
+        clutch = held & (Key.CLUTCH | Key.GEAR_UP | Key.GEAR_DOWN)
+        pressed = 0
+        for key, button in _BUTTONS:
+            if held & key:
+                pressed |= int(button)
+        return Intent(
+            hand_wheel_rad=_steered(now.hand_wheel_rad, held, step),
+            throttle=_pedal(now.throttle, held & Key.THROTTLE, THROTTLE_PER_S, step),
+            brake=_pedal(now.brake, held & Key.BRAKE, BRAKE_PER_S, step),
+            clutch=_pedal(now.clutch, clutch, CLUTCH_PER_S, step),
+            handbrake=_pedal(now.handbrake, held & Key.HANDBRAKE, HANDBRAKE_PER_S, step),
+            pressed=pressed,
+        )
+
+
+def _pedal(pressed: float, key: Key, per_s: tuple[float, float], step_s: float) -> float:
+    rising, falling = per_s
+    return min(1.0, pressed + rising * step_s) if key else max(0.0, pressed - falling * step_s)
+
+
+def _steered(angle_rad: float, held: Key, step_s: float) -> float:
+    side = bool(held & Key.STEER_LEFT) - bool(held & Key.STEER_RIGHT)
+    if side:
+        return min(STEER_MAX_RAD, max(-STEER_MAX_RAD, angle_rad + side * STEER_RADPS * step_s))
+    back = CENTRE_RADPS * step_s
+    return 0.0 if abs(angle_rad) <= back else angle_rad - (back if angle_rad > 0.0 else -back)

@@ -1,0 +1,57 @@
+"""Where device samples come from: one protocol, a lazy registry of what stands behind it."""
+
+from pathlib import Path
+from typing import Protocol
+
+from simconsole.devices.keyboard import KeyboardSource, Keys
+from simconsole.devices.script import ScriptSource
+from simconsole.devices.settings import settings
+from simconsole.errors import ProfileError
+from simconsole.profile_files import find, load
+from simconsole.profiles.device import CockpitProfile, ScriptProfile
+from simconsole.signals import DeviceSample
+
+DRIVERS = "sdl, trace:FILE, script:FILE or keyboard"
+
+
+class DeviceSource(Protocol):
+    """A cockpit. Polled once per tick; nothing in it may block."""
+
+    def poll(self, tick: int) -> DeviceSample:
+        """Return the newest sample for `tick`, its ages in whole ticks."""
+
+    def close(self) -> None:
+        """Release the devices. Twice is harmless."""
+
+
+def open_source(driver: str, cockpit: CockpitProfile, *, tick_hz: int, keys: Keys | None = None) -> DeviceSource:
+    """Open the cockpit that `driver` names; SDL is loaded only where it is asked for.
+
+    Args:
+        driver: `sdl`, `trace:FILE`, `script:FILE` or `keyboard`.
+        cockpit: The profile that says what the axes mean.
+        tick_hz: The session's tick rate.
+        keys: Where the keyboard's keys come from; only for `keyboard`.
+
+    Raises:
+        ProfileError: no such driver, or its file cannot be used.
+        DeviceError: a device is missing or cannot be used.
+    """
+    kind, _, name = driver.partition(":")
+    if kind == "sdl" and not name:
+        from simconsole.devices.sdl import SdlSource
+
+        return SdlSource(cockpit)
+    if kind == "trace" and name:
+        from simconsole.devices.record import TraceSource
+
+        return TraceSource(Path(name), tick_hz=tick_hz)
+    if kind == "script" and name:
+        script = load("devices", name, ScriptProfile)
+        origin = str(find("devices", name))
+        return ScriptSource(script, settings(cockpit, tick_hz), tick_hz=tick_hz, name=origin)
+    if kind == "keyboard" and not name:
+        if keys is None:
+            raise ProfileError("driver: value keyboard: a drive with a window, which owns the keyboard")
+        return KeyboardSource(keys, settings(cockpit, tick_hz), tick_hz=tick_hz)
+    raise ProfileError(f"driver: value {driver!r}: {DRIVERS}")

@@ -1,0 +1,96 @@
+"""What a look at the cockpit finds: the range of every axis, the buttons that fired, what is wrong. Pure."""
+
+from typing import Any, Final
+
+from simconsole.devices.calibration import calibrate, travel
+from simconsole.devices.cockpit import ABSENT, NOBODY, CockpitSettings
+from simconsole.devices.settings import settings
+from simconsole.devices.validity import trusted
+from simconsole.profiles.device import CockpitProfile, PedalAxis
+from simconsole.signals import Button, DeviceSample, DriverInput
+from simconsole.units import DEG_PER_RAD
+
+PEDALS: Final = ("throttle", "brake", "clutch", "handbrake")
+MOVED: Final = 0.9
+"""A pedal that was pressed further than this has been tried over its travel."""
+
+
+class Watch:
+    """Collects what the samples of some seconds show."""
+
+    def __init__(self, profile: CockpitProfile, tick_hz: int) -> None:
+        self._profile = profile
+        self._settings: CockpitSettings = settings(profile, tick_hz)
+        self._tick_s = 1.0 / tick_hz
+        self._before = ABSENT
+        self.driver: DriverInput = NOBODY
+        self._least = dict.fromkeys(PEDALS, 1.0)
+        self._most = dict.fromkeys(PEDALS, 0.0)
+        self._wheel_deg = [0.0, 0.0]
+        self._gears: set[int] = set()
+        self._buttons: set[str] = set()
+        self._raw_buttons = {"wheel": 0, "shifter": 0}
+
+    def see(self, sample: DeviceSample) -> DriverInput:
+        """Take one sample; return it calibrated."""
+        self.driver = calibrate(sample, self._before, self.driver, self._settings, self._tick_s)
+        self._before = sample
+        for name, pedal in self._pedals():
+            share = travel(getattr(sample, f"{name}_axis"), pedal.rest_raw, pedal.full_raw)
+            self._least[name] = min(self._least[name], share)
+            self._most[name] = max(self._most[name], share)
+        angle_deg = self.driver.hand_wheel_rad * DEG_PER_RAD
+        self._wheel_deg = [min(self._wheel_deg[0], angle_deg), max(self._wheel_deg[1], angle_deg)]
+        self._gears.add(int(self.driver.gear))
+        self._buttons |= {button.name.lower() for button in Button if int(self.driver.pressed) & button and button.name}
+        self._raw_buttons["wheel"] |= int(sample.wheel_buttons)
+        self._raw_buttons["shifter"] |= int(sample.shifter_buttons)
+        return self.driver
+
+    def problems(self) -> list[str]:
+        """Return what would keep this cockpit from driving, one line each."""
+        driver, found = self.driver, []
+        for name, _ in self._pedals():
+            if name != "handbrake" and not trusted(getattr(driver, f"{name}_validity")):
+                found.append(
+                    f"pedals.{name}: value {self._least[name]:.0%} pressed at least: at most "
+                    f"{self._profile.limits.arming:.0%} at rest; foot off, or rest_raw and full_raw are swapped"
+                )
+        if not trusted(driver.wheel_validity):
+            found.append("wheel: value no reading: a wheel that answers")
+        if not trusted(driver.shifter_validity):
+            found.append("shifter: value no neutral seen: the lever in neutral")
+        return found
+
+    def notes(self) -> list[str]:
+        """Return what was not tried, one line each."""
+        found = [
+            f"{name} was not pressed all the way ({self._most[name]:.0%})"
+            for name, _ in self._pedals()
+            if self._most[name] < MOVED
+        ]
+        if self._wheel_deg[1] - self._wheel_deg[0] < 10.0:
+            found.append("the wheel was not turned")
+        missing = set(range(1, len(self._profile.shifter.gears) + 1)) - self._gears
+        if missing:
+            found.append(f"gears not tried: {', '.join(map(str, sorted(missing)))}")
+        return found
+
+    def results(self) -> dict[str, Any]:
+        """Return everything as plain values."""
+        return {
+            "ok": not self.problems(),
+            "problems": self.problems(),
+            "notes": self.notes(),
+            "pedals": {name: {"least": self._least[name], "most": self._most[name]} for name, _ in self._pedals()},
+            "wheel_deg": {"least": self._wheel_deg[0], "most": self._wheel_deg[1]},
+            "gears": sorted(self._gears),
+            "buttons": sorted(self._buttons),
+            "raw_buttons": {
+                role: [number for number in range(24) if mask >> number & 1] for role, mask in self._raw_buttons.items()
+            },
+        }
+
+    def _pedals(self) -> list[tuple[str, PedalAxis]]:
+        pedals = ((name, getattr(self._profile.pedals, name)) for name in PEDALS)
+        return [(name, pedal) for name, pedal in pedals if pedal is not None]
