@@ -5,6 +5,8 @@ from typing import Annotated, TypeAlias
 
 import msgspec
 
+from simconsole.units import STANDARD_GRAVITY_MPS2
+
 Length: TypeAlias = Annotated[float, msgspec.Meta(ge=0.01, le=10.0)]
 Share: TypeAlias = Annotated[float, msgspec.Meta(ge=0.0, le=1.0)]
 Seconds: TypeAlias = Annotated[float, msgspec.Meta(ge=0.001, le=5.0)]
@@ -177,7 +179,7 @@ class CarProfile(
     automatic: AutomaticProfile
 
     def __post_init__(self) -> None:
-        """Refuse an automatic that does not fit the engine.
+        """Refuse an automatic that does not fit the engine, and wheels too light for their tyres at steps of 1 ms.
 
         Raises:
             ValueError: names the key.
@@ -190,6 +192,13 @@ class CarProfile(
             require(speed > engine.idle_rpm, f"{key} {speed} must be above engine.idle_rpm {engine.idle_rpm}")
         up = auto.up_full_rpm
         require(up < engine.limit_rpm, f"automatic.up_full_rpm {up} must be below engine.limit_rpm {engine.limit_rpm}")
+        for name, axle in (("front", self.front), ("rear", self.rear)):
+            stiffness = axle.slip_stiffness / axle.relaxation_x_m * self.body.mass_kg * STANDARD_GRAVITY_MPS2
+            lever = axle.wheel_radius_m**2
+            # Semi-implicit steps of h are stable to h^2 k / m = 4 and h d / m = 2; an eighth and a quarter of that.
+            least = lever * max(stiffness * 1e-6 / 0.5, axle.damping_nspm * 1e-3 / 0.5)
+            wheel = axle.wheel_inertia_kgm2
+            require(wheel >= least, f"{name}.wheel_inertia_kgm2 {wheel} must be {least:.3g} or more for these tyres")
 
 
 class BallProfile(

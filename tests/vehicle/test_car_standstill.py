@@ -62,6 +62,12 @@ def test_ice_does_not_hold_what_asphalt_holds() -> None:
     assert drive.hold(5.0, brake=1.0).vx_mps < -1.0
 
 
+def test_ground_without_any_friction_is_survived() -> None:
+    drive = Drive(platform(ground=Ground(0.0, -0.05, 0.0)))
+    seen = drive.hold(5.0, brake=1.0, road_wheel_rad=0.3)
+    assert seen.vx_mps == pytest.approx(5.0 * 9.80665 * 0.05, rel=0.3)
+
+
 def test_steering_to_and_fro_on_a_slope_leaves_the_car_in_place() -> None:
     drive = Drive(platform(ground=Ground(1.0, 0.15, 0.0)))
     before = drive.hold(SETTLING_S, brake=0.5)

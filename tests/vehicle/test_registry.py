@@ -47,6 +47,7 @@ def test_profile_says_which_platform_it_is() -> None:
         ("up_full_rpm: 5900", "up_full_rpm: 6900", "automatic.up_full_rpm 6900.* 6600"),
         ("launch_from_rpm: 860", "launch_from_rpm: 700", "automatic.launch_from_rpm 700.*idle_rpm 800"),
         ("lock_to_rpm: 1150", "lock_to_rpm: 850", "automatic.*lock_to_rpm 850"),
+        ("wheel_inertia_kgm2: 2.2", "wheel_inertia_kgm2: 0.2 ", "front.wheel_inertia_kgm2 0.2 must be 0.225 or more"),
         ("mass_kg: 1300", "mass_kg: 13", "body.mass_kg: value 13: .*300"),
         ("mass_kg: 1300", "mass: 1300", "body.mass: .*did you mean mass_kg"),
     ],

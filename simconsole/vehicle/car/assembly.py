@@ -23,6 +23,9 @@ from simconsole.vehicle.platform import Ground, Platform, Pose
 AIR_KGPM3: Final = 1.225
 """Density of air, ISO 2533 standard atmosphere at sea level."""
 
+LEAST_FRICTION: Final = 0.01
+"""Slipperier than wet ice; with none at all a tyre would have no limit to divide by."""
+
 RAMPS: Final = 8
 LIMIT_BAND_RPM: Final = 100.0
 """Over which the limiter takes the torque away; wide enough that it does not chatter at 1 ms."""
@@ -102,7 +105,7 @@ def _axle(axle: AxleProfile, ground: Ground) -> AxleParameters:
         decay_y_per_m=1.0 / axle.relaxation_y_m,
         damping_nspm=axle.damping_nspm,
         locked_damping_nspm=axle.locked_damping_nspm,
-        friction=axle.friction * ground.friction,
+        friction=axle.friction * max(ground.friction, LEAST_FRICTION),
         rolling_resistance=axle.rolling_resistance,
         brake_nm=axle.brake_nm,
         handbrake_nm=axle.handbrake_nm,
