@@ -49,8 +49,10 @@ class LockstepLink:
 
     def publish(self, snapshot: Snapshot) -> None:
         """Publish; at the end of a control period, wait for the answer."""
+        if snapshot.tick % self._period_ticks:
+            return  # sockets are served at fixed ticks only, or the drive would depend on when bytes arrive
         silent = self._silent_at is not None and self._silent_at == self._sequence
-        if snapshot.tick % self._period_ticks or silent or not self._bridge.clients:
+        if silent or not self._bridge.clients:
             self._bridge.publish(snapshot)
             return
         self._silent_at = None
@@ -59,6 +61,10 @@ class LockstepLink:
             self.unanswered += 1
             self._silent_at = self._sequence
             self._raised = int(Event.NO_ANSWER)
+
+    def counters(self) -> dict[str, int]:
+        """Return how often the drive waited for the controller, and how often in vain."""
+        return {"exchanges": self.exchanges, "unanswered": self.unanswered}
 
     def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
         """Return the newest command, its age in ticks, and the edges, a missing answer among them."""

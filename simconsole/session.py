@@ -1,16 +1,20 @@
 """One session: open everything, drive, close everything, whatever happens in between."""
 
 import hashlib
+import signal
+import time
 from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Any, NamedTuple
+from types import FrameType, TracebackType
+from typing import Any, NamedTuple, Self
 
-from simconsole import __version__
+from simconsole import __version__, compiling
 from simconsole.assembly import ResolvedSession, assemble
-from simconsole.compiling import compiled, source_digest
-from simconsole.drive import Cast, run
-from simconsole.pipeline import NO_COMMAND, NO_EVENTS, NO_SAMPLE, Console, ConsoleState, advance
+from simconsole.casting import Opened, open_headless
+from simconsole.compiling import compiled
+from simconsole.drive import run
+from simconsole.pipeline import NO_COMMAND, NO_EVENTS, NO_SAMPLE, Console, ConsoleState, advance, decide
 from simconsole.profile_files import to_text
 from simconsole.recording.bundle import BundleWriter
 from simconsole.recording.framing import LogHeader
@@ -27,6 +31,7 @@ class DriveResult(NamedTuple):
     folder: Path
     ticks: int
     digest: str
+    interrupted: bool
     summary: dict[str, Any]
 
 
@@ -37,6 +42,8 @@ def drive(
 ) -> DriveResult:
     """Drive a session into a new bundle in `folder`. `watch` sees every tick; True ends the drive.
 
+    SIGINT and SIGTERM end it in order: torque off, devices closed, the bundle finished.
+
     Raises:
         SimConsoleError: a device, port or file cannot be opened; what was opened before is closed again.
     """
@@ -46,20 +53,25 @@ def drive(
     ticks = ENDLESS_TICKS if duration_s is None else round(duration_s * console.tick_hz)
     with ExitStack() as stack:
         bundle = stack.enter_context(_bundle(resolved, console, folder))
-        interrupted = stack.enter_context(Interrupt())
-        opened = opener(resolved)(resolved, console, LogRecorder(bundle.log), stack)
-        started_s = time.monotonic()
+        interrupt = stack.enter_context(Interrupt())
+        opened = _open(resolved, console, bundle.log, stack)
+        began_s = time.monotonic()
         state = run(
             console,
             state,
             opened.cast,
             ticks,
-            lambda snapshot: interrupted.raised or watch(snapshot) or opened.finished(snapshot),
+            lambda snapshot: interrupt.raised or watch(snapshot) or opened.finished(snapshot),
         )
-        wall_s = time.monotonic() - started_s
-        summary = {"wall_s": wall_s, "real_time_factor": state.tick / console.tick_hz / wall_s, **opened.summary()}
+        wall_s = time.monotonic() - began_s
+        summary = {
+            "wall_s": wall_s,
+            "real_time_factor": state.tick / console.tick_hz / wall_s,
+            "interrupted": interrupt.raised,
+            **opened.summary(),
+        }
         manifest = bundle.finish(summary)
-    return DriveResult(folder, manifest.ticks, manifest.digest, summary)
+    return DriveResult(folder, manifest.ticks, manifest.digest, interrupt.raised, summary)
 
 
 def warm_up(console: Console, state: ConsoleState) -> None:
@@ -78,14 +90,47 @@ class LogRecorder:
         self._log.append(snapshot.tick, snapshot.row)
 
 
+class Interrupt:
+    """SIGINT and SIGTERM as a flag, while a drive is open: the loop ends between two ticks, never inside one."""
+
+    def __init__(self) -> None:
+        self.raised = False
+        self._before: dict[int, Any] = {}
+
+    def __enter__(self) -> Self:
+        """Take the signals over."""
+        for number in (signal.SIGINT, signal.SIGTERM):
+            self._before[number] = signal.signal(number, self._note)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Give them back."""
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
+
+    def _note(self, number: int, frame: FrameType | None) -> None:
+        self.raised = True
+
+
+def _open(resolved: ResolvedSession, console: Console, log: LogWriter, stack: ExitStack) -> Opened:
+    if resolved.session.mode.pacing == "realtime":
+        from simconsole.casting import open_realtime
+
+        return open_realtime(resolved, console, LogRecorder(log), stack)
+    return open_headless(resolved, console, LogRecorder(log), stack)
+
+
 def _bundle(resolved: ResolvedSession, console: Console, folder: Path) -> BundleWriter:
     text = to_text(resolved)
+    sources = compiling.digest(decide) + compiling.digest(console.platform.step)
     header = LogHeader(
         tick_hz=console.tick_hz,
         columns=console.columns,
         input_columns=INPUT_WIDTH,
         console_version=__version__,
-        source_sha256=source_digest(),
+        source_sha256=hashlib.sha256(sources.encode()).hexdigest(),
         session_sha256=hashlib.sha256(text.encode()).hexdigest(),
     )
     return BundleWriter(folder, header, {SESSION_FILE: text}, {"simconsole": __version__})
