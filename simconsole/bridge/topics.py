@@ -208,16 +208,14 @@ class Outputs:
 
 
 def is_due(tick: int, last_tick: int | None, tick_hz: int, rate_hz: float) -> bool:
-    """Return whether a topic of `rate_hz`, published last at `last_tick`, is due at `tick`: drift-free, by ticks alone.
+    """Return whether a topic of `rate_hz`, last considered at `last_tick`, is due at `tick`.
 
-    A tick before the last one is a restart and due.
+    The phase hangs on the tick's number alone, not on when the first client came: drift-free, and equal in every run.
     """
     if rate_hz == ONCE:
         return last_tick is None
-    if rate_hz <= 0.0:
-        return False
-    if last_tick is None or tick < last_tick:
-        return True
+    if last_tick is None or tick <= last_tick:
+        last_tick = tick - 1
     return int(tick * rate_hz / tick_hz) > int(last_tick * rate_hz / tick_hz)
 
 

@@ -1,12 +1,19 @@
-"""What server and client share of a WebSocket over sans-I/O websockets: whole texts out of frames."""
+"""What servers and client share: whole texts out of WebSocket frames, listening, and lines in the log."""
 
+import logging
+import socket
 from typing import Final
 
 from websockets.frames import Frame, Opcode
 
-from simconsole.errors import RemoteProtocolError
+from simconsole.bridge.protocol import Outcome
+from simconsole.bridge.session import Session
+from simconsole.errors import BridgeError, RemoteProtocolError
 
 RECEIVE_BYTES: Final = 65_536
+_BACKLOG: Final = 64
+_LOGGED_REFUSALS: Final = 10
+_LOGGED_EVERY: Final = 1000
 
 
 class TextAssembler:
@@ -45,3 +52,32 @@ class TextAssembler:
 def is_data(frame: Frame) -> bool:
     """Return whether a frame carries part of a message, and is not ping, pong or close."""
     return frame.opcode is Opcode.TEXT or frame.opcode is Opcode.CONT or frame.opcode is Opcode.BINARY
+
+
+def listen(host: str, port: int) -> socket.socket:
+    """Return a non-blocking listening socket; port 0 lets the system choose.
+
+    Raises:
+        BridgeError: the address cannot be listened on.
+    """
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    try:
+        listener = socket.create_server((host, port), family=family, backlog=_BACKLOG)
+    except OSError as error:
+        raise BridgeError(f"outputs.bridge: cannot listen on {host} port {port}: {error}") from None
+    listener.setblocking(False)
+    return listener
+
+
+def address_url(host: str, port: int) -> str:
+    """Return the ws:// address of a server."""
+    return f"ws://[{host}]:{port}" if ":" in host else f"ws://{host}:{port}"
+
+
+def log_outcome(logger: logging.Logger, session: Session, outcome: Outcome) -> None:
+    """Log what was refused, the first of a client each and later ones now and then: a flood must not fill the disk."""
+    if outcome.kind == "refused":
+        if session.refused <= _LOGGED_REFUSALS or session.refused % _LOGGED_EVERY == 0:
+            logger.warning("%s: refused (%d): %s %s", session.peer, session.refused, outcome.topic, outcome.text)
+    elif outcome.kind == "remark":
+        logger.info("%s: says %s", session.peer, outcome.text)

@@ -1,0 +1,162 @@
+"""One WebSocket connection on the owner's own non-blocking socket, by the sans-I/O protocol of websockets."""
+
+import logging
+import socket
+from typing import Any, Final, Protocol, cast
+
+from websockets.datastructures import MultipleValuesError
+from websockets.frames import CloseCode, Frame
+from websockets.http11 import Request
+from websockets.protocol import SEND_EOF, State
+from websockets.server import ServerProtocol
+
+from simconsole.bridge.handshake import FORBIDDEN, FULL, is_host_allowed, origins
+from simconsole.bridge.session import Session
+from simconsole.bridge.wire import RECEIVE_BYTES, TextAssembler, is_data
+from simconsole.errors import RemoteProtocolError
+from simconsole.profiles.bridge import BridgeProfile
+
+UNSENT_BYTES: Final = 262_144
+"""Bytes taken out of a session's bounded queues beyond what the system's socket buffer holds."""
+
+_logger = logging.getLogger("simconsole.bridge.lockstep")
+
+
+class Owner(Protocol):
+    """Who is told what happens on a connection."""
+
+    def connected(self, peer: str) -> Session:
+        """Take in a client whose handshake is done."""
+
+    def received(self, session: Session, text: bytes) -> None:
+        """Apply a text of a client."""
+
+    def refused(self, session: Session, reason: str) -> None:
+        """Answer something that was not text."""
+
+
+class Connection:
+    """A client of the lockstep bridge, from its first byte to its last."""
+
+    def __init__(self, owner: Owner, sock: socket.socket, peer: str, profile: BridgeProfile, is_full: bool) -> None:
+        """Take over an accepted socket; `is_full` turns the client away politely."""
+        sock.setblocking(False)
+        sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self.socket = sock
+        self.peer = peer
+        self.session: Session | None = None
+        self.closed = False
+        self._owner = owner
+        self._profile = profile
+        self._is_full = is_full
+        # websockets types its origins with a NewType of str.
+        self._web = ServerProtocol(
+            origins=cast("Any", origins(profile)), max_size=profile.limits.message_bytes, logger=_logger
+        )
+        self._texts = TextAssembler(profile.limits.message_fragments)
+        self._unsent = bytearray()
+        self._ending = False
+
+    @property
+    def is_open(self) -> bool:
+        """Whether messages can pass."""
+        return not self.closed and self._web.state is State.OPEN
+
+    @property
+    def waits_to_write(self) -> bool:
+        """Whether the system took less than it was given."""
+        return bool(self._unsent)
+
+    def read(self) -> None:
+        """Read once and hand on what arrived: a session at the handshake, then texts."""
+        try:
+            data = self.socket.recv(RECEIVE_BYTES)
+        except (BlockingIOError, InterruptedError):
+            return
+        except OSError:
+            self.close()
+            return
+        if data:
+            self._web.receive_data(data)
+        else:
+            self._web.receive_eof()
+        for event in self._web.events_received():
+            if isinstance(event, Request):
+                self._answer(event)
+            elif isinstance(event, Frame) and is_data(event) and self.session is not None:
+                self._take(event, self.session)
+        if not data or self._web.state is State.CLOSED:
+            self.close()
+
+    def flush(self, now_ns: int) -> None:
+        """Frame what waits in the session and send what the system takes."""
+        if self.closed:
+            return
+        session = self.session
+        if session is not None and self._web.state is State.OPEN:
+            while len(self._unsent) < UNSENT_BYTES:
+                text = session.next_text(now_ns)
+                if text is None:
+                    break
+                self._web.send_text(text)
+                self._collect()
+        self._collect()
+        self._send()
+
+    def say_good_bye(self) -> None:
+        """Begin to close in the WebSocket's own way; a connection that is none is closed at once."""
+        if self.is_open:
+            self._web.send_close(CloseCode.GOING_AWAY)
+            self.flush(0)
+        else:
+            self.close()
+
+    def close(self) -> None:
+        """Close the socket."""
+        self.closed = True
+        self.socket.close()
+
+    def _answer(self, request: Request) -> None:
+        try:
+            host = request.headers.get("Host")
+        except MultipleValuesError:
+            host = None
+        if self._is_full:
+            response = self._web.reject(503, f"{FULL}\n")
+        elif not is_host_allowed(host, self._profile):
+            response = self._web.reject(403, f"{FORBIDDEN}\n")
+        else:
+            response = self._web.accept(request)
+        self._web.send_response(response)
+        if self._web.state is State.OPEN:
+            self.session = self._owner.connected(self.peer)
+
+    def _take(self, frame: Frame, session: Session) -> None:
+        try:
+            text = self._texts.add(frame)
+        except RemoteProtocolError as error:
+            self._owner.refused(session, str(error))
+            if not frame.fin:
+                self._web.fail(CloseCode.POLICY_VIOLATION, str(error))
+            return
+        if text is not None:
+            self._owner.received(session, text)
+
+    def _collect(self) -> None:
+        for data in self._web.data_to_send():
+            if data is SEND_EOF:
+                self._ending = True
+            else:
+                self._unsent += data
+
+    def _send(self) -> None:
+        try:
+            if self._unsent:
+                del self._unsent[: self.socket.send(self._unsent)]
+            if self._ending and not self._unsent:
+                self._ending = False
+                self.socket.shutdown(socket.SHUT_WR)
+        except (BlockingIOError, InterruptedError):
+            return
+        except OSError:
+            self.close()

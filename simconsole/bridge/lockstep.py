@@ -1,0 +1,223 @@
+"""The bridge on the core's own sockets: a headless drive waits for its controller, once per control period.
+
+No thread and no event loop: waking another would cost more than everything else together (measured: a third of the
+round trips with the bridge in a thread). Between two calls nothing happens; the system's buffers hold what arrives.
+"""
+
+import logging
+import selectors
+import time
+from types import TracebackType
+from typing import Final, Self
+
+import msgspec
+
+from simconsole.bridge.connection import Connection
+from simconsole.bridge.console import ConsoleBridge
+from simconsole.bridge.messages import Registry
+from simconsole.bridge.session import Session
+from simconsole.bridge.topics import ODOMETRY
+from simconsole.bridge.wire import address_url, listen, log_outcome
+from simconsole.profiles.bridge import BridgeProfile
+from simconsole.rows import Snapshot
+from simconsole.signals import EventInput, RemoteCommand
+
+_HANDSHAKE_S: Final = 5.0
+_GOOD_BYE_S: Final = 0.5
+_logger = logging.getLogger("simconsole.bridge.lockstep")
+
+
+class LockstepBridge:
+    """A rosbridge server that lives inside the tick loop. Its clock is the simulated time of the last snapshot."""
+
+    def __init__(
+        self, profile: BridgeProfile, *, registry: Registry | None = None, odometry_hz: float | None = None
+    ) -> None:
+        """Listen on the profile's host and port.
+
+        Args:
+            profile: names, rates, limits.
+            registry: message types; the standard ones without.
+            odometry_hz: rate of /odom in place of the profile's: the control rate, so that every answer is waited for.
+
+        Raises:
+            BridgeError: the address cannot be listened on.
+            ProfileError: as `ConsoleBridge`.
+        """
+        if odometry_hz is not None:
+            profile = msgspec.structs.replace(profile, rates_hz={**profile.rates_hz, ODOMETRY: odometry_hz})
+        self.console = ConsoleBridge(profile, registry)
+        self._profile = profile
+        self._now_ns = 0
+        self._commander_lost = False
+        self._closing = False
+        self._connections: dict[Connection, float] = {}
+        """Each with when it was accepted, in s."""
+        self._listener = listen(profile.host, profile.port)
+        self._selector = selectors.DefaultSelector()
+        self._selector.register(self._listener, selectors.EVENT_READ, None)
+
+    def __enter__(self) -> Self:
+        """Return the bridge; it is closed at the end of the block."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Close everything."""
+        self.close()
+
+    @property
+    def port(self) -> int:
+        """The port listened on."""
+        return int(self._listener.getsockname()[1])
+
+    @property
+    def url(self) -> str:
+        """Where clients connect."""
+        return address_url(self._profile.host, self.port)
+
+    @property
+    def clients(self) -> int:
+        """How many clients are connected."""
+        return len(self.console.router.sessions)
+
+    def wait_for_client(self, timeout_s: float) -> bool:
+        """Serve until a client has subscribed to odometry; False when none did in time (wall time)."""
+        odometry = self.console.names[ODOMETRY]
+        deadline = time.monotonic() + timeout_s
+        while not any(odometry in session.outlets for session in self.console.router.sessions):
+            left_s = deadline - time.monotonic()
+            if left_s <= 0.0:
+                return False
+            self._serve(left_s)
+        return True
+
+    def publish(self, snapshot: Snapshot) -> None:
+        """Send what is due of a snapshot and serve what has arrived, without waiting."""
+        self._now_ns = snapshot.t_ns
+        self.console.inputs.tick = snapshot.tick
+        self._serve(0.0)
+        self.console.publish(snapshot, self._now_ns)
+        self._flush()
+
+    def exchange(self, snapshot: Snapshot, timeout_s: float = 2.0) -> bool:
+        """Send a snapshot, odometry in any case, and wait for the command that answers it.
+
+        That is the first accepted command whose stamp equals the odometry's; a command of a type without a stamp
+        answers by arriving. Whatever arrives before it is applied too.
+
+        Returns:
+            False when no answer came within `timeout_s` of wall time, or nobody is left who could give one.
+        """
+        inputs = self.console.inputs
+        self._now_ns = snapshot.t_ns
+        inputs.tick = snapshot.tick
+        self.console.publish(snapshot, self._now_ns, odometry=True)
+        self._flush()
+        before = inputs.command.sequence
+        self._commander_lost = False
+        deadline = time.monotonic() + timeout_s
+        while True:
+            if inputs.command.sequence != before and inputs.stamp_ns in (snapshot.t_ns, None):
+                return True
+            left_s = deadline - time.monotonic()
+            if left_s <= 0.0 or self._commander_lost or not self._connections:
+                return False
+            self._serve(left_s)
+
+    def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
+        """Return the newest command with its age for the coming `tick`, and all edges since the last call."""
+        return self.console.inputs.take(tick)
+
+    def close(self) -> None:
+        """Say good-bye to all clients, give them half a second to answer, stop listening; harmless when closed."""
+        if self._listener.fileno() < 0:
+            return
+        self._closing = True
+        deadline = time.monotonic() + _GOOD_BYE_S
+        for connection in list(self._connections):
+            connection.say_good_bye()
+            if connection.closed:
+                self._forget(connection)
+        while self._connections and (left_s := deadline - time.monotonic()) > 0.0:
+            self._serve(left_s)
+        for connection in list(self._connections):
+            connection.close()
+            self._forget(connection)
+        self._selector.close()
+        self._listener.close()
+
+    def connected(self, peer: str) -> Session:
+        """Take in a client (Connection's owner)."""
+        _logger.info("%s connected", peer)
+        return self.console.router.connect(peer)
+
+    def received(self, session: Session, text: bytes) -> None:
+        """Apply a text of a client (Connection's owner)."""
+        log_outcome(_logger, session, self.console.receive(session, text, self._now_ns))
+
+    def refused(self, session: Session, reason: str) -> None:
+        """Answer something that was not text (Connection's owner)."""
+        log_outcome(_logger, session, self.console.router.refuse(session, reason, self._now_ns))
+
+    def _serve(self, timeout_s: float) -> None:
+        """Wait at most `timeout_s` for sockets and serve each that is ready once."""
+        for key, mask in self._selector.select(timeout_s):
+            connection: Connection | None = key.data
+            if connection is None:
+                self._accept()
+                continue
+            if mask & selectors.EVENT_READ:
+                connection.read()
+            self._settle(connection)
+        for connection in list(self._connections):
+            # What one client published may wait for another.
+            if connection.session is not None and connection.session.due_ns() is not None:
+                self._settle(connection)
+
+    def _accept(self) -> None:
+        try:
+            sock, address = self._listener.accept()
+        except OSError:
+            return  # the client was gone before it was let in
+        now_s = time.monotonic()
+        self._sweep(now_s)
+        is_full = len(self._connections) >= self._profile.limits.clients
+        connection = Connection(self, sock, f"{address[0]}:{address[1]}", self._profile, is_full)
+        self._connections[connection] = now_s
+        self._selector.register(sock, selectors.EVENT_READ, connection)
+
+    def _sweep(self, now_s: float) -> None:
+        """Close connections that have not become, or no longer are, WebSockets after a while (N12)."""
+        for connection, since_s in list(self._connections.items()):
+            if not connection.is_open and now_s - since_s > _HANDSHAKE_S:
+                connection.close()
+                self._forget(connection)
+
+    def _flush(self) -> None:
+        for connection in list(self._connections):
+            self._settle(connection)
+
+    def _forget(self, connection: Connection) -> None:
+        if self._connections.pop(connection, None) is None:
+            return
+        self._selector.unregister(connection.socket)
+        session, connection.session = connection.session, None
+        if session is not None:
+            commanded = self.console.disconnect(session, self._now_ns)
+            self._commander_lost = self._commander_lost or commanded
+            if commanded and not self._closing:
+                _logger.warning("%s was commanding and is gone", connection.peer)
+            else:
+                _logger.info("%s is gone", connection.peer)
+
+    def _settle(self, connection: Connection) -> None:
+        """Send what waits for a client and ask to be woken for writing only while the system takes no more."""
+        connection.flush(self._now_ns)
+        if connection.closed:
+            self._forget(connection)
+            return
+        wanted = selectors.EVENT_READ | (selectors.EVENT_WRITE if connection.waits_to_write else 0)
+        if self._selector.get_key(connection.socket).events != wanted:
+            self._selector.modify(connection.socket, wanted, connection)

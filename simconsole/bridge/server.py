@@ -1,0 +1,226 @@
+"""The bridge for a process or thread of its own: an asyncio server around the transport-free console bridge.
+
+Every client has one task that takes texts out of its bounded queues and waits for its socket, so that a client that
+stops reading stops nobody else and costs a bounded amount of memory.
+"""
+
+import asyncio
+import logging
+import socket
+import time
+from collections.abc import Callable
+from http import HTTPStatus
+from typing import Any, Final, cast
+
+from websockets.asyncio.server import Server, ServerConnection
+from websockets.asyncio.server import serve as serve_websockets
+from websockets.exceptions import ConnectionClosed
+from websockets.http11 import Request, Response
+
+from simconsole.bridge.console import ConsoleBridge
+from simconsole.bridge.handshake import FORBIDDEN, FULL, is_host_allowed, origins
+from simconsole.bridge.inputs import OnCommand, OnEvents
+from simconsole.bridge.messages import Registry
+from simconsole.bridge.session import Session
+from simconsole.bridge.wire import address_url, listen, log_outcome
+from simconsole.profiles.bridge import BridgeProfile
+from simconsole.rows import Snapshot
+from simconsole.units import NS_PER_S
+
+_HANDSHAKE_S: Final = 5.0
+_CLOSE_S: Final = 1.0
+_WATCH_S: Final = 1.0
+_POLL_S: Final = 0.001
+
+_logger = logging.getLogger("simconsole.bridge.server")
+
+
+class _Client:
+    """One connection and what its sender is doing."""
+
+    def __init__(self, connection: ServerConnection) -> None:
+        self.connection = connection
+        self.ready = asyncio.Event()
+        self.sending_since_ns: int | None = None
+
+
+class BridgeServer:
+    """A rosbridge server in a running event loop. All methods belong to that loop's thread."""
+
+    def __init__(
+        self,
+        profile: BridgeProfile,
+        *,
+        registry: Registry | None = None,
+        on_command: OnCommand | None = None,
+        on_events: OnEvents | None = None,
+        clock_ns: Callable[[], int] = time.monotonic_ns,
+    ) -> None:
+        """Build the bridge; `start` opens it. Arguments and errors as `ConsoleBridge`; `clock_ns` is its clock."""
+        self.console = ConsoleBridge(profile, registry, on_command, on_events)
+        self._profile = profile
+        self._clock_ns = clock_ns
+        self._clients: dict[Session, _Client] = {}
+        self._server: Server | None = None
+        self._watcher: asyncio.Task[None] | None = None
+        self._port = 0
+
+    @property
+    def port(self) -> int:
+        """The port listened on, 0 before `start`."""
+        return self._port
+
+    @property
+    def url(self) -> str:
+        """Where clients connect."""
+        return address_url(self._profile.host, self._port)
+
+    @property
+    def clients(self) -> int:
+        """How many clients are connected."""
+        return len(self._clients)
+
+    async def start(self) -> None:
+        """Listen.
+
+        Raises:
+            BridgeError: the address cannot be listened on.
+        """
+        listener = listen(self._profile.host, self._profile.port)
+        self._port = int(listener.getsockname()[1])
+        self._server = await serve_websockets(
+            self._serve_client,
+            sock=listener,
+            origins=cast("Any", origins(self._profile)),  # a NewType of str there
+            process_request=self._admit,
+            compression=None,
+            max_size=self._profile.limits.message_bytes,
+            ping_interval=self._profile.ping_interval_s,
+            ping_timeout=self._profile.ping_timeout_s,
+            open_timeout=_HANDSHAKE_S,
+            close_timeout=_CLOSE_S,
+            server_header=None,
+            logger=_logger,
+        )
+        self._watcher = asyncio.create_task(self._watch())
+
+    def publish(self, snapshot: Snapshot) -> None:
+        """Queue what is due of a snapshot; the clients' tasks send it."""
+        self.console.publish(snapshot, self._clock_ns())
+
+    async def close(self) -> None:
+        """Say good-bye to all clients and stop listening; harmless when closed."""
+        if self._watcher is not None:
+            self._watcher.cancel()
+            self._watcher = None
+        server, self._server = self._server, None
+        if server is not None:
+            server.close()
+            await server.wait_closed()
+
+    def _admit(self, connection: ServerConnection, request: Request) -> Response | None:
+        hosts = request.headers.get_all("Host")
+        if len(hosts) != 1 or not is_host_allowed(hosts[0], self._profile):
+            return connection.respond(HTTPStatus.FORBIDDEN, f"{FORBIDDEN}\n")
+        if len(self._clients) >= self._profile.limits.clients:
+            return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, f"{FULL}\n")
+        return None
+
+    async def _serve_client(self, connection: ServerConnection) -> None:
+        sock: socket.socket = connection.transport.get_extra_info("socket")
+        sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        client = _Client(connection)
+        address = connection.remote_address
+        session = self.console.router.connect(f"{address[0]}:{address[1]}", client.ready.set)
+        self._clients[session] = client
+        _logger.info("%s connected", session.peer)
+        sender = asyncio.create_task(self._send(session, client))
+        try:
+            async for message in connection:
+                if isinstance(message, str):
+                    outcome = self.console.receive(session, message.encode(), self._clock_ns())
+                else:
+                    reason = "binary messages are not supported here"
+                    outcome = self.console.router.refuse(session, reason, self._clock_ns())
+                log_outcome(_logger, session, outcome)
+        except ConnectionClosed:
+            pass
+        finally:
+            sender.cancel()
+            del self._clients[session]
+            commanded = self.console.disconnect(session, self._clock_ns())
+            if commanded:
+                _logger.warning("%s was commanding and is gone", session.peer)
+            else:
+                _logger.info("%s is gone", session.peer)
+
+    async def _send(self, session: Session, client: _Client) -> None:
+        """Send what waits for one client, for as long as it is connected."""
+        while True:
+            await client.ready.wait()
+            client.ready.clear()
+            try:
+                while (text := session.next_text(self._clock_ns())) is not None:
+                    client.sending_since_ns = self._clock_ns()
+                    await client.connection.send(text, text=True)
+                    client.sending_since_ns = None
+            except ConnectionClosed:
+                return
+            due_ns = session.due_ns()
+            if due_ns is not None:
+                # Throttled: look again when the first may go, whether or not more is published until then.
+                wait_s = max(0, due_ns - self._clock_ns()) / NS_PER_S
+                asyncio.get_running_loop().call_later(wait_s, client.ready.set)
+
+    async def _watch(self) -> None:
+        """Cut clients that have taken nothing for too long."""
+        limit_ns = int(self._profile.stall_close_s * NS_PER_S)
+        while True:
+            await asyncio.sleep(_WATCH_S)
+            now_ns = self._clock_ns()
+            for session, client in list(self._clients.items()):
+                if client.sending_since_ns is not None and now_ns - client.sending_since_ns > limit_ns:
+                    _logger.warning("%s took nothing for %g s and is cut", session.peer, self._profile.stall_close_s)
+                    client.connection.transport.abort()
+
+
+def serve(
+    profile: BridgeProfile,
+    read_snapshot: Callable[[], Snapshot | None],
+    write_command: OnCommand,
+    write_events: OnEvents,
+    stop: Callable[[], bool],
+    *,
+    on_ready: Callable[[int], None] = lambda port: None,
+    registry: Registry | None = None,
+) -> None:
+    """Run a bridge server until `stop()` says so; for a process of its own.
+
+    Args:
+        profile: names, rates, limits.
+        read_snapshot: asked every millisecond; returns the newest snapshot, None when there is no newer one.
+        write_command: gets each change of the command and its receipt on the monotonic clock in ns, at once.
+        write_events: gets each mask of events, at once.
+        stop: asked every millisecond.
+        on_ready: gets the port when the server listens.
+        registry: message types; the standard ones without.
+
+    Raises:
+        BridgeError: the address cannot be listened on.
+        ProfileError: as `ConsoleBridge`.
+    """
+
+    async def main() -> None:
+        server = BridgeServer(profile, registry=registry, on_command=write_command, on_events=write_events)
+        await server.start()
+        on_ready(server.port)
+        try:
+            while not stop():
+                snapshot = read_snapshot()
+                if snapshot is not None:
+                    server.publish(snapshot)
+                await asyncio.sleep(_POLL_S)
+        finally:
+            await server.close()
+
+    asyncio.run(main())
