@@ -3,7 +3,7 @@
 from simconsole.devices.cockpit import CockpitSettings
 from simconsole.devices.person_mind import Person
 from simconsole.devices.person_skills import look
-from simconsole.devices.uncalibrate import uncalibrate
+from simconsole.devices.uncalibrate import Intent, uncalibrate
 from simconsole.devices.virtual_cockpit import VirtualCockpit
 from simconsole.profiles.person import PersonPlan
 from simconsole.rows import Snapshot
@@ -24,6 +24,7 @@ class SimulatedPerson:
         self.person = Person(plan, tick_hz)
         self._cockpit = cockpit
         self._settings = settings
+        self._written: tuple[Intent, int] | None = None
 
     @property
     def finished(self) -> bool:
@@ -36,4 +37,7 @@ class SimulatedPerson:
         Raises:
             DeviceError: SDL refuses.
         """
-        self._cockpit.write(uncalibrate(self.person.decide(look(snapshot)), self._settings))
+        now = (self.person.decide(look(snapshot)), self._cockpit.plugged)
+        if now != self._written:
+            self._cockpit.write(uncalibrate(now[0], self._settings))
+            self._written = now

@@ -1,6 +1,7 @@
 """What the simulated person decides, tick by tick: from what they see to what hands and feet do. Pure."""
 
 import math
+from collections.abc import Callable
 from enum import Enum, auto
 from typing import Final, NamedTuple
 
@@ -75,6 +76,21 @@ class Person:
         self._pressed_s = -PRESS_AGAIN_S
         self._has_driven_itself = False
         self._steady_rad = 0.0
+        self._feet: dict[Phase, Callable[[View], _Target]] = {
+            Phase.SIT: self._sit,
+            Phase.CLUTCH_DOWN: self._clutch_down,
+            Phase.BITE: self._bite,
+            Phase.DRIVE: self._drive,
+            Phase.SHIFT_OPEN: self._shift_open,
+            Phase.SHIFT_GATE: self._shift_gate,
+            Phase.SHIFT_MESH: self._shift_mesh,
+            Phase.SHIFT_CLOSE: self._shift_close,
+            Phase.WATCH: self._watch,
+            Phase.TAKE_BACK: self._take_back,
+            Phase.BRAKE: self._brake,
+            Phase.STAND: self._stand,
+            Phase.DONE: self._done,
+        }
 
     @property
     def finished(self) -> bool:
@@ -90,7 +106,7 @@ class Person:
         """Look at one tick and move hands and feet towards what the phase wants, at a person's speed."""
         if self._line is None:
             self._line = Line(view.x_m, view.y_m, view.yaw_rad)
-        target = self._feet(view)
+        target = self._feet[self.phase](view)
         self._move(target, self._wheel(view), view)
         return self._intent
 
@@ -102,23 +118,6 @@ class Person:
         return view.time_s - self._since_s
 
     # What the feet want, and when one phase ends and the next begins.
-
-    def _feet(self, view: View) -> _Target:
-        return {
-            Phase.SIT: self._sit,
-            Phase.CLUTCH_DOWN: self._clutch_down,
-            Phase.BITE: self._bite,
-            Phase.DRIVE: self._drive,
-            Phase.SHIFT_OPEN: self._shift_open,
-            Phase.SHIFT_GATE: self._shift_gate,
-            Phase.SHIFT_MESH: self._shift_mesh,
-            Phase.SHIFT_CLOSE: self._shift_close,
-            Phase.WATCH: self._watch,
-            Phase.TAKE_BACK: self._take_back,
-            Phase.BRAKE: self._brake,
-            Phase.STAND: self._stand,
-            Phase.DONE: self._done,
-        }[self.phase](view)
 
     def _sit(self, view: View) -> _Target:
         if self._in_phase_s(view) >= self._plan.sit_s and view.mode == Mode.MANUAL:
@@ -254,7 +253,8 @@ class Person:
         if self.phase in (Phase.WATCH, Phase.DONE):
             return self._intent.hand_wheel_rad
         if self.phase is Phase.TAKE_BACK:
-            return self._steady_rad + self._plan.habits.take_back_deg * RAD_PER_DEG
+            firmness = max(1.0, self._in_phase_s(view))  # further still, should the car not let go
+            return self._steady_rad + firmness * self._plan.habits.take_back_deg * RAD_PER_DEG
         if abs(view.speed_mps) < STANDING_MPS or self._line is None:
             return self._intent.hand_wheel_rad
         return steer_along(self._line, view, self._plan.habits)

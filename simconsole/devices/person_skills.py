@@ -5,13 +5,20 @@ from typing import Final, NamedTuple
 
 from simconsole.profiles.person import Habits
 from simconsole.rows import Snapshot
-from simconsole.units import RADPS_PER_RPM
+from simconsole.units import RADPS_PER_RPM, RPM_PER_RADPS
 
-SPEED_GAIN_PER_MPS: Final = 0.12
-SPEED_INTEGRAL_PER_M: Final = 0.03
-STALL_MARGIN_RADPS: Final = 85.0  # 810 rpm: nobody lets the clutch up further with the engine labouring
+SPEED_GAIN_PER_MPS: Final = 0.3
+SPEED_INTEGRAL_PER_M: Final = 0.05
+SPEED_NEAR_MPS: Final = 2.0
+"""Only this near to the wanted speed does the foot learn what holds it."""
+
+BITE_FROM: Final = 0.8
+"""Clutch pedals transmit nothing above this: the foot may be quick until there."""
+LABOURING_RPM: Final = 1100.0
+"""Nobody lets the clutch up further with the engine slower than this in a launch."""
+DYING_RPM: Final = 900.0
 LAUNCH_GAIN_S: Final = 0.006
-LAUNCH_THROTTLE: Final = 0.15
+LAUNCH_THROTTLE: Final = 0.2
 
 
 class View(NamedTuple):
@@ -73,7 +80,7 @@ def hold_speed(target_mps: float, speed_mps: float, integral: float, tick_s: flo
     """Return (throttle, integral) of a patient PI foot; the integral rests while the pedal is at an end."""
     missing_mps = target_mps - speed_mps
     throttle = SPEED_GAIN_PER_MPS * missing_mps + integral
-    if 0.0 < throttle < most:
+    if 0.0 < throttle < most and abs(missing_mps) < SPEED_NEAR_MPS:
         integral += SPEED_INTEGRAL_PER_M * missing_mps * tick_s
     return min(most, max(0.0, throttle)), min(most, max(0.0, integral))
 
@@ -85,7 +92,12 @@ def launch_throttle(view: View, habits: Habits) -> float:
 
 
 def clutch_through_bite(foot: float, view: View, habits: Habits, tick_s: float) -> float:
-    """Return the clutch pedal one tick later: let up steadily, held while the engine labours."""
-    if view.engine_radps < STALL_MARGIN_RADPS:
+    """Return the clutch pedal one tick later: let up steadily, held while the engine labours, back down if it dies."""
+    rpm = view.engine_radps * RPM_PER_RADPS
+    if foot > BITE_FROM and rpm > LABOURING_RPM:
+        return foot - habits.foot_per_s * tick_s
+    if rpm < DYING_RPM:
+        return min(BITE_FROM, foot + habits.bite_release_per_s * tick_s)
+    if rpm < LABOURING_RPM:
         return foot
     return max(0.0, foot - habits.bite_release_per_s * tick_s)

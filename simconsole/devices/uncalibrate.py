@@ -7,6 +7,8 @@ from simconsole.devices.lever import SHIFTER_SHIFT
 from simconsole.signals import DeviceSample
 
 WHEEL_MASK: Final = (1 << SHIFTER_SHIFT) - 1
+GEAR_1_AT: Final = CockpitSettings._fields.index("gear_1_mask")
+ROLES_AT: Final = CockpitSettings._fields.index("autonomous_mask")
 
 
 class Intent(NamedTuple):
@@ -37,13 +39,12 @@ def wheel_raw(hand_wheel_rad: float, settings: CockpitSettings) -> float:
 def button_masks(gear: float, pressed: int, settings: CockpitSettings) -> tuple[int, int]:
     """Return the raw masks (wheel, shifter) of a lever in this gear and these roles held."""
     mask = 0
-    for bit, role in enumerate(settings[-9:]):
-        if pressed >> bit & 1:
-            mask |= int(role)
-    if not settings.sequential and gear:
-        levers = {-1.0: settings.gear_reverse_mask}
-        levers.update({float(number): getattr(settings, f"gear_{number}_mask") for number in range(1, 8)})
-        mask |= int(levers[float(gear)])
+    if pressed:
+        for bit, role in enumerate(settings[ROLES_AT:]):
+            if pressed >> bit & 1:
+                mask |= int(role)
+    if gear and not settings.sequential:
+        mask |= int(settings.gear_reverse_mask if gear < 0.0 else settings[GEAR_1_AT + int(gear) - 1])
     return mask & WHEEL_MASK, mask >> SHIFTER_SHIFT
 
 

@@ -25,6 +25,7 @@ class VirtualCockpit:
         self._keys = {binding.role: (binding.vendor_id, binding.product_id) for binding in profile.roles}
         self._specs = {(spec.vendor_id, spec.product_id): spec for spec in specs(profile)}
         self._devices: dict[tuple[int, int], VirtualDevice] = {}
+        self.plugged = 0  # how often a device was plugged in: then it is at rest, whatever was written before
         self._axes: dict[tuple[RoleName, int], float] = {}
         self._buttons: dict[RoleName, float] = {}
         try:
@@ -59,6 +60,7 @@ class VirtualCockpit:
         if key not in self._devices:
             self._forget(key)
             self._devices[key] = VirtualDevice(self._specs[key])
+            self.plugged += 1
 
     def spec(self, role: RoleName) -> VirtualSpec:
         """Return what the device of this role claims to be."""
