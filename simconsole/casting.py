@@ -2,17 +2,22 @@
 
 from collections.abc import Callable
 from contextlib import ExitStack
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from simconsole.assembly import ResolvedSession
 from simconsole.drive import Cast, Recorder
 from simconsole.errors import BridgeError, ProfileError
-from simconsole.inline import PROGRAM_PATIENCE_S, LockstepLink, check_started, start_autopilot
+from simconsole.inline import LockstepLink, start_autopilot
 from simconsole.pacing import UnpacedPacer
 from simconsole.pipeline import Console
 from simconsole.ports import CommandSource, NobodyCommands, Station
 from simconsole.rows import Snapshot
 from simconsole.seating import open_seating
+
+if TYPE_CHECKING:
+    from subprocess import Popen
+
+    from simconsole.bridge.lockstep import LockstepBridge
 
 
 class Opened(NamedTuple):
@@ -55,8 +60,14 @@ def _open_lockstep(resolved: ResolvedSession, console: Console, stack: ExitStack
     bridge = LockstepBridge(session.outputs.bridge, odometry_hz=console.tick_hz / period_ticks)
     course = session.features.autopilot
     program = None if course is None else start_autopilot(bridge.url, course, stack)
-    stack.callback(bridge.close)  # after this, so before the wait for the program's end
-    if program is not None and not bridge.wait_for_client(PROGRAM_PATIENCE_S):
-        check_started(program)
-        raise BridgeError(f"the autopilot did not connect to {bridge.url} within {PROGRAM_PATIENCE_S:g} s")
+    stack.callback(bridge.close)  # closed before the programs' end is waited for: it is what ends them
+    _wait_for_controller(bridge, program, session.mode.wait_for_controller_s)
     return LockstepLink(bridge, period_ticks, session.mode.answer_timeout_s)
+
+
+def _wait_for_controller(bridge: "LockstepBridge", program: "Popen[bytes] | None", patience_s: float) -> None:
+    if bridge.wait_for_client(patience_s):
+        return
+    if program is not None and program.poll() is not None:
+        raise BridgeError(f"the autopilot ended with exit code {program.returncode} before it connected")
+    raise BridgeError(f"no controller subscribed to odometry at {bridge.url} within {patience_s:g} s")

@@ -5,11 +5,9 @@ import sys
 from contextlib import ExitStack
 from typing import Protocol
 
-from simconsole.errors import BridgeError
 from simconsole.rows import Snapshot
 from simconsole.signals import Event, EventInput, RemoteCommand
 
-PROGRAM_PATIENCE_S = 30.0
 PROGRAM_END_S = 5.0
 
 
@@ -80,12 +78,6 @@ def start_autopilot(url: str, course: str, stack: ExitStack) -> "subprocess.Pope
     program = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
     stack.callback(_end, program)
     return program
-
-
-def check_started(program: "subprocess.Popen[bytes]") -> None:
-    """Raise BridgeError if the program has already ended."""
-    if program.poll() is not None:
-        raise BridgeError(f"the autopilot ended with exit code {program.returncode} before it connected")
 
 
 def _end(program: "subprocess.Popen[bytes]") -> None:

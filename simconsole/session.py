@@ -53,8 +53,8 @@ def drive(
     ticks = ENDLESS_TICKS if duration_s is None else round(duration_s * console.tick_hz)
     with ExitStack() as stack:
         bundle = stack.enter_context(_bundle(resolved, console, folder))
-        interrupt = stack.enter_context(Interrupt())
         opened = _open(resolved, console, bundle.log, stack)
+        interrupt = stack.enter_context(Interrupt())
         began_s = time.monotonic()
         state = run(
             console,
