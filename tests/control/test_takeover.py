@@ -1,0 +1,102 @@
+import math
+
+import pytest
+
+from simconsole.control.settings import ControlSettings, settings
+from simconsole.control.takeover import WheelWatch, steering_taken, throttle_overrides, watch_wheel
+from simconsole.profiles.control import ControlProfile
+
+RATES = [50, 100, 125, 200, 250, 500, 1000]
+START = WheelWatch(0.0, 0.0)
+
+
+def taken_after_s(angle_of_time: object, tick_hz: int, seconds: float, phase: float = 0.0) -> float | None:
+    """Sample a motion of the wheel (rad over s) at a tick rate; return when it counts as a take-over."""
+    s = settings(ControlProfile(), 15.0, 0.6, tick_hz)
+    watch, previous = START, 0.0
+    for tick in range(round(seconds * tick_hz)):
+        time_s = (tick + phase) / tick_hz
+        angle = angle_of_time(time_s)  # type: ignore[operator]
+        watch = watch_wheel(watch, angle, (angle - previous) * tick_hz, 0.0, True, True, s)
+        previous = angle
+        if steering_taken(watch, s):
+            return time_s
+    return None
+
+
+def held(angle_deg: float, from_s: float, for_s: float, ramp_s: float = 0.3) -> object:
+    """Turn slowly to an angle, hold it, turn slowly back: the speed never counts."""
+
+    def angle(time_s: float) -> float:
+        up = min(1.0, max(0.0, (time_s - from_s + ramp_s) / ramp_s))
+        down = min(1.0, max(0.0, (time_s - from_s - for_s) / ramp_s))
+        return math.radians(angle_deg) * (up - down)
+
+    return angle
+
+
+def pulse(angle_deg: float, from_s: float, for_s: float) -> object:
+    return lambda time_s: math.radians(angle_deg) if from_s <= time_s < from_s + for_s else 0.0
+
+
+@pytest.mark.parametrize("tick_hz", RATES)
+@pytest.mark.parametrize("phase", [0.0, 0.37, 0.9])
+def test_a_held_turn_is_a_takeover_at_every_rate(tick_hz: int, phase: float) -> None:
+    after = taken_after_s(held(9.0, 1.0, 1.0), tick_hz, 3.0, phase)
+    assert after is not None
+    crossing_s = 1.0 - 0.3 / 9.0  # where the ramp passes 8 deg
+    assert crossing_s + 0.05 <= after + 1e-9
+    assert after <= crossing_s + 0.05 + 2.0 / tick_hz
+
+
+@pytest.mark.parametrize("tick_hz", RATES)
+@pytest.mark.parametrize("phase", [0.0, 0.37, 0.9])
+def test_short_knocks_and_small_turns_are_none_at_any_rate(tick_hz: int, phase: float) -> None:
+    assert taken_after_s(held(7.9, 1.0, 5.0, ramp_s=1.0), tick_hz, 8.0, phase) is None
+    assert taken_after_s(pulse(7.0, 1.0, 0.02), tick_hz, 2.0, phase) is None
+
+
+@pytest.mark.parametrize("tick_hz", RATES)
+def test_a_fast_hand_is_a_takeover_before_the_angle_is_reached(tick_hz: int) -> None:
+    # 70 deg/s for 100 ms is 7 deg: below the angle, above the speed, for longer than 50 ms.
+    after = taken_after_s(lambda t: math.radians(min(7.0, max(0.0, 70.0 * (t - 1.0)))), tick_hz, 2.0)
+    assert after is not None
+    assert after <= 1.0 + 0.05 + 2.0 / tick_hz
+    assert taken_after_s(lambda t: math.radians(min(7.0, max(0.0, 50.0 * (t - 1.0)))), tick_hz, 2.0) is None
+
+
+def test_a_shaking_hand_near_the_threshold_counts_on() -> None:
+    assert taken_after_s(lambda t: math.radians(7.6 + 0.5 * math.sin(6.0 * t)), 250, 10.0) is not None
+
+
+def test_the_reference_follows_while_nobody_can_take_over(control: ControlSettings) -> None:
+    watch = watch_wheel(START, 1.0, 0.0, 0.0, False, True, control)
+    assert watch == WheelWatch(1.0, 0.0)
+    assert watch_wheel(watch, 1.1, 0.0, 0.0, True, True, control) == WheelWatch(1.0, 0.0)
+    assert watch_wheel(watch, 1.2, 0.0, 0.0, True, True, control).past_ticks == 1.0
+    assert watch_wheel(WheelWatch(1.0, 5.0), 1.0, 0.0, 0.0, True, True, control).past_ticks == 0.0
+
+
+def test_a_wheel_that_comes_back_elsewhere_is_no_takeover(control: ControlSettings) -> None:
+    watch = watch_wheel(START, 2.0, 9.9, 0.0, True, False, control)
+    assert watch == WheelWatch(0.0, -1.0)
+    watch = watch_wheel(watch, 2.0, 0.0, 0.0, True, True, control)
+    assert watch == WheelWatch(2.0, 0.0)
+    assert watch_wheel(watch, 2.0, 0.0, 0.0, True, True, control).past_ticks == 0.0
+
+
+def test_what_the_motor_explains_is_not_the_persons(control: ControlSettings) -> None:
+    assert watch_wheel(START, 1.0, 0.0, 1.0, True, True, control).past_ticks == 0.0
+    assert watch_wheel(START, 1.2, 0.0, 1.0, True, True, control).past_ticks == 1.0
+
+
+def test_a_wheel_that_reports_no_number_is_no_takeover(control: ControlSettings) -> None:
+    assert watch_wheel(START, 0.0, math.nan, 0.0, True, True, control).past_ticks == 0.0
+
+
+def test_the_accelerator_overrides_with_hysteresis(control: ControlSettings) -> None:
+    pressed = [throttle_overrides(0.0, throttle, control) for throttle in (0.0, 0.04, 0.05, 1.0)]
+    assert pressed == [0.0, 0.0, 1.0, 1.0]
+    assert [throttle_overrides(1.0, throttle, control) for throttle in (0.045, 0.03, 0.0)] == [1.0, 0.0, 0.0]
+    always = control._replace(throttle_release=0.0)
+    assert throttle_overrides(1.0, 0.0, always) == 0.0
