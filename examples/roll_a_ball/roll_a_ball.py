@@ -37,7 +37,7 @@ def roll(client: BridgeClient) -> None:
     reached = poses = 0
     while (received := client.receive(30.0)) is not None:
         if received.topic == "/console/arbitration":
-            if received.message.remote_longitudinal == 0.0 and poses % 25 == 10:
+            if received.message.mode_words != "AUTONOMOUS" and poses % 25 == 10:
                 client.publish("/console/request", {"data": "autonomous"})  # until the console lets us
             continue
         poses += 1
