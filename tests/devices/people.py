@@ -1,0 +1,33 @@
+"""Short ways to drive `calibrate` in tests."""
+
+from collections.abc import Iterable
+
+from simconsole.devices.calibration import ABSENT, NOBODY, CockpitSettings, calibrate
+from simconsole.devices.uncalibrate import Intent, uncalibrate
+from simconsole.signals import DeviceSample, DriverInput
+
+TICK_S = 0.004
+
+
+class Seat:
+    """Feeds samples through `calibrate` and remembers what it must."""
+
+    def __init__(self, settings: CockpitSettings) -> None:
+        self.settings = settings
+        self.before = ABSENT
+        self.driver = NOBODY
+
+    def feel(self, sample: DeviceSample, ticks: int = 1) -> DriverInput:
+        for _ in range(ticks):
+            self.driver = calibrate(sample, self.before, self.driver, self.settings, TICK_S)
+            self.before = sample
+        return self.driver
+
+    def do(self, intent: Intent = Intent(), ticks: int = 1, **raw: float) -> DriverInput:  # noqa: B008  # immutable
+        return self.feel(self.raw(intent, **raw), ticks)
+
+    def raw(self, intent: Intent = Intent(), **raw: float) -> DeviceSample:  # noqa: B008  # immutable
+        return uncalibrate(intent, self.settings)._replace(**raw)
+
+    def all(self, samples: Iterable[DeviceSample]) -> list[DriverInput]:
+        return [self.feel(sample) for sample in samples]

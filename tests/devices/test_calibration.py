@@ -1,0 +1,245 @@
+"""From raw to the person: arming, dead zones, holding, refusing, and the compiled twin."""
+
+import math
+import random
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from simconsole.compiling import compiled
+from simconsole.devices.calibration import ABSENT, NOBODY, CockpitSettings, calibrate, settings
+from simconsole.devices.uncalibrate import Intent, uncalibrate
+from simconsole.devices.validity import ARMED, LIVE, LOST, STALE, UNKNOWN
+from simconsole.profile_files import load
+from simconsole.profiles.device import CockpitProfile
+from simconsole.signals import NEVER_TICKS, Button, DeviceSample
+
+from .people import TICK_S, Seat
+
+SETTINGS = settings(load("devices", "t500rs_th8rs", CockpitProfile), 250)
+PEDALS = ("throttle", "brake", "clutch")
+STALE_TICKS = int(SETTINGS.stale_ticks)
+
+
+@pytest.fixture
+def seat() -> Seat:
+    """A seat whose every input has been armed."""
+    armed = Seat(SETTINGS)
+    armed.do(ticks=2)
+    return armed
+
+
+def validities(seat: Seat) -> set[float]:
+    driver = seat.driver
+    return {
+        driver.wheel_validity,
+        driver.throttle_validity,
+        driver.brake_validity,
+        driver.clutch_validity,
+        driver.shifter_validity,
+    }
+
+
+def test_nothing_is_known_before_the_first_sample() -> None:
+    seat = Seat(SETTINGS)
+    assert seat.feel(ABSENT)[:9] == (0.0,) * 9
+    assert validities(seat) == {UNKNOWN}
+
+
+def test_rest_arms_and_the_next_tick_is_live() -> None:
+    seat = Seat(SETTINGS)
+    seat.do()
+    assert validities(seat) == {ARMED}
+    seat.do()
+    assert validities(seat) == {LIVE}
+
+
+@pytest.mark.parametrize("pedal", PEDALS)
+def test_pedal_pressed_at_start_reads_zero_until_released(pedal: str) -> None:
+    """D05: a pedal stuck at 100 % commands nothing; one released to 5 % or less does from then on."""
+    seat = Seat(SETTINGS)
+    for pressed in (1.0, 0.5, 0.06):
+        driver = seat.do(Intent(**{pedal: pressed}))
+        assert getattr(driver, pedal) == 0.0
+        assert getattr(driver, f"{pedal}_validity") == UNKNOWN
+    seat.do(Intent(**{pedal: 0.02}))
+    assert getattr(seat.do(Intent(**{pedal: 0.7})), pedal) == pytest.approx(0.7)
+
+
+def test_axes_at_zero_before_their_first_report_are_no_half_throttle() -> None:
+    """SDL reads 0.0 until the device reports: half the travel of a pedal that rests at 1.0."""
+    seat = Seat(SETTINGS)
+    driver = seat.do(throttle_axis=0.0, brake_axis=0.0, clutch_axis=0.0)
+    assert (driver.throttle, driver.brake, driver.clutch) == (0.0, 0.0, 0.0)
+    assert driver.throttle_validity == UNKNOWN
+
+
+def test_dead_zone_is_silent_and_the_pedal_begins_at_its_end(seat: Seat) -> None:
+    assert seat.do(throttle_axis=1.0 - 2.0 * 0.0199).throttle == 0.0
+    assert 0.0 < seat.do(throttle_axis=1.0 - 2.0 * 0.021).throttle < 0.002
+    assert seat.do(throttle_axis=-1.0).throttle == 1.0
+
+
+def test_wheel_is_left_positive_and_spans_its_lock(seat: Seat) -> None:
+    assert seat.do(wheel_axis=-1.0).hand_wheel_rad == pytest.approx(math.radians(540))
+    assert seat.do(wheel_axis=1.0).hand_wheel_rad == pytest.approx(-math.radians(540))
+
+
+def test_wheel_rate_settles_at_the_true_rate(seat: Seat) -> None:
+    for tick in range(60):
+        driver = seat.do(Intent(hand_wheel_rad=0.01 * tick))
+    assert driver.hand_wheel_radps == pytest.approx(2.5, rel=1e-3)
+    assert abs(seat.do(Intent(hand_wheel_rad=0.59), ticks=60).hand_wheel_radps) < 1e-3
+
+
+def test_first_wheel_position_is_no_motion() -> None:
+    seat = Seat(SETTINGS)
+    driver = seat.do(Intent(hand_wheel_rad=3.0))
+    assert driver.hand_wheel_rad == pytest.approx(3.0)
+    assert driver.hand_wheel_radps == 0.0
+
+
+def test_silent_device_is_held_then_stale_and_returns_without_arming_again(seat: Seat) -> None:
+    """D03: 100 ms."""
+    pressed = Intent(throttle=0.6, hand_wheel_rad=1.0, gear=3)
+    seat.do(pressed, ticks=3)
+    for age in range(1, STALE_TICKS + 1):
+        ages = {"wheel_age_ticks": age, "pedals_age_ticks": age, "shifter_age_ticks": age}
+        held = seat.do(pressed, **ages)
+        assert held.throttle == pytest.approx(0.6)
+    assert validities(seat) == {LIVE}
+    stale = seat.do(pressed, wheel_age_ticks=26, pedals_age_ticks=26, shifter_age_ticks=26)
+    assert validities(seat) == {STALE}
+    assert stale.throttle == 0.0
+    assert (stale.hand_wheel_rad, stale.hand_wheel_radps, stale.gear) == (pytest.approx(1.0), 0.0, 3.0)
+    assert seat.do(pressed).throttle == pytest.approx(0.6)
+
+
+def test_lost_pedals_must_be_seen_at_rest_again(seat: Seat) -> None:
+    seat.do(Intent(throttle=0.8))
+    lost = seat.do(Intent(throttle=0.8), pedals_age_ticks=NEVER_TICKS)
+    assert (lost.throttle, lost.throttle_validity) == (0.0, LOST)
+    assert lost.wheel_validity == LIVE
+    back = seat.do(Intent(throttle=0.8))
+    assert (back.throttle, back.throttle_validity) == (0.0, UNKNOWN)
+    seat.do()
+    assert seat.do(Intent(throttle=0.8)).throttle == pytest.approx(0.8)
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 1.5, -1e308])
+@pytest.mark.parametrize("field", ["wheel_axis", "throttle_axis", "brake_axis", "clutch_axis"])
+def test_bad_axis_is_refused_held_and_stale_after_100_ms(field: str, value: float, seat: Seat) -> None:
+    """D07, for every axis."""
+    good = Intent(hand_wheel_rad=0.5, throttle=0.4, brake=0.3, clutch=0.2)
+    before = seat.do(good, ticks=200)
+    held = seat.do(good, ticks=STALE_TICKS, **{field: value})
+    for name in ("hand_wheel_rad", *PEDALS):
+        assert getattr(held, name) == pytest.approx(getattr(before, name))
+    assert validities(seat) == {LIVE}
+    assert held.refused_ticks == STALE_TICKS
+    stale = seat.do(good, **{field: value})
+    role = field.removesuffix("_axis")
+    assert getattr(stale, f"{role}_validity") == STALE
+    assert role == "wheel" or getattr(stale, role) == 0.0
+    assert sum(v == STALE for v in stale[9:14]) == 1
+    assert all(math.isfinite(number) for number in stale)
+    assert seat.do(good).refused_ticks == 0.0
+    assert validities(seat) == {LIVE}
+
+
+@pytest.mark.parametrize("mask", [math.nan, -1.0, 0.5, 2.0**24, math.inf])
+@pytest.mark.parametrize("field", ["wheel_buttons", "shifter_buttons"])
+def test_bad_button_mask_is_refused_and_the_last_kept(field: str, mask: float, seat: Seat) -> None:
+    held = Intent(gear=2, pressed=int(Button.MARK))
+    seat.do(held, ticks=2)
+    driver = seat.do(held, **{field: mask})
+    assert (driver.gear, driver.pressed, driver.edges) == (2.0, float(Button.MARK), 0.0)
+    driver = seat.do(held)
+    assert (driver.gear, driver.pressed, driver.edges) == (2.0, float(Button.MARK), 0.0)
+
+
+def test_button_is_an_edge_once(seat: Seat) -> None:
+    pressed = Intent(pressed=int(Button.AUTONOMOUS | Button.INDICATOR_LEFT))
+    first, second = seat.do(pressed), seat.do(pressed)
+    assert first.edges == first.pressed == float(Button.AUTONOMOUS | Button.INDICATOR_LEFT)
+    assert (second.edges, second.pressed) == (0.0, first.pressed)
+    assert seat.do().pressed == 0.0
+
+
+def test_button_held_while_the_wheel_arrives_is_no_edge() -> None:
+    seat = Seat(SETTINGS)
+    held = Intent(pressed=int(Button.AUTONOMOUS))
+    assert [driver.edges for driver in (seat.do(held), seat.do(held))] == [0.0, 0.0]
+
+
+def test_lost_wheel_presses_nothing(seat: Seat) -> None:
+    pressed = Intent(pressed=int(Button.RESET))
+    seat.do(pressed)
+    assert seat.do(pressed, wheel_age_ticks=NEVER_TICKS).pressed == 0.0
+
+
+@given(st.lists(st.floats(0.0, 1.0), min_size=2, max_size=40))
+def test_pedal_is_monotone_bounded_and_the_inverse_of_uncalibrate(shares: list[float]) -> None:
+    shares.sort()
+    seat = Seat(SETTINGS)
+    seat.do(ticks=2)
+    pressed = [seat.do(Intent(brake=share)).brake for share in shares]
+    assert pressed == sorted(pressed)
+    assert all(0.0 <= brake <= 1.0 for brake in pressed)
+    assert pressed == pytest.approx(shares, abs=1e-12)
+
+
+@given(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
+def test_wheel_is_monotone(one: float, other: float) -> None:
+    low, high = sorted((one, other))
+    seat = Seat(SETTINGS)
+    right, left = seat.do(wheel_axis=high).hand_wheel_rad, seat.do(wheel_axis=low).hand_wheel_rad
+    assert right <= left
+    assert max(abs(right), abs(left)) <= math.radians(540.0) * (1 + 1e-12)
+
+
+NUMBERS = st.one_of(st.floats(), st.floats(-1.1, 1.1), st.sampled_from([0.0, 1.0, 3.0, 25.0, 26.0, NEVER_TICKS]))
+
+
+@given(st.lists(st.lists(NUMBERS, min_size=12, max_size=12), max_size=20))
+def test_no_sample_whatever_makes_anything_not_finite(rows: list[list[float]]) -> None:
+    seat = Seat(SETTINGS)
+    for driver in seat.all(DeviceSample(*row) for row in rows):
+        assert all(math.isfinite(number) for number in driver)
+        assert all(0.0 <= getattr(driver, pedal) <= 1.0 for pedal in (*PEDALS, "handbrake"))
+        assert -1.0 <= driver.gear <= 7.0
+
+
+def random_samples(seed: int, count: int, cockpit: CockpitSettings) -> list[DeviceSample]:
+    """Mostly a person driving, now and then nonsense, silence or a pulled plug."""
+    dice = random.Random(seed)
+    samples = []
+    intent = Intent()
+    for _ in range(count):
+        if dice.random() < 0.3:
+            gear = 0.0 if cockpit.sequential else float(dice.randint(-1, 7))
+            intent = Intent(dice.uniform(-9, 9), *(dice.random() for _ in range(4)), gear, dice.getrandbits(9))
+        if dice.random() < 0.1:
+            intent = Intent()
+        sample = uncalibrate(intent, cockpit)
+        if dice.random() < 0.1:
+            field = dice.choice(DeviceSample._fields)
+            value = dice.choice([math.nan, math.inf, -math.inf, 0.5, -2.0, 5.0, 26.0, NEVER_TICKS, 2.0**24])
+            sample = sample._replace(**{field: value})
+        samples.append(sample)
+    return samples
+
+
+@pytest.mark.parametrize("name", ["t500rs_th8rs", "keyboard"])
+def test_compiled_twin_gives_equal_bits(name: str) -> None:
+    seed = 20261120
+    print("seed", seed)
+    cockpit = settings(load("devices", name, CockpitProfile), 250)
+    twin = compiled(calibrate)
+    before, plain, fast = ABSENT, NOBODY, NOBODY
+    for sample in random_samples(seed, 4000, cockpit):
+        plain = calibrate(sample, before, plain, cockpit, TICK_S)
+        fast = twin(sample, before, fast, cockpit, TICK_S)
+        before = sample
+        assert [number.hex() for number in plain] == [float(number).hex() for number in fast]

@@ -1,0 +1,75 @@
+"""Keys become axes at a person's speed, and a silent window goes stale."""
+
+import math
+
+import pytest
+
+from simconsole.devices.calibration import CockpitSettings
+from simconsole.devices.keyboard import STEER_MAX_RAD, KeyboardSource
+from simconsole.devices.validity import STALE
+from simconsole.keys import Key
+from simconsole.signals import Button, DriverInput
+
+from .people import Seat
+
+
+class Board:
+    """A keyboard and the person it makes."""
+
+    def __init__(self, settings: CockpitSettings) -> None:
+        self.held = Key(0)
+        self.age = 0
+        self.source = KeyboardSource(lambda: (int(self.held), self.age), settings, tick_hz=250)
+        self.seat = Seat(settings)
+        self.tick = 0
+
+    def hold(self, held: Key, seconds: float) -> DriverInput:
+        self.held = held
+        for _ in range(round(seconds * 250)):
+            self.tick += 1
+            driver = self.seat.feel(self.source.poll(self.tick))
+        return driver
+
+
+@pytest.fixture
+def board(keyboard_settings: CockpitSettings) -> Board:
+    opened = Board(keyboard_settings)
+    opened.hold(Key(0), 0.1)
+    return opened
+
+
+def test_pedals_ramp_up_and_down(board: Board) -> None:
+    assert 0.0 < board.hold(Key.THROTTLE, 0.1).throttle < 0.5
+    assert board.hold(Key.THROTTLE, 1.0).throttle == 1.0
+    assert board.hold(Key(0), 0.5).throttle == 0.0
+    assert board.hold(Key.BRAKE | Key.HANDBRAKE, 1.0)[3:6] == (1.0, 0.0, 1.0)
+
+
+def test_left_is_left_bounded_and_springs_back(board: Board) -> None:
+    assert board.hold(Key.STEER_LEFT, 3.0).hand_wheel_rad == pytest.approx(STEER_MAX_RAD)
+    assert board.hold(Key.STEER_LEFT | Key.STEER_RIGHT, 1.0).hand_wheel_rad == pytest.approx(0.0)
+    assert board.hold(Key.STEER_RIGHT, 0.2).hand_wheel_rad == pytest.approx(-math.radians(44.0), abs=0.02)
+    assert board.hold(Key(0), 0.5).hand_wheel_rad == pytest.approx(0.0)
+
+
+def test_gear_key_steps_once_and_works_the_clutch(board: Board) -> None:
+    driver = board.hold(Key.GEAR_UP, 0.4)
+    assert (driver.gear, driver.clutch) == (1.0, 1.0)
+    driver = board.hold(Key(0), 0.5)
+    assert (driver.gear, driver.clutch) == (1.0, pytest.approx(0.5, abs=0.01))
+    assert board.hold(Key.GEAR_DOWN, 0.2).gear == 0.0
+
+
+@pytest.mark.parametrize("button", [button for button in Button if button.name in Key.__members__])
+def test_every_key_of_a_button_presses_it(button: Button, board: Board) -> None:
+    assert board.hold(Key[str(button.name)], 0.02).pressed == float(button)
+    assert board.hold(Key(0), 0.02).pressed == 0.0
+
+
+def test_silent_window_holds_and_then_goes_stale(board: Board) -> None:
+    pressed = board.hold(Key.THROTTLE, 0.2).throttle
+    board.age = 10
+    assert board.hold(Key.THROTTLE, 0.2).throttle == pressed
+    board.age = 26
+    driver = board.hold(Key.THROTTLE, 0.01)
+    assert (driver.throttle, driver.throttle_validity) == (0.0, STALE)

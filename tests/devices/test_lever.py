@@ -1,0 +1,80 @@
+"""The gear lever: H pattern with dwell and one-hot check, and the sequential one."""
+
+import pytest
+
+from simconsole.devices.calibration import CockpitSettings
+from simconsole.devices.uncalibrate import Intent
+from simconsole.devices.validity import LIVE, UNKNOWN
+from simconsole.signals import NEVER_TICKS, Button
+
+from .people import Seat
+
+DWELL = 25
+
+
+@pytest.fixture
+def seat(t500_settings: CockpitSettings) -> Seat:
+    armed = Seat(t500_settings)
+    armed.do(ticks=2)
+    return armed
+
+
+@pytest.mark.parametrize("gear", [-1, 1, 2, 3, 4, 5, 6, 7])
+def test_each_gear_is_its_own_button(gear: int, seat: Seat) -> None:
+    assert seat.do(Intent(gear=gear)).gear == gear
+
+
+def test_reverse_is_the_eighth_button_of_the_shifter(seat: Seat) -> None:
+    assert seat.do(shifter_buttons=float(1 << 7)).gear == -1.0
+    assert seat.do(shifter_buttons=float(1 << 0)).gear == 1.0
+
+
+def test_neutral_only_after_its_dwell(seat: Seat) -> None:
+    seat.do(Intent(gear=2))
+    gears = [seat.do().gear for _ in range(DWELL + 1)]
+    assert gears == [2.0] * (DWELL - 1) + [0.0, 0.0]
+
+
+def test_shift_through_the_gate_is_never_neutral(seat: Seat) -> None:
+    seat.do(Intent(gear=2))
+    gears = [seat.do().gear for _ in range(DWELL - 1)]
+    gears.append(seat.do(Intent(gear=3)).gear)
+    assert gears == [2.0] * (DWELL - 1) + [3.0]
+    assert seat.driver.neutral_ticks == 0.0
+
+
+@pytest.mark.parametrize("mask", [0b11, 0b10000001, 0b1111111])
+def test_two_gears_at_once_keep_the_last(mask: int, seat: Seat) -> None:
+    """D08."""
+    seat.do(Intent(gear=4))
+    assert seat.do(ticks=50, shifter_buttons=float(mask)).gear == 4.0
+    assert seat.do(Intent(gear=5)).gear == 5.0
+
+
+def test_lever_in_gear_at_the_start_counts_only_after_neutral(t500_settings: CockpitSettings) -> None:
+    seat = Seat(t500_settings)
+    driver = seat.do(Intent(gear=1), ticks=10)
+    assert (driver.gear, driver.shifter_validity) == (0.0, UNKNOWN)
+    seat.do()
+    assert seat.do(Intent(gear=1)).gear == 1.0
+
+
+def test_lost_shifter_keeps_the_gear_until_neutral_was_seen_again(seat: Seat) -> None:
+    seat.do(Intent(gear=3))
+    assert seat.do(ticks=100, shifter_age_ticks=NEVER_TICKS).gear == 3.0
+    assert seat.do(Intent(gear=5)).gear == 3.0
+    assert seat.do(ticks=DWELL).gear == 0.0
+    driver = seat.do(Intent(gear=5))
+    assert (driver.gear, driver.shifter_validity) == (5.0, LIVE)
+
+
+def test_sequential_lever_steps_once_per_press_from_reverse_to_the_top(keyboard_settings: CockpitSettings) -> None:
+    seat = Seat(keyboard_settings)
+    seat.do(ticks=2)
+
+    def press(button: Button) -> float:
+        seat.do(Intent(pressed=int(button)), ticks=3)
+        return seat.do().gear
+
+    assert [press(Button.SHIFT_UP) for _ in range(8)] == [1, 2, 3, 4, 5, 6, 6, 6]
+    assert [press(Button.SHIFT_DOWN) for _ in range(9)] == [5, 4, 3, 2, 1, 0, -1, -1, -1]

@@ -1,0 +1,100 @@
+"""Cockpit profiles and scripts: what is refused, and that every line of a shipped one says where it comes from."""
+
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import pytest
+
+from simconsole.devices.settings import settings
+from simconsole.errors import ProfileError
+from simconsole.profile_files import load, parse, to_text
+from simconsole.profiles.device import CockpitProfile, ScriptProfile
+
+
+def leaves(value: Any, path: str = "") -> list[str]:
+    if isinstance(value, dict):
+        return [leaf for key, inner in value.items() for leaf in leaves(inner, f"{path}.{key}" if path else key)]
+    return [] if value is None else [path]
+
+
+def changed(profile: CockpitProfile, path: str, value: Any) -> str:
+    plain = msgspec.to_builtins(profile)
+    *steps, last = path.split(".")
+    place = plain
+    for step in steps:
+        place = place[int(step)] if isinstance(place, list) else place[step]
+    if isinstance(place, list):
+        place[int(last)] = value
+    else:
+        place[last] = value
+    return to_text(plain)
+
+
+@pytest.mark.parametrize("name", ["t500rs_th8rs", "keyboard"])
+def test_every_value_that_describes_hardware_has_a_provenance(name: str) -> None:
+    profile = load("devices", name, CockpitProfile)
+    plain = msgspec.to_builtins(profile)
+    facts = {key: plain[key] for key in ("roles", "boot_modes", "wheel", "pedals", "shifter", "buttons") if plain[key]}
+    for leaf in leaves(facts):
+        steps = leaf.split(".")
+        prefixes = {".".join(steps[:count]) for count in range(1, len(steps) + 1)}
+        assert prefixes & profile.provenance.keys(), leaf
+    known = {prefix for leaf in leaves(plain) for prefix in (leaf, leaf.rpartition(".")[0], leaf.partition(".")[0])}
+    assert profile.provenance.keys() <= known
+
+
+def test_what_nobody_has_measured_is_marked_unverified() -> None:
+    provenance = load("devices", "t500rs_th8rs", CockpitProfile).provenance
+    assert provenance["buttons"].status == "unverified"
+    assert provenance["pedals.brake.rest_raw"].status == "unverified"
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "message"),
+    [
+        ("pedals.throttle.full_raw", 1.0, "at least 0.2 apart"),
+        ("pedals.brake.rest_raw", -1.5, "-1 to 1"),
+        ("pedals.clutch.axis", 4, "pedals.clutch.axis 4 must be below 4"),
+        ("wheel.axis", 9, "wheel.axis 9 must be below 4"),
+        ("wheel.lock_to_lock_deg", 0.0, "40 to 2520"),
+        ("wheel.grows_to", "up", "left, right"),
+        ("shifter.gears.0", 1, "different buttons"),
+        ("shifter.gears", [], "at least one button"),
+        ("shifter.reverse", 10, "must be below 10"),
+        ("buttons.reset.button", 13, "buttons.reset.button 13 must be below 13"),
+        ("roles", [], None),
+        ("limits.stale_s", 0.0, "limits.stale_s"),
+        ("pedals.throtle", {}, "did you mean"),
+    ],
+)
+def test_profile_that_cannot_be_meant_is_refused(path: str, value: Any, message: str | None, t500: Any) -> None:
+    text = changed(t500, path, value)
+    if message is None:
+        parse(text, CockpitProfile, "cockpit.yaml")
+        return
+    with pytest.raises(ProfileError) as caught:
+        parse(text, CockpitProfile, "cockpit.yaml")
+    assert message in str(caught.value)
+    assert str(caught.value).startswith("cockpit.yaml: ")
+    assert "\n" not in str(caught.value)
+
+
+def test_role_bound_twice_is_refused(t500: CockpitProfile) -> None:
+    twice = msgspec.to_builtins(t500.roles[0])
+    with pytest.raises(ProfileError, match="once each"):
+        parse(changed(t500, "roles.1", twice), CockpitProfile, "cockpit.yaml")
+
+
+def test_limits_in_time_never_grow_when_they_become_ticks(t500: CockpitProfile) -> None:
+    assert settings(t500, 250).stale_ticks == 25.0
+    assert settings(t500, 125).stale_ticks == 12.0
+    assert settings(t500, 1000).stale_ticks == 100.0
+    assert settings(t500, 50).neutral_dwell_ticks == 5.0
+
+
+def test_script_whose_time_goes_back_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "script.yaml"
+    path.write_text("points:\n- {time_s: 1.0, throttle: 0}\n- {time_s: 0.5, throttle: 1}\n")
+    with pytest.raises(ProfileError, match=r"points\[1\].time_s 0.5 must be above 1.0"):
+        load("devices", str(path), ScriptProfile)
