@@ -1,0 +1,118 @@
+"""`simconsole devices` as functions, with virtual devices and no waiting."""
+
+from pathlib import Path
+
+import pytest
+
+from simconsole.devices.commands import check_devices, list_devices, realtime, record_devices
+from simconsole.devices.record import TraceSource
+from simconsole.devices.watch import Watch
+from simconsole.errors import DeviceNotFound
+from simconsole.profiles.device import CockpitProfile
+
+from .people import Seat
+
+pytestmark = pytest.mark.usefixtures("sdl")
+
+
+def at_once(tick: int) -> None:
+    return
+
+
+class Paper:
+    """Collects what a command says."""
+
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+
+    def __call__(self, line: str) -> None:
+        self.lines.append(line)
+
+
+def test_list_names_devices_and_their_roles(t500: CockpitProfile) -> None:
+    paper = Paper()
+    results = list_devices(t500, say=paper, virtual=True)
+    assert {device["usb_id"]: device["roles"] for device in results["devices"]} == {
+        "044f:b65e": ["wheel", "pedals"],
+        "044f:b660": ["shifter"],
+    }
+    assert results["missing_roles"] == []
+    assert any("044f:b660" in line and "shifter" in line for line in paper.lines)
+
+
+def test_list_without_devices_says_what_is_missing(t500: CockpitProfile) -> None:
+    paper = Paper()
+    assert list_devices(t500, say=paper)["missing_roles"] == ["wheel", "pedals", "shifter"]
+    assert "nothing connected for wheel, pedals, shifter" in paper.lines[-1]
+
+
+def test_check_of_a_good_cockpit_finds_everything(t500: CockpitProfile) -> None:
+    results = check_devices(t500, say=Paper(), duration_s=10.0, virtual=True, pace=at_once)
+    assert results["ok"]
+    assert results["problems"] == results["notes"] == []
+    assert results["gears"] == [-1, 0, 1, 2, 3, 4, 5, 6, 7]
+    assert results["pedals"]["clutch"]["most"] == pytest.approx(1.0)
+    assert results["wheel_deg"]["most"] == pytest.approx(90.0, abs=0.1)
+
+
+def test_check_says_what_was_not_tried(t500: CockpitProfile) -> None:
+    results = check_devices(t500, say=Paper(), duration_s=0.2, virtual=True, pace=at_once)
+    assert results["ok"]
+    assert "the wheel was not turned" in results["notes"]
+    assert any(note.startswith("gears not tried: 1, 2") for note in results["notes"])
+
+
+def test_check_names_a_pedal_that_was_never_released(t500: CockpitProfile) -> None:
+    """D09, one pedal: the others work."""
+    watch = Watch(t500, 250)
+    for _ in range(5):
+        watch.see(Seat(watch._settings).raw(brake_axis=-1.0))
+    problems = watch.problems()
+    assert len(problems) == 1
+    assert problems[0].startswith("pedals.brake: value 100% pressed at least: at most 5% at rest")
+    assert not watch.results()["ok"]
+
+
+def test_missing_devices_stop_check_and_record_and_spare_the_old_trace(t500: CockpitProfile, tmp_path: Path) -> None:
+    path = tmp_path / "trace.csv"
+    path.write_text("precious")
+    with pytest.raises(DeviceNotFound):
+        record_devices(t500, path, say=Paper(), duration_s=1.0, pace=at_once)
+    assert path.read_text() == "precious"
+    with pytest.raises(DeviceNotFound):
+        check_devices(t500, say=Paper(), duration_s=1.0, pace=at_once)
+
+
+def test_recorded_trace_plays_what_the_devices_showed(t500: CockpitProfile, tmp_path: Path) -> None:
+    path = tmp_path / "trace.csv"
+    results = record_devices(t500, path, say=Paper(), duration_s=2.0, virtual=True, pace=at_once, name="t500rs_th8rs")
+    assert results["ticks"] == 500
+    source = TraceSource(path, tick_hz=250)
+    seat = Seat(Watch(t500, 250)._settings)
+    throttle = [seat.feel(source.poll(tick)).throttle for tick in range(1, 501)]
+    source.close()
+    assert max(throttle) == pytest.approx(1.0)
+    assert source.header.cockpit == "t500rs_th8rs"
+
+
+def test_interrupted_recording_is_whole(t500: CockpitProfile, tmp_path: Path) -> None:
+    def interrupted(tick: int) -> None:
+        if tick == 101:
+            raise KeyboardInterrupt
+
+    path = tmp_path / "trace.csv"
+    results = record_devices(t500, path, say=Paper(), duration_s=9.0, virtual=True, pace=interrupted)
+    assert results["ticks"] == 100
+    source = TraceSource(path, tick_hz=250)
+    assert [source.poll(tick).wheel_age_ticks for tick in (100, 150)] == [0.0, 0.0]
+    source.close()
+
+
+def test_real_time_pace_does_not_run_ahead() -> None:
+    import time
+
+    wait = realtime(100)
+    start = time.monotonic()
+    for tick in range(1, 6):
+        wait(tick)
+        assert time.monotonic() - start >= tick / 100 - 0.005

@@ -1,0 +1,222 @@
+"""The cockpit through pygame's joysticks: identity, unplugging, boot mode. Every case with virtual devices."""
+
+from collections.abc import Callable
+
+import pytest
+
+from simconsole.devices import sdl_runtime
+from simconsole.devices.calibration import CockpitSettings
+from simconsole.devices.sdl import SdlSource, identity
+from simconsole.devices.uncalibrate import Intent, uncalibrate
+from simconsole.devices.validity import LIVE, LOST, UNKNOWN
+from simconsole.devices.virtual_cockpit import VirtualCockpit
+from simconsole.devices.virtual_sdl import VirtualDevice, VirtualSpec
+from simconsole.errors import DeviceError, DeviceModeError, DeviceNotFound
+from simconsole.profiles.device import CockpitProfile
+from simconsole.signals import NEVER_TICKS, Button, DriverInput
+
+from .people import Seat
+
+Plug = Callable[[VirtualSpec], VirtualDevice]
+
+
+class Drive:
+    """Intents in, through SDL, calibrated out."""
+
+    def __init__(self, plugged: VirtualCockpit, source: SdlSource, settings: CockpitSettings) -> None:
+        self.plugged = plugged
+        self.source = source
+        self.seat = Seat(settings)
+        self.tick = 0
+
+    def do(self, intent: Intent = Intent(), ticks: int = 1) -> DriverInput:  # noqa: B008  # immutable
+        self.plugged.write(uncalibrate(intent, self.seat.settings))
+        return self.poll(ticks)
+
+    def poll(self, ticks: int = 1) -> DriverInput:
+        for _ in range(ticks):
+            self.tick += 1
+            driver = self.seat.feel(self.source.poll(self.tick))
+        return driver
+
+
+@pytest.fixture
+def drive(plugged: VirtualCockpit, source: SdlSource, t500_settings: CockpitSettings) -> Drive:
+    ready = Drive(plugged, source, t500_settings)
+    ready.do(ticks=2)
+    return ready
+
+
+def test_guid_tells_the_usb_identity() -> None:
+    assert identity("0300b6364f0400005eb6000011010000") == (0x044F, 0xB65E)
+
+
+def test_first_sample_shows_pedals_at_rest(source: SdlSource) -> None:
+    sample = source.poll(1)
+    assert (sample.throttle_axis, sample.brake_axis, sample.clutch_axis) == pytest.approx((1.0,) * 3, abs=1e-4)
+    assert (sample.wheel_age_ticks, sample.pedals_age_ticks, sample.shifter_age_ticks) == (0.0, 0.0, 0.0)
+
+
+def test_every_role_reaches_the_person_in_any_enumeration_order(drive: Drive) -> None:
+    driver = drive.do(Intent(hand_wheel_rad=1.5, throttle=0.2, brake=0.4, clutch=0.6, gear=5))
+    assert driver.hand_wheel_rad == pytest.approx(1.5, abs=5e-4)
+    assert (driver.throttle, driver.brake, driver.clutch) == pytest.approx((0.2, 0.4, 0.6), abs=1e-4)
+    assert driver.gear == 5.0
+    assert drive.do(Intent(gear=-1)).gear == -1.0
+
+
+@pytest.mark.parametrize("button", list(Button))
+def test_every_button_reaches_the_person(button: Button, drive: Drive) -> None:
+    assert drive.do(Intent(pressed=int(button))).edges == float(button)
+    assert drive.do().pressed == 0.0
+
+
+def test_axes_of_the_shifter_steer_nothing(plug: Plug, t500: CockpitProfile, drive: Drive) -> None:
+    shifter = drive.plugged._devices[0x044F, 0xB660]
+    shifter.set_axis(0, -1.0)
+    shifter.set_axis(1, 1.0)
+    assert drive.poll().hand_wheel_rad == pytest.approx(0.0)
+
+
+def test_hat_is_read(drive: Drive) -> None:
+    drive.plugged._devices[0x044F, 0xB65E].set_hat(0, 1, -1)
+    sample = drive.source.poll(9)
+    assert (sample.hat_x, sample.hat_y) == (1.0, -1.0)
+
+
+def test_unplugging_at_full_throttle_never_gives_half_throttle(drive: Drive) -> None:
+    """D01: SDL centres all axes first and then tells; half of a pedal's travel must never come through."""
+    before = drive.do(Intent(hand_wheel_rad=-0.8, throttle=1.0, gear=3), ticks=5)
+    assert before.throttle == 1.0
+    drive.plugged.unplug("wheel")
+    for _ in range(50):
+        driver = drive.poll()
+        assert driver.throttle == driver.brake == driver.clutch == 0.0
+        assert (driver.throttle_validity, driver.wheel_validity) == (LOST, LOST)
+        assert driver.hand_wheel_rad == before.hand_wheel_rad
+        assert (driver.gear, driver.shifter_validity) == (3.0, LIVE)
+    sample = drive.source.poll(99)
+    assert (sample.wheel_age_ticks, sample.pedals_age_ticks, sample.shifter_age_ticks) == (NEVER_TICKS, NEVER_TICKS, 0)
+    assert sample.throttle_axis == pytest.approx(-1.0)
+
+
+def test_unplugging_the_shifter_leaves_wheel_and_pedals(drive: Drive) -> None:
+    drive.do(Intent(throttle=0.5, gear=2))
+    drive.plugged.unplug("shifter")
+    driver = drive.do(Intent(throttle=0.7, gear=4))
+    assert driver.throttle == pytest.approx(0.7, abs=1e-4)
+    assert (driver.gear, driver.shifter_validity) == (2.0, LOST)
+
+
+def test_device_that_comes_back_pressed_must_be_released_first(drive: Drive) -> None:
+    """D04: same device by identity, nothing commanded before the pedals were seen at rest."""
+    drive.do(Intent(throttle=0.9))
+    drive.plugged.unplug("pedals")
+    drive.poll(3)
+    drive.plugged.plug("pedals")
+    drive.plugged.write(uncalibrate(Intent(throttle=0.9, brake=0.5), drive.seat.settings))
+    drivers = [drive.poll() for _ in range(10)]
+    assert {driver.throttle for driver in drivers} == {0.0}
+    assert (drivers[-1].throttle_validity, drivers[-1].wheel_validity) == (UNKNOWN, LIVE)
+    drive.do()
+    assert drive.do(Intent(throttle=0.9)).throttle == pytest.approx(0.9, abs=1e-4)
+
+
+def test_unplugged_and_back_between_two_polls_is_lost_once(drive: Drive) -> None:
+    drive.do(Intent(brake=0.6))
+    drive.plugged.unplug("wheel")
+    drive.plugged.plug("wheel")
+    assert drive.poll().brake_validity == LOST
+    assert drive.poll(2).brake_validity == LIVE
+
+
+def test_unplugging_is_seen_when_someone_else_emptied_the_queue(drive: Drive) -> None:
+    drive.do(Intent(throttle=1.0))
+    drive.plugged.unplug("wheel")
+    sdl_runtime.acquire().event.get()
+    sdl_runtime.release()
+    driver = drive.poll()
+    assert (driver.throttle, driver.throttle_validity) == (0.0, LOST)
+
+
+def test_another_joystick_that_comes_and_goes_changes_nothing(drive: Drive, plug: Plug) -> None:
+    drive.do(Intent(throttle=0.5, gear=2))
+    pad = plug(VirtualSpec("Pad", 0x045E, 0x028E, 6, 11, 1))
+    pad.set_axis(0, 1.0)
+    driver = drive.poll(3)
+    pad.close()
+    assert driver == drive.poll(3)._replace(neutral_ticks=driver.neutral_ticks)
+    assert driver.throttle_validity == LIVE
+
+
+def test_twin_of_a_bound_device_is_not_listened_to(drive: Drive, plug: Plug) -> None:
+    twin = plug(drive.plugged.spec("wheel"))
+    twin.set_axis(2, -1.0)
+    assert drive.do(Intent(throttle=0.3), ticks=3).throttle == pytest.approx(0.3, abs=1e-4)
+
+
+def test_burst_of_events_ends_at_the_newest_value(drive: Drive) -> None:
+    """D10: 10^4 moves and 5,000 presses between two polls."""
+    wheel = drive.plugged._devices[0x044F, 0xB65E]
+    for step in range(5000):
+        wheel.set_axis(0, step / 5000.0)
+        wheel.set_button(12, step % 2 == 0)
+        wheel._sdl.SDL_JoystickUpdate()
+        wheel.set_axis(0, -step / 5000.0)
+    assert drive.poll().hand_wheel_rad == pytest.approx(9.4248 * 4999 / 5000, rel=1e-3)
+
+
+def test_press_shorter_than_a_tick_is_not_lost(drive: Drive) -> None:
+    wheel = drive.plugged._devices[0x044F, 0xB65E]
+    wheel.set_button(4, True)
+    wheel._sdl.SDL_JoystickUpdate()
+    wheel.set_button(4, False)
+    assert drive.poll().edges == float(Button.AUTONOMOUS)
+    assert drive.poll().pressed == 0.0
+
+
+def test_missing_device_is_named_with_what_is_there(sdl: None, plug: Plug, t500: CockpitProfile) -> None:
+    with pytest.raises(DeviceNotFound, match=r"role wheel: value 044f:b65e .* not connected: connected are no devices"):
+        SdlSource(t500)
+    plug(VirtualSpec("Thrustmaster TRS Racing wheel", 0x044F, 0xB65E, 4, 13, 1, (0.0, 1.0, 1.0, 1.0)))
+    with pytest.raises(DeviceNotFound, match=r"role shifter: value 044f:b660 .* connected are 044f:b65e Thrustmaster"):
+        SdlSource(t500)
+
+
+def test_wheel_in_boot_mode_is_explained(plug: Plug, t500: CockpitProfile) -> None:
+    plug(VirtualSpec("Thrustmaster FFB Wheel", 0x044F, 0xB65D, 2, 13, 1))
+    with pytest.raises(DeviceModeError, match=r"value 044f:b65d \(boot mode\): 044f:b65e; load a driver"):
+        SdlSource(t500)
+
+
+def test_device_with_too_few_axes_is_refused(plug: Plug, t500: CockpitProfile) -> None:
+    plug(VirtualSpec("Thrustmaster TRS Racing wheel", 0x044F, 0xB65E, 2, 13, 1))
+    with pytest.raises(DeviceModeError, match="axes and buttons: value 2 and 13: at least 4 and 13"):
+        SdlSource(t500)
+
+
+def test_pedals_calibrated_the_wrong_way_round_are_refused(plug: Plug, t500: CockpitProfile) -> None:
+    """D09."""
+    plug(VirtualSpec("Wheel", 0x044F, 0xB65E, 4, 13, 1, (0.0, -1.0, -1.0, -1.0)))
+    plug(VirtualSpec("Shifter", 0x044F, 0xB660, 2, 10))
+    with pytest.raises(DeviceError, match="look swapped"):
+        SdlSource(t500)
+
+
+def test_cockpit_without_devices_is_refused(sdl: None, t500: CockpitProfile) -> None:
+    keyless = CockpitProfile(
+        schema=1, title="Nothing", wheel=t500.wheel, pedals=t500.pedals, shifter=t500.shifter, roles=[]
+    )
+    with pytest.raises(DeviceError, match="Nothing: roles: value empty"):
+        SdlSource(keyless)
+    with pytest.raises(DeviceError, match="Nothing: roles: value empty"):
+        VirtualCockpit(keyless)
+
+
+def test_failed_opening_leaves_sdl_closed(sdl: None, t500: CockpitProfile) -> None:
+    import pygame
+
+    with pytest.raises(DeviceNotFound):
+        SdlSource(t500)
+    assert not pygame.joystick.get_init()
+    assert not pygame.display.get_init()

@@ -1,0 +1,136 @@
+"""What every source promises, and how they are found."""
+
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from simconsole.devices.calibration import CockpitSettings, settings
+from simconsole.devices.record import TraceWriter
+from simconsole.devices.source import DeviceSource, open_source
+from simconsole.devices.trace import TraceHeader
+from simconsole.devices.uncalibrate import Intent, uncalibrate
+from simconsole.devices.validity import LIVE, axis_good, mask_good
+from simconsole.errors import DeviceNotFound, ProfileError
+from simconsole.keys import Key
+from simconsole.profile_files import load
+from simconsole.profiles.device import CockpitProfile
+
+from .people import Seat
+
+HZ = 250
+SCRIPT = "points:\n- {time_s: 0, throttle: 0}\n- {time_s: 0.4, throttle: 0}\n- {time_s: 0.5, throttle: 0.8, gear: 1}\n"
+
+
+class Opened:
+    """A source that sits at rest for 0.4 s and then presses the throttle and shifts to first."""
+
+    def __init__(self, source: DeviceSource, profile: CockpitProfile, before: Callable[[int], None]) -> None:
+        self.source = source
+        self.settings = settings(profile, HZ)
+        self.before = before
+
+
+def _trace(path: Path, cockpit: CockpitSettings) -> str:
+    with TraceWriter(path, TraceHeader(HZ, "t500rs_th8rs")) as writer:
+        for tick in range(1, 301):
+            pressed = Intent(throttle=0.8, gear=1) if tick > 100 else Intent()
+            writer.write(tick, uncalibrate(pressed, cockpit))
+    return f"trace:{path}"
+
+
+@pytest.fixture(params=["sdl", "trace", "script", "keyboard"])
+def opened(
+    request: pytest.FixtureRequest, tmp_path: Path, t500: CockpitProfile, t500_settings: CockpitSettings
+) -> Opened:
+    def nothing(tick: int) -> None:
+        return
+
+    if request.param == "sdl":
+        plugged = request.getfixturevalue("plugged_once")
+
+        def work(tick: int) -> None:
+            pressed = Intent(throttle=0.8, gear=1) if tick > 100 else Intent()
+            plugged.write(uncalibrate(pressed, t500_settings))
+
+        return Opened(open_source("sdl", t500, tick_hz=HZ), t500, work)
+    if request.param == "trace":
+        return Opened(open_source(_trace(tmp_path / "t.csv", t500_settings), t500, tick_hz=HZ), t500, nothing)
+    if request.param == "script":
+        path = tmp_path / "script.yaml"
+        path.write_text(SCRIPT)
+        return Opened(open_source(f"script:{path}", t500, tick_hz=HZ), t500, nothing)
+    keyboard = load("devices", "keyboard", CockpitProfile)
+    held = [Key(0)]
+
+    def press(tick: int) -> None:
+        held[0] = Key.THROTTLE | Key.GEAR_UP if tick > 100 else Key(0)
+
+    return Opened(open_source("keyboard", keyboard, tick_hz=HZ, keys=lambda: (int(held[0]), 0)), keyboard, press)
+
+
+@pytest.fixture
+def plugged_once(sdl: None, t500: CockpitProfile) -> object:
+    from simconsole.devices.virtual_cockpit import VirtualCockpit
+
+    cockpit = VirtualCockpit(t500)
+    yield cockpit
+    cockpit.close()
+
+
+class TestEverySource:
+    """The contract."""
+
+    def test_samples_are_raw_fresh_and_drive_the_person(self, opened: Opened) -> None:
+        seat = Seat(opened.settings)
+        for tick in range(1, 250):
+            opened.before(tick)
+            sample = opened.source.poll(tick)
+            assert all(axis_good(raw) for raw in sample[:5])
+            assert all(mask_good(mask) for mask in sample[5:7])
+            assert sample[9:] == (0.0, 0.0, 0.0)
+            driver = seat.feel(sample)
+            if tick <= 100:
+                assert (driver.throttle, driver.gear) == (0.0, 0.0)
+        assert driver.throttle > 0.7
+        assert driver.gear == 1.0
+        assert {driver.throttle_validity, driver.wheel_validity, driver.shifter_validity} == {LIVE}
+        opened.source.close()
+
+    def test_closing_twice_is_harmless(self, opened: Opened) -> None:
+        opened.source.close()
+        opened.source.close()
+
+
+@pytest.mark.parametrize("driver", ["", "wheel", "sdl:x", "trace:", "script:", "keyboard:a", "TRACE:x"])
+def test_unknown_driver_is_refused(driver: str, t500: CockpitProfile) -> None:
+    with pytest.raises(ProfileError, match="sdl, trace:FILE, script:FILE or keyboard"):
+        open_source(driver, t500, tick_hz=HZ)
+
+
+def test_keyboard_needs_its_keys(t500: CockpitProfile) -> None:
+    with pytest.raises(ProfileError, match="a drive with a window"):
+        open_source("keyboard", t500, tick_hz=HZ)
+
+
+def test_real_devices_that_are_not_there_are_named(sdl: None, t500: CockpitProfile) -> None:
+    with pytest.raises(DeviceNotFound, match="044f:b65e"):
+        open_source("sdl", t500, tick_hz=HZ)
+
+
+def test_a_script_loads_no_pygame(tmp_path: Path) -> None:
+    path = tmp_path / "script.yaml"
+    path.write_text(SCRIPT)
+    program = (
+        "import sys\n"
+        "from simconsole.devices.source import open_source\n"
+        "from simconsole.profile_files import load\n"
+        "from simconsole.profiles.device import CockpitProfile\n"
+        f"open_source('script:{path}', load('devices', 't500rs_th8rs', CockpitProfile), tick_hz=250).poll(1)\n"
+        "print(sorted({'pygame', 'numba'} & set(sys.modules)))\n"
+    )
+    root = Path(__file__).parents[2]
+    done = subprocess.run([sys.executable, "-c", program], cwd=root, capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"

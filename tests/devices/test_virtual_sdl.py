@@ -1,0 +1,67 @@
+"""Virtual devices as pygame sees them."""
+
+from collections.abc import Callable
+
+import pytest
+
+from simconsole.devices import sdl_runtime
+from simconsole.devices.sdl import found
+from simconsole.devices.virtual_cockpit import VirtualCockpit
+from simconsole.devices.virtual_sdl import VirtualDevice, VirtualSpec, specs
+from simconsole.errors import DeviceError
+from simconsole.profiles.device import CockpitProfile
+
+Plug = Callable[[VirtualSpec], VirtualDevice]
+PAD = VirtualSpec("Pad", 0x1234, 0x5678, 2, 3, 1)
+
+
+def test_pygame_sees_the_real_ids_names_and_counts(plugged: VirtualCockpit) -> None:
+    pygame = sdl_runtime.acquire()
+    pygame.event.get()
+    seen = {entry[:3] + entry[4:] for entry, _ in found(pygame)}
+    sdl_runtime.release()
+    assert seen == {
+        (0x044F, 0xB65E, "Thrustmaster TRS Racing wheel", 4, 13, 1),
+        (0x044F, 0xB660, "Thustmaster T500 RS Gear Shift", 2, 10, 0),
+    }
+
+
+def test_one_device_per_identity_with_pedals_at_rest(t500: CockpitProfile) -> None:
+    wheel, shifter = specs(t500)
+    assert wheel.rest == (0.0, 1.0, 1.0, 1.0)
+    assert (wheel.is_wheel, shifter.is_wheel) == (True, False)
+
+
+def test_unplugged_device_can_be_moved_no_more(plug: Plug) -> None:
+    pad = plug(PAD)
+    pad.detach()
+    pad.detach()
+    with pytest.raises(DeviceError, match="unplugged"):
+        pad.set_axis(0, 0.5)
+
+
+@pytest.mark.parametrize("move", [lambda pad: pad.set_axis(2, 0.0), lambda pad: pad.set_button(3, True)])
+def test_part_that_is_not_there_is_refused(move: Callable[[VirtualDevice], None], plug: Plug) -> None:
+    with pytest.raises(DeviceError, match="Pad"):
+        move(plug(PAD))
+
+
+def test_sdl_stops_with_its_last_user(sdl: None) -> None:
+    pygame = sdl_runtime.acquire()
+    pad = VirtualDevice(PAD)
+    sdl_runtime.release()
+    assert pygame.joystick.get_init()
+    pad.close()
+    assert not pygame.joystick.get_init()
+    sdl_runtime.release()
+    assert not pygame.display.get_init()
+
+
+def test_display_of_someone_else_is_left_alone(sdl: None) -> None:
+    pygame = sdl_runtime.acquire()
+    sdl_runtime.release()
+    pygame.display.init()
+    sdl_runtime.acquire()
+    sdl_runtime.release()
+    assert pygame.display.get_init()
+    pygame.display.quit()
