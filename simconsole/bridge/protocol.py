@@ -279,7 +279,7 @@ class Router:
                 session.deliver(outlet, head + topic.latched, now_ns)
         else:
             self._topic(name, operation.type)
-        if len(outlet.wishes) >= self._limits.subscriptions:
+        if operation.id not in outlet.wishes and len(outlet.wishes) >= self._limits.subscriptions:
             raise RemoteProtocolError(f"{self._limits.subscriptions} subscriptions are the most allowed")
         outlet.wish(operation.id, operation.throttle_rate, min(operation.queue_length, self._limits.queue_length))
 

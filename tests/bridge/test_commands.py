@@ -1,0 +1,203 @@
+import math
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from simconsole.bridge.console import ConsoleBridge
+from simconsole.profiles.bridge import BridgeProfile, CommandLimits
+from simconsole.signals import Event, RemoteCommand, RemoteKind
+
+CONTROL = "/control/command/control_cmd"
+
+
+def command(peer: Any) -> RemoteCommand:
+    return peer.bridge.inputs.command  # type: ignore[no-any-return]  # peers are fixtures
+
+
+def test_autoware_control_is_an_acceleration(peer: Any) -> None:
+    msg = {
+        "stamp": {"sec": 1, "nanosec": 5},
+        "lateral": {"steering_tire_angle": 0.25, "steering_tire_rotation_rate": -0.5},
+        "longitudinal": {"velocity": 8.0, "acceleration": -1.5, "jerk": 2.0, "is_defined_acceleration": True},
+    }
+    assert peer.publish(CONTROL, msg).kind == "command"
+    got = command(peer)
+    assert got.kind == RemoteKind.ACCELERATION
+    assert (got.road_wheel_rad, got.road_wheel_radps, got.speed_mps, got.accel_mps2) == (0.25, -0.5, 8.0, -1.5)
+    assert (got.sequence, got.direction, peer.bridge.inputs.stamp_ns) == (1.0, 1.0, 1_000_000_005)
+
+
+def test_ackermann_is_a_speed_and_its_sign_a_direction(peer: Any) -> None:
+    drive = {"steering_angle": -0.1, "steering_angle_velocity": 0.2, "speed": -2.0, "acceleration": 1.0}
+    assert peer.publish("/ackermann_cmd", {"drive": drive}).kind == "command"
+    got = command(peer)
+    assert got.kind == RemoteKind.SPEED
+    assert (got.road_wheel_rad, got.road_wheel_radps, got.speed_mps, got.accel_mps2) == (-0.1, 0.2, -2.0, 1.0)
+    assert got.direction == -1.0
+    peer.publish("/ackermann_cmd", {"drive": {**drive, "speed": 0}})
+    assert command(peer).direction == -1.0
+
+
+def test_twist_and_its_stamped_form(peer: Any) -> None:
+    twist = {"linear": {"x": 3.0, "y": 0.0, "z": 0.0}, "angular": {"x": 0.0, "y": 0.0, "z": 0.4}}
+    assert peer.publish("/cmd_vel", twist).kind == "command"
+    got = command(peer)
+    assert (got.kind, got.speed_mps, got.yaw_rate_radps) == (RemoteKind.TWIST, 3.0, 0.4)
+    assert peer.bridge.inputs.stamp_ns is None
+    assert peer.publish("/cmd_vel_stamped", {"header": {"stamp": {"sec": 2}}, "twist": twist}).kind == "command"
+    assert peer.bridge.inputs.stamp_ns == 2_000_000_000
+
+
+def test_ball_takes_pose_and_speed(peer: Any) -> None:
+    half = math.sqrt(0.5)
+    pose = {"position": {"x": 1.0, "y": -2.0}, "orientation": {"z": half, "w": half}}
+    assert peer.publish("/ball/desired_speed", {"data": 1.5}).kind == "command"
+    assert command(peer).sequence == 0.0
+    assert peer.publish("/ball/desired_pose", {"pose": pose}).kind == "command"
+    got = command(peer)
+    assert (got.kind, got.x_m, got.y_m, got.speed_mps, got.sequence) == (RemoteKind.POSE, 1.0, -2.0, 1.5, 1.0)
+    assert got.yaw_rad == pytest.approx(math.pi / 2)
+    peer.publish("/ball/desired_speed", {"data": 0.5})
+    assert (command(peer).speed_mps, command(peer).x_m, command(peer).sequence) == (0.5, 1.0, 2.0)
+    bad = {"pose": {**pose, "orientation": {"w": 0.0}}}
+    assert "unit quaternion" in peer.publish("/ball/desired_pose", bad).text
+
+
+@pytest.mark.parametrize(
+    ("gear", "direction"), [(1, 0.0), (2, 1.0), (19, 1.0), (20, -1.0), (21, -1.0), (22, 0.0), (24, 1)]
+)
+def test_gear_sets_the_direction_and_is_no_sign_of_life(peer: Any, gear: int, direction: float) -> None:
+    assert peer.publish("/control/command/gear_cmd", {"command": gear}).kind == "command"
+    assert (command(peer).direction, command(peer).sequence) == (direction, 0.0)
+
+
+def test_no_gear_is_refused(peer: Any) -> None:
+    for gear in (0, 25, 255):
+        assert "is no gear" in peer.publish("/control/command/gear_cmd", {"command": gear}).text
+
+
+@pytest.mark.parametrize(
+    ("word", "event"),
+    [
+        ("autonomous", Event.REQUEST_AUTONOMOUS),
+        ("manual", Event.REQUEST_MANUAL),
+        ("takeover", Event.REQUEST_TAKEOVER),
+        ("estop", Event.EMERGENCY_STOP),
+        ("reset", Event.RESET),
+    ],
+)
+def test_requests_are_events(peer: Any, word: str, event: Event) -> None:
+    assert peer.publish("/console/request", {"data": word}).kind == "command"
+    assert peer.bridge.inputs.take(1)[1].events == event
+
+
+def test_unknown_request_is_refused(peer: Any) -> None:
+    assert "not one of autonomous, manual" in peer.publish("/console/request", {"data": "ESTOP"}).text
+
+
+@pytest.mark.parametrize(
+    ("topic", "msg", "path"),
+    [
+        (CONTROL, {}, "$.lateral.steering_tire_angle"),
+        (CONTROL, {"lateral": {"steering_tire_angle": 0.1}}, "$.longitudinal.acceleration"),
+        (CONTROL, {"lateral": {}, "longitudinal": {"acceleration": 1}}, "$.lateral.steering_tire_angle"),
+        ("/ackermann_cmd", {"drive": {"speed": 1.0}}, "$.drive.steering_angle"),
+        ("/cmd_vel", {"linear": {"x": 1.0}}, "$.angular.z"),
+        ("/cmd_vel_stamped", {"twist": {"angular": {"z": 1.0}}}, "$.twist.linear.x"),
+        ("/ball/desired_pose", {"pose": {"position": {"x": 1.0}}}, "$.pose.position.y"),
+        ("/ball/desired_speed", {}, "$.data"),
+        ("/control/command/gear_cmd", {}, "$.command"),
+    ],
+)
+def test_command_is_never_zero_by_omission(peer: Any, topic: str, msg: dict[str, Any], path: str) -> None:
+    outcome = peer.publish(topic, msg)
+    assert outcome.kind == "refused"
+    assert f"required in a command - at `{path}`" in outcome.text
+    assert command(peer) == command(peer)._replace(sequence=0.0, refused=1.0)
+
+
+@pytest.mark.parametrize(
+    ("topic", "msg", "path"),
+    [
+        (
+            CONTROL,
+            {"lateral": {"steering_tire_angle": 1.21}, "longitudinal": {"acceleration": 0}},
+            "steering_tire_angle",
+        ),
+        (
+            CONTROL,
+            {"lateral": {"steering_tire_angle": 57.0}, "longitudinal": {"acceleration": 0}},
+            "steering_tire_angle",
+        ),
+        (CONTROL, {"lateral": {"steering_tire_angle": 0}, "longitudinal": {"acceleration": -12.1}}, "acceleration"),
+        (
+            CONTROL,
+            {
+                "lateral": {"steering_tire_angle": 0, "steering_tire_rotation_rate": 21},
+                "longitudinal": {"acceleration": 0},
+            },
+            "steering_tire_rotation_rate",
+        ),
+        ("/ackermann_cmd", {"drive": {"steering_angle": 0, "speed": 1e308}}, "drive.speed"),
+        ("/cmd_vel", {"linear": {"x": 0}, "angular": {"z": -10.5}}, "angular.z"),
+        ("/ball/desired_pose", {"pose": {"position": {"x": 0, "y": 1e6}}}, "pose.position.y"),
+        ("/ball/desired_speed", {"data": 81}, "data"),
+    ],
+)
+def test_value_beyond_its_limit_refuses_the_whole_command(
+    peer: Any, topic: str, msg: dict[str, Any], path: str
+) -> None:
+    outcome = peer.publish(topic, msg)
+    assert outcome.kind == "refused"
+    assert "is not within" in outcome.text
+    assert path in outcome.text
+    assert (command(peer).sequence, command(peer).refused) == (0.0, 1.0)
+
+
+def test_limits_come_from_the_profile(join: Callable[..., Any], control: Callable[..., Any]) -> None:
+    peer = join(ConsoleBridge(BridgeProfile(commands=CommandLimits(accel_mps2=2.0))))
+    assert peer.publish(CONTROL, control(accel_mps2=2.0)).kind == "command"
+    assert peer.publish(CONTROL, control(accel_mps2=2.1)).kind == "refused"
+
+
+def test_stamps_must_grow(peer: Any, control: Callable[..., Any]) -> None:
+    kinds = [peer.publish(CONTROL, control(stamp_ns=stamp)).kind for stamp in (20, 10, 20, 21, 0, 21, 22)]
+    assert kinds == ["command", "refused", "refused", "command", "command", "refused", "command"]
+    assert "not newer" in peer.publish(CONTROL, control(stamp_ns=22)).text
+
+
+def test_stamp_of_a_refused_command_does_not_count(peer: Any, control: Callable[..., Any]) -> None:
+    peer.publish(CONTROL, control(road_wheel_rad=2.0, stamp_ns=100))
+    assert peer.publish(CONTROL, control(stamp_ns=50)).kind == "command"
+
+
+def test_next_commander_may_have_an_earlier_clock(
+    bridge: ConsoleBridge, join: Callable[..., Any], control: Callable[..., Any]
+) -> None:
+    first, second = join(bridge), join(bridge)
+    first.publish(CONTROL, control(stamp_ns=10**12))
+    second.now_ns = 10**9
+    assert second.publish(CONTROL, control(stamp_ns=10**9)).kind == "command"
+
+
+def test_own_clock_of_the_sender_is_not_compared_with_ours(peer: Any, control: Callable[..., Any]) -> None:
+    assert peer.publish(CONTROL, control(stamp_ns=1_700_000_000 * 10**9)).kind == "command"
+
+
+def test_sender_on_our_clock_is_held_to_it(
+    join: Callable[..., Any], control: Callable[..., Any], snapshot: Callable[..., Any]
+) -> None:
+    bridge = ConsoleBridge(BridgeProfile(sender_clock="console"))
+    peer = join(bridge)
+    bridge.publish(snapshot(250), 0)  # 1 s
+    second = 10**9
+    assert "from the future" in peer.publish(CONTROL, control(stamp_ns=second + 50_000_001)).text
+    assert "older than 200 ms" in peer.publish(CONTROL, control(stamp_ns=second - 200_000_001)).text
+    assert peer.publish(CONTROL, control(stamp_ns=second - 200_000_000)).kind == "command"
+    assert peer.publish(CONTROL, control(stamp_ns=second + 50_000_000)).kind == "command"
+
+
+def test_both_spellings_of_a_stamp(peer: Any, control: Callable[..., Any]) -> None:
+    assert peer.publish(CONTROL, {**control(), "stamp": {"secs": 1, "nsecs": 2}}).kind == "command"
+    assert peer.bridge.inputs.stamp_ns == 1_000_000_002

@@ -1,0 +1,164 @@
+import math
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from simconsole.bridge.topics import ONCE, is_due, quaternion
+from simconsole.signals import NEVER_TICKS, Mode, Reason
+
+TYPES = {
+    "/clock": "rosgraph_msgs/Clock",
+    "/tf": "tf2_msgs/TFMessage",
+    "/odom": "nav_msgs/Odometry",
+    "/ground_truth/odom": "nav_msgs/Odometry",
+    "/console/joy": "sensor_msgs/Joy",
+    "/console/arbitration": "simconsole_msgs/Arbitration",
+    "/vehicle/status/velocity_status": "autoware_vehicle_msgs/VelocityReport",
+    "/vehicle/status/steering_status": "autoware_vehicle_msgs/SteeringReport",
+    "/vehicle/status/gear_status": "autoware_vehicle_msgs/GearReport",
+    "/vehicle/status/control_mode": "autoware_vehicle_msgs/ControlModeReport",
+}
+
+
+@pytest.fixture
+def publish(peer: Any, snapshot: Callable[..., Any]) -> Callable[..., dict[str, Any]]:
+    """All messages of one snapshot (at 1.5 s, when everything is due), by topic."""
+    for topic, kind in TYPES.items():
+        assert peer.send(op="subscribe", topic=topic, type=kind).kind == "done"
+
+    def make(tick: int = 375, **fields: float) -> dict[str, Any]:
+        peer.bridge.publish(snapshot(tick - 250), 0)
+        peer.heard()
+        peer.bridge.publish(snapshot(tick, **fields), 0)
+        return {message["topic"]: message["msg"] for message in peer.heard()}
+
+    return make
+
+
+def test_every_topic_of_the_table_is_published_and_stamped(publish: Callable[..., dict[str, Any]]) -> None:
+    messages = publish()
+    assert set(messages) == set(TYPES)
+    stamp = {"sec": 1, "nanosec": 500_000_000}
+    assert messages["/clock"]["clock"] == stamp
+    for topic in ("/odom", "/console/joy", "/console/arbitration", "/vehicle/status/velocity_status"):
+        assert messages[topic]["header"]["stamp"] == stamp
+    for topic in ("steering_status", "gear_status", "control_mode"):
+        assert messages[f"/vehicle/status/{topic}"]["stamp"] == stamp
+
+
+def test_odometry_comes_last(publish: Callable[..., dict[str, Any]]) -> None:
+    assert list(publish())[-1] == "/odom"
+
+
+def test_odometry_says_pose_in_the_world_and_twist_in_the_vehicle(publish: Callable[..., dict[str, Any]]) -> None:
+    messages = publish(x_m=1.0, y_m=2.0, z_m=3.0, yaw_rad=math.pi / 2, vx_mps=4.0, vy_mps=0.5, yaw_rate_radps=0.25)
+    odometry = messages["/odom"]
+    assert (odometry["header"]["frame_id"], odometry["child_frame_id"]) == ("odom", "base_link")
+    assert odometry["pose"]["pose"]["position"] == {"x": 1.0, "y": 2.0, "z": 3.0}
+    orientation = odometry["pose"]["pose"]["orientation"]
+    assert orientation == pytest.approx({"x": 0.0, "y": 0.0, "z": math.sqrt(0.5), "w": math.sqrt(0.5)})
+    assert odometry["twist"]["twist"]["linear"] == {"x": 4.0, "y": 0.5, "z": 0.0}
+    assert odometry["twist"]["twist"]["angular"] == {"x": 0.0, "y": 0.0, "z": 0.25}
+    assert messages["/ground_truth/odom"]["header"]["frame_id"] == "map"
+    (transform,) = messages["/tf"]["transforms"]
+    assert (transform["header"]["frame_id"], transform["child_frame_id"]) == ("odom", "base_link")
+    assert transform["transform"] == {"translation": {"x": 1.0, "y": 2.0, "z": 3.0}, "rotation": orientation}
+
+
+def test_map_and_odom_coincide_for_whoever_comes_late(peer: Any, snapshot: Callable[..., Any]) -> None:
+    peer.bridge.publish(snapshot(1), 0)
+    peer.bridge.publish(snapshot(2), 0)
+    peer.send(op="subscribe", topic="/tf_static", type="tf2_msgs/TFMessage")
+    (message,) = peer.heard()
+    (transform,) = message["msg"]["transforms"]
+    assert (transform["header"]["frame_id"], transform["child_frame_id"]) == ("map", "odom")
+    assert transform["transform"]["rotation"]["w"] == 1.0
+
+
+def test_joy_is_the_cockpit_as_read(publish: Callable[..., dict[str, Any]]) -> None:
+    joy = publish(wheel_axis=-0.5, throttle_axis=0.25, hat_x=1.0, hat_y=-1.0, wheel_buttons=5.0, shifter_buttons=128.0)[
+        "/console/joy"
+    ]
+    assert joy["axes"] == [-0.5, 0.25, 0.0, 0.0, 0.0, 1.0, -1.0]
+    assert [index for index, pressed in enumerate(joy["buttons"]) if pressed] == [0, 2, 13 + 7]
+    assert len(joy["buttons"]) == 23
+
+
+@pytest.mark.parametrize(("gear", "report"), [(3.0, 2), (0.0, 1), (-1.0, 20)])
+def test_status_reports(publish: Callable[..., dict[str, Any]], gear: float, report: int) -> None:
+    messages = publish(vx_mps=4.0, vy_mps=0.5, yaw_rate_radps=0.25, gear=gear)
+    velocity = messages["/vehicle/status/velocity_status"]
+    assert (velocity["longitudinal_velocity"], velocity["lateral_velocity"], velocity["heading_rate"]) == (4, 0.5, 0.25)
+    assert messages["/vehicle/status/gear_status"]["report"] == report
+
+
+@pytest.mark.parametrize(
+    ("mode", "lateral", "longitudinal", "report"),
+    [
+        (Mode.PARKED, 0.0, 0.0, 6),
+        (Mode.MANUAL, 0.0, 0.0, 4),
+        (Mode.AUTONOMOUS, 1.0, 1.0, 1),
+        (Mode.TAKEOVER_REQUESTED, 1.0, 1.0, 1),
+        (Mode.SHARED, 0.5, 0.5, 1),
+        (Mode.SHARED, 0.5, 0.0, 2),
+        (Mode.SHARED, 0.0, 0.5, 3),
+        (Mode.SHARED, 0.0, 0.0, 4),
+        (Mode.MINIMAL_RISK, 0.0, 0.0, 5),
+        (Mode.STOPPED, 0.0, 0.0, 5),
+        (Mode.EMERGENCY_STOP, 0.0, 0.0, 5),
+    ],
+)
+def test_control_mode(
+    publish: Callable[..., dict[str, Any]], mode: Mode, lateral: float, longitudinal: float, report: int
+) -> None:
+    messages = publish(mode=float(mode), remote_lateral=lateral, remote_longitudinal=longitudinal)
+    assert messages["/vehicle/status/control_mode"]["mode"] == report
+
+
+def test_arbitration_is_told_in_numbers_and_words(publish: Callable[..., dict[str, Any]]) -> None:
+    told = publish(
+        mode=float(Mode.AUTONOMOUS), reason=float(Reason.PERSON_ASKED), remote_lateral=1.0, sequence=7.0, refused=2.0,
+        age_ticks=25.0, person_brake=0.5, takeover_stage=1.0,
+    )["/console/arbitration"]  # fmt: skip
+    assert (told["mode"], told["mode_words"], told["reason_words"]) == (3, "AUTONOMOUS", "driver asked")
+    assert (told["remote_lateral"], told["person_brake"], told["takeover_stage"]) == (1.0, 0.5, 1)
+    assert (told["commands_accepted"], told["commands_refused"], told["command_age"]) == (7, 2, 0.1)
+
+
+def test_command_that_never_came_has_no_age(publish: Callable[..., dict[str, Any]]) -> None:
+    assert publish(age_ticks=NEVER_TICKS)["/console/arbitration"]["command_age"] == -1.0
+
+
+def test_rate_is_met_without_drift_whatever_the_tick() -> None:
+    for tick_hz in (50, 100, 125, 250, 1000):
+        for rate_hz in (30.0, 50.0, 100.0):
+            last: int | None = None
+            count = 0
+            for tick in range(1, 10 * tick_hz + 1):
+                count += is_due(tick, last, tick_hz, rate_hz)
+                last = tick
+            assert count == 10 * min(rate_hz, tick_hz)
+
+
+def test_rate_has_its_phase_from_the_tick_alone() -> None:
+    assert [tick for tick in range(1, 26) if is_due(tick, tick - 1, 250, 50.0)] == [5, 10, 15, 20, 25]
+    assert not is_due(7, None, 250, 50.0)
+    assert is_due(10, None, 250, 50.0)
+    assert is_due(12, 7, 250, 50.0)
+    assert is_due(5, 900, 250, 50.0)
+
+
+def test_once_and_never() -> None:
+    assert is_due(7, None, 250, ONCE)
+    assert not is_due(8, 7, 250, ONCE)
+
+
+@pytest.mark.parametrize(("roll", "pitch", "yaw"), [(0.1, 0.2, 0.3), (0.0, 0.0, 3.0), (-0.3, 0.4, -2.0)])
+def test_quaternion_is_the_rotation(roll: float, pitch: float, yaw: float) -> None:
+    x, y, z, w = quaternion(roll, pitch, yaw)
+    assert x * x + y * y + z * z + w * w == pytest.approx(1.0)
+    # Third row and first column of the rotation matrix z-y-x.
+    assert 2 * (x * z - w * y) == pytest.approx(-math.sin(pitch))
+    assert math.atan2(2 * (y * z + w * x), 1 - 2 * (x * x + y * y)) == pytest.approx(roll)
+    assert math.atan2(2 * (x * y + w * z), 1 - 2 * (y * y + z * z)) == pytest.approx(yaw)
