@@ -1,0 +1,159 @@
+"""When the next tick is due: absolute deadlines for a person in the seat, none for a headless drive.
+
+A deadline is `start + tick * period`, never "now + period": a late tick does not make all later ones late. After a
+stall at most CATCH_UP_TICKS late ticks run at once; the rest never happen (a slip: simulated time falls behind the
+wall by that much, and is counted). dt never stretches.
+"""
+
+import sys
+import time
+from collections.abc import Callable
+from typing import Any, Final
+
+import numpy as np
+
+from simconsole.signals import Event
+from simconsole.units import NS_PER_S
+
+CATCH_UP_TICKS: Final = 5
+STALL_NS: Final = 100_000_000
+"""A longer stall is an event that the arbiter answers with a safe stop (DESIGN 2)."""
+
+_BINS_PER_DECADE: Final = 20
+_DECADES: Final = 7  # 100 ns to 1 s
+_FLOOR_NS: Final = 100.0
+
+
+class Histogram:
+    """Times in logarithmic bins: percentiles of any length of drive in constant memory, to 12 %."""
+
+    def __init__(self) -> None:
+        self._bins = [0] * (_BINS_PER_DECADE * _DECADES + 1)
+        self._edges = _FLOOR_NS * 10.0 ** (np.arange(len(self._bins)) / _BINS_PER_DECADE)
+        self.count = 0
+        self.max_ns = 0
+
+    def add(self, time_ns: int) -> None:
+        """Count one time, negative ones as zero."""
+        self._bins[min(int(np.searchsorted(self._edges, time_ns)), len(self._bins) - 1)] += 1
+        self.count += 1
+        self.max_ns = max(self.max_ns, time_ns)
+
+    def percentile_ns(self, percent: float) -> float:
+        """Return the upper edge of the bin that holds this percentile, at most the largest time; 0 without times."""
+        if not self.count:
+            return 0.0
+        passed = np.cumsum(self._bins)
+        index = int(np.searchsorted(passed, percent / 100.0 * self.count))
+        return min(float(self._edges[index]), float(self.max_ns))
+
+
+class Pacer:
+    """Deadlines of a drive in real time. The first `wait` starts the clock.
+
+    Attributes:
+        lateness: how late each tick began.
+        slipped_ticks: ticks that never happened because the loop stood still.
+        stalls: how often it stood still for more than 100 ms.
+    """
+
+    def __init__(
+        self,
+        tick_hz: int,
+        now_ns: Callable[[], int] = time.monotonic_ns,
+        sleep_s: Callable[[float], None] = time.sleep,
+    ) -> None:
+        self._tick_hz = tick_hz
+        self._now_ns = now_ns
+        self._sleep_s = sleep_s
+        self._start_ns: int | None = None
+        self._due = 0
+        self.lateness = Histogram()
+        self.slipped_ticks = 0
+        self.stalls = 0
+
+    def wait(self) -> int:
+        """Sleep until the next tick is due; return `Event.LOOP_STALL` if the loop stood still, else 0."""
+        now_ns = self._now_ns()
+        if self._start_ns is None:
+            self._start_ns = now_ns
+        deadline_ns = self._deadline_ns()
+        while now_ns < deadline_ns:
+            self._sleep_s((deadline_ns - now_ns) / NS_PER_S)
+            now_ns = self._now_ns()
+        late_ns = now_ns - deadline_ns
+        self.lateness.add(late_ns)
+        events = self._catch_up(late_ns)
+        self._due += 1
+        return events
+
+    def summary(self) -> dict[str, Any]:
+        """Return lateness percentiles in us and the counters, for manifest and table."""
+        found = {name: self.lateness.percentile_ns(p) / 1e3 for name, p in (("p50", 50.0), ("p99", 99.0))}
+        largest = self.lateness.max_ns / 1e3
+        return {
+            "lateness": f"p50 {found['p50']:.0f} us, p99 {found['p99']:.0f} us, max {largest:.0f} us",
+            "lateness_us": {**found, "max": largest},
+            "slipped_ticks": self.slipped_ticks,
+            "stalls": self.stalls,
+        }
+
+    def _deadline_ns(self) -> int:
+        assert self._start_ns is not None
+        return self._start_ns + self._due * NS_PER_S // self._tick_hz
+
+    def _catch_up(self, late_ns: int) -> int:
+        behind = late_ns * self._tick_hz // NS_PER_S
+        if behind > CATCH_UP_TICKS:
+            # The ticks given up become part of the start, so every later deadline stays exact.
+            slipped = behind - CATCH_UP_TICKS
+            self._due += slipped
+            self.slipped_ticks += slipped
+        if late_ns <= STALL_NS:
+            return 0
+        self.stalls += 1
+        return int(Event.LOOP_STALL)
+
+
+class UnpacedPacer:
+    """No deadlines: the next tick is always due."""
+
+    def wait(self) -> int:
+        """Return at once, without events."""
+        return 0
+
+    def summary(self) -> dict[str, Any]:
+        """Return the fact that nothing was paced."""
+        return {"lateness": "not paced"}
+
+
+def realtime_hints() -> list[str]:
+    """Ask the system for punctual ticks where it may be asked; return what could not be had, for the summary.
+
+    First in, first out scheduling (reset on fork, so that no station inherits it), locked memory, a timer slack of
+    1 ns and a garbage collector that leaves alone what was made before the drive. All of it is optional.
+    """
+    import gc
+
+    gc.collect()
+    gc.freeze()
+    if not sys.platform.startswith("linux"):
+        return ["real-time scheduling, locked memory and timer slack: only on Linux"]
+    return _linux_hints()
+
+
+def _linux_hints() -> list[str]:
+    import ctypes
+    import os
+
+    missing = []
+    libc = ctypes.CDLL(None, use_errno=True)
+    pr_set_timerslack, mcl_current_future = 29, 3
+    libc.prctl(pr_set_timerslack, 1, 0, 0, 0)
+    if libc.mlockall(mcl_current_future) != 0:
+        missing.append("locked memory: not permitted")
+    try:
+        os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(50))
+    except OSError as error:
+        missing.append(f"real-time scheduling: {error.strerror}")
+    return missing

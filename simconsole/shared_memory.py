@@ -1,0 +1,230 @@
+"""Shared memory between the core and its stations: mmap files in a run folder that only this user can read.
+
+One writer and any number of readers a file; nobody waits for anybody. A record carries its number before and after
+its content, written in that order and read in the opposite one: a reader that sees both equal has a whole record.
+Files live in /dev/shm where there is one. `multiprocessing.shared_memory` is not used: in Python 3.11 the exit of any
+reader unlinks the segment.
+"""
+
+import mmap
+import os
+import shutil
+import tempfile
+from pathlib import Path
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simconsole.errors import StationError
+from simconsole.kernels import Row
+from simconsole.signals import Event
+
+PREFIX: Final = "simconsole-"
+MAGIC: Final = 0x53494D52494E4701  # 'SIMRING', layout 1
+HEADER_WORDS: Final = 8  # magic, width, capacity, newest number, then spare
+RECORD_HEAD_WORDS: Final = 3  # number, stamp, second stamp; the number again behind the values
+READ_TRIES: Final = 8
+"""A reader gives up after so many records were overwritten under it; the next call succeeds."""
+
+
+class Record(NamedTuple):
+    """One record: its number from 1, two integer stamps and a copy of its values."""
+
+    number: int
+    stamp: int
+    second_stamp: int
+    values: Row
+
+
+class Ring:
+    """Fixed-size float64 records, the newest `capacity` of them. Made by the writer, opened by readers.
+
+    With capacity 4 it is a latest-wins slot: the writer never touches the record a reader is most likely reading.
+    """
+
+    def __init__(self, path: Path, width: int, capacity: int, writable: bool) -> None:
+        size = 8 * (HEADER_WORDS + capacity * (RECORD_HEAD_WORDS + width + 1))
+        flags = os.O_RDWR if writable else os.O_RDONLY
+        try:
+            descriptor = os.open(path, flags | getattr(os, "O_CLOEXEC", 0))
+        except OSError as error:
+            raise StationError(f"{path}: shared memory cannot be opened: {error.strerror}") from None
+        try:
+            access = mmap.ACCESS_WRITE if writable else mmap.ACCESS_READ
+            self._memory = mmap.mmap(descriptor, size, access=access)
+        except (OSError, ValueError) as error:
+            raise StationError(f"{path}: shared memory of {size} bytes cannot be mapped: {error}") from None
+        finally:
+            os.close(descriptor)
+        self._head: NDArray[np.int64] = np.frombuffer(self._memory, np.int64, HEADER_WORDS)
+        words = RECORD_HEAD_WORDS + width + 1
+        self._words = np.frombuffer(self._memory, np.int64, capacity * words, 8 * HEADER_WORDS).reshape(capacity, words)
+        self._values = self._words.view(np.float64)[:, RECORD_HEAD_WORDS : RECORD_HEAD_WORDS + width]
+        self.width, self.capacity = width, capacity
+
+    @classmethod
+    def create(cls, path: Path, width: int, capacity: int) -> "Ring":
+        """Make a ring's file (mode 0600) and return its writer.
+
+        Raises:
+            StationError: the file is there already or cannot be made.
+        """
+        size = 8 * (HEADER_WORDS + capacity * (RECORD_HEAD_WORDS + width + 1))
+        try:
+            descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o600)
+            os.ftruncate(descriptor, size)
+            os.close(descriptor)
+        except OSError as error:
+            raise StationError(f"{path}: shared memory cannot be made: {error.strerror}") from None
+        ring = cls(path, width, capacity, writable=True)
+        ring._head[1], ring._head[2], ring._head[3] = width, capacity, 0
+        ring._head[0] = MAGIC  # last: a reader that sees it sees a whole header
+        return ring
+
+    @classmethod
+    def open(cls, path: Path, *, writable: bool = False) -> "Ring":
+        """Open a ring that somebody else made.
+
+        Raises:
+            StationError: not there, or no ring of this layout.
+        """
+        try:
+            with path.open("rb") as file:
+                head = np.frombuffer(file.read(8 * HEADER_WORDS), np.int64)
+        except OSError as error:
+            raise StationError(f"{path}: shared memory cannot be opened: {error.strerror}") from None
+        if len(head) != HEADER_WORDS or head[0] != MAGIC:
+            raise StationError(f"{path}: not a ring of this version")
+        return cls(path, int(head[1]), int(head[2]), writable)
+
+    @property
+    def newest(self) -> int:
+        """Number of the newest record, 0 before the first."""
+        return int(self._head[3])
+
+    def write(self, values: Row, stamp: int = 0, second_stamp: int = 0) -> None:
+        """Publish a record. Only ever called by the one writer."""
+        number = int(self._head[3]) + 1
+        index = (number - 1) % self.capacity
+        words = self._words[index]
+        words[0] = number
+        words[1] = stamp
+        words[2] = second_stamp
+        self._values[index] = values
+        words[-1] = number
+        self._head[3] = number
+
+    def latest(self) -> Record | None:
+        """Return the newest record, None before the first or if the writer laps this reader again and again."""
+        for _ in range(READ_TRIES):
+            number = int(self._head[3])
+            if number == 0:
+                return None
+            record = self._read(number)
+            if record is not None:
+                return record
+        return None
+
+    def since(self, number: int) -> list[Record]:
+        """Return all records after `number` that are still there, oldest first."""
+        newest = int(self._head[3])
+        first = max(number + 1, newest - self.capacity + 2)  # the oldest may be overwritten while it is read
+        records = (self._read(index) for index in range(first, newest + 1))
+        return [record for record in records if record is not None]
+
+    def _read(self, number: int) -> Record | None:
+        index = (number - 1) % self.capacity
+        words = self._words[index]
+        if int(words[-1]) != number:
+            return None
+        stamp, second_stamp, values = int(words[1]), int(words[2]), self._values[index].copy()
+        if int(words[0]) != number:
+            return None
+        return Record(number, stamp, second_stamp, values)
+
+
+class EventCounters:
+    """Edges from one writer: a counter for each event, so none can be lost, however many come between two ticks.
+
+    A mask of what happened since the last look is all that a tick wants; an emergency stop is therefore latched where
+    it is written.
+    """
+
+    BITS: Final = 64
+
+    def __init__(self, ring: Ring) -> None:
+        self._counts: NDArray[np.int64] = ring._words[0, RECORD_HEAD_WORDS : RECORD_HEAD_WORDS + self.BITS]
+        self._ring = ring
+        self._seen: NDArray[np.int64] = self._counts.copy()
+
+    @classmethod
+    def create(cls, path: Path) -> "EventCounters":
+        """Make the file. Errors as `Ring.create`."""
+        return cls(Ring.create(path, cls.BITS, 1))
+
+    @classmethod
+    def open(cls, path: Path, *, writable: bool = False) -> "EventCounters":
+        """Open counters that somebody else made. Errors as `Ring.open`."""
+        return cls(Ring.open(path, writable=writable))
+
+    def raise_events(self, mask: int) -> None:
+        """Count each event of a mask of `Event`. Only ever called by the one writer."""
+        for event in Event:
+            if mask & event:
+                self._counts[event.value.bit_length() - 1] += 1
+
+    def take(self) -> int:
+        """Return the mask of events since the last call."""
+        counts = self._counts.copy()
+        moved = np.flatnonzero(counts != self._seen)
+        self._seen = counts
+        mask = 0
+        for bit in moved.tolist():
+            mask |= 1 << bit
+        return mask
+
+
+def make_run_folder() -> Path:
+    """Return a new folder of mode 0700 for this process's files; folders of dead owners are removed first.
+
+    Raises:
+        StationError: it cannot be made.
+    """
+    base = _base()
+    sweep(base)
+    try:
+        return Path(tempfile.mkdtemp(prefix=f"{PREFIX}{os.getpid()}-", dir=base))
+    except OSError as error:
+        raise StationError(f"{base}: no run folder can be made: {error.strerror}") from None
+
+
+def remove_run_folder(folder: Path) -> None:
+    """Remove a run folder; mappings that are still open stay valid until they are closed."""
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+def sweep(base: Path | None = None) -> list[Path]:
+    """Remove this user's run folders whose owner is dead; return them."""
+    removed = []
+    for folder in (base or _base()).glob(f"{PREFIX}*-*"):
+        owner = folder.name.removeprefix(PREFIX).partition("-")[0]
+        if owner.isdigit() and not _alive(int(owner)) and folder.stat().st_uid == os.getuid():
+            remove_run_folder(folder)
+            removed.append(folder)
+    return removed
+
+
+def _base() -> Path:
+    memory = Path("/dev/shm")
+    return memory if memory.is_dir() and os.access(memory, os.W_OK) else Path(tempfile.gettempdir())
+
+
+def _alive(process_id: int) -> bool:
+    try:
+        os.kill(process_id, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        return True
+    return True

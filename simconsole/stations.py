@@ -1,0 +1,266 @@
+"""Stations: the processes around the core, and the warden that keeps them.
+
+The core starts one process, the warden, and holds the other end of its standard input. The warden starts every
+station, restarts those that die, and when the core's end closes, however the core ended, it ends them all and removes
+the run folder. So a restart never costs the tick loop a fork, and nothing outlives the core. Stations hold the same
+kind of pipe to the warden: without it they end by themselves.
+
+::
+
+    core ──stdin──> warden ──stdin──> bridge, hud, scene
+
+Run as `python -m simconsole.stations warden` or `... station`, with the description as one line on standard input.
+"""
+
+import importlib
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+import msgspec
+
+from simconsole.errors import SimConsoleError, StationError
+from simconsole.rows import Snapshot
+from simconsole.shared_memory import remove_run_folder
+
+POLL_S: Final = 0.05
+BACK_OFF_S: Final = (0.05, 0.2, 1.0, 5.0)
+"""Wait before a restart, by how many came before it within HEALTHY_S; the last one goes on."""
+HEALTHY_S: Final = 10.0
+END_S: Final = 3.0
+"""How long a station may take to end before it is killed."""
+LOOKS_PER_S: Final = 5
+STATUS: Final = "stations.json"
+
+
+class StationSpec(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """One station: `target` is `module:function`, called with (folder, arguments, stop)."""
+
+    name: str
+    target: str
+    arguments: dict[str, Any] = {}
+    environment: dict[str, str | None] = {}  # laid over the core's; None removes
+
+
+class WardenSpec(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What the warden looks after."""
+
+    folder: str
+    stations: list[StationSpec]
+
+
+class StationStatus(msgspec.Struct, frozen=True, kw_only=True):
+    """What the warden says of one station."""
+
+    process_id: int
+    restarts: int
+
+
+class Supervisor:
+    """The core's side: starts the warden, looks after it without ever waiting, ends it."""
+
+    def __init__(self, folder: Path, stations: Sequence[StationSpec]) -> None:
+        self.folder = folder
+        self._spec = WardenSpec(folder=str(folder), stations=list(stations))
+        # Taken now: SDL's settings for the core, made later, are not the stations'.
+        self._environment = dict(os.environ)
+        self._warden: subprocess.Popen[bytes] | None = None
+        self.warden_restarts = 0
+
+    def start(self) -> None:
+        """Start the warden, which starts the stations.
+
+        Raises:
+            StationError: it cannot be started.
+        """
+        self._warden = _spawn("warden", self._spec, self._environment)
+
+    def publish(self, snapshot: Snapshot) -> None:
+        """As a reader of snapshots: a few times a second, see that the warden lives, or start another."""
+        if snapshot.tick % max(1, snapshot.tick_hz // LOOKS_PER_S) == 0:
+            self.look()
+
+    def look(self) -> None:
+        """Start another warden if this one died. Its stations have ended by themselves."""
+        if self._warden is not None and self._warden.poll() is not None:
+            self.warden_restarts += 1
+            self.start()
+
+    def status(self) -> dict[str, StationStatus]:
+        """Return what the warden last said of the stations, by name; empty before it has."""
+        try:
+            return msgspec.json.decode((self.folder / STATUS).read_bytes(), type=dict[str, StationStatus])
+        except (OSError, msgspec.DecodeError):
+            return {}
+
+    def counters(self) -> dict[str, int]:
+        """Return how often each station was restarted, for the summary."""
+        return {name: status.restarts for name, status in self.status().items()}
+
+    def stop(self) -> None:
+        """End warden and stations; afterwards the run folder is gone. Twice is harmless."""
+        warden, self._warden = self._warden, None
+        if warden is None:
+            return
+        assert warden.stdin is not None
+        warden.stdin.close()
+        try:
+            warden.wait(END_S * 2)
+        except subprocess.TimeoutExpired:
+            warden.kill()
+            warden.wait()
+        remove_run_folder(self.folder)
+
+
+class _Kept:
+    """One station as the warden sees it."""
+
+    def __init__(self, spec: StationSpec) -> None:
+        self.spec = spec
+        self.process: subprocess.Popen[bytes] | None = None
+        self.restarts = 0
+        self._failures = 0
+        self._started_s = 0.0
+        self._next_s = 0.0
+
+    def look(self, folder: str, now_s: float) -> bool:
+        """Start the station if it should run and does not; return whether something changed."""
+        if self.process is None:
+            if now_s < self._next_s:
+                return False
+            environment = _laid_over(os.environ, self.spec.environment)
+            self.process = _spawn("station", {"folder": folder, "station": self.spec}, environment)
+            self._started_s = now_s
+            return True
+        if self.process.poll() is None:
+            return False
+        healthy = now_s - self._started_s > HEALTHY_S
+        self._failures = 0 if healthy else self._failures
+        self._next_s = now_s + BACK_OFF_S[min(self._failures, len(BACK_OFF_S) - 1)]
+        self._failures += 1
+        self.restarts += 1
+        self.process = None
+        return True
+
+
+def warden(spec: WardenSpec, stop: Callable[[], bool]) -> None:
+    """Keep the stations of `spec` running until `stop`; then end them and remove the run folder."""
+    kept = [_Kept(station) for station in spec.stations]
+    try:
+        while not stop():
+            if any([station.look(spec.folder, time.monotonic()) for station in kept]):
+                _write_status(Path(spec.folder), kept)
+            time.sleep(POLL_S)
+    finally:
+        _end([station.process for station in kept if station.process is not None])
+        remove_run_folder(Path(spec.folder))
+
+
+def run_station(folder: Path, spec: StationSpec, stop: Callable[[], bool]) -> None:
+    """Call the function that `spec` names.
+
+    Raises:
+        StationError: there is no such function.
+    """
+    module, _, function = spec.target.partition(":")
+    try:
+        program = getattr(importlib.import_module(module), function)
+    except (ImportError, AttributeError) as error:
+        raise StationError(f"station {spec.name}: {spec.target} cannot be loaded: {error}") from None
+    program(folder, spec.arguments, stop)
+
+
+def _write_status(folder: Path, kept: list[_Kept]) -> None:
+    status = {
+        station.spec.name: StationStatus(
+            process_id=0 if station.process is None else station.process.pid, restarts=station.restarts
+        )
+        for station in kept
+    }
+    part = folder / f"{STATUS}.part"
+    try:
+        part.write_bytes(msgspec.json.encode(status))
+        part.replace(folder / STATUS)
+    except OSError:
+        return  # the folder is gone: the core has ended and the pipe will say so
+
+
+def _spawn(role: str, spec: object, environment: Mapping[str, str]) -> "subprocess.Popen[bytes]":
+    words = [sys.executable, "-m", "simconsole.stations", role]
+    try:
+        process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, env=dict(environment))
+    except OSError as error:
+        raise StationError(f"{role}: cannot be started: {error.strerror}") from None
+    assert process.stdin is not None
+    try:
+        process.stdin.write(msgspec.json.encode(spec) + b"\n")
+        process.stdin.flush()
+    except OSError:
+        pass  # it has died already; whoever looks next sees that
+    return process
+
+
+def _laid_over(environment: Mapping[str, str], changes: Mapping[str, str | None]) -> dict[str, str]:
+    merged = {**environment, **{name: value for name, value in changes.items() if value is not None}}
+    for name, value in changes.items():
+        if value is None:
+            merged.pop(name, None)
+    return merged
+
+
+def _end(processes: "Sequence[subprocess.Popen[bytes]]") -> None:
+    for process in processes:
+        if process.stdin is not None:
+            process.stdin.close()
+    deadline_s = time.monotonic() + END_S
+    for process in processes:
+        try:
+            process.wait(max(0.0, deadline_s - time.monotonic()))
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+
+def _watch_pipe() -> Callable[[], bool]:
+    """Return a function that is True once whoever started this process has closed the pipe or died."""
+    closed = threading.Event()
+
+    def watch() -> None:
+        while sys.stdin.buffer.read(4096):
+            pass
+        closed.set()
+
+    threading.Thread(target=watch, name="pipe", daemon=True).start()
+    return closed.is_set
+
+
+def main(words: list[str]) -> int:
+    """Be the warden or a station."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the core's; the pipe tells when to end
+    line = sys.stdin.buffer.readline()
+    stop = _watch_pipe()
+    try:
+        if words == ["warden"]:
+            warden(msgspec.json.decode(line, type=WardenSpec), stop)
+        else:
+            described = msgspec.json.decode(line)
+            spec = msgspec.convert(described["station"], StationSpec)
+            run_station(Path(described["folder"]), spec, stop)
+    except SimConsoleError as error:
+        print(f"simconsole {' '.join(words)}: {error}", file=sys.stderr)
+        return error.exit_code
+    return 0
+
+
+if __name__ == "__main__":
+    code = main(sys.argv[1:])
+    sys.stdout.flush()
+    sys.stderr.flush()
+    # Not sys.exit: the thread that watches the pipe may hold the lock of standard input.
+    os._exit(code)

@@ -1,0 +1,82 @@
+import hashlib
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from simconsole.recording.framing import START_OF_CHAIN, LogHeader, encode_header, seal
+from simconsole.recording.log import LogReader
+
+COLUMNS = ("sample.brake_axis", "sample.throttle_axis", "driver.brake", "vehicle.vx_mps")
+
+
+@pytest.fixture
+def header() -> LogHeader:
+    return LogHeader(
+        tick_hz=250, columns=COLUMNS, input_columns=2, console_version="0", source_sha256="aa", session_sha256="bb"
+    )
+
+
+def advance(tick: int, previous: np.ndarray, inputs: np.ndarray) -> np.ndarray:
+    """A toy console: the brake slows the vehicle, the throttle moves it."""
+    brake = inputs[0] * 0.5
+    return np.array([*inputs, brake, previous[3] * 0.99 - brake * 0.01 + inputs[1] * 0.02 + tick * 1e-6])
+
+
+@pytest.fixture
+def toy_advance() -> Callable[[int, np.ndarray, np.ndarray], np.ndarray]:
+    return advance
+
+
+@pytest.fixture
+def rows() -> list[np.ndarray]:
+    inputs = np.random.default_rng(7).uniform(-1.0, 1.0, (40, 2))
+    row, made = np.zeros(4), []
+    for tick, values in enumerate(inputs, start=1):
+        row = advance(tick, row, values)
+        made.append(row)
+    return made
+
+
+@pytest.fixture
+def log_bytes(header: LogHeader, rows: list[np.ndarray]) -> bytes:
+    parts, digest = [encode_header(header)], START_OF_CHAIN
+    for tick, row in enumerate(rows, start=1):
+        frame, digest = seal(digest, tick, row.tobytes())
+        parts.append(frame)
+    return b"".join(parts)
+
+
+@pytest.fixture
+def rewrite_log() -> Callable[..., None]:
+    """Change one value of a log and make every CRC and chained hash in it right again, as a forger would."""
+
+    def rewrite(path: Path, tick: int, column: str, value: float) -> None:
+        reader = LogReader(path)
+        parts, digest = [encode_header(reader.header)], START_OF_CHAIN
+        for record in reader:
+            row = record.row.copy()
+            if record.tick == tick:
+                row[reader.header.columns.index(column)] = value
+            frame, digest = seal(digest, record.tick, row.tobytes())
+            parts.append(frame)
+        path.write_bytes(b"".join(parts))
+
+    return rewrite
+
+
+@pytest.fixture
+def rewrite_checksums() -> Callable[[Path], None]:
+    """Make a manifest agree with the files of its bundle again."""
+
+    def rewrite(folder: Path) -> None:
+        manifest = json.loads((folder / "manifest.json").read_text())
+        for name, entry in manifest["files"].items():
+            content = (folder / name).read_bytes()
+            entry.update(size_bytes=len(content), sha256=hashlib.sha256(content).hexdigest())
+        manifest["digest"] = [record.digest for record in LogReader(folder / "drive.log")][-1].hex()
+        (folder / "manifest.json").write_text(json.dumps(manifest))
+
+    return rewrite

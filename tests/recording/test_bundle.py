@@ -1,0 +1,169 @@
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from simconsole.errors import RecordingError
+from simconsole.recording.bundle import BundleWriter, add_export, open_bundle, verify
+from simconsole.recording.framing import LogHeader
+from simconsole.recording.manifest import read_manifest
+
+TEXTS = {"session.yaml": "schema: 1\n", "vehicle.yaml": "mass_kg: 1500\n"}
+
+
+@pytest.fixture
+def bundle(tmp_path: Path, header: LogHeader, rows: list[np.ndarray]) -> Path:
+    folder = tmp_path / "drive"
+    with BundleWriter(folder, header, TEXTS, {"simconsole": "0"}, {"started": "noon"}) as writer:
+        for tick, row in enumerate(rows, start=1):
+            writer.log.append(tick, row)
+        writer.finish({"late_p99_us": 12.5})
+    return folder
+
+
+def test_a_finished_bundle_opens_and_verifies(bundle: Path) -> None:
+    opened = open_bundle(bundle)
+    assert opened.text("session.yaml") == TEXTS["session.yaml"]
+    assert len(list(opened.log)) == opened.manifest.ticks == 40
+    assert opened.manifest.summary == {"late_p99_us": 12.5}
+    assert opened.manifest.versions == {"simconsole": "0"}
+    assert opened.manifest.labels == {"started": "noon"}
+    assert verify(bundle) == []
+
+
+def test_a_killed_drive_is_still_a_bundle(tmp_path: Path, header: LogHeader) -> None:
+    writer = BundleWriter(tmp_path / "drive", header, TEXTS)
+    writer.log.append(1, np.zeros(4))
+    opened = open_bundle(tmp_path / "drive")
+    assert not opened.manifest.finished
+    assert [record.tick for record in opened.log] == [1]
+    assert opened.text("vehicle.yaml") == TEXTS["vehicle.yaml"]
+    assert verify(tmp_path / "drive") == [f"{tmp_path / 'drive' / 'manifest.json'}: the drive was not finished"]
+    writer.log.close()
+
+
+def test_a_recording_that_stopped_says_so(tmp_path: Path, header: LogHeader, monkeypatch: pytest.MonkeyPatch) -> None:
+    with BundleWriter(tmp_path / "drive", header, {}) as writer:
+        writer.log.append(1, np.zeros(4))
+        with monkeypatch.context() as patch:
+            patch.setattr("os.write", lambda fd, frame: 0)
+            writer.log.append(2, np.zeros(4))
+        manifest = writer.finish({})
+    assert manifest.ticks == 1
+    assert verify(tmp_path / "drive") == [manifest.recording_failure]
+    assert "recording stopped after 1 ticks" in str(manifest.recording_failure)
+
+
+def test_a_folder_with_files_is_not_recorded_into(bundle: Path, header: LogHeader) -> None:
+    before = {path.name: path.read_bytes() for path in bundle.iterdir()}
+    with pytest.raises(RecordingError, match="the folder is not empty"):
+        BundleWriter(bundle, header, TEXTS)
+    assert {path.name: path.read_bytes() for path in bundle.iterdir()} == before
+
+
+def test_a_place_that_cannot_be_written_is_one_line(tmp_path: Path, header: LogHeader) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(RecordingError, match="cannot be recorded to"):
+        BundleWriter(tmp_path / "file" / "drive", header, TEXTS)
+
+
+@pytest.mark.parametrize("name", ["../x.yaml", "/etc/x", "a/b", "manifest.json", "", "..", "a\0b", "c:x", "a\\b"])
+def test_names_that_leave_the_folder_are_refused(tmp_path: Path, header: LogHeader, name: str, bundle: Path) -> None:
+    with pytest.raises(RecordingError, match="not a plain file name"):
+        BundleWriter(tmp_path / "other", header, {name: ""})
+    raw = json.loads((bundle / "manifest.json").read_text())
+    raw["files"][name] = raw["files"]["drive.log"]
+    (bundle / "manifest.json").write_text(json.dumps(raw))
+    with pytest.raises(RecordingError, match="not a plain file name"):
+        open_bundle(bundle)
+
+
+def test_f05_a_truncated_bundle_is_one_line_and_exit_code_2(bundle: Path) -> None:
+    log = bundle / "drive.log"
+    whole = log.stat().st_size
+    log.write_bytes(log.read_bytes()[:-100])
+    with pytest.raises(RecordingError) as caught:
+        open_bundle(bundle)
+    assert str(caught.value) == f"{log}: truncated, {whole - 100} of {whole} bytes"
+    assert caught.value.exit_code == 2
+    assert verify(bundle)[0] == str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["drive.log", "session.yaml"])
+def test_a_missing_file_is_named(bundle: Path, name: str) -> None:
+    (bundle / name).unlink()
+    with pytest.raises(RecordingError, match=f"{name}: listed in manifest.json, cannot be read: No such file"):
+        open_bundle(bundle)
+    assert any(name in problem for problem in verify(bundle))
+
+
+@pytest.mark.parametrize(
+    ("content", "named"),
+    [
+        ("", "truncated"),
+        ("{", "truncated"),
+        ("[]", "Expected `object`"),
+        ('{"schema": 2, "new": 1}', "schema: 2 cannot be read, this simconsole reads 1 to 1"),
+        ('{"schema": 1, "extra": 1}', "extra"),
+        ('{"schema": 1, "ticks": "many"}', "ticks"),
+        ("[" * 100_000, ""),
+        (" " * (1 << 21), "allowed up to"),
+    ],
+)
+def test_a_bad_manifest_is_one_line(bundle: Path, content: str, named: str) -> None:
+    (bundle / "manifest.json").write_text(content)
+    with pytest.raises(RecordingError) as caught:
+        open_bundle(bundle)
+    assert str(caught.value).startswith(f"{bundle / 'manifest.json'}: ")
+    assert named in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_folder_that_is_no_bundle(tmp_path: Path) -> None:
+    with pytest.raises(RecordingError, match=r"manifest\.json: not a bundle: No such file"):
+        open_bundle(tmp_path)
+
+
+def test_verify_names_an_altered_value_and_the_first_tick_it_breaks(
+    bundle: Path, rewrite_log: Callable[..., None], rewrite_checksums: Callable[[Path], None]
+) -> None:
+    rewrite_log(bundle / "drive.log", 12, "driver.brake", 0.25)
+    problems = verify(bundle)
+    assert any("altered, sha256" in problem for problem in problems)
+    assert any("manifest.json says 40 ticks" in problem for problem in problems)
+    rewrite_checksums(bundle)
+    assert verify(bundle) == []  # only a replay can tell now: test_replay
+
+
+def test_verify_names_the_tick_whose_hash_does_not_hold(
+    bundle: Path, rewrite_checksums: Callable[[Path], None]
+) -> None:
+    from simconsole.recording.framing import encode_header, seal
+
+    records = list(open_bundle(bundle).log)
+    parts = [encode_header(open_bundle(bundle).log.header)]
+    for before, record in zip([bytes(8), *(record.digest for record in records)], records, strict=False):
+        parts.append(seal(before if record.tick != 5 else bytes(8), record.tick, record.row.tobytes())[0])
+    (bundle / "drive.log").write_bytes(b"".join(parts))
+    rewrite_checksums(bundle)
+    assert verify(bundle) == [f"{bundle / 'drive.log'}: the chained hash does not hold at tick 5"]
+
+
+def test_exports_may_be_added_and_lost(bundle: Path) -> None:
+    (bundle / "report.html").write_text("<html>")
+    add_export(bundle, "report.html")
+    assert read_manifest(bundle).files["report.html"].export
+    assert verify(bundle) == []
+    (bundle / "report.html").write_text("<html>changed")
+    assert len(verify(bundle)) == 1
+    (bundle / "report.html").unlink()
+    assert len(list(open_bundle(bundle).log)) == 40
+    with pytest.raises(RecordingError, match=r"scene\.rrd: cannot be added"):
+        add_export(bundle, "scene.rrd")
+
+
+def test_a_text_the_bundle_does_not_have(bundle: Path) -> None:
+    with pytest.raises(RecordingError, match=r"world\.yaml: not in manifest\.json"):
+        open_bundle(bundle).text("world.yaml")

@@ -1,0 +1,191 @@
+import errno
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from simconsole.errors import RecordingError
+from simconsole.recording.framing import LogHeader, encode_header, frame_size
+from simconsole.recording.log import LogReader, LogWriter
+
+RECORD_UNTIL_KILLED = """
+import mmap, os, sys
+import numpy as np
+from pathlib import Path
+from simconsole.recording.framing import LogHeader
+from simconsole.recording.log import LogWriter
+header = LogHeader(tick_hz=250, columns=tuple(f"c{i}" for i in range(140)), input_columns=28,
+                   console_version="0", source_sha256="", session_sha256="")
+folder = Path(sys.argv[1])
+begun = memoryview(mmap.mmap(os.open(folder / "begun", os.O_RDWR), 8)).cast("q")
+log = LogWriter(folder / "drive.log", header, sync_interval_s=0.05)
+tick = 0
+while True:
+    tick += 1
+    begun[0] = tick  # shared memory: survives the kill, like nothing inside the process
+    log.append(tick, np.full(140, float(tick)))
+"""
+
+FILL_THE_DISK = """
+import json, resource, sys
+import numpy as np
+from pathlib import Path
+from simconsole.recording.framing import LogHeader
+from simconsole.recording.log import LogWriter
+header = LogHeader(tick_hz=250, columns=("a", "b"), input_columns=1,
+                   console_version="0", source_sha256="", session_sha256="")
+log = LogWriter(Path(sys.argv[1]), header)
+resource.setrlimit(resource.RLIMIT_FSIZE, (10_000, 10_000))
+for tick in range(1, 2000):
+    log.append(tick, np.full(2, float(tick)))
+recorded = log.ticks
+log.close()
+print(json.dumps([recorded, log.failure]))
+"""
+
+
+def wait_until(condition: object, process: subprocess.Popen[bytes]) -> None:
+    deadline = time.monotonic() + 60.0
+    while not condition():  # type: ignore[operator]
+        assert process.poll() is None, "the recorder ended by itself"
+        assert time.monotonic() < deadline
+        time.sleep(0.0005)
+
+
+def test_ticks_appended_are_ticks_read(tmp_path: Path, header: LogHeader, rows: list[np.ndarray]) -> None:
+    with LogWriter(tmp_path / "drive.log", header) as log:
+        for tick, row in enumerate(rows, start=1):
+            log.append(tick, row)
+    reader = LogReader(tmp_path / "drive.log")
+    records = list(reader)
+    assert reader.header == header
+    assert reader.breaks == ()
+    assert [record.row.tobytes() for record in records] == [row.tobytes() for row in rows]
+    assert records[-1].digest == log.digest
+    assert log.size_bytes == (tmp_path / "drive.log").stat().st_size
+    assert [record.tick for record in reader] == list(range(1, 41))  # a second pass reads the same
+
+
+def test_each_tick_is_in_the_file_when_append_returns(tmp_path: Path, header: LogHeader) -> None:
+    with LogWriter(tmp_path / "drive.log", header) as log:
+        for tick in range(1, 5):
+            log.append(tick, np.zeros(4))
+            assert sum(1 for _ in LogReader(tmp_path / "drive.log")) == tick
+
+
+def test_equal_drives_make_equal_files(tmp_path: Path, header: LogHeader, rows: list[np.ndarray]) -> None:
+    for name in ("first", "second"):
+        with LogWriter(tmp_path / name, header) as log:
+            for tick, row in enumerate(rows, start=1):
+                log.append(tick, row)
+    assert (tmp_path / "first").read_bytes() == (tmp_path / "second").read_bytes()
+
+
+def test_the_table_is_the_log_in_columns(tmp_path: Path, header: LogHeader, log_bytes: bytes) -> None:
+    (tmp_path / "drive.log").write_bytes(log_bytes[:-3])
+    table = LogReader(tmp_path / "drive.log").table()
+    assert table.tick_hz == 250
+    assert table.ticks.tolist() == list(range(1, 40))
+    assert table.rows.shape == (39, 4)
+    assert table.column("driver.brake").tolist() == (table.column("sample.brake_axis") * 0.5).tolist()
+    with pytest.raises(RecordingError, match=r"no column 'driver\.break'"):
+        table.column("driver.break")
+
+
+def test_an_existing_recording_is_never_overwritten(tmp_path: Path, header: LogHeader) -> None:
+    (tmp_path / "drive.log").write_bytes(b"a drive")
+    with pytest.raises(RecordingError, match="cannot be recorded to"):
+        LogWriter(tmp_path / "drive.log", header)
+    assert (tmp_path / "drive.log").read_bytes() == b"a drive"
+
+
+def test_a_missing_log_is_one_line(tmp_path: Path) -> None:
+    with pytest.raises(RecordingError, match=r"drive\.log: cannot be read: No such file"):
+        LogReader(tmp_path / "drive.log")
+
+
+def test_a_row_of_another_width_is_a_bug(tmp_path: Path, header: LogHeader) -> None:
+    with LogWriter(tmp_path / "drive.log", header) as log, pytest.raises(ValueError, match="24 bytes in a log of 32"):
+        log.append(1, np.zeros(3))
+
+
+def test_p01_a_full_disk_stops_recording_not_driving(tmp_path: Path) -> None:
+    path = tmp_path / "drive.log"
+    done = subprocess.run([sys.executable, "-c", FILL_THE_DISK, str(path)], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    ticks, failure = json.loads(done.stdout)
+    assert failure == f"{path}: recording stopped after {ticks} ticks: {failure.rsplit(': ', 1)[1]}"
+    reader = LogReader(path)
+    assert [record.tick for record in reader] == list(range(1, ticks + 1))
+    assert reader.breaks == ()  # the part of a tick that still fitted was taken back
+    assert ticks == (10_000 - len(encode_header(reader.header))) // frame_size(2)
+
+
+@pytest.mark.parametrize("cut_fails", [False, True])
+def test_p01_no_space_at_all(
+    tmp_path: Path, header: LogHeader, monkeypatch: pytest.MonkeyPatch, cut_fails: bool
+) -> None:
+    def full(*_: object) -> int:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with LogWriter(tmp_path / "drive.log", header) as log:
+        log.append(1, np.zeros(4))
+        with monkeypatch.context() as patch:
+            patch.setattr(os, "write", full)
+            if cut_fails:
+                patch.setattr(os, "ftruncate", full)
+            log.append(2, np.zeros(4))
+        log.append(3, np.zeros(4))
+        assert log.failure is not None
+        assert log.failure.endswith("recording stopped after 1 ticks: No space left on device")
+    assert [record.tick for record in LogReader(tmp_path / "drive.log")] == [1]
+
+
+def test_p01_a_sync_that_fails_is_flagged(tmp_path: Path, header: LogHeader, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(_: int) -> None:
+        raise OSError(errno.EIO, "Input/output error")
+
+    monkeypatch.setattr("simconsole.recording.log._synchronise", broken)
+    with LogWriter(tmp_path / "drive.log", header, sync_interval_s=0.001) as log:
+        deadline = time.monotonic() + 30.0
+        while log.failure is None:
+            assert time.monotonic() < deadline
+    assert log.failure.endswith("sync: Input/output error")
+
+
+def test_closing_twice_is_fine(tmp_path: Path, header: LogHeader) -> None:
+    log = LogWriter(tmp_path / "drive.log", header)
+    log.close()
+    log.close()
+    assert list(LogReader(tmp_path / "drive.log")) == []
+
+
+def test_p02_kill_9_loses_at_most_the_tick_in_work(tmp_path: Path) -> None:
+    seed = random.randrange(1 << 32)
+    print("seed", seed)
+    generator = random.Random(seed)
+    for turn in range(20):
+        folder = tmp_path / str(turn)
+        folder.mkdir()
+        (folder / "begun").write_bytes(bytes(8))
+        process = subprocess.Popen([sys.executable, "-c", RECORD_UNTIL_KILLED, str(folder)])
+        try:
+            kill_at = generator.randrange(1, 4000)
+
+            def begun(folder: Path = folder) -> int:
+                return int.from_bytes((folder / "begun").read_bytes(), sys.byteorder)
+
+            wait_until(lambda begun=begun, kill_at=kill_at: begun() >= kill_at, process)
+        finally:
+            process.send_signal(signal.SIGKILL)
+            process.wait()
+        ticks = [record.tick for record in LogReader(folder / "drive.log")]
+        assert ticks == list(range(1, len(ticks) + 1))
+        assert begun() - len(ticks) in {0, 1}
