@@ -111,7 +111,7 @@ def decode_header(text: bytes, name: str) -> LogHeader:
         if not isinstance(schema, int) or not 1 <= schema <= SCHEMA:
             raise RecordingError(f"{name}: schema: {schema!r} cannot be read, this simconsole reads 1 to {SCHEMA}")
         header = msgspec.convert(raw, LogHeader)
-    except msgspec.MsgspecError as error:
+    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
         raise RecordingError(f"{name}: header: {error}") from None
     if header.byte_order != sys.byteorder:
         raise RecordingError(f"{name}: byte_order: {header.byte_order!r} cannot be read here, only {sys.byteorder!r}")

@@ -171,7 +171,7 @@ def test_p02_kill_9_loses_at_most_the_tick_in_work(tmp_path: Path) -> None:
     seed = random.randrange(1 << 32)
     print("seed", seed)
     generator = random.Random(seed)
-    for turn in range(20):
+    for turn in range(8):
         folder = tmp_path / str(turn)
         folder.mkdir()
         (folder / "begun").write_bytes(bytes(8))
