@@ -100,10 +100,18 @@ def _stamp(value: object, user: Callable[..., Any]) -> str:
 
 @cache
 def _entry(function: Callable[..., Any]) -> Any:
-    """Return the dispatcher that Python calls: cached. The kernels inside it are in its code, not cached again."""
+    """Return the dispatcher that Python calls: cached. The kernels inside it are in its code, not cached again.
+
+    numba keys its cache by path, content and line of the source file too; the empty file in the folder takes its place,
+    so that the digest alone decides, and an installation finds what a checkout compiled.
+    """
     twin = _twin(function)
     numba = _numba()
-    numba.config.CACHE_DIR = str(_own_folder(digest(function)))
+    folder = _own_folder(digest(function))
+    source = folder / "kernel.py"
+    source.touch()
+    twin.__code__ = twin.__code__.replace(co_filename=str(source), co_firstlineno=1)
+    numba.config.CACHE_DIR = str(folder)
     return numba.njit(cache=True, fastmath=False)(twin)
 
 

@@ -58,6 +58,16 @@ def test_compiled_code_is_cached_for_the_entry_only(own_cache: Path) -> None:
     assert list((own_cache / digest(summed)).rglob("*.nbc"))
 
 
+def test_compiled_code_is_found_from_another_place(tmp_path: Path) -> None:
+    compiled(summed)(np.ones(3), 0)
+    assert isinstance(summed, types.FunctionType)
+    moved = altered(summed)
+    moved.__code__ = summed.__code__.replace(co_filename=str(tmp_path / "moved.py"), co_firstlineno=99)
+    twin = compiled(moved)
+    assert twin(np.ones(3), 0) == summed(np.ones(3), 0)
+    assert sum(twin.stats.cache_hits.values()) == 1
+
+
 def test_digest_follows_callees_and_constants() -> None:
     assert isinstance(scaled, types.FunctionType)
     assert isinstance(summed, types.FunctionType)
