@@ -2,21 +2,23 @@
 
 from collections.abc import Callable
 from contextlib import ExitStack
+from pathlib import Path
+from subprocess import Popen
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from simconsole.assembly import ResolvedSession
 from simconsole.drive import Cast, Recorder
 from simconsole.errors import BridgeError, ProfileError
-from simconsole.inline import LockstepLink, start_autopilot
-from simconsole.pacing import UnpacedPacer
+from simconsole.inline import LockstepLink, end_program, start_autopilot
+from simconsole.pacing import Pacer, UnpacedPacer, realtime_hints
 from simconsole.pipeline import Console
 from simconsole.ports import CommandSource, NobodyCommands, Station
 from simconsole.rows import Snapshot
 from simconsole.seating import open_seating
+from simconsole.shared_memory import make_run_folder, remove_run_folder
+from simconsole.stations import Supervisor
 
 if TYPE_CHECKING:
-    from subprocess import Popen
-
     from simconsole.bridge.lockstep import LockstepBridge
 
 
@@ -47,7 +49,43 @@ def open_headless(resolved: ResolvedSession, console: Console, recorder: Recorde
         raise ProfileError("mode.pacing: value free: lockstep or realtime, where features.autopilot drives")
     seating = open_seating(resolved, console, stack)
     cast = Cast(seating.devices, commands, recorder, stations, pace, seating.seat)
-    return Opened(cast, seating.finished, lambda: {"lateness": "not paced", **counters()})
+    return Opened(cast, seating.finished, lambda: {**pace.summary(), **counters()})
+
+
+def open_realtime(
+    resolved: ResolvedSession, console: Console, recorder: Recorder, bundle: Path, stack: ExitStack
+) -> Opened:
+    """Open a paced drive: every output in a process of its own, their inputs through shared memory.
+
+    Raises:
+        StationError: shared memory or the stations cannot be had.
+        BridgeError: the bridge station does not listen.
+        DeviceError: a device is missing.
+    """
+    from simconsole.realtime import bridge_address, make_memory, station_specs
+
+    folder = make_run_folder()
+    stack.callback(remove_run_folder, folder)
+    ring, port, keys = make_memory(folder, console)
+    supervisor = Supervisor(folder, station_specs(resolved, console, folder, bundle))
+    programs: list[Popen[bytes]] = []
+    stack.callback(lambda: [end_program(program) for program in programs])
+    stack.callback(supervisor.stop)
+    supervisor.start()
+    session = resolved.session
+    if session.outputs.bridge is not None:
+        address = bridge_address(folder, supervisor.alive)
+        if session.features.autopilot is not None:
+            programs.append(start_autopilot(address, session.features.autopilot))
+    seating = open_seating(resolved, console, stack, None if session.outputs.hud is None else keys)
+    missing = stack.enter_context(realtime_hints())
+    pace = Pacer(console.tick_hz)
+    cast = Cast(seating.devices, port, recorder, (ring, supervisor), pace, seating.seat)
+
+    def summary() -> dict[str, Any]:
+        return {**pace.summary(), "station_restarts": supervisor.counters(), "not_granted": missing}
+
+    return Opened(cast, seating.finished, summary)
 
 
 def _open_lockstep(resolved: ResolvedSession, console: Console, stack: ExitStack) -> LockstepLink:
@@ -59,13 +97,16 @@ def _open_lockstep(resolved: ResolvedSession, console: Console, stack: ExitStack
     period_ticks = max(1, session.mode.control_period_ms * console.tick_hz // 1000)
     bridge = LockstepBridge(session.outputs.bridge, odometry_hz=console.tick_hz / period_ticks)
     course = session.features.autopilot
-    program = None if course is None else start_autopilot(bridge.url, course, stack)
-    stack.callback(bridge.close)  # closed before the programs' end is waited for: it is what ends them
+    program = None
+    if course is not None:
+        program = start_autopilot(bridge.url, course)
+        stack.callback(end_program, program)
+    stack.callback(bridge.close)  # before the program's end is waited for: it is what ends it
     _wait_for_controller(bridge, program, session.mode.wait_for_controller_s)
     return LockstepLink(bridge, period_ticks, session.mode.answer_timeout_s)
 
 
-def _wait_for_controller(bridge: "LockstepBridge", program: "Popen[bytes] | None", patience_s: float) -> None:
+def _wait_for_controller(bridge: "LockstepBridge", program: Popen[bytes] | None, patience_s: float) -> None:
     if bridge.wait_for_client(patience_s):
         return
     if program is not None and program.poll() is not None:

@@ -4,18 +4,29 @@ import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
 
 from simconsole.assembly import ResolvedSession, assemble
 from simconsole.compiling import plain
+from simconsole.kernels import Row
 from simconsole.profiles.view import SceneProfile
 from simconsole.recording.bundle import add_export, open_bundle
 from simconsole.recording.log import LogTable
 from simconsole.replaying import recorded_session
 from simconsole.world.course import Course
 
+if TYPE_CHECKING:
+    from simconsole.scene.job import Job
+
+Ticks = NDArray[np.int64]
+
 REPORT: Final = "report.html"
 SCENE: Final = "scene.rrd"
+LIVE_SCENE: Final = "scene.live.rrd"
+"""What a paced drive's scene station records; the whole scene, made from the log, takes its place."""
 
 
 def write_exports(folder: Path, report: bool = True, scene: bool = True) -> dict[str, Any]:
@@ -105,21 +116,20 @@ def _facts(resolved: ResolvedSession, summary: dict[str, Any]) -> dict[str, obje
     }
 
 
-def _scene(folder: Path, resolved: ResolvedSession, table: LogTable) -> None:
+def scene_job(resolved: ResolvedSession, rows: Row, ticks: Ticks, columns: tuple[str, ...], tick_hz: int) -> "Job":
+    """Return what a scene process is given: rows (none for a live one), course and car."""
     from simconsole.scene.entities import Dimensions
-    from simconsole.scene.export import export_apart
     from simconsole.scene.job import Job
     from simconsole.world.drawing import draw
 
     platform, course = assemble(resolved, plain)[0].platform, _course(resolved)
     dimensions = Dimensions(platform.length_m, platform.width_m, platform.height_m, platform.rear_overhang_m)
-    job = Job(
-        table.rows,
-        table.ticks,
-        table.columns,
-        table.tick_hz,
-        dimensions,
-        None if course is None else draw(course),
-        SceneProfile(),
-    )
-    export_apart(job, folder / SCENE)
+    drawing = None if course is None else draw(course)
+    return Job(rows, ticks, columns, tick_hz, dimensions, drawing, resolved.session.outputs.scene or SceneProfile())
+
+
+def _scene(folder: Path, resolved: ResolvedSession, table: LogTable) -> None:
+    from simconsole.scene.export import export_apart
+
+    export_apart(scene_job(resolved, table.rows, table.ticks, table.columns, table.tick_hz), folder / SCENE)
+    (folder / LIVE_SCENE).unlink(missing_ok=True)

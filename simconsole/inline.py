@@ -2,7 +2,6 @@
 
 import subprocess
 import sys
-from contextlib import ExitStack
 from typing import Protocol
 
 from simconsole.rows import Snapshot
@@ -72,16 +71,14 @@ class LockstepLink:
         return remote, EventInput(events=float(int(events.events) | raised))
 
 
-def start_autopilot(url: str, course: str, stack: ExitStack) -> "subprocess.Popen[bytes]":
-    """Start `simconsole autopilot` as a program of its own; `stack` ends it."""
+def start_autopilot(url: str, course: str) -> "subprocess.Popen[bytes]":
+    """Start `simconsole autopilot` as a program of its own; `end_program` ends it."""
     words = [sys.executable, "-m", "simconsole", "autopilot", "--url", url, "--course", course]
-    program = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
-    stack.callback(_end, program)
-    return program
+    return subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
 
 
-def _end(program: "subprocess.Popen[bytes]") -> None:
-    """Give a program that lost its connection the time to end by itself, then end it."""
+def end_program(program: "subprocess.Popen[bytes]") -> None:
+    """Give a program that has lost its connection the time to end by itself, then end it."""
     try:
         program.wait(PROGRAM_END_S)
     except subprocess.TimeoutExpired:

@@ -5,9 +5,11 @@ stall at most CATCH_UP_TICKS late ticks run at once; the rest never happen (a sl
 wall by that much, and is counted). dt never stretches.
 """
 
+import gc
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any, Final
 
 import numpy as np
@@ -18,6 +20,10 @@ from simconsole.units import NS_PER_S
 CATCH_UP_TICKS: Final = 5
 STALL_NS: Final = 100_000_000
 """A longer stall is an event that the arbiter answers with a safe stop (DESIGN 2)."""
+
+_PR_SET_TIMERSLACK: Final = 29  # linux/prctl.h
+_MCL_CURRENT: Final = 1  # sys/mman.h; not what comes later: a log of hours must not be locked
+_PRIORITY: Final = 50
 
 _BINS_PER_DECADE: Final = 20
 _DECADES: Final = 7  # 100 ns to 1 s
@@ -127,33 +133,43 @@ class UnpacedPacer:
         return {"lateness": "not paced"}
 
 
-def realtime_hints() -> list[str]:
-    """Ask the system for punctual ticks where it may be asked; return what could not be had, for the summary.
+@contextmanager
+def realtime_hints() -> Iterator[list[str]]:
+    """Ask the system for punctual ticks where it may be asked, and take it back afterwards; yield what is missing.
 
     First in, first out scheduling (reset on fork, so that no station inherits it), locked memory, a timer slack of
     1 ns and a garbage collector that leaves alone what was made before the drive. All of it is optional.
     """
-    import gc
-
     gc.collect()
     gc.freeze()
-    if not sys.platform.startswith("linux"):
-        return ["real-time scheduling, locked memory and timer slack: only on Linux"]
-    return _linux_hints()
+    try:
+        if sys.platform.startswith("linux"):
+            with _linux_hints() as missing:
+                yield missing
+        else:
+            yield ["real-time scheduling, locked memory and timer slack: only on Linux"]
+    finally:
+        gc.unfreeze()
 
 
-def _linux_hints() -> list[str]:
+@contextmanager
+def _linux_hints() -> Iterator[list[str]]:
     import ctypes
     import os
 
     missing = []
     libc = ctypes.CDLL(None, use_errno=True)
-    pr_set_timerslack, mcl_current_future = 29, 3
-    libc.prctl(pr_set_timerslack, 1, 0, 0, 0)
-    if libc.mlockall(mcl_current_future) != 0:
+    libc.prctl(_PR_SET_TIMERSLACK, 1, 0, 0, 0)
+    if libc.mlockall(_MCL_CURRENT) != 0:
         missing.append("locked memory: not permitted")
+    before, parameters = os.sched_getscheduler(0), os.sched_getparam(0)
     try:
-        os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(50))
+        os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(_PRIORITY))
     except OSError as error:
         missing.append(f"real-time scheduling: {error.strerror}")
-    return missing
+    try:
+        yield missing
+    finally:
+        os.sched_setscheduler(0, before, parameters)
+        libc.munlockall()
+        libc.prctl(_PR_SET_TIMERSLACK, 0, 0, 0, 0)

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, Self
 
 from simconsole import __version__, compiling
 from simconsole.assembly import ResolvedSession, assemble
-from simconsole.casting import Opened, open_headless
+from simconsole.casting import Opened, open_headless, open_realtime
 from simconsole.compiling import compiled
 from simconsole.drive import run
 from simconsole.pipeline import NO_COMMAND, NO_EVENTS, NO_SAMPLE, Console, ConsoleState, advance, decide
@@ -53,7 +53,7 @@ def drive(
     ticks = ENDLESS_TICKS if duration_s is None else round(duration_s * console.tick_hz)
     with ExitStack() as stack:
         bundle = stack.enter_context(_bundle(resolved, console, folder))
-        opened = _open(resolved, console, bundle.log, stack)
+        opened = _open(resolved, console, bundle, stack)
         interrupt = stack.enter_context(Interrupt())
         began_s = time.monotonic()
         state = run(
@@ -114,12 +114,11 @@ class Interrupt:
         self.raised = True
 
 
-def _open(resolved: ResolvedSession, console: Console, log: LogWriter, stack: ExitStack) -> Opened:
+def _open(resolved: ResolvedSession, console: Console, bundle: BundleWriter, stack: ExitStack) -> Opened:
+    recorder = LogRecorder(bundle.log)
     if resolved.session.mode.pacing == "realtime":
-        from simconsole.casting import open_realtime
-
-        return open_realtime(resolved, console, LogRecorder(log), stack)
-    return open_headless(resolved, console, LogRecorder(log), stack)
+        return open_realtime(resolved, console, recorder, bundle.folder, stack)
+    return open_headless(resolved, console, recorder, stack)
 
 
 def _bundle(resolved: ResolvedSession, console: Console, folder: Path) -> BundleWriter:

@@ -64,7 +64,7 @@ def override(session: SessionProfile, **sections: dict[str, object]) -> SessionP
     """
     plain = msgspec.to_builtins(session)
     for section, keys in sections.items():
-        plain[section].update({key: value for key, value in keys.items() if value is not None})
+        plain[section].update(keys)
     try:
         return msgspec.convert(plain, SessionProfile)
     except msgspec.ValidationError as error:

@@ -92,6 +92,10 @@ class Supervisor:
             self.warden_restarts += 1
             self.start()
 
+    def alive(self) -> bool:
+        """Return whether the warden runs."""
+        return self._warden is not None and self._warden.poll() is None
+
     def status(self) -> dict[str, StationStatus]:
         """Return what the warden last said of the stations, by name; empty before it has."""
         try:

@@ -8,30 +8,31 @@ from simconsole.commands.demo import summary_text
 from simconsole.commands.outcome import Outcome
 from simconsole.commands.progress import Progress
 from simconsole.exports import write_exports
+from simconsole.profiles.session import SessionProfile
 from simconsole.session import drive as drive_session
 from simconsole.session_files import load_session, override, resolve
 
 
 def drive(words: Namespace) -> Outcome:
     """Drive the named session with the options of the command line laid over it."""
-    session = load_session(words.session)
-    pacing = session.mode.pacing
-    if words.headless and pacing == "realtime":
-        pacing = "free"
-    hud = False if words.headless else None
-    session = override(
-        session,
-        scenario={"duration_s": words.duration_s},
-        outputs={"hud": hud},
-        devices={"driver": words.driver},
-        mode={"pacing": pacing},
-    )
+    session = _with_options(load_session(words.session), words)
     resolved = resolve(session)
     folder = Path(words.out) if words.out else Path("out") / time.strftime("drive-%Y%m%d-%H%M%S")
     with Progress("driving", resolved.world.length_m if resolved.world else 0.0) as progress:
         result = drive_session(resolved, folder, progress.watch)
     outputs = session.outputs
     with Progress("writing report and scene"):
-        metrics = write_exports(folder, report=outputs.report, scene=outputs.scene)
+        metrics = write_exports(folder, report=outputs.report, scene=outputs.scene is not None)
     results = {"bundle": str(folder), "digest": result.digest, **metrics, **result.summary}
     return Outcome(0, results, summary_text(folder, metrics, result.summary))
+
+
+def _with_options(session: SessionProfile, words: Namespace) -> SessionProfile:
+    if words.duration_s is not None:
+        session = override(session, scenario={"duration_s": words.duration_s})
+    if words.driver is not None:
+        session = override(session, devices={"driver": words.driver})
+    if words.headless:
+        pacing = "free" if session.mode.pacing == "realtime" else session.mode.pacing
+        session = override(session, outputs={"hud": None}, mode={"pacing": pacing})
+    return session

@@ -7,6 +7,7 @@ from msgspec import Meta, Struct
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.control import ControlProfile
 from simconsole.profiles.person import PersonPlan
+from simconsole.profiles.view import HudProfile, SceneProfile
 
 Name = Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$")]
 """A bare profile name: no path, so that one profile can never reach outside the profile folder."""
@@ -53,8 +54,8 @@ class Outputs(Section):
     """Who sees the drive."""
 
     bridge: BridgeProfile | None = None
-    hud: bool = True
-    scene: bool = True
+    hud: HudProfile | None = HudProfile()
+    scene: SceneProfile | None = SceneProfile()
     report: bool = True
 
 

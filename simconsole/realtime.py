@@ -1,0 +1,135 @@
+"""A paced drive's outputs and inputs: shared memory, the stations behind it, and the programs beside them."""
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import msgspec
+import numpy as np
+
+from simconsole.assembly import ResolvedSession
+from simconsole.errors import BridgeError
+from simconsole.exports import LIVE_SCENE, scene_job
+from simconsole.pipeline import NO_COMMAND, Console
+from simconsole.rows import REMOTE_WIDTH, Snapshot
+from simconsole.shared_memory import EventCounters, Ring
+from simconsole.signals import NEVER_TICKS, EventInput, RemoteCommand
+from simconsole.station_programs import (
+    ADDRESS,
+    COMMAND,
+    EVENTS,
+    KEYS,
+    SCENE_JOB,
+    SLOT_CAPACITY,
+    SNAPSHOT_CAPACITY,
+    SNAPSHOTS,
+    command_of,
+)
+from simconsole.stations import StationSpec
+from simconsole.units import NS_PER_S
+
+START_PATIENCE_S = 20.0
+
+
+class RingStation:
+    """Publishes every tick into the ring: the only thing the core does for all stations together."""
+
+    def __init__(self, ring: Ring) -> None:
+        self._ring = ring
+
+    def publish(self, snapshot: Snapshot) -> None:
+        """Copy one row."""
+        self._ring.write(snapshot.row, snapshot.tick)
+
+
+class BridgePort:
+    """The bridge station's slot and event counters, read once a tick. Ages are whole ticks since receipt."""
+
+    def __init__(self, slot: Ring, events: EventCounters, tick_hz: int) -> None:
+        self._slot = slot
+        self._events = events
+        self._tick_hz = tick_hz
+        self._seen = 0
+        self._command = NO_COMMAND
+        self._receipt_ns = -1
+
+    def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
+        """Return the newest command and all edges since the last call."""
+        if self._slot.newest != self._seen:
+            record = self._slot.latest()
+            if record is not None:
+                self._seen, self._receipt_ns = record.number, record.stamp
+                self._command = command_of(record.values)
+        age_ticks = NEVER_TICKS
+        if self._receipt_ns >= 0:
+            age_ns = max(0, time.monotonic_ns() - self._receipt_ns)
+            age_ticks = float(age_ns * self._tick_hz // NS_PER_S)
+        return self._command._replace(age_ticks=age_ticks), EventInput(events=float(self._events.take()))
+
+
+class KeyPort:
+    """The window's keys as the keyboard source wants them: (mask, age in whole ticks)."""
+
+    def __init__(self, slot: Ring, tick_hz: int) -> None:
+        self._slot = slot
+        self._tick_hz = tick_hz
+
+    def __call__(self) -> tuple[int, int]:
+        """Return the keys held now and how long ago the window said so."""
+        record = self._slot.latest()
+        if record is None:
+            return 0, int(NEVER_TICKS)
+        age_ns = max(0, time.monotonic_ns() - record.stamp)
+        return int(record.values[0]), age_ns * self._tick_hz // NS_PER_S
+
+
+def make_memory(folder: Path, console: Console) -> tuple[RingStation, BridgePort, KeyPort]:
+    """Make every file of the run folder, as their writers' side or readers' side in the core.
+
+    Raises:
+        StationError: one cannot be made.
+    """
+    snapshots = Ring.create(folder / SNAPSHOTS, console.width, SNAPSHOT_CAPACITY)
+    command = Ring.create(folder / COMMAND, REMOTE_WIDTH, SLOT_CAPACITY)
+    keys = Ring.create(folder / KEYS, 1, SLOT_CAPACITY)
+    events = EventCounters.create(folder / EVENTS)
+    return RingStation(snapshots), BridgePort(command, events, console.tick_hz), KeyPort(keys, console.tick_hz)
+
+
+def station_specs(resolved: ResolvedSession, console: Console, folder: Path, bundle: Path) -> list[StationSpec]:
+    """Return the stations that the session's outputs name; writes what they need into the run folder."""
+    outputs = resolved.session.outputs
+    tick_hz = console.tick_hz
+    specs = []
+    if outputs.bridge is not None:
+        arguments = {"profile": msgspec.to_builtins(outputs.bridge), "tick_hz": tick_hz}
+        specs.append(StationSpec(name="bridge", target="simconsole.station_programs:bridge", arguments=arguments))
+    if outputs.hud is not None:
+        arguments = {
+            "profile": msgspec.to_builtins(outputs.hud),
+            "control": msgspec.to_builtins(resolved.session.features.control),
+            "tick_hz": tick_hz,
+        }
+        specs.append(StationSpec(name="hud", target="simconsole.station_programs:hud", arguments=arguments))
+    if outputs.scene is not None:
+        from simconsole.scene.job import save_job
+
+        rows, ticks = np.empty((0, console.width)), np.empty(0, np.int64)
+        save_job(folder / SCENE_JOB, scene_job(resolved, rows, ticks, console.columns, tick_hz))
+        arguments = {"path": str((bundle / LIVE_SCENE).absolute()), "tick_hz": tick_hz}
+        specs.append(StationSpec(name="scene", target="simconsole.station_programs:scene", arguments=arguments))
+    return specs
+
+
+def bridge_address(folder: Path, alive: Callable[[], bool], patience_s: float = START_PATIENCE_S) -> str:
+    """Wait until the bridge station listens and return its address.
+
+    Raises:
+        BridgeError: it does not listen in time.
+    """
+    deadline_s = time.monotonic() + patience_s
+    while alive() and time.monotonic() < deadline_s:
+        if (folder / ADDRESS).exists():
+            return (folder / ADDRESS).read_text("utf-8")
+        time.sleep(0.02)
+    raise BridgeError("the bridge does not listen; its own message stands above")

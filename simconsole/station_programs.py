@@ -1,0 +1,117 @@
+"""What each station process does: its room's own loop, between the ring and the slots. The only glue of its kind.
+
+Every function takes (folder, arguments, stop) as `simconsole.stations` calls it, and waits for nothing but its room.
+"""
+
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+import msgspec
+import numpy as np
+
+from simconsole.kernels import Row
+from simconsole.profiles.bridge import BridgeProfile
+from simconsole.profiles.control import ControlProfile
+from simconsole.profiles.view import HudProfile
+from simconsole.rows import REMOTE_WIDTH, Snapshot
+from simconsole.shared_memory import EventCounters, Record, Ring
+from simconsole.signals import RemoteCommand
+
+SNAPSHOTS: Final = "snapshots"
+COMMAND: Final = "bridge.command"
+EVENTS: Final = "bridge.events"
+KEYS: Final = "hud.keys"
+ADDRESS: Final = "bridge.address"
+SCENE_JOB: Final = "scene.npz"
+SNAPSHOT_CAPACITY: Final = 1024
+SLOT_CAPACITY: Final = 4
+NO_RECEIPT: Final = -1
+
+
+def bridge(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> None:
+    """Serve rosbridge. Arguments: `profile` (BridgeProfile), `tick_hz`."""
+    from simconsole.bridge.server import serve
+
+    profile = msgspec.convert(arguments["profile"], BridgeProfile)
+    snapshots = NewestOnce(Ring.open(folder / SNAPSHOTS), int(arguments["tick_hz"]))
+    slot = Ring.open(folder / COMMAND, writable=True)
+    events = EventCounters.open(folder / EVENTS, writable=True)
+
+    def write_command(command: RemoteCommand, receipt_ns: int | None) -> None:
+        slot.write(np.array(command), NO_RECEIPT if receipt_ns is None else receipt_ns)
+
+    def ready(port: int) -> None:
+        part = folder / f"{ADDRESS}.part"
+        part.write_text(f"ws://{profile.host}:{port}", "utf-8")
+        part.replace(folder / ADDRESS)
+
+    serve(profile, snapshots, write_command, events.raise_events, stop, on_ready=ready)
+
+
+def hud(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> None:
+    """Show the cluster. Arguments: `profile` (HudProfile), `control` (ControlProfile), `tick_hz`."""
+    from simconsole.hud.view import settings_of
+    from simconsole.hud.window import Ports, run
+
+    profile = msgspec.convert(arguments["profile"], HudProfile)
+    control = msgspec.convert(arguments["control"], ControlProfile)
+    ring, tick_hz = Ring.open(folder / SNAPSHOTS), int(arguments["tick_hz"])
+    keys = Ring.open(folder / KEYS, writable=True)
+
+    def latest() -> Snapshot | None:
+        record = ring.latest()
+        return None if record is None else snapshot_of(record, tick_hz)
+
+    def report_keys(mask: int) -> None:
+        keys.write(np.array([float(mask)]), time.monotonic_ns())
+
+    run(Ports(latest, report_keys, stop), profile, settings_of(profile, control))
+
+
+def scene(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> None:
+    """Record the scene with rerun. Arguments: `path` (the .rrd), `tick_hz`; the course lies in the run folder."""
+    from simconsole.scene.follow import Ports, follow
+    from simconsole.scene.job import load_job
+
+    ring, tick_hz = Ring.open(folder / SNAPSHOTS), int(arguments["tick_hz"])
+    seen = ring.newest
+
+    def new_ticks() -> Sequence[Snapshot]:
+        nonlocal seen
+        records = ring.since(seen)
+        if records:
+            seen = records[-1].number
+        return [snapshot_of(record, tick_hz) for record in records]
+
+    follow(Ports(new_ticks, stop), load_job(folder / SCENE_JOB), Path(arguments["path"]))
+
+
+class NewestOnce:
+    """Returns the newest snapshot, or None when it was returned before."""
+
+    def __init__(self, ring: Ring, tick_hz: int) -> None:
+        self._ring = ring
+        self._tick_hz = tick_hz
+        self._seen = 0
+
+    def __call__(self) -> Snapshot | None:
+        """Return the newest snapshot that is new to this reader."""
+        if self._ring.newest == self._seen:
+            return None
+        record = self._ring.latest()
+        if record is None or record.number == self._seen:
+            return None
+        self._seen = record.number
+        return snapshot_of(record, self._tick_hz)
+
+
+def snapshot_of(record: Record, tick_hz: int) -> Snapshot:
+    """Return a ring's record as a snapshot; its stamp is the tick."""
+    return Snapshot(record.stamp, tick_hz, record.values)
+
+
+def command_of(values: Row) -> RemoteCommand:
+    """Return a slot's values as a command."""
+    return RemoteCommand(*values[:REMOTE_WIDTH].tolist())
