@@ -1,0 +1,45 @@
+"""The layout of a tick: derived from the signals, without gap or overlap, and read back by the snapshot's views."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from simconsole import rows
+from simconsole.rows import INPUT_WIDTH, PLATFORM_AT, STAGES, Snapshot, columns
+
+
+class PlatformState(NamedTuple):
+    """Stands for a vehicle's own columns."""
+
+    spin_radps: float
+
+
+def test_columns_are_named_by_stage_and_field_once_each() -> None:
+    names = columns(PlatformState)
+    assert len(names) == len(set(names)) == PLATFORM_AT + 1
+    assert names[0] == "sample.wheel_axis"
+    assert names[-1] == "platform.spin_radps"
+    assert all(name.count(".") == 1 for name in names)
+
+
+def test_stages_follow_each_other_without_gap_and_inputs_come_first() -> None:
+    at = 0
+    for stage, record in STAGES:
+        assert getattr(rows, f"{stage.upper()}_AT") == at
+        assert getattr(rows, f"{stage.upper()}_WIDTH") == len(record._fields)  # type: ignore[attr-defined]
+        at += len(record._fields)  # type: ignore[attr-defined]
+    assert at == PLATFORM_AT
+    inputs = {name.partition(".")[0] for name in columns(PlatformState)[:INPUT_WIDTH]}
+    assert inputs == {"sample", "remote", "events"}
+    assert columns(PlatformState)[INPUT_WIDTH].startswith("driver.")
+
+
+def test_views_of_a_snapshot_show_the_columns_of_their_stage() -> None:
+    row = np.arange(float(PLATFORM_AT))
+    snapshot = Snapshot(750, 250, row)
+    for stage, record in STAGES:
+        if hasattr(snapshot, stage):
+            view = getattr(snapshot, stage)
+            start = columns(PlatformState).index(f"{stage}.{record._fields[0]}")  # type: ignore[attr-defined]
+            assert view == record(*row[start : start + len(view)])
+    assert (snapshot.t_ns, snapshot.t_s) == (3_000_000_000, 3.0)

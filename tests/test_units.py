@@ -1,0 +1,44 @@
+"""Conversions: against their definitions, and their exact agreement with each other."""
+
+import math
+
+import pytest
+
+from simconsole import units
+
+
+@pytest.mark.parametrize(
+    ("factor", "definition"),
+    [
+        (units.RAD_PER_DEG, math.pi / 180.0),
+        (units.DEG_PER_RAD, 180.0 / math.pi),
+        (units.RADPS_PER_RPM, 2.0 * math.pi / 60.0),
+        (units.RPM_PER_RADPS, 60.0 / (2.0 * math.pi)),
+        (units.MPS_PER_KMH, 1000.0 / 3600.0),
+        (units.KMH_PER_MPS, 3600.0 / 1000.0),
+        (units.STANDARD_GRAVITY_MPS2, 9.80665),  # CGPM 1901
+    ],
+)
+def test_factor_is_its_definition(factor: float, definition: float) -> None:
+    assert factor == pytest.approx(definition, rel=2e-16)
+
+
+@pytest.mark.parametrize(
+    ("there", "back"),
+    [
+        (units.RAD_PER_DEG, units.DEG_PER_RAD),
+        (units.MPS_PER_KMH, units.KMH_PER_MPS),
+        (units.RADPS_PER_RPM, units.RPM_PER_RADPS),
+    ],
+)
+def test_there_and_back_is_one(there: float, back: float) -> None:
+    assert there * back == pytest.approx(1.0, rel=1e-15)
+
+
+def test_tick_time_never_drifts() -> None:
+    """Ten years at any rate: every whole second is a whole second."""
+    for tick_hz in (50, 250, 1000):
+        ten_years_s = 10 * 365 * 86_400
+        assert units.tick_time_ns(ten_years_s * tick_hz, tick_hz) == ten_years_s * 1_000_000_000
+    assert units.tick_time_ns(1, 300) == 3_333_333
+    assert units.tick_time_ns(300, 300) == 1_000_000_000
