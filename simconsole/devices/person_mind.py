@@ -20,6 +20,8 @@ from simconsole.units import MPS_PER_KMH, RAD_PER_DEG, RADPS_PER_RPM
 
 PRESS_S: Final = 0.2
 PRESS_AGAIN_S: Final = 1.5
+ANSWER_S: Final = 0.5
+"""How long the person waits for the console's answer to the button before they turn to something else."""
 GATE_S: Final = 0.15
 """How long the lever takes through neutral: longer than a bouncing contact, and what a hand needs (80 to 120 ms)."""
 MESH_S: Final = 2.0
@@ -158,7 +160,7 @@ class Person:
                 return NO_FEET
             if view.time_s - self._pressed_s >= PRESS_AGAIN_S:
                 self._pressed_s = view.time_s
-        elif self._wants_next_gear(view):
+        if view.time_s - self._pressed_s >= ANSWER_S and self._wants_next_gear(view):
             self._next_gear = self._intent.gear + 1.0
             self._go(Phase.SHIFT_OPEN, view)
         return _Target(self._cruise(view), 0.0, 0.0)

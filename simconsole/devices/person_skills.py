@@ -14,9 +14,11 @@ SPEED_NEAR_MPS: Final = 2.0
 
 BITE_FROM: Final = 0.8
 """Clutch pedals transmit nothing above this: the foot may be quick until there."""
-LABOURING_RPM: Final = 1100.0
-"""Nobody lets the clutch up further with the engine slower than this in a launch."""
-DYING_RPM: Final = 900.0
+HOLD_RPM: Final = 1250.0
+"""Where a foot stops letting the clutch up in a launch: faster engine, further up; slower engine, back down."""
+SENSE_RPM: Final = 250.0
+ALARM: Final = -6.0
+"""How much quicker than up the foot goes down before the engine dies."""
 LAUNCH_GAIN_S: Final = 0.006
 LAUNCH_THROTTLE: Final = 0.2
 
@@ -92,12 +94,9 @@ def launch_throttle(view: View, habits: Habits) -> float:
 
 
 def clutch_through_bite(foot: float, view: View, habits: Habits, tick_s: float) -> float:
-    """Return the clutch pedal one tick later: let up steadily, held while the engine labours, back down if it dies."""
-    rpm = view.engine_radps * RPM_PER_RADPS
-    if foot > BITE_FROM and rpm > LABOURING_RPM:
+    """Return the clutch pedal one tick later: up while the engine runs freely, held or pressed when it labours."""
+    ease = (view.engine_radps * RPM_PER_RADPS - HOLD_RPM) / SENSE_RPM
+    if foot > BITE_FROM and ease > 0.0:
         return foot - habits.foot_per_s * tick_s
-    if rpm < DYING_RPM:
-        return min(BITE_FROM, foot + habits.bite_release_per_s * tick_s)
-    if rpm < LABOURING_RPM:
-        return foot
-    return max(0.0, foot - habits.bite_release_per_s * tick_s)
+    up = habits.bite_release_per_s * min(1.0, max(ALARM, ease)) * tick_s
+    return min(1.0, max(0.0, foot - up))

@@ -1,0 +1,171 @@
+"""What the simulated person decides, seen from outside: views in, intents out. No car."""
+
+import math
+
+import pytest
+
+from simconsole.devices.person_mind import Person, Phase
+from simconsole.devices.person_skills import Line, View, clutch_through_bite, hold_speed, launch_throttle, steer_along
+from simconsole.devices.uncalibrate import Intent
+from simconsole.errors import ProfileError
+from simconsole.profile_files import parse
+from simconsole.profiles.person import Habits, PersonPlan, When
+from simconsole.signals import Button, Mode
+
+HZ = 250
+STANDING = View(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 84.0, 1.0, 0.0, float(Mode.MANUAL))
+
+
+class Watched:
+    """A person before a world that the test makes up."""
+
+    def __init__(self, **plan: object) -> None:
+        self.person = Person(PersonPlan(**plan), HZ)  # type: ignore[arg-type]  # tests name what they need
+        self.view = STANDING
+
+    def live(self, seconds: float, **seen: float) -> Intent:
+        for _ in range(round(seconds * HZ)):
+            self.view = self.view._replace(**seen)._replace(time_s=self.view.time_s + 1.0 / HZ)
+            intent = self.person.decide(self.view)
+        return intent
+
+    def rolling(self) -> None:
+        """Get to third gear at 10 m/s by claiming that everything works."""
+        self.live(2.0, gear=0.0)
+        for gear in (1.0, 2.0, 3.0):
+            self.live(4.0, gear=gear, speed_mps=3.0 * gear, engine_radps=250.0)
+        self.live(1.0, engine_radps=170.0, speed_mps=10.0)
+        assert self.person.phase is Phase.DRIVE
+        assert self.person.intent.gear == 3.0
+
+
+def test_nobody_drives_off_before_the_console_is_ready() -> None:
+    watched = Watched()
+    assert watched.live(5.0, mode=float(Mode.PARKED)) == Intent()
+    assert watched.live(2.0, mode=float(Mode.MANUAL)).clutch == 1.0
+
+
+def test_clutch_stays_down_until_the_gear_is_in() -> None:
+    watched = Watched()
+    intent = watched.live(10.0, gear=0.0)
+    assert (intent.clutch, intent.gear, intent.throttle) == (1.0, 1.0, 0.0)
+    assert watched.live(1.0, gear=1.0, engine_radps=180.0).clutch < 1.0
+
+
+def test_stalled_engine_is_started_again() -> None:
+    watched = Watched()
+    watched.live(4.0, gear=0.0)
+    watched.live(1.0, gear=1.0, engine_radps=150.0)
+    assert watched.live(0.5, engine_running=0.0, engine_radps=0.0).clutch == pytest.approx(1.0)
+    assert watched.person.phase is Phase.CLUTCH_DOWN
+    watched.live(1.0, engine_running=1.0, engine_radps=84.0)
+    assert watched.person.phase is Phase.BITE
+
+
+def test_autonomy_button_is_pressed_once_and_again_only_after_a_while() -> None:
+    watched = Watched(autonomy=When(distance_m=100.0))
+    watched.rolling()
+    presses = 0
+    for _ in range(4 * HZ):
+        before = watched.person.intent.pressed
+        intent = watched.live(1.0 / HZ, distance_m=120.0)
+        presses += intent.pressed == int(Button.AUTONOMOUS) and before == 0
+    assert presses == 3
+    assert watched.live(0.5, mode=float(Mode.AUTONOMOUS)).pressed == 0
+    assert watched.person.phase is Phase.WATCH
+
+
+def test_taking_back_turns_further_until_the_car_lets_go() -> None:
+    watched = Watched(autonomy=When(time_s=0.0), take_back=When(distance_m=500.0))
+    watched.rolling()
+    watched.live(1.0, mode=float(Mode.AUTONOMOUS))
+    still = watched.person.intent.hand_wheel_rad
+    first = watched.live(0.8, distance_m=501.0).hand_wheel_rad - still
+    assert first == pytest.approx(math.radians(12.0), abs=0.01)
+    assert watched.live(2.0).hand_wheel_rad - still > math.radians(20.0)
+    intent = watched.live(0.5, mode=float(Mode.MANUAL))
+    assert watched.person.phase is Phase.BRAKE
+    assert intent.brake == pytest.approx(0.3)
+
+
+def test_clutch_goes_down_when_the_automatic_left_another_gear_in() -> None:
+    watched = Watched(autonomy=When(time_s=0.0), take_back=When(distance_m=500.0))
+    watched.rolling()
+    watched.live(1.0, mode=float(Mode.AUTONOMOUS))
+    watched.live(1.0, distance_m=501.0, gear=5.0)
+    intent = watched.live(0.5, mode=float(Mode.MANUAL))
+    assert (intent.clutch, intent.brake) == (1.0, pytest.approx(0.3))
+
+
+@pytest.mark.parametrize("mode", [Mode.STOPPED, Mode.EMERGENCY_STOP])
+def test_car_that_stopped_by_itself_ends_the_drive(mode: Mode) -> None:
+    watched = Watched(autonomy=When(time_s=0.0))
+    watched.rolling()
+    watched.live(1.0, mode=float(Mode.AUTONOMOUS))
+    intent = watched.live(3.0, mode=float(mode), speed_mps=0.0)
+    assert watched.person.finished
+    assert (intent.gear, intent.brake) == (0.0, pytest.approx(0.3))
+
+
+def test_lost_console_makes_the_person_brake() -> None:
+    watched = Watched()
+    watched.rolling()
+    intent = watched.live(1.0, mode=float(Mode.MINIMAL_RISK))
+    assert (intent.throttle, intent.clutch, intent.brake) == (0.0, 1.0, pytest.approx(0.3))
+
+
+def test_after_taking_back_with_way_to_go_the_person_shifts_and_drives_on() -> None:
+    watched = Watched(autonomy=When(time_s=0.0), take_back=When(distance_m=500.0), stop=When(distance_m=600.0))
+    watched.rolling()
+    watched.live(1.0, mode=float(Mode.AUTONOMOUS), gear=4.0)
+    watched.live(0.5, distance_m=501.0)
+    watched.live(0.6, mode=float(Mode.MANUAL))
+    intent = watched.live(2.0, gear=3.0)
+    assert watched.person.phase is Phase.DRIVE
+    assert (intent.gear, intent.clutch) == (3.0, 0.0)
+    assert watched.live(0.5, distance_m=601.0).brake > 0.0
+
+
+@pytest.mark.parametrize("offset_m", [-2.0, -0.1, 0.1, 2.0])
+def test_steering_leads_back_to_the_line(offset_m: float) -> None:
+    line = Line(10.0, 20.0, 1.0)
+    beside = STANDING._replace(
+        x_m=10.0 - offset_m * math.sin(1.0), y_m=20.0 + offset_m * math.cos(1.0), yaw_rad=1.0, speed_mps=8.0
+    )
+    assert steer_along(line, beside, Habits()) * offset_m < 0.0
+    turned = STANDING._replace(x_m=10.0, y_m=20.0, yaw_rad=1.0 + 0.1 * offset_m + math.tau, speed_mps=8.0)
+    assert steer_along(line, turned, Habits()) * offset_m < 0.0
+
+
+def test_on_the_line_the_wheel_is_straight() -> None:
+    on_line = STANDING._replace(x_m=3.0, y_m=3.0, yaw_rad=math.pi / 4)
+    assert steer_along(Line(0.0, 0.0, math.pi / 4), on_line, Habits()) == pytest.approx(0.0)
+
+
+def test_throttle_stays_on_the_pedal() -> None:
+    assert hold_speed(30.0, 0.0, 0.0, 0.004, 0.6) == (0.6, 0.0)
+    assert hold_speed(0.0, 30.0, 0.4, 0.004, 0.6)[0] == 0.0
+    assert launch_throttle(STANDING._replace(engine_radps=600.0), Habits()) == 0.0
+
+
+def test_foot_feels_for_the_bite() -> None:
+    habits = Habits()
+    free, labouring, dying = (STANDING._replace(engine_radps=speed) for speed in (180.0, 120.0, 60.0))
+    assert clutch_through_bite(0.6, free, habits, 0.004) == pytest.approx(0.6 - 0.004 * habits.bite_release_per_s)
+    assert clutch_through_bite(0.6, labouring, habits, 0.004) > 0.6
+    assert clutch_through_bite(0.6, dying, habits, 0.004) > clutch_through_bite(0.6, labouring, habits, 0.004)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("autonomy: {}", "distance_m or time_s must be given"),
+        ("cruise_kmh: 500", "5 to 130"),
+        ("habits: {brake: 0}", "habits.brake"),
+        ("autonmy: {time_s: 1}", "did you mean autonomy"),
+        ("stop: {distance_m: .nan}", "finite"),
+    ],
+)
+def test_plan_that_cannot_be_meant_is_refused(text: str, message: str) -> None:
+    with pytest.raises(ProfileError, match=message):
+        parse(text, PersonPlan, "plan.yaml")
