@@ -92,7 +92,9 @@ def arbitrate(
     mode_ticks = 0.0 if decision.changed > 0.0 else memory.mode_ticks + 1.0
     throttle_override = throttle_overrides(memory.throttle_override, person.throttle, settings)
     shares = shares_of(decision.mode, throttle_override, before, settings)
-    side = remote_side(decision, shares, offered, link, memory, before, command_before, vehicle, settings, tick_s)
+    side = remote_side(
+        decision, shares, offered, link, person, memory, before, command_before, vehicle, settings, tick_s
+    )
     transmission = transmission_of(decision.mode, side.direction, driver, command_before, vehicle, settings)
     request = blend(decision.mode, shares, side, person, transmission, driver)
     return (

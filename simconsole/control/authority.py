@@ -2,13 +2,14 @@
 
 from typing import Final, NamedTuple
 
+from simconsole.control.angles import gentle_angle
 from simconsole.control.decision import Decision
 from simconsole.control.link import Link
 from simconsole.control.person import Person
 from simconsole.control.remote import RemoteRequest
 from simconsole.control.settings import ControlSettings
 from simconsole.control.stops import safe_stop, stop_start
-from simconsole.kernels import approach, kernel
+from simconsole.kernels import approach, clip, kernel
 from simconsole.signals import (
     ArbiterMemory,
     Arbitration,
@@ -82,6 +83,7 @@ def remote_side(
     shares: Shares,
     offered: RemoteRequest,
     link: Link,
+    person: Person,
     memory: ArbiterMemory,
     before: Arbitration,
     command_before: VehicleCommand,
@@ -98,6 +100,7 @@ def remote_side(
         shares: Authority of this tick.
         offered: What the controller's command means.
         link: Whether that command counts.
+        person: The person's side.
         memory: From the tick before.
         before: The requests of the tick before.
         command_before: What left the gate in the tick before: stops start from it.
@@ -109,13 +112,13 @@ def remote_side(
     entered = decision.changed > 0.0
     hold = command_before.road_wheel_rad if entered else memory.hold_road_wheel_rad
     if mode == _MANUAL and (shares.lateral > 0.0 or shares.longitudinal > 0.0):
-        return RemoteSide(
-            before.remote_road_wheel_rad, before.remote_throttle, before.remote_brake, 0.0, 0.0, 0.0, hold
-        )
+        return _fading_side(entered, hold, person, before, command_before)
     if mode in (_MANUAL, _SHARED, _AUTONOMOUS, _TAKEOVER_REQUESTED):
         if link.fresh == 0.0:
             return RemoteSide(command_before.road_wheel_rad, 0.0, 0.0, 0.0, 0.0, 0.0, hold)
         integral = offered.speed_integral_mps2 if mode != _MANUAL and shares.longitudinal >= 1.0 else 0.0
+        if mode == _SHARED:
+            offered = _held_back(offered, before, vehicle, settings, tick_s)
         return RemoteSide(
             offered.road_wheel_rad, offered.throttle, offered.brake, offered.direction, integral, 0.0, hold
         )
@@ -123,6 +126,58 @@ def remote_side(
         return _safe_side(entered, hold, memory, vehicle, settings, tick_s)
     brake = settings.emergency_brake if mode == _EMERGENCY_STOP else settings.hold_brake
     return RemoteSide(hold, 0.0, brake, 0.0, 0.0, 0.0, hold)
+
+
+@kernel
+def _fading_side(
+    entered: bool, hold_rad: float, person: Person, before: Arbitration, command_before: VehicleCommand
+) -> RemoteSide:
+    """Hold what the remote side contributed to the command in force at the hand-over, while its share fades out."""
+    if not entered:
+        return RemoteSide(
+            before.remote_road_wheel_rad, before.remote_throttle, before.remote_brake, 0.0, 0.0, 0.0, hold_rad
+        )
+    return RemoteSide(
+        _contribution(
+            before.remote_road_wheel_rad, command_before.road_wheel_rad, person.road_wheel_rad, before.remote_lateral
+        ),
+        _contribution(before.remote_throttle, command_before.throttle, person.throttle, before.remote_longitudinal),
+        _contribution(before.remote_brake, command_before.brake, person.brake, before.remote_longitudinal),
+        0.0,
+        0.0,
+        0.0,
+        hold_rad,
+    )
+
+
+@kernel
+def _contribution(asked: float, in_force: float, person: float, share: float) -> float:
+    """Return the remote value that explains the command in force: the gate may have held back what was asked for.
+
+    From share * remote + (1 - share) * person = in_force, kept between what was asked and what is in force.
+    """
+    if share <= 0.0:
+        return in_force
+    remote = person + (in_force - person) / share
+    return clip(remote, asked, in_force) if asked <= in_force else clip(remote, in_force, asked)
+
+
+@kernel
+def _held_back(
+    offered: RemoteRequest, before: Arbitration, vehicle: VehicleState, settings: ControlSettings, tick_s: float
+) -> RemoteRequest:
+    """Limit the controller's part of a shared command as in AUTONOMOUS: the gate must leave the person's hands free."""
+    most = settings.automatic_road_wheel_rad
+    gentle = gentle_angle(
+        clip(offered.road_wheel_rad, -most, most), settings.automatic_lateral_accel_mps2, vehicle, settings
+    )
+    return RemoteRequest(
+        approach(before.remote_road_wheel_rad, gentle, settings.automatic_road_wheel_radps * tick_s),
+        approach(before.remote_throttle, offered.throttle, settings.automatic_throttle_slew_per_s * tick_s),
+        approach(before.remote_brake, offered.brake, settings.automatic_brake_slew_per_s * tick_s),
+        offered.direction,
+        offered.speed_integral_mps2,
+    )
 
 
 @kernel
@@ -141,7 +196,7 @@ def _safe_side(
     return RemoteSide(
         road_wheel_rad,
         0.0,
-        stop.pedals.brake,
+        stop.brake,
         0.0,
         stop.integral_mps2,
         stop.stop_accel_mps2,

@@ -11,6 +11,7 @@ from simconsole.signals import Mode, Reason, RemoteCommand, RemoteKind, VehicleS
 _PARKED: Final = float(Mode.PARKED)
 _MANUAL: Final = float(Mode.MANUAL)
 _SHARED: Final = float(Mode.SHARED)
+_AUTONOMOUS: Final = float(Mode.AUTONOMOUS)
 _SPEED: Final = float(RemoteKind.SPEED)
 _TWIST: Final = float(RemoteKind.TWIST)
 
@@ -51,8 +52,8 @@ def engage_refusal(
         return _NOT_ARMED
     if link.fresh == 0.0 or link.invalid > 0.0:
         return _NO_COMMAND
-    first = mode in (_PARKED, _MANUAL, _SHARED)
-    if link.fresh_ticks < (settings.engage_stable_ticks if first else settings.reengage_stable_ticks):
+    well = mode in (_PARKED, _MANUAL, _SHARED, _AUTONOMOUS)
+    if link.fresh_ticks < (settings.engage_stable_ticks if well else settings.reengage_stable_ticks):
         return _NOT_STABLE
     if person.brake >= settings.brake_override:
         return _BRAKE

@@ -7,6 +7,7 @@ Throttle is the exception downwards: with the brake pressed or in a stop it is c
 
 from typing import Final, NamedTuple
 
+from simconsole.control.angles import gentle_angle
 from simconsole.control.longitudinal import known
 from simconsole.control.settings import ControlSettings
 from simconsole.kernels import approach, clip, is_finite, kernel
@@ -20,7 +21,6 @@ from simconsole.signals import (
     VehicleCommand,
     VehicleState,
 )
-from simconsole.trigonometry import atan
 
 _PARKED: Final = float(Mode.PARKED)
 _MANUAL: Final = float(Mode.MANUAL)
@@ -39,7 +39,6 @@ _GEAR: Final = int(GateLimit.GEAR)
 
 _SAFE_BRAKE: Final = 0.3
 """Stands in for a brake request that is not finite: slows any car, locks none on a dry road."""
-_MOST_MPS: Final = 100.0
 _MOST_YAW_RAD: Final = 1000.0
 
 
@@ -172,14 +171,9 @@ def _road_wheel(
     ranged = clip(wanted, -limits.road_wheel_rad, limits.road_wheel_rad)
     if ranged != wanted:
         active |= _RANGE
-    speed = clip(known(vehicle.vx_mps, 0.0), -_MOST_MPS, _MOST_MPS)
-    gentle = ranged
-    if limits.lateral_accel_mps2 > 0.0 and abs(speed) > settings.standstill_speed_mps:
-        # Kinematic single track: lateral acceleration = v^2 tan(angle) / wheelbase.
-        most = atan(limits.lateral_accel_mps2 * settings.wheelbase_m / (speed * speed))
-        gentle = clip(ranged, -most, most)
-        if gentle != ranged:
-            active |= _LATERAL
+    gentle = gentle_angle(ranged, limits.lateral_accel_mps2, vehicle, settings)
+    if gentle != ranged:
+        active |= _LATERAL
     moved = approach(before_rad, gentle, limits.road_wheel_radps * tick_s)
     if moved != gentle:
         active |= _RATE

@@ -42,11 +42,17 @@ def pedals_for(accel_mps2: float, travel: float, vehicle: VehicleState, settings
         return Pedals(clip((accel_mps2 - coast) / span, 0.0, 1.0), 0.0)
     if accel_mps2 > coast - settings.coast_band_mps2:
         return Pedals(0.0, 0.0)
-    full = known(travel * vehicle.full_brake_accel_mps2, coast)
-    span = coast - full
+    return Pedals(0.0, brake_for(accel_mps2, travel, vehicle, settings))
+
+
+@kernel
+def brake_for(accel_mps2: float, travel: float, vehicle: VehicleState, settings: ControlSettings) -> float:
+    """Return the brake alone for a finite acceleration along the direction of travel, without the coasting band."""
+    coast = clip(known(travel * vehicle.coast_accel_mps2, 0.0), -_MOST_MPS2, _MOST_MPS2)
+    span = coast - known(travel * vehicle.full_brake_accel_mps2, coast)
     if span < _LEAST_SPAN_MPS2 or span > _MOST_MPS2:
         span = settings.nominal_brake_accel_mps2
-    return Pedals(0.0, clip((coast - accel_mps2) / span, 0.0, 1.0))
+    return clip((coast - accel_mps2) / span, 0.0, 1.0)
 
 
 @kernel

@@ -43,7 +43,7 @@ MEANING: Final[dict[Trigger, str]] = {
     Trigger.LOOP_STALL: "the control loop stood still for more than 100 ms",
     Trigger.DEVICE_LOST: "wheel or pedals are not trusted (any more) and a person is needed",
     Trigger.COMMANDER_LOST: "the controller's connection closed",
-    Trigger.COMMAND_STALE: "no command for 200 ms",
+    Trigger.COMMAND_STALE: "no command for 200 ms, or no answer in lockstep",
     Trigger.COMMAND_INVALID: "five refused commands in a row, or one that is not finite",
     Trigger.TAKEOVER_ASKED: "the controller or an operator asks the person to take over",
     Trigger.NO_REACTION: "ten seconds after a take-over request nobody has reacted",

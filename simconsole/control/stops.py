@@ -2,7 +2,7 @@
 
 from typing import Final, NamedTuple
 
-from simconsole.control.longitudinal import Pedals, integrate, known, pedals_for
+from simconsole.control.longitudinal import brake_for, integrate, known
 from simconsole.control.settings import ControlSettings
 from simconsole.kernels import approach, clip, kernel
 from simconsole.signals import VehicleState
@@ -11,7 +11,7 @@ from simconsole.signals import VehicleState
 class Stopping(NamedTuple):
     """A safe stop after this tick."""
 
-    pedals: Pedals
+    brake: float
     stop_accel_mps2: float  # deceleration asked for (<= 0), along the direction of travel
     integral_mps2: float
 
@@ -45,11 +45,10 @@ def safe_stop(
 ) -> Stopping:
     """Brake to a standstill: 2.5 m/s2 reached with 1.5 m/s3, corrected by a bounded integral, never beyond 4 m/s2."""
     if slow(vehicle, settings):
-        return Stopping(Pedals(0.0, settings.hold_brake), stop_accel_mps2, 0.0)
+        return Stopping(settings.hold_brake, stop_accel_mps2, 0.0)
     accel = approach(stop_accel_mps2, -settings.stop_decel_mps2, settings.stop_jerk_mps3 * tick_s)
     travel = travel_of(vehicle)
     measured = clip(known(travel * vehicle.ax_mps2, accel), -_MOST_MPS2, _MOST_MPS2)
     integral = integrate(integral_mps2, accel - measured, settings, tick_s)
     wanted = clip(accel + integral, -settings.stop_decel_max_mps2, 0.0)
-    pedals = pedals_for(wanted, travel, vehicle, settings)
-    return Stopping(Pedals(0.0, pedals.brake), accel, integral)
+    return Stopping(brake_for(wanted, travel, vehicle, settings), accel, integral)

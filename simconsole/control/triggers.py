@@ -25,6 +25,7 @@ _EVENT_TAKEOVER: Final = int(Event.REQUEST_TAKEOVER)
 _EVENT_SHARED: Final = int(Event.REQUEST_SHARED)
 _EVENT_COMMANDER_LOST: Final = int(Event.COMMANDER_LOST)
 _EVENT_LOOP_STALL: Final = int(Event.LOOP_STALL)
+_EVENT_NO_ANSWER: Final = int(Event.NO_ANSWER)
 
 _BUTTON_EMERGENCY: Final = int(Button.EMERGENCY_STOP)
 _BUTTON_RESET: Final = int(Button.RESET)
@@ -139,7 +140,7 @@ def fault_triggers(link: Link, events: int, no_reaction: bool, standing: bool) -
         present |= _COMMANDER_LOST
     if link.invalid > 0.0:
         present |= _COMMAND_INVALID
-    elif link.fresh == 0.0:
+    elif link.fresh == 0.0 or events & _EVENT_NO_ANSWER != 0:
         present |= _COMMAND_STALE
     if no_reaction:
         present |= _NO_REACTION

@@ -124,8 +124,8 @@ class Rig:
 
     def send(self, kind: RemoteKind = RemoteKind.ACCELERATION, **fields: float) -> None:
         """Let the controller send at 50 Hz from now on."""
-        base = SILENT._replace(sequence=self.remote.sequence, refused=self.remote.refused, direction=1.0)
-        self.remote = base._replace(kind=float(kind), **fields)
+        base = SILENT._replace(age_ticks=0.0, refused=self.remote.refused, direction=1.0)
+        self.remote = base._replace(kind=float(kind), sequence=self.remote.sequence + 1.0, **fields)
         self.sending = True
 
     def refuse(self, count: int = 1) -> None:

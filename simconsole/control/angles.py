@@ -1,0 +1,27 @@
+"""How far an automatic source may turn the road wheels at a speed."""
+
+from typing import Final
+
+from simconsole.control.longitudinal import known
+from simconsole.control.settings import ControlSettings
+from simconsole.kernels import clip, kernel
+from simconsole.signals import VehicleState
+from simconsole.trigonometry import atan
+
+_MOST_MPS: Final = 100.0
+
+
+@kernel
+def gentle_angle(
+    road_wheel_rad: float, lateral_accel_mps2: float, vehicle: VehicleState, settings: ControlSettings
+) -> float:
+    """Return a finite angle, reduced so that the lateral acceleration stays inside the limit; 0 is no limit.
+
+    Kinematic single track: lateral acceleration = speed^2 tan(angle) / wheelbase. A speed that is not finite counts as
+    standing: straightening the wheels because a number is broken would be the worse error.
+    """
+    speed = clip(known(vehicle.vx_mps, 0.0), -_MOST_MPS, _MOST_MPS)
+    if lateral_accel_mps2 <= 0.0 or abs(speed) <= settings.standstill_speed_mps:
+        return road_wheel_rad
+    most = atan(lateral_accel_mps2 * settings.wheelbase_m / (speed * speed))
+    return clip(road_wheel_rad, -most, most)
