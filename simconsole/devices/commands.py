@@ -14,7 +14,7 @@ from simconsole.devices.settings import settings
 from simconsole.devices.trace import TraceHeader
 from simconsole.devices.virtual_cockpit import VirtualCockpit
 from simconsole.devices.watch import Watch
-from simconsole.profiles.device import CockpitProfile, ScriptPoint, ScriptProfile
+from simconsole.profiles.device import Buttons, CockpitProfile, ScriptPoint, ScriptProfile
 from simconsole.signals import DeviceSample
 
 Say = Callable[[str], None]
@@ -83,8 +83,8 @@ def check_devices(
         DeviceError: a device is missing or cannot drive.
     """
     watch = Watch(cockpit, tick_hz)
-    say(f"{cockpit.title}: turn the wheel to both sides, press every pedal, move the lever ({duration_s:g} s)")
     with _Cockpit(cockpit, virtual, tick_hz) as opened:
+        say(f"{cockpit.title}: turn the wheel to both sides, press every pedal, move the lever ({duration_s:g} s)")
         ticks = round(duration_s * tick_hz)
         opened.poll(ticks, pace or realtime(tick_hz), lambda tick, sample: watch.see(sample))
     results = watch.results()
@@ -172,13 +172,17 @@ def exercise(cockpit: CockpitProfile) -> ScriptProfile:
     for pedal in ("throttle", "brake", "clutch"):
         for share in (0.0, 1.0, 0.0):
             points.append(ScriptPoint(time_s=at_s, **{pedal: share}))  # type: ignore[arg-type]  # a key of its own
-            at_s += 0.4
+            at_s += 0.25
     for angle_deg in (0.0, 90.0, -90.0, 0.0):
         points.append(ScriptPoint(time_s=at_s, hand_wheel_deg=angle_deg))
-        at_s += 0.4
+        at_s += 0.25
     gears = [*range(1, len(cockpit.shifter.gears) + 1), *([] if cockpit.shifter.reverse is None else [-1])]
     for gear in gears:
         points.append(ScriptPoint(time_s=at_s, gear=gear))
         points.append(ScriptPoint(time_s=at_s + 0.2, gear=0))
-        at_s += 0.4
+        at_s += 0.3
+    for button in Buttons.__struct_fields__:
+        if getattr(cockpit.buttons, button) is not None:
+            points.append(ScriptPoint(time_s=at_s, press=[button]))  # type: ignore[list-item]  # the same names
+            at_s += 0.25
     return ScriptProfile(title="exercise", points=points)

@@ -50,9 +50,10 @@ def test_check_of_a_good_cockpit_finds_everything(t500: CockpitProfile) -> None:
     results = check_devices(t500, say=Paper(), duration_s=10.0, virtual=True, pace=at_once)
     assert results["ok"]
     assert results["problems"] == results["notes"] == []
+    assert len(results["buttons"]) == 9
     assert results["gears"] == [-1, 0, 1, 2, 3, 4, 5, 6, 7]
-    assert results["pedals"]["clutch"]["most"] == pytest.approx(1.0)
-    assert results["wheel_deg"]["most"] == pytest.approx(90.0, abs=0.1)
+    assert results["pedals"]["clutch"]["most"] == pytest.approx(1.0, abs=0.02)
+    assert results["wheel_deg"]["most"] == pytest.approx(90.0, abs=2.0)
 
 
 def test_check_says_what_was_not_tried(t500: CockpitProfile) -> None:
@@ -91,7 +92,7 @@ def test_recorded_trace_plays_what_the_devices_showed(t500: CockpitProfile, tmp_
     seat = Seat(Watch(t500, 250)._settings)
     throttle = [seat.feel(source.poll(tick)).throttle for tick in range(1, 501)]
     source.close()
-    assert max(throttle) == pytest.approx(1.0)
+    assert max(throttle) == pytest.approx(1.0, abs=0.02)
     assert source.header.cockpit == "t500rs_th8rs"
 
 
