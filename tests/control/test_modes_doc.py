@@ -1,4 +1,7 @@
+import runpy
 from pathlib import Path
+
+import pytest
 
 from simconsole.control.modes import REACTIONS, Trigger
 from simconsole.control.modes_doc import text
@@ -25,3 +28,9 @@ def test_every_transition_is_drawn_once() -> None:
 def test_every_trigger_is_explained() -> None:
     for trigger in Trigger:
         assert f"| {trigger.name} | " in text()
+
+
+def test_the_command_prints_the_page(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.warns(RuntimeWarning, match="found in sys.modules"):
+        runpy.run_module("simconsole.control.modes_doc", run_name="__main__")
+    assert capsys.readouterr().out == text()

@@ -31,7 +31,7 @@ from simconsole.signals import (
 
 Rows = NDArray[np.float64]
 SEED: Final = 20_260_301
-STEPS: Final = 200_000
+STEPS: Final = 350_000
 DRIVER_WIDTH: Final = len(DriverInput._fields)
 REMOTE_WIDTH: Final = len(RemoteCommand._fields)
 VEHICLE_WIDTH: Final = len(VehicleState._fields)
