@@ -1,13 +1,10 @@
 """From resolved profiles to a console that is ready to drive: pure, so that a replay builds exactly the same one."""
 
-from collections.abc import Callable
-from typing import Any, TypeVar
-
 from msgspec import Struct
 
 from simconsole.control.settings import settings as control_settings
 from simconsole.devices.calibration import settings as cockpit_settings
-from simconsole.pipeline import Console, ConsoleState, build_console, initial_state
+from simconsole.pipeline import Console, ConsoleState, Execution, build_console, initial_state
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.session import SessionProfile
 from simconsole.profiles.vehicle import VehicleProfile
@@ -15,8 +12,6 @@ from simconsole.profiles.world import WorldProfile
 from simconsole.units import RAD_PER_DEG
 from simconsole.vehicle.platform import Ground, Pose
 from simconsole.vehicle.registry import build
-
-F = TypeVar("F", bound=Callable[..., Any])
 
 
 class ResolvedSession(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -28,7 +23,7 @@ class ResolvedSession(Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     world: WorldProfile | None = None
 
 
-def assemble(resolved: ResolvedSession, execution: Callable[[F], F]) -> tuple[Console, ConsoleState]:
+def assemble(resolved: ResolvedSession, execution: Execution) -> tuple[Console, ConsoleState]:
     """Return the console and its state before the first tick."""
     session = resolved.session
     start, environment, tick_hz = session.scenario.start, session.environment, session.mode.tick_hz
@@ -39,9 +34,7 @@ def assemble(resolved: ResolvedSession, execution: Callable[[F], F]) -> tuple[Co
     )
     console = build_console(
         cockpit_settings(resolved.cockpit, tick_hz),
-        control_settings(
-            session.features.control, platform.steering_ratio, platform.max_road_wheel_rad, tick_hz
-        ),
+        control_settings(session.features.control, platform.steering_ratio, platform.max_road_wheel_rad, tick_hz),
         platform,
         tick_hz,
         execution,

@@ -69,7 +69,7 @@ def open_realtime(
     ring, port, keys = make_memory(folder, console)
     supervisor = Supervisor(folder, station_specs(resolved, console, folder, bundle))
     programs: list[Popen[bytes]] = []
-    stack.callback(lambda: [end_program(program) for program in programs])
+    stack.callback(_end_programs, programs)
     stack.callback(supervisor.stop)
     supervisor.start()
     session = resolved.session
@@ -86,6 +86,11 @@ def open_realtime(
         return {**pace.summary(), "station_restarts": supervisor.counters(), "not_granted": missing}
 
     return Opened(cast, seating.finished, summary)
+
+
+def _end_programs(programs: list[Popen[bytes]]) -> None:
+    for program in programs:
+        end_program(program)
 
 
 def _open_lockstep(resolved: ResolvedSession, console: Console, stack: ExitStack) -> LockstepLink:

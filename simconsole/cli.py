@@ -56,9 +56,7 @@ def _print_json(results: dict[str, Any]) -> None:
 
 
 def _command(commands: Any, name: str, does: str, summary: str) -> argparse.ArgumentParser:
-    command: argparse.ArgumentParser = commands.add_parser(
-        name, help=summary, description=summary, allow_abbrev=False
-    )
+    command: argparse.ArgumentParser = commands.add_parser(name, help=summary, description=summary, allow_abbrev=False)
     command.set_defaults(does=does)
     command.add_argument("--json", action="store_true", help="print the results as one JSON object on the last line")
     return command

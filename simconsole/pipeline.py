@@ -5,14 +5,15 @@ this same function; only where inputs come from, how ticks are paced and who rea
 """
 
 from collections.abc import Callable
-from typing import Any, Final, NamedTuple, TypeVar
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
 from simconsole.control.arbitration import arbitrate
 from simconsole.control.gate import gate
 from simconsole.control.settings import ControlSettings
-from simconsole.devices.calibration import CockpitSettings, calibrate
+from simconsole.devices.calibration import calibrate
+from simconsole.devices.cockpit import ABSENT, CockpitSettings
 from simconsole.kernels import Row, kernel, put, take
 from simconsole.rows import (
     ARBITRATION_AT,
@@ -50,7 +51,8 @@ from simconsole.signals import (
 )
 from simconsole.vehicle.platform import Platform
 
-F = TypeVar("F", bound=Callable[..., Any])
+Execution = Callable[[Callable[..., Any]], Callable[..., Any]]
+"""How kernels run: `compiling.compiled` or `compiling.plain`."""
 
 COCKPIT_AT: Final = 0
 COCKPIT_WIDTH: Final = len(CockpitSettings._fields)
@@ -59,12 +61,7 @@ CONTROL_WIDTH: Final = len(ControlSettings._fields)
 PHYSICS_HZ: Final = 1000
 """The vehicle integrates at a fixed 1 ms whatever the tick."""
 
-NO_SAMPLE: Final = DeviceSample(
-    *(0.0,) * (SAMPLE_WIDTH - 3),
-    wheel_age_ticks=NEVER_TICKS,
-    pedals_age_ticks=NEVER_TICKS,
-    shifter_age_ticks=NEVER_TICKS,
-)
+NO_SAMPLE: Final = ABSENT
 NO_COMMAND: Final = RemoteCommand(*(0.0,) * REMOTE_WIDTH)._replace(age_ticks=NEVER_TICKS)
 NO_EVENTS: Final = EventInput(events=0.0)
 
@@ -95,7 +92,7 @@ class ConsoleState(NamedTuple):
 
 
 def build_console(
-    cockpit: CockpitSettings, control: ControlSettings, platform: Platform, tick_hz: int, execution: Callable[[F], F]
+    cockpit: CockpitSettings, control: ControlSettings, platform: Platform, tick_hz: int, execution: Execution
 ) -> Console:
     """Put a console together. `execution` is `compiling.compiled` or `compiling.plain`; both give equal bits.
 
@@ -111,8 +108,8 @@ def build_console(
         width=PLATFORM_AT + len(platform.initial_state),
         settings=np.array((*cockpit, *control), dtype=np.float64),
         platform=platform,
-        decide=execution(decide),  # type: ignore[type-var]
-        step=execution(platform.step),  # type: ignore[type-var]
+        decide=execution(decide),
+        step=execution(platform.step),
     )
 
 

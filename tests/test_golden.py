@@ -24,7 +24,9 @@ def test_samples_are_the_ticks_of_the_rate() -> None:
 def test_one_changed_bit_is_named() -> None:
     golden = driven()
     tick, row = golden.samples[3]
-    changed = golden._replace(samples=(*golden.samples[:3], (tick, (row[0], np.nextafter(row[1], 9.0))), golden.samples[4]))
+    changed = golden._replace(
+        samples=(*golden.samples[:3], (tick, (row[0], np.nextafter(row[1], 9.0))), golden.samples[4])
+    )
     difference = first_difference(golden, changed)
     assert difference is not None
     assert (difference.tick, difference.column) == (8, "vehicle.vx_mps")

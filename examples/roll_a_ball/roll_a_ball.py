@@ -1,7 +1,7 @@
 """Roll a ball from the ROS side: send desired speed and desired pose, read the current pose.
 
-    simconsole drive roll_a_ball --out out/ball        # the console, in one terminal
-    python examples/roll_a_ball/roll_a_ball.py         # this program, in another
+simconsole drive roll_a_ball --out out/ball        # the console, in one terminal
+python examples/roll_a_ball/roll_a_ball.py         # this program, in another
 """
 
 import argparse
@@ -16,6 +16,7 @@ ARRIVED_M = 0.05
 
 
 def main() -> None:
+    """Connect, set the speed, roll."""
     words = argparse.ArgumentParser(description="Roll a ball round a square, over rosbridge.")
     words.add_argument("--url", default="ws://127.0.0.1:9090")
     with BridgeClient(words.parse_args().url, connect_timeout_s=30.0) as client:

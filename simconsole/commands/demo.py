@@ -39,7 +39,9 @@ def summary_text(folder: Path, metrics: dict[str, Any], summary: dict[str, Any])
         rows.append(("by the autopilot", f"{part['distance_m']:.1f} m at {part['mean_speed_kmh']:.1f} km/h on average"))
     if part and part["lateral_rms_m"] is not None:
         rms, largest = part["lateral_rms_m"] * 100.0, part["lateral_max_m"] * 100.0
-        rows.append(("lateral error", f"RMS {rms:.2f} cm, max {largest:.2f} cm (base_link against the theoretical path)"))
+        rows.append(
+            ("lateral error", f"RMS {rms:.2f} cm, max {largest:.2f} cm (base_link against the theoretical path)")
+        )
     rows += [(f"mode at {c['t_s']:7.2f} s", f"{c['mode']} ({c['reason']})") for c in metrics["mode_changes"]]
     rows += [
         ("tick lateness", summary["lateness"]),

@@ -13,7 +13,7 @@ EventName = Literal[
 ]
 
 
-class RemoteStep(Section):
+class RemoteStep(Section, frozen=True, kw_only=True):
     """A controller on the ROS side that repeats one command from `start_s` until `end_s`."""
 
     start_s: Seconds
@@ -31,14 +31,14 @@ class RemoteStep(Section):
     direction: Literal[-1, 0, 1] = 1
 
 
-class EventStep(Section):
+class EventStep(Section, frozen=True, kw_only=True):
     """An edge at one instant: an operator's act or a lost commander."""
 
     at_s: Seconds
     event: EventName
 
 
-class Check(Section):
+class Check(Section, frozen=True, kw_only=True):
     """A bound on one column: at `at_s`, or at every tick from `from_s` to `until_s` when `at_s` is absent."""
 
     column: str
@@ -49,7 +49,7 @@ class Check(Section):
     max: float | None = None
 
 
-class ScenarioProfile(Section):
+class ScenarioProfile(Section, frozen=True, kw_only=True):
     """A headless regression drive: everything that goes in, and the bounds on what comes out."""
 
     schema: Literal[1]
@@ -57,7 +57,7 @@ class ScenarioProfile(Section):
     duration_s: Annotated[float, Meta(gt=0.0, le=86_400.0)]
     session: SessionProfile
     script: ScriptProfile | None = None
-    remote: list[RemoteStep] = []
-    events: list[EventStep] = []
-    checks: list[Check] = []
+    remote: tuple[RemoteStep, ...] = ()
+    events: tuple[EventStep, ...] = ()
+    checks: tuple[Check, ...] = ()
     golden_hz: Literal[1, 2, 5, 10, 25, 50] = 2

@@ -17,7 +17,7 @@ class Section(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Base of every section: unknown keys are errors."""
 
 
-class Start(Section):
+class Start(Section, frozen=True, kw_only=True):
     """Where base_link stands at tick 0."""
 
     x_m: Annotated[float, Meta(ge=-1e5, le=1e5)] = 0.0
@@ -25,7 +25,7 @@ class Start(Section):
     yaw_deg: Annotated[float, Meta(ge=-180.0, le=180.0)] = 0.0
 
 
-class Environment(Section):
+class Environment(Section, frozen=True, kw_only=True):
     """The world and the ground under the wheels."""
 
     world: Name | None = None
@@ -34,7 +34,7 @@ class Environment(Section):
     slope_y_percent: Annotated[float, Meta(ge=-40.0, le=40.0)] = 0.0
 
 
-class Scenario(Section):
+class Scenario(Section, frozen=True, kw_only=True):
     """What is driven: the vehicle, from where, how long."""
 
     vehicle: Name = "hatchback"
@@ -42,7 +42,7 @@ class Scenario(Section):
     duration_s: Annotated[float, Meta(gt=0.0, le=86_400.0)] | None = None
 
 
-class Features(Section):
+class Features(Section, frozen=True, kw_only=True):
     """What the console does beside driving: who may command, and how it supervises them."""
 
     control: ControlProfile = ControlProfile()
@@ -50,7 +50,7 @@ class Features(Section):
     """Start `simconsole autopilot` on this course, as a program of its own that only speaks rosbridge."""
 
 
-class Outputs(Section):
+class Outputs(Section, frozen=True, kw_only=True):
     """Who sees the drive."""
 
     bridge: BridgeProfile | None = None
@@ -59,7 +59,7 @@ class Outputs(Section):
     report: bool = True
 
 
-class Devices(Section):
+class Devices(Section, frozen=True, kw_only=True):
     """The cockpit."""
 
     cockpit: Name = "t500rs_th8rs"
@@ -68,7 +68,7 @@ class Devices(Section):
     """What the simulated person does where `driver` is virtual."""
 
 
-class ModeSection(Section):
+class ModeSection(Section, frozen=True, kw_only=True):
     """How time passes."""
 
     tick_hz: Literal[50, 100, 125, 200, 250, 500, 1000] = 250
@@ -78,7 +78,7 @@ class ModeSection(Section):
     answer_timeout_s: Annotated[float, Meta(gt=0.0, le=60.0)] = 2.0
 
 
-class SessionProfile(Section):
+class SessionProfile(Section, frozen=True, kw_only=True):
     """One drive."""
 
     schema: Literal[1]
