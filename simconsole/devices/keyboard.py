@@ -39,6 +39,10 @@ _BUTTONS: Final = (
 )
 
 
+FRESH_S: Final = 0.05
+"""The window tells the keys at its frame rate, not at the tick's: between two frames the hands go on moving."""
+
+
 class KeyboardSource:
     """Turns held keys into raw samples. A gear key also works the clutch for as long as it is held."""
 
@@ -47,12 +51,13 @@ class KeyboardSource:
         self._keys = keys
         self._settings = settings
         self._tick_s = 1.0 / tick_hz
+        self._fresh_ticks = round(FRESH_S * tick_hz)
         self._intent = Intent()
 
     def poll(self, tick: int) -> DeviceSample:
-        """Return the cockpit one tick on. While the keys are not fresh nothing moves; the age tells."""
+        """Return the cockpit one tick on. While the window is silent nothing moves; the age tells."""
         mask, age_ticks = self._keys()
-        if age_ticks == 0:
+        if age_ticks <= self._fresh_ticks:
             self._intent = self._moved(Key(mask))
         age = float(age_ticks)
         return uncalibrate(self._intent, self._settings)._replace(

@@ -68,8 +68,17 @@ def test_every_key_of_a_button_presses_it(button: Button, board: Board) -> None:
 
 def test_silent_window_holds_and_then_goes_stale(board: Board) -> None:
     pressed = board.hold(Key.THROTTLE, 0.2).throttle
-    board.age = 10
+    board.age = 20
     assert board.hold(Key.THROTTLE, 0.2).throttle == pressed
     board.age = 26
     driver = board.hold(Key.THROTTLE, 0.01)
     assert (driver.throttle, driver.throttle_validity) == (0.0, STALE)
+
+
+def test_a_window_slower_than_the_tick_does_not_slow_the_hands(keyboard_settings: CockpitSettings) -> None:
+    """Keys come at 60 frames a second, ticks at 250: a pedal rises by the clock, not by the frame."""
+    framed = KeyboardSource(lambda: (int(Key.THROTTLE), next(ages)), keyboard_settings, tick_hz=250)
+    every_tick = KeyboardSource(lambda: (int(Key.THROTTLE), 0), keyboard_settings, tick_hz=250)
+    ages = iter(tick % 4 for tick in range(60))
+    for tick in range(60):
+        assert framed.poll(tick).throttle_axis == every_tick.poll(tick).throttle_axis
