@@ -31,7 +31,10 @@ def _with_options(session: SessionProfile, words: Namespace) -> SessionProfile:
     if words.duration_s is not None:
         session = override(session, scenario={"duration_s": words.duration_s})
     if words.driver is not None:
-        session = override(session, devices={"driver": words.driver})
+        devices = {"driver": words.driver}
+        if words.driver == "keyboard":
+            devices["cockpit"] = "keyboard"  # keys are not the axes of the session's wheel
+        session = override(session, devices=devices)
     if words.headless:
         pacing = "free" if session.mode.pacing == "realtime" else session.mode.pacing
         session = override(session, outputs={"hud": None}, mode={"pacing": pacing})
