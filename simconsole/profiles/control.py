@@ -48,9 +48,7 @@ class ControlProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_f
     stop_jerk_mps3: Acceleration = 1.5  # AW mrm_emergency_stop -1.5
     stop_decel_max_mps2: Acceleration = 4.0  # R157 5.5: demand of at most 4.0
     stop_road_wheel_decay_radps: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)] = 0.05  # curvature held, slowly to 0
-    emergency_brake: Annotated[float, msgspec.Meta(ge=0.5, le=1.0)] = (
-        1.0  # full service brake, the 6 m/s2 class or more
-    )
+    emergency_brake: Annotated[float, msgspec.Meta(ge=0.5, le=1.0)] = 1.0  # full service brake: 6 m/s2 class or more
     hold_brake: Annotated[float, msgspec.Meta(ge=0.1, le=1.0)] = 0.4  # holds a 24 % slope on a car of 6 m/s2 brakes
     standstill_speed_mps: Annotated[float, msgspec.Meta(gt=0.0, le=0.5)] = 0.1
     standstill_s: Annotated[float, msgspec.Meta(ge=0.0, le=5.0)] = 0.3
@@ -87,7 +85,7 @@ class ControlProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_f
     automatic_throttle_slew_per_s: Slew = 4.0
     automatic_brake_slew_per_s: Slew = 6.0
     stop_road_wheel_rate_radps: Annotated[float, msgspec.Meta(gt=0.0, le=5.0)] = 0.5
-    emergency_brake_slew_per_s: Slew = 25.0
+    emergency_brake_slew_per_s: Annotated[float, msgspec.Meta(ge=5.0, le=1000.0)] = 1000.0  # full in the same tick
     reverse_speed_max_mps: Annotated[float, msgspec.Meta(gt=0.0, le=5.0)] = 2.0  # faster: no change of direction
     gear_max: Annotated[int, msgspec.Meta(ge=1, le=10)] = 7
     target_speed_max_mps: Annotated[float, msgspec.Meta(gt=0.0, le=100.0)] = 25.0  # AW vel_lim
