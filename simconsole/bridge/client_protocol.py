@@ -11,7 +11,7 @@ import orjson
 
 from simconsole.bridge.documents import read
 from simconsole.bridge.messages import Registry, standard_registry
-from simconsole.bridge.operations import Operation, Publish, Status, publish_head, read_operation, write_publish
+from simconsole.bridge.operations import Operation, Publish, Status, read_operation, write_publish
 from simconsole.errors import BridgeError, LocalProtocolError, RemoteProtocolError
 
 MAX_STATUS: Final = 100
@@ -43,7 +43,6 @@ class ClientProtocol:
         self.refused = 0
         """Messages of the server that could not be used."""
         self._advertised: dict[str, tuple[str, bytes]] = {}
-        self._heads: dict[str, bytes] = {}
         self._subscriptions: dict[str, _Subscription] = {}
 
     def advertise(self, topic: str, type_name: str) -> bytes:
@@ -59,13 +58,11 @@ class ClientProtocol:
             raise LocalProtocolError(f"{topic}: advertised as {known[0]}, cannot be {full} too")
         text = orjson.dumps({"op": "advertise", "topic": topic, "type": full})
         self._advertised[topic] = (full, text)
-        self._heads[topic] = publish_head(topic)
         return text
 
     def unadvertise(self, topic: str) -> bytes:
         """Return the text that withdraws a publisher."""
         self._advertised.pop(topic, None)
-        self._heads.pop(topic, None)
         return orjson.dumps({"op": "unadvertise", "topic": topic})
 
     def publish(self, topic: str, message: Any) -> bytes:
@@ -78,10 +75,11 @@ class ClientProtocol:
         if known is None:
             raise LocalProtocolError(f"{topic}: advertise it before publishing")
         try:
-            typed = self.registry.from_plain(known[0], message)
+            self.registry.from_plain(known[0], message)
         except RemoteProtocolError as error:
             raise LocalProtocolError(f"{topic}: {error}") from None
-        return write_publish(topic, typed)
+        # As given, not with defaults filled in: a server refuses a command in which a field was forgotten.
+        return write_publish(topic, message)
 
     def subscribe(
         self,

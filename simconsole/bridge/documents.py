@@ -53,13 +53,18 @@ def has_duplicate_keys(text: bytes, fields: dict[str, Any]) -> bool:
 
     A document without escapes that lost a key lost its quotation marks with it, so counting them is enough; only a
     text with escapes is decoded once more.
+
+    Raises:
+        RemoteProtocolError: nested too deep to tell; no message is.
     """
-    if b"\\" not in text:
-        return text.count(b'"') != orjson.dumps(fields).count(b'"')
     try:
+        if b"\\" not in text:
+            return text.count(b'"') != orjson.dumps(fields).count(b'"')
         json.loads(text, object_pairs_hook=_refuse_duplicates)
-    except (_DuplicateKeyError, RecursionError):
+    except _DuplicateKeyError:
         return True
+    except (orjson.JSONEncodeError, RecursionError):
+        raise RemoteProtocolError("message is nested too deep") from None
     return False
 
 

@@ -49,7 +49,8 @@ class LockstepBridge:
         self.console = ConsoleBridge(profile, registry)
         self._profile = profile
         self._now_ns = 0
-        self._commander_lost = False
+        self._lost_at: float | None = None
+        """The command's sequence number when the commander vanished."""
         self._closing = False
         self._connections: dict[Connection, float] = {}
         """Each with when it was accepted, in s."""
@@ -108,7 +109,7 @@ class LockstepBridge:
         answers by arriving. Whatever arrives before it is applied too.
 
         Returns:
-            False when no answer came within `timeout_s` of wall time, or nobody is left who could give one.
+            False when no answer came within `timeout_s` of wall time, or the commander is gone and no other has spoken.
         """
         inputs = self.console.inputs
         self._now_ns = snapshot.t_ns
@@ -116,13 +117,12 @@ class LockstepBridge:
         self.console.publish(snapshot, self._now_ns, odometry=True)
         self._flush()
         before = inputs.command.sequence
-        self._commander_lost = False
         deadline = time.monotonic() + timeout_s
         while True:
             if inputs.command.sequence != before and inputs.stamp_ns in (snapshot.t_ns, None):
                 return True
             left_s = deadline - time.monotonic()
-            if left_s <= 0.0 or self._commander_lost or not self._connections:
+            if left_s <= 0.0 or inputs.command.sequence == self._lost_at or not self._connections:
                 return False
             self._serve(left_s)
 
@@ -206,7 +206,8 @@ class LockstepBridge:
         session, connection.session = connection.session, None
         if session is not None:
             commanded = self.console.disconnect(session, self._now_ns)
-            self._commander_lost = self._commander_lost or commanded
+            if commanded:
+                self._lost_at = self.console.inputs.command.sequence
             if commanded and not self._closing:
                 _logger.warning("%s was commanding and is gone", connection.peer)
             else:

@@ -1,5 +1,7 @@
 import json
-from collections.abc import Callable
+import queue
+import threading
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -7,6 +9,7 @@ import pytest
 
 from simconsole.bridge.console import ConsoleBridge
 from simconsole.bridge.protocol import Outcome
+from simconsole.bridge.server import serve
 from simconsole.bridge.session import Session
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.rows import ARBITRATION_AT, PLATFORM_AT, REMOTE_AT, SAMPLE_AT, VEHICLE_AT, Snapshot
@@ -89,3 +92,57 @@ def control() -> Callable[..., dict[str, Any]]:
         }
 
     return make
+
+
+class Served:
+    """A bridge server on a thread of its own, as its process would run it."""
+
+    def __init__(self, profile: BridgeProfile) -> None:
+        self.commands: queue.SimpleQueue[tuple[RemoteCommand, int | None]] = queue.SimpleQueue()
+        self.events: queue.SimpleQueue[int] = queue.SimpleQueue()
+        self.snapshots: queue.SimpleQueue[Snapshot] = queue.SimpleQueue()
+        self._port: queue.SimpleQueue[int] = queue.SimpleQueue()
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._run, args=(profile,))
+        self._thread.start()
+        self.port = self._port.get(timeout=10.0)
+        self.url = f"ws://127.0.0.1:{self.port}"
+
+    def _run(self, profile: BridgeProfile) -> None:
+        serve(
+            profile,
+            self._newest,
+            lambda command, receipt_ns: self.commands.put((command, receipt_ns)),
+            self.events.put,
+            self._stop.is_set,
+            on_ready=self._port.put,
+        )
+
+    def _newest(self) -> Snapshot | None:
+        try:
+            return self.snapshots.get_nowait()
+        except queue.Empty:
+            return None
+
+    def command(self) -> RemoteCommand:
+        """The next change of the command."""
+        return self.commands.get(timeout=10.0)[0]
+
+    def stop(self) -> None:
+        self._stop.set()
+        self._thread.join(timeout=10.0)
+        assert not self._thread.is_alive()
+
+
+@pytest.fixture
+def serving() -> Iterator[Callable[..., Served]]:
+    """Start a server with a profile on a free port; it is stopped at the end."""
+    started: list[Served] = []
+
+    def start(**profile: Any) -> Served:
+        started.append(Served(BridgeProfile(**{"port": 0, **profile})))
+        return started[-1]
+
+    yield start
+    for server in started:
+        server.stop()

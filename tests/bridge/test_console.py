@@ -1,0 +1,109 @@
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from simconsole.bridge.console import ConsoleBridge
+from simconsole.errors import ProfileError
+from simconsole.profiles.bridge import BridgeProfile
+from simconsole.signals import Event
+
+MS = 1_000_000
+CONTROL = "/control/command/control_cmd"
+
+
+def test_namespace_goes_before_all_but_the_global_topics() -> None:
+    names = ConsoleBridge(BridgeProfile(namespace="/ego")).names
+    assert names["/odom"] == "/ego/odom"
+    assert names[CONTROL] == "/ego/control/command/control_cmd"
+    assert [names[name] for name in ("/clock", "/tf", "/tf_static")] == ["/clock", "/tf", "/tf_static"]
+
+
+def test_renamed_topics_work_both_ways(
+    join: Callable[..., Any], snapshot: Callable[..., Any], control: Callable[..., Any]
+) -> None:
+    profile = BridgeProfile(namespace="/ego", rename={"/odom": "/car/state", CONTROL: "/drive"})
+    peer = join(ConsoleBridge(profile))
+    peer.send(op="subscribe", topic="/car/state", type="nav_msgs/Odometry")
+    peer.bridge.publish(snapshot(5), 0)
+    assert [message["topic"] for message in peer.heard()] == ["/car/state"]
+    assert peer.publish("/drive", control()).kind == "command"
+    assert peer.publish(CONTROL, control()).kind == "refused"
+
+
+@pytest.mark.parametrize(
+    ("profile", "complaint"),
+    [
+        (BridgeProfile(rename={"/odometry": "/x"}), "outputs.bridge.rename: /odometry is no topic"),
+        (BridgeProfile(rename={"/odom": "/clock"}), "would both be /clock"),
+        (BridgeProfile(rates_hz={"/cmd_vel": 10.0}), "outputs.bridge.rates_hz: /cmd_vel is no topic"),
+    ],
+)
+def test_profile_that_cannot_be_meant(profile: BridgeProfile, complaint: str) -> None:
+    with pytest.raises(ProfileError, match=complaint):
+        ConsoleBridge(profile)
+
+
+def test_rates_of_the_profile(join: Callable[..., Any], snapshot: Callable[..., Any]) -> None:
+    peer = join(ConsoleBridge(BridgeProfile(rates_hz={"/odom": 10.0, "/clock": 0.0})))
+    assert peer.send(op="subscribe", topic="/clock").kind == "refused"
+    peer.send(op="subscribe", topic="/odom", queue_length=1000)
+    for tick in range(1, 251):
+        peer.bridge.publish(snapshot(tick), 0)
+    assert [message["op"] for message in peer.heard()] == ["status", *["publish"] * 10]
+
+
+def test_state_topics_keep_the_newest_for_a_slow_client(peer: Any, snapshot: Callable[..., Any]) -> None:
+    peer.send(op="subscribe", topic="/odom")
+    for tick in range(1, 101):
+        peer.bridge.publish(snapshot(tick, x_m=float(tick)), 0)
+    (message,) = peer.heard()
+    assert message["msg"]["pose"]["pose"]["position"]["x"] == 100.0
+    assert peer.session.outgoing.dropped == 19
+
+
+def test_odometry_can_be_asked_for_out_of_turn(peer: Any, snapshot: Callable[..., Any]) -> None:
+    for topic in ("/odom", "/ground_truth/odom"):
+        peer.send(op="subscribe", topic=topic)
+    peer.bridge.publish(snapshot(7), 0, odometry=True)
+    assert [message["topic"] for message in peer.heard()] == ["/odom"]
+
+
+def test_equal_drives_send_equal_bytes(join: Callable[..., Any], snapshot: Callable[..., Any]) -> None:
+    def drive() -> list[bytes]:
+        peer = join(ConsoleBridge(BridgeProfile()))
+        for topic in ("/odom", "/tf", "/console/arbitration", "/clock"):
+            peer.send(op="subscribe", topic=topic)
+        texts = []
+        for tick in range(1, 51):
+            peer.bridge.publish(snapshot(tick, x_m=tick / 3, yaw_rad=tick / 7), 0)
+            while (text := peer.session.next_text(0)) is not None:
+                texts.append(text)
+        return texts
+
+    first = drive()
+    assert len(first) == 50
+    assert first == drive()
+
+
+def test_vanished_commander_is_an_event_and_another_can_take_over(
+    bridge: ConsoleBridge, join: Callable[..., Any], control: Callable[..., Any]
+) -> None:
+    first, second = join(bridge), join(bridge)
+    first.publish(CONTROL, control(0.1))
+    assert bridge.disconnect(first.session, 1)
+    command, events = bridge.inputs.take(1)
+    assert events.events == Event.COMMANDER_LOST
+    assert command.road_wheel_rad == 0.1
+    assert second.publish(CONTROL, control(0.2)).kind == "command"
+    assert bridge.inputs.take(2)[0].road_wheel_rad == 0.2
+
+
+def test_watcher_that_goes_is_no_event(
+    bridge: ConsoleBridge, join: Callable[..., Any], control: Callable[..., Any]
+) -> None:
+    driver, watcher = join(bridge), join(bridge)
+    driver.publish(CONTROL, control())
+    assert not bridge.disconnect(watcher.session, 1)
+    assert not bridge.disconnect(driver.session, 500 * MS)
+    assert bridge.inputs.take(1)[1].events == 0.0
