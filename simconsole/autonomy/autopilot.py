@@ -15,6 +15,7 @@ from simconsole.bridge.client import BridgeClient
 from simconsole.errors import BridgeError
 from simconsole.profile_files import MAX_DATA_BYTES, load
 from simconsole.profiles.world import WorldProfile
+from simconsole.signals import Mode
 from simconsole.world.course import Course
 
 ODOMETRY: Final = "/odom"
@@ -22,6 +23,8 @@ ARBITRATION: Final = "/console/arbitration"
 COMMAND: Final = "/control/command/control_cmd"
 CONTROL: Final = "autoware_control_msgs/Control"
 
+_DRIVING: Final = (Mode.AUTONOMOUS, Mode.SHARED, Mode.TAKEOVER_REQUESTED)
+"""In the other modes a remote share is the console's own: a parking hold or a stop."""
 _PATIENCE_S: Final = 10.0  # for the console to open its port
 _RETRY_S: Final = 0.05
 _WAIT_S: Final = 0.25  # how often `stop` is asked while nothing comes
@@ -75,7 +78,7 @@ def _answer(client: BridgeClient, tracker: Tracker, tally: Tally, namespace: str
             continue
         topic, message = received
         if topic != odometry_topic:
-            engaged = message.remote_lateral > 0.0
+            engaged = message.mode in _DRIVING
             continue
         seen = sighting(message)
         if seen is None:

@@ -12,6 +12,7 @@ from websockets.sync.server import ServerConnection, serve
 
 from simconsole.autonomy.autopilot import run
 from simconsole.errors import BridgeError, ProfileError
+from simconsole.signals import Mode
 
 WHEELBASE_M = 2.6
 
@@ -32,8 +33,10 @@ def odometry(step: int, x: float, y: float, yaw: float, speed: float | None, yaw
     return json.dumps({"op": "publish", "topic": "/odom", "msg": message})
 
 
-def arbitration(share: float) -> str:
-    return json.dumps({"op": "publish", "topic": "/console/arbitration", "msg": {"remote_lateral": share}})
+def arbitration(mode: Mode) -> str:
+    """The share is 1 while parked too: then it is the console's own parking hold."""
+    message = {"mode": int(mode), "remote_lateral": 1.0}
+    return json.dumps({"op": "publish", "topic": "/console/arbitration", "msg": message})
 
 
 class Server:
@@ -58,7 +61,7 @@ class Server:
         x, y, yaw, speed, wheel = 100.0, 0.3, 0.0, 8.0, 0.0
         for step in range(self.steps):
             engaged = step >= self.engage_at
-            socket.send(arbitration(1.0 if engaged else 0.0))
+            socket.send(arbitration(Mode.AUTONOMOUS if engaged else Mode.PARKED))
             socket.send(odometry(step, x, y, yaw, speed, speed * math.tan(wheel) / WHEELBASE_M))
             command = json.loads(socket.recv())["msg"]
             self.stamps.append(command["stamp"] == {"sec": step // 50, "nanosec": step % 50 * 20_000_000})
