@@ -1,4 +1,4 @@
-"""Hand-overs, stops, refusals and resets as a person and an operator live them."""
+"""Hand-overs and shared control as a person and an operator live them."""
 
 import math
 from collections.abc import Callable
@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from simconsole.profiles.control import ControlProfile
-from simconsole.signals import Button, Event, GateLimit, Mode, Reason, RemoteKind, Validity
+from simconsole.signals import Event, GateLimit, Mode, Reason, RemoteKind, Validity
 
 MakeRig = Callable[..., Any]
 
@@ -153,163 +153,6 @@ def test_a_cockpit_without_clutch_drives_by_direction(lever: float, direction: f
     rig.run(0.1)
     assert (rig.mode, rig.command.automatic, rig.command.gear) == (Mode.MANUAL, 1.0, direction)
     assert rig.command.clutch == 0.0
-
-
-def test_safe_stop_brakes_by_the_book_and_stays_stopped(make_rig: MakeRig) -> None:
-    rig = make_rig().drive(Mode.AUTONOMOUS, speed_mps=15.0)
-    rig.send(road_wheel_rad=0.05)
-    rig.run(2.0)
-    rig.sending = False
-    rig.until(Mode.MINIMAL_RISK)
-    assert rig.command.road_wheel_rad == pytest.approx(0.05, abs=0.001)
-    decel, jerk, before = [], [], rig.vehicle.ax_mps2
-    while rig.mode is Mode.MINIMAL_RISK and rig.vehicle.vx_mps > 0.2:
-        rig.tick()
-        decel.append(-rig.vehicle.ax_mps2)
-        jerk.append((before - rig.vehicle.ax_mps2) / rig.tick_s)
-        before = rig.vehicle.ax_mps2
-        assert rig.command.throttle == 0.0
-    assert max(decel) <= 2.8
-    assert decel[-1] == pytest.approx(2.5, abs=0.2)
-    assert max(jerk[2:]) < 2.0
-    assert rig.command.road_wheel_rad < 0.05
-    rig.until(Mode.STOPPED)
-    assert rig.reason is Reason.STANDSTILL
-    rig.send()
-    rig.driver = rig.driver._replace(throttle=0.8)
-    rig.run(3.0)
-    assert rig.mode is Mode.STOPPED
-    assert rig.vehicle.vx_mps == 0.0
-    assert (rig.command.brake, rig.command.handbrake, rig.command.gear) == (0.4, 1.0, 0.0)
-
-
-def test_a_safe_stop_whose_brakes_are_weak_asks_for_more_but_never_beyond_four(make_rig: MakeRig) -> None:
-    rig = make_rig().drive(Mode.MANUAL, speed_mps=30.0)
-    move = rig._move
-
-    def weak() -> None:
-        speed = rig.vehicle.vx_mps
-        move()
-        rig.vehicle = rig.vehicle._replace(vx_mps=speed - 0.3 * (speed - rig.vehicle.vx_mps))
-        rig.vehicle = rig.vehicle._replace(ax_mps2=(rig.vehicle.vx_mps - speed) / rig.tick_s)
-
-    rig._move = weak
-    rig.tick(Event.LOOP_STALL)
-    rig.run(8.0)
-    asked = -0.3 - rig.command.brake * 8.7
-    assert -4.0 - 1e-9 <= asked < -3.2
-    assert rig.memory.speed_integral_mps2 == -rig.settings.integral_max_mps2
-
-
-def test_a_safe_stop_also_stops_a_car_that_rolls_backward(make_rig: MakeRig) -> None:
-    rig = make_rig().drive(Mode.MANUAL, speed_mps=5.0)
-    rig._move = lambda: None
-    rig.vehicle = rig.vehicle._replace(
-        vx_mps=-5.0, gear=-1.0, coast_accel_mps2=0.3, full_throttle_accel_mps2=-3.0, full_brake_accel_mps2=9.0
-    )
-    rig.tick(Event.LOOP_STALL)
-    rig.run(2.0)
-    assert rig.command.brake > 0.2
-    assert (rig.command.gear, rig.command.automatic) == (-1.0, 1.0)
-
-
-def test_a_vehicle_whose_speed_is_no_number_is_braked_and_never_counts_as_standing(make_rig: MakeRig) -> None:
-    rig = make_rig().drive(Mode.MANUAL)
-    rig._move = lambda: None
-    rig.vehicle = rig.vehicle._replace(vx_mps=math.nan, ax_mps2=math.nan, gear=math.nan)
-    rig.tick(Event.LOOP_STALL)
-    rig.run(3.0)
-    assert rig.mode is Mode.MINIMAL_RISK
-    assert rig.command.brake > 0.2
-    assert rig.command.gear == 0.0
-
-
-def test_stopped_is_left_by_acts_only(make_rig: MakeRig) -> None:
-    rig = make_rig().drive(Mode.STOPPED)
-    rig.driver = rig.driver._replace(throttle=0.5)
-    rig.tick(edge=Button.MANUAL)
-    assert (rig.mode, rig.refusal) == (Mode.STOPPED, Reason.REFUSED_THROTTLE_PRESSED)
-    rig.driver = rig.driver._replace(throttle=0.0)
-    rig.tick(edge=Button.MANUAL)
-    assert (rig.mode, rig.reason) == (Mode.MANUAL, Reason.PERSON_ASKED)
-    rig.run(0.7)
-    assert rig.command.brake == 0.0
-
-
-def test_emergency_is_cleared_by_reset_at_standstill_and_released_only(make_rig: MakeRig) -> None:
-    rig = make_rig().drive(Mode.EMERGENCY_STOP)
-    rig.tick(Event.RESET)
-    assert (rig.mode, rig.refusal) == (Mode.EMERGENCY_STOP, Reason.REFUSED_MOVING)
-    rig.run(3.0)
-    assert rig.vehicle.vx_mps == 0.0
-    rig.tick(Event.RESET | Event.EMERGENCY_STOP)
-    assert (rig.mode, rig.refusal) == (Mode.EMERGENCY_STOP, Reason.REFUSED_EMERGENCY)
-    rig.driver = rig.driver._replace(pressed=float(Button.EMERGENCY_STOP))
-    rig.tick(Event.RESET)
-    assert rig.mode is Mode.EMERGENCY_STOP
-    rig.driver = rig.driver._replace(pressed=0.0, throttle=0.5)
-    for event in (Event.REQUEST_MANUAL, Event.REQUEST_AUTONOMOUS, Event.REQUEST_SHARED):
-        rig.tick(event)
-        assert (rig.mode, rig.refusal) == (Mode.EMERGENCY_STOP, Reason.REFUSED_EMERGENCY)
-    rig.tick(Event.RESET)
-    assert (rig.mode, rig.reason) == (Mode.PARKED, Reason.RESET)
-    rig.run(0.5)
-    assert rig.mode is Mode.PARKED
-    rig.driver = rig.driver._replace(throttle=0.0)
-    rig.tick()
-    assert rig.mode is Mode.MANUAL
-
-
-def test_a_refusal_is_shown_for_a_while_and_changes_nothing(make_rig: MakeRig) -> None:
-    rig = make_rig().drive(Mode.MANUAL)
-    reason = rig.reason
-    rig.vehicle = rig.vehicle._replace(vx_mps=30.0)
-    rig.tick(Event.REQUEST_AUTONOMOUS)
-    assert (rig.mode, rig.reason, rig.refusal) == (Mode.MANUAL, reason, Reason.REFUSED_TOO_FAST)
-    shown = 0
-    while rig.refusal is not None:
-        rig.tick()
-        shown += 1
-    assert shown == 3 * rig.tick_hz
-
-
-def test_asks_that_the_mode_does_not_grant_are_refused_by_name(make_rig: MakeRig) -> None:
-    rig = make_rig().drive(Mode.MINIMAL_RISK, speed_mps=24.0)
-    rig.send()
-    rig.run(1.2)
-    rig.vehicle = rig.vehicle._replace(ay_mps2=0.0)
-    rig.tick(Event.REQUEST_AUTONOMOUS)
-    assert (rig.mode, rig.refusal) == (Mode.MINIMAL_RISK, Reason.REFUSED_MODE)
-    rig = make_rig().drive(Mode.STOPPED)
-    rig.run(1.2)
-    rig.tick(Event.REQUEST_SHARED)
-    assert (rig.mode, rig.refusal) == (Mode.STOPPED, Reason.REFUSED_MODE)
-    rig.sending = False
-    rig.run(0.3)
-    rig.tick(Event.REQUEST_SHARED)
-    assert rig.refusal is Reason.REFUSED_NO_COMMAND
-
-
-def test_what_is_in_force_is_not_refused(make_rig: MakeRig) -> None:
-    for mode, event in (
-        (Mode.AUTONOMOUS, Event.REQUEST_AUTONOMOUS),
-        (Mode.MANUAL, Event.REQUEST_MANUAL),
-        (Mode.SHARED, Event.REQUEST_SHARED),
-        (Mode.MANUAL, Event.RESET),
-        (Mode.MANUAL, Event.REQUEST_TAKEOVER),
-    ):
-        rig = make_rig().drive(mode)
-        rig.tick(event)
-        assert (rig.mode, rig.refusal) == (mode, None)
-
-
-def test_manual_is_refused_where_the_cockpit_is_not_there(make_rig: MakeRig) -> None:
-    rig = make_rig().drive(Mode.AUTONOMOUS)
-    rig.driver = rig.driver._replace(wheel_validity=float(Validity.LOST))
-    rig.tick(Event.REQUEST_MANUAL)
-    assert rig.mode is Mode.TAKEOVER_REQUESTED
-    rig.tick(Event.REQUEST_MANUAL)
-    assert (rig.mode, rig.refusal) == (Mode.TAKEOVER_REQUESTED, Reason.REFUSED_NOT_ARMED)
 
 
 def test_a_lost_wheel_in_autonomy_can_come_back_and_be_used(make_rig: MakeRig) -> None:

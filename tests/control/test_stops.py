@@ -1,0 +1,80 @@
+"""Safe stops: by the book, with weak brakes, backward, blind."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from simconsole.signals import Event, Mode, Reason
+
+MakeRig = Callable[..., Any]
+
+
+def test_safe_stop_brakes_by_the_book_and_stays_stopped(make_rig: MakeRig) -> None:
+    rig = make_rig().drive(Mode.AUTONOMOUS, speed_mps=15.0)
+    rig.send(road_wheel_rad=0.05)
+    rig.run(2.0)
+    rig.sending = False
+    rig.until(Mode.MINIMAL_RISK)
+    assert rig.command.road_wheel_rad == pytest.approx(0.05, abs=0.001)
+    decel, jerk, before = [], [], rig.vehicle.ax_mps2
+    while rig.mode is Mode.MINIMAL_RISK and rig.vehicle.vx_mps > 0.2:
+        rig.tick()
+        decel.append(-rig.vehicle.ax_mps2)
+        jerk.append((before - rig.vehicle.ax_mps2) / rig.tick_s)
+        before = rig.vehicle.ax_mps2
+        assert rig.command.throttle == 0.0
+    assert max(decel) <= 2.8
+    assert decel[-1] == pytest.approx(2.5, abs=0.2)
+    assert max(jerk[2:]) < 2.0
+    assert rig.command.road_wheel_rad < 0.05
+    rig.until(Mode.STOPPED)
+    assert rig.reason is Reason.STANDSTILL
+    rig.send()
+    rig.driver = rig.driver._replace(throttle=0.8)
+    rig.run(3.0)
+    assert rig.mode is Mode.STOPPED
+    assert rig.vehicle.vx_mps == 0.0
+    assert (rig.command.brake, rig.command.handbrake, rig.command.gear) == (0.4, 1.0, 0.0)
+
+
+def test_a_safe_stop_whose_brakes_are_weak_asks_for_more_but_never_beyond_four(make_rig: MakeRig) -> None:
+    rig = make_rig().drive(Mode.MANUAL, speed_mps=30.0)
+    move = rig._move
+
+    def weak() -> None:
+        speed = rig.vehicle.vx_mps
+        move()
+        rig.vehicle = rig.vehicle._replace(vx_mps=speed - 0.3 * (speed - rig.vehicle.vx_mps))
+        rig.vehicle = rig.vehicle._replace(ax_mps2=(rig.vehicle.vx_mps - speed) / rig.tick_s)
+
+    rig._move = weak
+    rig.tick(Event.LOOP_STALL)
+    rig.run(8.0)
+    asked = -0.3 - rig.command.brake * 8.7
+    assert -4.0 - 1e-9 <= asked < -3.2
+    assert rig.memory.speed_integral_mps2 == -rig.settings.integral_max_mps2
+
+
+def test_a_safe_stop_also_stops_a_car_that_rolls_backward(make_rig: MakeRig) -> None:
+    rig = make_rig().drive(Mode.MANUAL, speed_mps=5.0)
+    rig._move = lambda: None
+    rig.vehicle = rig.vehicle._replace(
+        vx_mps=-5.0, gear=-1.0, coast_accel_mps2=0.3, full_throttle_accel_mps2=-3.0, full_brake_accel_mps2=9.0
+    )
+    rig.tick(Event.LOOP_STALL)
+    rig.run(2.0)
+    assert rig.command.brake > 0.2
+    assert (rig.command.gear, rig.command.automatic) == (-1.0, 1.0)
+
+
+def test_a_vehicle_whose_speed_is_no_number_is_braked_and_never_counts_as_standing(make_rig: MakeRig) -> None:
+    rig = make_rig().drive(Mode.MANUAL)
+    rig._move = lambda: None
+    rig.vehicle = rig.vehicle._replace(vx_mps=math.nan, ax_mps2=math.nan, gear=math.nan)
+    rig.tick(Event.LOOP_STALL)
+    rig.run(3.0)
+    assert rig.mode is Mode.MINIMAL_RISK
+    assert rig.command.brake > 0.2
+    assert rig.command.gear == 0.0
