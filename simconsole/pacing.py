@@ -6,6 +6,7 @@ wall by that much, and is counted). dt never stretches.
 """
 
 import gc
+import math
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -41,7 +42,10 @@ class Histogram:
 
     def add(self, time_ns: int) -> None:
         """Count one time, negative ones as zero."""
-        self._bins[min(int(np.searchsorted(self._edges, time_ns)), len(self._bins) - 1)] += 1
+        index = 0
+        if time_ns > _FLOOR_NS:  # logarithm and ceiling: a tenth of the price of a search in the edges
+            index = min(math.ceil(_BINS_PER_DECADE * math.log10(time_ns / _FLOOR_NS)), len(self._bins) - 1)
+        self._bins[index] += 1
         self.count += 1
         self.max_ns = max(self.max_ns, time_ns)
 
@@ -51,7 +55,17 @@ class Histogram:
             return 0.0
         passed = np.cumsum(self._bins)
         index = int(np.searchsorted(passed, percent / 100.0 * self.count))
+        if index == len(self._bins) - 1:
+            return float(self.max_ns)  # the last bin has no upper edge
         return min(float(self._edges[index]), float(self.max_ns))
+
+    def summary_us(self) -> dict[str, float]:
+        """Return p50, p99 and maximum in us."""
+        return {
+            "p50": self.percentile_ns(50.0) / 1e3,
+            "p99": self.percentile_ns(99.0) / 1e3,
+            "max": self.max_ns / 1e3,
+        }
 
 
 class Pacer:
@@ -59,6 +73,7 @@ class Pacer:
 
     Attributes:
         lateness: how late each tick began.
+        work: how long each tick took, from its beginning to the next `wait`.
         slipped_ticks: ticks that never happened because the loop stood still.
         stalls: how often it stood still for more than 100 ms.
     """
@@ -74,7 +89,9 @@ class Pacer:
         self._sleep_s = sleep_s
         self._start_ns: int | None = None
         self._due = 0
+        self._woken_ns: int | None = None
         self.lateness = Histogram()
+        self.work = Histogram()
         self.slipped_ticks = 0
         self.stalls = 0
 
@@ -83,10 +100,13 @@ class Pacer:
         now_ns = self._now_ns()
         if self._start_ns is None:
             self._start_ns = now_ns
+        if self._woken_ns is not None:
+            self.work.add(now_ns - self._woken_ns)
         deadline_ns = self._deadline_ns()
         while now_ns < deadline_ns:
             self._sleep_s((deadline_ns - now_ns) / NS_PER_S)
             now_ns = self._now_ns()
+        self._woken_ns = now_ns
         late_ns = now_ns - deadline_ns
         self.lateness.add(late_ns)
         events = self._catch_up(late_ns)
@@ -94,12 +114,12 @@ class Pacer:
         return events
 
     def summary(self) -> dict[str, Any]:
-        """Return lateness percentiles in us and the counters, for manifest and table."""
-        found = {name: self.lateness.percentile_ns(p) / 1e3 for name, p in (("p50", 50.0), ("p99", 99.0))}
-        largest = self.lateness.max_ns / 1e3
+        """Return percentiles of lateness and work in us and the counters, for manifest and table."""
+        late = self.lateness.summary_us()
         return {
-            "lateness": f"p50 {found['p50']:.0f} us, p99 {found['p99']:.0f} us, max {largest:.0f} us",
-            "lateness_us": {**found, "max": largest},
+            "lateness": f"p50 {late['p50']:.0f} us, p99 {late['p99']:.0f} us, max {late['max']:.0f} us",
+            "lateness_us": late,
+            "work_us": self.work.summary_us(),
             "slipped_ticks": self.slipped_ticks,
             "stalls": self.stalls,
         }
@@ -170,6 +190,7 @@ def _linux_hints() -> Iterator[list[str]]:
     try:
         yield missing
     finally:
-        os.sched_setscheduler(0, before, parameters)
+        # Only a privileged process may clear reset-on-fork again, so it stays.
+        os.sched_setscheduler(0, before | os.SCHED_RESET_ON_FORK, parameters)
         libc.munlockall()
         libc.prctl(_PR_SET_TIMERSLACK, 0, 0, 0, 0)
