@@ -34,7 +34,13 @@ def assemble(resolved: ResolvedSession, execution: Execution) -> tuple[Console, 
     )
     console = build_console(
         cockpit_settings(resolved.cockpit, tick_hz),
-        control_settings(session.features.control, platform.steering_ratio, platform.max_road_wheel_rad, tick_hz),
+        control_settings(
+            session.features.control,
+            platform.steering_ratio,
+            platform.max_road_wheel_rad,
+            platform.wheelbase_m,
+            tick_hz,
+        ),
         platform,
         tick_hz,
         execution,

@@ -78,7 +78,7 @@ class ControlSettings(NamedTuple):
 
 
 def settings(
-    profile: ControlProfile, steering_ratio: float, max_road_wheel_rad: float, tick_hz: int
+    profile: ControlProfile, steering_ratio: float, max_road_wheel_rad: float, wheelbase_m: float, tick_hz: int
 ) -> ControlSettings:
     """Return the settings of one drive.
 
@@ -86,12 +86,13 @@ def settings(
         profile: What the person wrote.
         steering_ratio: Hand-wheel angle per road-wheel angle of the vehicle (> 0).
         max_road_wheel_rad: The vehicle's steering lock.
+        wheelbase_m: The vehicle's (> 0), between curvature and road-wheel angle.
         tick_hz: Control ticks per second.
     """
     return ControlSettings(
         person_required=float(profile.person_required),
         manual_automatic=float(profile.manual_automatic),
-        wheelbase_m=profile.wheelbase_m,
+        wheelbase_m=wheelbase_m,
         road_wheel_per_hand_wheel=1.0 / steering_ratio,
         max_road_wheel_rad=max_road_wheel_rad,
         steering_override_rad=profile.steering_override_deg * RAD_PER_DEG,

@@ -21,7 +21,6 @@ class ControlProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_f
     # The cockpit and the vehicle it drives.
     person_required: bool = True  # False: drives with no person in the seat (the ball); autonomy starts from PARKED
     manual_automatic: bool = False  # True: cockpits without clutch and shifter (keyboard)
-    wheelbase_m: Annotated[float, msgspec.Meta(ge=0.05, le=10.0)] = 2.6  # of the vehicle: curvature to road-wheel angle
 
     # Take-over by the person.
     steering_override_deg: Annotated[float, msgspec.Meta(ge=1.0, le=90.0)] = 8.0  # moved since engagement; to be tuned

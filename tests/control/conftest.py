@@ -28,6 +28,7 @@ from simconsole.signals import (
 
 RATIO = 15.0
 LOCK_RAD = 0.6
+WHEELBASE_M = 2.6
 HZ = 250
 
 PERSON = DriverInput(*(0.0,) * len(DriverInput._fields))._replace(
@@ -51,7 +52,7 @@ class Rig:
     def __init__(self, tick_hz: int = HZ, profile: ControlProfile | None = None) -> None:
         self.tick_hz = tick_hz
         self.tick_s = 1.0 / tick_hz
-        self.settings: ControlSettings = settings(profile or ControlProfile(), RATIO, LOCK_RAD, tick_hz)
+        self.settings: ControlSettings = settings(profile or ControlProfile(), RATIO, LOCK_RAD, WHEELBASE_M, tick_hz)
         self.driver = PERSON
         self.remote = SILENT
         self.sending = False
@@ -172,4 +173,4 @@ def make_rig() -> Callable[..., Rig]:
 
 @pytest.fixture
 def control() -> ControlSettings:
-    return settings(ControlProfile(), RATIO, LOCK_RAD, HZ)
+    return settings(ControlProfile(), RATIO, LOCK_RAD, WHEELBASE_M, HZ)

@@ -180,7 +180,7 @@ def random_inputs(rng: np.random.Generator, steps: int, stale_ticks: float) -> R
 
 def random_drive(tick_hz: int, seed: int, steps: int, execution: object = compiled, **profile: object) -> Drive:
     print(f"seed {seed}")
-    s = settings(ControlProfile(**profile), 15.0, 0.6, tick_hz)  # type: ignore[arg-type]
+    s = settings(ControlProfile(**profile), 15.0, 0.6, 2.6, tick_hz)  # type: ignore[arg-type]
     inputs = random_inputs(np.random.default_rng(seed), steps, s.stale_ticks)
     outputs = np.empty((steps, OUTPUT_WIDTH))
     execution(drive)(inputs, outputs, np.array(s), 1.0 / tick_hz)  # type: ignore[operator]

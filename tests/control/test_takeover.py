@@ -12,7 +12,7 @@ START = WheelWatch(0.0, 0.0)
 
 def taken_after_s(angle_of_time: object, tick_hz: int, seconds: float, phase: float = 0.0) -> float | None:
     """Sample a motion of the wheel (rad over s) at a tick rate; return when it counts as a take-over."""
-    s = settings(ControlProfile(), 15.0, 0.6, tick_hz)
+    s = settings(ControlProfile(), 15.0, 0.6, 2.6, tick_hz)
     watch, previous = START, 0.0
     for tick in range(round(seconds * tick_hz)):
         time_s = (tick + phase) / tick_hz

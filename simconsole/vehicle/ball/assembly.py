@@ -42,6 +42,7 @@ def build_ball(profile: BallProfile, pose: Pose, ground: Ground) -> Platform:
         step=step,
         steering_ratio=profile.steering_ratio,
         max_road_wheel_rad=parameters.max_road_wheel_rad,
+        wheelbase_m=size,
         length_m=size,
         width_m=size,
         height_m=size,

@@ -52,6 +52,7 @@ def build_car(profile: CarProfile, pose: Pose, ground: Ground) -> Platform:
         step=step,
         steering_ratio=profile.steering.ratio,
         max_road_wheel_rad=car.body.max_road_wheel_rad,
+        wheelbase_m=body.wheelbase_m,
         length_m=body.length_m,
         width_m=body.width_m,
         height_m=body.height_m,
