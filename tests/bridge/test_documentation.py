@@ -1,0 +1,79 @@
+"""docs/rosbridge.md says what the code does: its tables and its examples."""
+
+import itertools
+import queue
+import re
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from simconsole.bridge.commands import REQUESTS, CommandIntake
+from simconsole.bridge.console import ConsoleBridge
+from simconsole.bridge.inputs import BridgeInputs
+from simconsole.bridge.messages import standard_registry
+from simconsole.bridge.operations import OPERATIONS
+from simconsole.bridge.topics import ONCE, Outputs
+from simconsole.profile_files import parse
+from simconsole.profiles.bridge import BridgeProfile
+from simconsole.profiles.session import Outputs as OutputsSection
+from simconsole.signals import RemoteKind
+
+PAGE = (Path(__file__).parents[2] / "docs" / "rosbridge.md").read_text()
+
+
+def rows(heading: str) -> list[list[str]]:
+    section = PAGE.split(f"## {heading}\n")[1].split("\n## ")[0]
+    return [[cell.strip() for cell in line.split("|")[1:-1]] for line in section.splitlines() if line.startswith("| `")]
+
+
+def blocks(language: str) -> list[str]:
+    return re.findall(rf"```{language}\n(.*?)```", PAGE, re.DOTALL)
+
+
+def test_output_table() -> None:
+    def rate(rate_hz: float) -> str:
+        return "once, latched" if rate_hz == ONCE else f"{rate_hz:g}"
+
+    topics = Outputs(standard_registry(), BridgeProfile()).topics()
+    assert rows("What the console publishes") == [[f"`{row.name}`", row.type, rate(row.rate_hz)] for row in topics]
+
+
+def test_command_table() -> None:
+    topics = CommandIntake(BridgeInputs(), BridgeProfile()).topics()
+    listed = {(name, kind) for name, kind, _ in rows("What commands the console")}
+    assert listed == {(f"`{row.name}`", row.type) for row in topics}
+    assert all(f"`{word}`" in PAGE for word in (*REQUESTS, *OPERATIONS))
+
+
+def test_controller_in_ten_lines_drives(serving: Callable[..., Any], snapshot: Callable[..., Any]) -> None:
+    server = serving(rates_hz={"/odom": 250.0})
+    example = blocks("python")[0].replace("ws://127.0.0.1:9090", server.url).replace("timeout_s=5.0", "timeout_s=0.3")
+    assert len(example.strip().splitlines()) <= 10
+    program = threading.Thread(target=exec, args=(example, {}))
+    program.start()
+    command = None
+    for tick in itertools.count(1):
+        server.snapshots.put(snapshot(tick, y_m=2.0))
+        try:
+            command, _ = server.commands.get(timeout=0.02)
+            break
+        except queue.Empty:
+            assert tick < 1000
+    program.join(timeout=20.0)
+    assert command is not None
+    assert (command.kind, command.speed_mps, command.yaw_rate_radps) == (RemoteKind.TWIST, 5.0, -0.4)
+
+
+def test_own_message_type() -> None:
+    namespace: dict[str, Any] = {}
+    exec(blocks("python")[1], namespace)
+    assert namespace["message"].force_n == [1.5]
+
+
+def test_session_section() -> None:
+    (text,) = blocks("yaml")
+    profile = parse(text.replace("outputs:\n", ""), OutputsSection, "docs/rosbridge.md").bridge
+    names = ConsoleBridge(profile).names
+    assert (names["/odom"], names["/cmd_vel"]) == ("/localization/kinematic_state", "/ego/cmd_vel")
+    assert profile.rates_hz["/tf"] == 0.0
