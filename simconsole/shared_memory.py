@@ -27,6 +27,8 @@ RECORD_HEAD_WORDS: Final = 3  # number, stamp, second stamp; the number again be
 READ_TRIES: Final = 8
 """A reader gives up after so many records were overwritten under it; the next call succeeds."""
 
+_owned: dict[Path, int] = {}  # run folders of this process, locked through these descriptors until it ends
+
 
 class Record(NamedTuple):
     """One record: its number from 1, two integer stamps and a copy of its values."""
@@ -73,8 +75,10 @@ class Ring:
         size = 8 * (HEADER_WORDS + capacity * (RECORD_HEAD_WORDS + width + 1))
         try:
             descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o600)
-            os.ftruncate(descriptor, size)
-            os.close(descriptor)
+            try:
+                _reserve(descriptor, size)
+            finally:
+                os.close(descriptor)
         except OSError as error:
             raise StationError(f"{path}: shared memory cannot be made: {error.strerror}") from None
         ring = cls(path, width, capacity, writable=True)
@@ -94,7 +98,7 @@ class Ring:
                 head = np.frombuffer(file.read(8 * HEADER_WORDS), np.int64)
         except OSError as error:
             raise StationError(f"{path}: shared memory cannot be opened: {error.strerror}") from None
-        if len(head) != HEADER_WORDS or head[0] != MAGIC:
+        if len(head) != HEADER_WORDS or head[0] != MAGIC or head[1] < 1 or head[2] < 1:
             raise StationError(f"{path}: not a ring of this version")
         return cls(path, int(head[1]), int(head[2]), writable)
 
@@ -194,30 +198,66 @@ def make_run_folder() -> Path:
     base = _base()
     sweep(base)
     try:
-        return Path(tempfile.mkdtemp(prefix=f"{PREFIX}{os.getpid()}-", dir=base))
+        folder = Path(tempfile.mkdtemp(prefix=f"{PREFIX}{os.getpid()}-", dir=base))
+        if os.name == "posix":
+            _owned[folder] = os.open(folder, os.O_RDONLY)
+            _lock(_owned[folder])
     except OSError as error:
         raise StationError(f"{base}: no run folder can be made: {error.strerror}") from None
+    return folder
 
 
 def remove_run_folder(folder: Path) -> None:
     """Remove a run folder; mappings that are still open stay valid until they are closed."""
     shutil.rmtree(folder, ignore_errors=True)
+    descriptor = _owned.pop(folder, None)
+    if descriptor is not None:
+        os.close(descriptor)
 
 
 def sweep(base: Path | None = None) -> list[Path]:
-    """Remove this user's run folders whose owner is dead; return them."""
-    removed = []
-    for folder in (base or _base()).glob(f"{PREFIX}*-*"):
-        owner = folder.name.removeprefix(PREFIX).partition("-")[0]
-        if owner.isdigit() and not _alive(int(owner)) and folder.stat().st_uid == os.getuid():
-            remove_run_folder(folder)
-            removed.append(folder)
-    return removed
+    """Remove this user's run folders whose owner is dead; return them. Nothing where there is no POSIX."""
+    if os.name != "posix":
+        return []
+    folders = [folder for folder in (base or _base()).glob(f"{PREFIX}*-*") if _is_stale(folder)]
+    for folder in folders:
+        remove_run_folder(folder)
+    return folders
 
 
 def _base() -> Path:
     memory = Path("/dev/shm")
     return memory if memory.is_dir() and os.access(memory, os.W_OK) else Path(tempfile.gettempdir())
+
+
+def _reserve(descriptor: int, size: int) -> None:
+    if hasattr(os, "posix_fallocate"):
+        os.posix_fallocate(descriptor, 0, size)  # a full /dev/shm is an error here, not a bus error at the first write
+    else:
+        os.ftruncate(descriptor, size)
+
+
+def _is_stale(folder: Path) -> bool:
+    owner = folder.name.removeprefix(PREFIX).partition("-")[0]
+    if not owner.isdigit() or _alive(int(owner)):
+        return False
+    try:
+        descriptor = os.open(folder, os.O_RDONLY | os.O_NOFOLLOW)
+    except OSError:
+        return False  # gone meanwhile, a link, or somebody else's
+    try:
+        _lock(descriptor)
+        return os.fstat(descriptor).st_uid == os.getuid()
+    except OSError:
+        return False  # its owner lives where this process cannot see it: containers may share /dev/shm
+    finally:
+        os.close(descriptor)
+
+
+def _lock(descriptor: int) -> None:
+    import fcntl
+
+    fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
 def _alive(process_id: int) -> bool:

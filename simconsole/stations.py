@@ -12,6 +12,7 @@ kind of pipe to the warden: without it they end by themselves.
 Run as `python -m simconsole.stations warden` or `... station`, with the description as one line on standard input.
 """
 
+import contextlib
 import importlib
 import os
 import signal
@@ -33,8 +34,8 @@ POLL_S: Final = 0.05
 BACK_OFF_S: Final = (0.05, 0.2, 1.0, 5.0)
 """Wait before a restart, by how many came before it within HEALTHY_S; the last one goes on."""
 HEALTHY_S: Final = 10.0
-END_S: Final = 3.0
-"""How long a station may take to end before it is killed."""
+PATIENCE_S: Final = 3.0
+"""How long a station may take to end before it is killed; a scene has a file to finish."""
 LOOKS_PER_S: Final = 5
 STATUS: Final = "stations.json"
 
@@ -53,6 +54,15 @@ class WardenSpec(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
 
     folder: str
     stations: list[StationSpec]
+    patience_s: float
+
+
+class StationCall(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What a station process is told."""
+
+    folder: str
+    station: StationSpec
+    patience_s: float
 
 
 class StationStatus(msgspec.Struct, frozen=True, kw_only=True):
@@ -65,12 +75,13 @@ class StationStatus(msgspec.Struct, frozen=True, kw_only=True):
 class Supervisor:
     """The core's side: starts the warden, looks after it without ever waiting, ends it."""
 
-    def __init__(self, folder: Path, stations: Sequence[StationSpec]) -> None:
+    def __init__(self, folder: Path, stations: Sequence[StationSpec], patience_s: float = PATIENCE_S) -> None:
         self.folder = folder
-        self._spec = WardenSpec(folder=str(folder), stations=list(stations))
+        self._spec = WardenSpec(folder=str(folder), stations=list(stations), patience_s=patience_s)
         # Taken now: SDL's settings for the core, made later, are not the stations'.
         self._environment = dict(os.environ)
         self._warden: subprocess.Popen[bytes] | None = None
+        self._last_status: dict[str, StationStatus] = {}
         self.warden_restarts = 0
 
     def start(self) -> None:
@@ -88,20 +99,25 @@ class Supervisor:
 
     def look(self) -> None:
         """Start another warden if this one died. Its stations have ended by themselves."""
-        if self._warden is not None and self._warden.poll() is not None:
-            self.warden_restarts += 1
+        if self._warden is None or self._warden.poll() is None:
+            return
+        self.warden_restarts += 1
+        _close_pipe(self._warden)
+        try:
             self.start()
+        except StationError:
+            return  # the next look tries again: a drive does not end for its spectators
 
     def alive(self) -> bool:
         """Return whether the warden runs."""
         return self._warden is not None and self._warden.poll() is None
 
     def status(self) -> dict[str, StationStatus]:
-        """Return what the warden last said of the stations, by name; empty before it has."""
+        """Return what the warden last said of the stations, by name; empty before it has. Good after `stop` too."""
         try:
             return msgspec.json.decode((self.folder / STATUS).read_bytes(), type=dict[str, StationStatus])
         except (OSError, msgspec.DecodeError):
-            return {}
+            return self._last_status
 
     def counters(self) -> dict[str, int]:
         """Return how often each station was restarted, for the summary."""
@@ -112,10 +128,10 @@ class Supervisor:
         warden, self._warden = self._warden, None
         if warden is None:
             return
-        assert warden.stdin is not None
-        warden.stdin.close()
+        self._last_status = self.status()
+        _close_pipe(warden)
         try:
-            warden.wait(END_S * 2)
+            warden.wait(self._spec.patience_s * 2)
         except subprocess.TimeoutExpired:
             warden.kill()
             warden.wait()
@@ -125,45 +141,55 @@ class Supervisor:
 class _Kept:
     """One station as the warden sees it."""
 
-    def __init__(self, spec: StationSpec) -> None:
+    def __init__(self, spec: StationSpec, warden: WardenSpec) -> None:
         self.spec = spec
+        self._call = StationCall(folder=warden.folder, station=spec, patience_s=warden.patience_s)
         self.process: subprocess.Popen[bytes] | None = None
         self.restarts = 0
         self._failures = 0
         self._started_s = 0.0
         self._next_s = 0.0
 
-    def look(self, folder: str, now_s: float) -> bool:
+    def look(self, now_s: float) -> bool:
         """Start the station if it should run and does not; return whether something changed."""
         if self.process is None:
             if now_s < self._next_s:
                 return False
             environment = _laid_over(os.environ, self.spec.environment)
-            self.process = _spawn("station", {"folder": folder, "station": self.spec}, environment)
             self._started_s = now_s
+            try:
+                self.process = _spawn("station", self._call, environment)
+            except StationError:
+                self._back_off(now_s)
             return True
         if self.process.poll() is None:
             return False
-        healthy = now_s - self._started_s > HEALTHY_S
-        self._failures = 0 if healthy else self._failures
+        _close_pipe(self.process)
+        self.process = None
+        self._back_off(now_s)
+        return True
+
+    def _back_off(self, now_s: float) -> None:
+        if now_s - self._started_s > HEALTHY_S:
+            self._failures = 0
         self._next_s = now_s + BACK_OFF_S[min(self._failures, len(BACK_OFF_S) - 1)]
         self._failures += 1
         self.restarts += 1
-        self.process = None
-        return True
 
 
 def warden(spec: WardenSpec, stop: Callable[[], bool]) -> None:
     """Keep the stations of `spec` running until `stop`; then end them and remove the run folder."""
-    kept = [_Kept(station) for station in spec.stations]
+    kept = [_Kept(station, spec) for station in spec.stations]
     try:
         while not stop():
-            if any([station.look(spec.folder, time.monotonic()) for station in kept]):
+            changed = [station.look(time.monotonic()) for station in kept]
+            if any(changed):
                 _write_status(Path(spec.folder), kept)
             time.sleep(POLL_S)
     finally:
-        _end([station.process for station in kept if station.process is not None])
-        remove_run_folder(Path(spec.folder))
+        _end([station.process for station in kept if station.process is not None], spec.patience_s)
+        if stop():  # else this warden broke, and the core's next one needs the folder
+            remove_run_folder(Path(spec.folder))
 
 
 def run_station(folder: Path, spec: StationSpec, stop: Callable[[], bool]) -> None:
@@ -196,9 +222,17 @@ def _write_status(folder: Path, kept: list[_Kept]) -> None:
 
 
 def _spawn(role: str, spec: object, environment: Mapping[str, str]) -> "subprocess.Popen[bytes]":
-    words = [sys.executable, "-m", "simconsole.stations", role]
+    # The child imports what its parent imports, and nothing that happens to lie in the working directory.
+    words = [sys.executable, "-P", "-m", "simconsole.stations", role]
+    path = os.pathsep.join(entry for entry in sys.path if entry)
     try:
-        process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, env=dict(environment))
+        process = subprocess.Popen(
+            words,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,
+            env={**environment, "PYTHONPATH": path},
+            process_group=0,  # a terminal's Ctrl-C reaches the core only
+        )
     except OSError as error:
         raise StationError(f"{role}: cannot be started: {error.strerror}") from None
     assert process.stdin is not None
@@ -210,6 +244,12 @@ def _spawn(role: str, spec: object, environment: Mapping[str, str]) -> "subproce
     return process
 
 
+def _close_pipe(process: "subprocess.Popen[bytes]") -> None:
+    if process.stdin is not None:
+        with contextlib.suppress(OSError):
+            process.stdin.close()
+
+
 def _laid_over(environment: Mapping[str, str], changes: Mapping[str, str | None]) -> dict[str, str]:
     merged = {**environment, **{name: value for name, value in changes.items() if value is not None}}
     for name, value in changes.items():
@@ -218,11 +258,10 @@ def _laid_over(environment: Mapping[str, str], changes: Mapping[str, str | None]
     return merged
 
 
-def _end(processes: "Sequence[subprocess.Popen[bytes]]") -> None:
+def _end(processes: "Sequence[subprocess.Popen[bytes]]", patience_s: float) -> None:
     for process in processes:
-        if process.stdin is not None:
-            process.stdin.close()
-    deadline_s = time.monotonic() + END_S
+        _close_pipe(process)
+    deadline_s = time.monotonic() + patience_s
     for process in processes:
         try:
             process.wait(max(0.0, deadline_s - time.monotonic()))
@@ -231,14 +270,21 @@ def _end(processes: "Sequence[subprocess.Popen[bytes]]") -> None:
             process.wait()
 
 
-def _watch_pipe() -> Callable[[], bool]:
-    """Return a function that is True once whoever started this process has closed the pipe or died."""
+def _watch_pipe(patience_s: float | None) -> Callable[[], bool]:
+    """Return a function that is True once whoever started this process has closed the pipe or died.
+
+    A process that has not ended `patience_s` after that is stuck, and ended from here.
+    """
     closed = threading.Event()
 
     def watch() -> None:
-        while sys.stdin.buffer.read(4096):
+        # Not through sys.stdin: a thread that holds its lock would abort the interpreter's end.
+        while os.read(0, 4096):
             pass
         closed.set()
+        if patience_s is not None:
+            time.sleep(patience_s)
+            os._exit(1)
 
     threading.Thread(target=watch, name="pipe", daemon=True).start()
     return closed.is_set
@@ -248,14 +294,12 @@ def main(words: list[str]) -> int:
     """Be the warden or a station."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the core's; the pipe tells when to end
     line = sys.stdin.buffer.readline()
-    stop = _watch_pipe()
     try:
         if words == ["warden"]:
-            warden(msgspec.json.decode(line, type=WardenSpec), stop)
+            warden(msgspec.json.decode(line, type=WardenSpec), _watch_pipe(None))
         else:
-            described = msgspec.json.decode(line)
-            spec = msgspec.convert(described["station"], StationSpec)
-            run_station(Path(described["folder"]), spec, stop)
+            call = msgspec.json.decode(line, type=StationCall)
+            run_station(Path(call.folder), call.station, _watch_pipe(call.patience_s))
     except SimConsoleError as error:
         print(f"simconsole {' '.join(words)}: {error}", file=sys.stderr)
         return error.exit_code
@@ -263,8 +307,4 @@ def main(words: list[str]) -> int:
 
 
 if __name__ == "__main__":
-    code = main(sys.argv[1:])
-    sys.stdout.flush()
-    sys.stderr.flush()
-    # Not sys.exit: the thread that watches the pipe may hold the lock of standard input.
-    os._exit(code)
+    sys.exit(main(sys.argv[1:]))
