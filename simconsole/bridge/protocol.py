@@ -295,8 +295,6 @@ class Router:
             self._clear(topic)
 
     def _advertise(self, session: Session, name: str, operation: Advertise) -> None:
-        if name not in session.advertised and len(session.advertised) >= self._limits.topics:
-            raise RemoteProtocolError(f"{self._limits.topics} topics are the most allowed")
         topic = self._topic(name, operation.type)
         if topic.owned and topic.command is None:
             raise RemoteProtocolError("only the console publishes this topic")

@@ -4,7 +4,9 @@ from typing import Any
 
 import pytest
 
+from simconsole.bridge.commands import CommandIntake
 from simconsole.bridge.console import ConsoleBridge
+from simconsole.errors import RemoteProtocolError
 from simconsole.profiles.bridge import BridgeProfile, CommandLimits
 from simconsole.signals import Event, RemoteCommand, RemoteKind
 
@@ -201,3 +203,12 @@ def test_sender_on_our_clock_is_held_to_it(
 def test_both_spellings_of_a_stamp(peer: Any, control: Callable[..., Any]) -> None:
     assert peer.publish(CONTROL, {**control(), "stamp": {"secs": 1, "nsecs": 2}}).kind == "command"
     assert peer.bridge.inputs.stamp_ns == 1_000_000_002
+
+
+def test_value_that_is_not_finite_is_refused_whoever_brings_it(bridge: ConsoleBridge) -> None:
+    """JSON cannot say it; a later encoding of the same messages could."""
+    intake = CommandIntake(bridge.inputs, BridgeProfile())
+    (topic,) = (topic for topic in intake.topics() if topic.name == "/ball/desired_speed")
+    for value in (math.nan, math.inf, -math.inf):
+        with pytest.raises(RemoteProtocolError, match="not finite"):
+            topic.accept({"data": value}, bridge.router.registry.struct(topic.type)(value), 0)

@@ -55,6 +55,7 @@ def test_what_is_no_type_name(name: str) -> None:
         ("uint8 X=256", "not between 0 and 255"),
         ("int8 X=-129", "not between"),
         ("bool X=maybe", "not a bool"),
+        ("bool X=False\nbool Y=2", "not a bool"),
         ("Other X=1", "primitive"),
         ("Other x 1", "cannot have a default"),
         ("int32[] x 1", "must be a list"),
