@@ -37,4 +37,5 @@ def replay_bundle(folder: Path) -> ReplayResult:
         state.row,
         lambda tick, previous, inputs: advance_row(previous, inputs, console),
         first_tick=1,
+        recorded_ticks=bundle.manifest.ticks if bundle.manifest.finished else None,
     )

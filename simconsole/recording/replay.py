@@ -45,6 +45,7 @@ def replay(
     initial: Row,
     advance: AdvanceRow,
     first_tick: int | None = None,
+    recorded_ticks: int | None = None,
 ) -> ReplayResult:
     """Make every row of `records` again from its first `header.input_columns` columns and compare the bytes.
 
@@ -55,12 +56,13 @@ def replay(
         initial: the row before the first recorded tick.
         advance: see `AdvanceRow`.
         first_tick: the tick after `initial`, where the caller knows it.
+        recorded_ticks: how many ticks were recorded, where the drive was finished and said so.
 
     Returns:
         The result, up to and including the first differing tick.
 
     Raises:
-        RecordingError: the recording has other columns, or its ticks have a gap.
+        RecordingError: the recording has other columns, its ticks have a gap, or all are equal but some are gone.
     """
     if header.columns != columns:
         unlike = next((pair for pair in zip(header.columns, columns, strict=False) if pair[0] != pair[1]), None)
@@ -79,6 +81,8 @@ def replay(
         if digest != record.digest:
             return ReplayResult(False, ticks, Difference(record.tick, "hash", math.nan, math.nan), digest)
         ticks, expected = ticks + 1, record.tick + 1
+    if recorded_ticks is not None and ticks != recorded_ticks:
+        raise RecordingError(f"the recording is not whole: {ticks} of {recorded_ticks} ticks could be replayed")
     return ReplayResult(True, ticks, None, digest)
 
 

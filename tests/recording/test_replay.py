@@ -82,6 +82,15 @@ def test_a_gap_is_refused(log: LogReader, header: LogHeader, toy_advance: Advanc
         replay((r for r in log if r.tick > 1), header, header.columns, np.zeros(4), toy_advance, first_tick=1)
 
 
+def test_a_tick_lost_at_the_end_is_not_an_equal_replay(log: LogReader, header: LogHeader, toy_advance: Advance) -> None:
+    content = bytearray(log.path.read_bytes())
+    content[-20] ^= 1
+    log.path.write_bytes(bytes(content))
+    with pytest.raises(RecordingError, match="not whole: 39 of 40 ticks"):
+        replay(log, header, header.columns, np.zeros(4), toy_advance, recorded_ticks=40)
+    assert replay(log, header, header.columns, np.zeros(4), toy_advance).ticks == 39  # a killed drive says no number
+
+
 def test_first_unequal_compares_bytes() -> None:
     assert first_unequal(np.array([1.0, math.nan]), np.array([1.0, math.nan])) is None
     assert first_unequal(np.array([1.0, 0.0]), np.array([1.0, -0.0])) == 1
