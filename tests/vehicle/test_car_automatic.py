@@ -113,3 +113,19 @@ def test_handed_back_and_left_alone_it_comes_to_rest_without_stalling() -> None:
     seen = drive.until(lambda seen: seen.vx_mps < 0.01, 30.0, gear=0, brake=0.3)
     assert seen.engine_running == 1.0
     assert drive.hold(1.0, gear=1, brake=0.3).engine_running == 1.0, "even if the lever matches: the clutch is open"
+
+
+@pytest.mark.parametrize("brake", [0.1, 0.25, 0.4])
+def test_shifting_down_under_braking_does_not_jolt(brake: float) -> None:
+    """The engine is brought to the lower gear's speed first: the clutch must not spin it up out of the car's motion."""
+    drive = Drive(platform())
+    drive.until(lambda seen: seen.vx_mps > 20.0, 60.0, automatic=1, gear=1, throttle=0.7)
+    drive.hold(1.0, automatic=1, gear=1, brake=brake)
+    steady = drive.seen.ax_mps2
+    least, gears = steady, {drive.seen.gear}
+    while drive.seen.vx_mps > 3.0:
+        least = min(least, drive.hold(TICK_S, automatic=1, gear=1, brake=brake).ax_mps2)
+        gears.add(drive.seen.gear)
+    print(f"steady {steady:.2f} m/s2, least {least:.2f} m/s2, gears {sorted(gears)}")
+    assert len(gears) >= 2
+    assert least > steady - 1.2

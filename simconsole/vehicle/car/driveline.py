@@ -6,7 +6,7 @@ from simconsole.kernels import clip, kernel
 from simconsole.signals import Request
 from simconsole.vehicle.car.axles import Axles
 from simconsole.vehicle.car.engine import EngineDrive, engine_drive
-from simconsole.vehicle.car.gearbox import Gearbox, bite, gear_ratio, work_gearbox
+from simconsole.vehicle.car.gearbox import Gearbox, bite, gear_ratio, matched_throttle, work_gearbox
 from simconsole.vehicle.car.parameters import CarParameters
 from simconsole.vehicle.car.powertrain import Shafts, braked, solve_shafts
 from simconsole.vehicle.car.state import CarState
@@ -50,8 +50,7 @@ def turn(s: CarState, car: CarParameters, request: Request, axles: Axles, step_s
         step_s,
     )
     clutch_nm = clutch_torque(s, car, box)
-    # The automatic lifts the throttle while its clutch is open for a shift.
-    throttle = 0.0 if box.shift_left_s > 0.0 else request.throttle
+    throttle = matched_throttle(car.gears, box, request.throttle, s.engine_radps, s.front_wheel_radps)
     drive = engine_drive(car.engine, s.engine_radps, s.engine_running, throttle, clutch_nm == 0.0)
     shafts = turn_front(s, car, request, axles, drive, gear_ratio(car.gears, box.gear), clutch_nm, step_s)
     rear = car.rear

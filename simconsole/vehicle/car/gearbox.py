@@ -18,6 +18,10 @@ BACKWARDS_RADPS = -40.0
 ROLLING_MPS = 1.0
 """Above this speed the automatic does not engage a gear of the other direction (a slow walking pace)."""
 
+BLIP_BAND_RADPS = 40.0
+BLIP_MOST = 0.7
+"""The automatic's throttle by the speed that the engine is short of when it shifts down."""
+
 
 class Gearbox(NamedTuple):
     """Clutch and gears after one step."""
@@ -108,8 +112,29 @@ def automatic_clutch(p: GearParameters, box: Gearbox, engine_radps: float, wheel
         lock = (speed - p.lock_from_radps) / (p.lock_to_radps - p.lock_from_radps)
         closed = clip(launch if launch > lock else lock, 0.0, 1.0)
     target = p.bite_open - closed * (p.bite_open - p.bite_closed)
+    if closed == 1.0:
+        target = 0.0  # as a foot that rests beside the pedal
     rate = p.clutch_opening_per_s if target > box.clutch else p.clutch_closing_per_s
     return approach(box.clutch, target, rate * step_s)
+
+
+@kernel
+def matched_throttle(
+    p: GearParameters, box: Gearbox, throttle: float, engine_radps: float, wheel_radps: float
+) -> float:
+    """Return the throttle while the automatic's clutch is not closed: lifted for a shift up, blipped for one down.
+
+    Without the blip the closing clutch would spin the engine up out of the car's motion: a jolt of several m/s2.
+    """
+    shifting = box.shift_left_s > 0.0
+    asked = 0.0 if shifting else throttle
+    if box.lever_adopted != 0.0 or box.clutch <= p.bite_closed:
+        return asked
+    coming = gear_ratio(p, box.wanted_gear if shifting else box.gear) * wheel_radps
+    if coming < p.lock_from_radps:
+        return asked
+    blip = clip((coming - engine_radps) / BLIP_BAND_RADPS, 0.0, BLIP_MOST)
+    return blip if blip > asked else asked
 
 
 @kernel
