@@ -160,7 +160,7 @@ class EventCounters:
     def __init__(self, ring: Ring) -> None:
         self._counts: NDArray[np.int64] = ring._words[0, RECORD_HEAD_WORDS : RECORD_HEAD_WORDS + self.BITS]
         self._ring = ring
-        self._seen: NDArray[np.int64] = self._counts.copy()
+        self._seen = self._counts.tobytes()
 
     @classmethod
     def create(cls, path: Path) -> "EventCounters":
@@ -180,13 +180,12 @@ class EventCounters:
 
     def take(self) -> int:
         """Return the mask of events since the last call."""
-        counts = self._counts.copy()
-        moved = np.flatnonzero(counts != self._seen)
+        counts = self._counts.tobytes()
+        if counts == self._seen:  # nearly every tick, and a tenth of the price of comparing arrays
+            return 0
+        moved = np.flatnonzero(np.frombuffer(counts, np.int64) != np.frombuffer(self._seen, np.int64))
         self._seen = counts
-        mask = 0
-        for bit in moved.tolist():
-            mask |= 1 << bit
-        return mask
+        return sum(1 << bit for bit in moved.tolist())
 
 
 def make_run_folder() -> Path:
