@@ -105,7 +105,7 @@ def judge(check: Check, rows: Row, columns: tuple[str, ...], scenario: ScenarioP
     if not len(values):
         return f"{check.column}: no tick between {check.from_s} s and {check.until_s} s"
     at = int(np.flatnonzero(~good)[0])
-    return f"tick {max(0, first) + at + 1}: {check.column}: {values[at]!r} not in {low} to {high}"
+    return f"tick {max(0, first) + at + 1}: {check.column}: {float(values[at])!r} not in {low} to {high}"
 
 
 def _against_golden(path: Path, driven: golden.Golden) -> list[str]:

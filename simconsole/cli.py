@@ -11,9 +11,8 @@ from importlib import import_module
 from typing import Any
 
 from simconsole import __version__
+from simconsole.commands.outcome import INTERRUPTED
 from simconsole.errors import SimConsoleError
-
-INTERRUPTED = 130
 
 
 def parser() -> argparse.ArgumentParser:

@@ -74,7 +74,8 @@ class LockstepLink:
 def start_autopilot(url: str, course: str) -> "subprocess.Popen[bytes]":
     """Start `simconsole autopilot` as a program of its own; `end_program` ends it."""
     words = [sys.executable, "-m", "simconsole", "autopilot", "--url", url, "--course", course]
-    return subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+    # A group of its own: a terminal's Ctrl-C reaches the core only, which then ends the drive in order.
+    return subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, process_group=0)
 
 
 def end_program(program: "subprocess.Popen[bytes]") -> None:

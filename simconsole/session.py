@@ -33,6 +33,7 @@ class DriveResult(NamedTuple):
     digest: str
     interrupted: bool
     summary: dict[str, Any]
+    recording_failure: str | None = None
 
 
 def drive(
@@ -71,7 +72,7 @@ def drive(
             **opened.summary(),
         }
         manifest = bundle.finish(summary)
-    return DriveResult(folder, manifest.ticks, manifest.digest, interrupt.raised, summary)
+    return DriveResult(folder, manifest.ticks, manifest.digest, interrupt.raised, summary, manifest.recording_failure)
 
 
 def warm_up(console: Console, state: ConsoleState) -> None:

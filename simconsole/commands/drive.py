@@ -4,10 +4,9 @@ import time
 from argparse import Namespace
 from pathlib import Path
 
-from simconsole.commands.demo import summary_text
+from simconsole.commands.driven import finish
 from simconsole.commands.outcome import Outcome
 from simconsole.commands.progress import Progress
-from simconsole.exports import write_exports
 from simconsole.profiles.session import SessionProfile
 from simconsole.session import drive as drive_session
 from simconsole.session_files import load_session, override, resolve
@@ -20,11 +19,7 @@ def drive(words: Namespace) -> Outcome:
     folder = Path(words.out) if words.out else Path("out") / time.strftime("drive-%Y%m%d-%H%M%S")
     with Progress("driving", resolved.world.length_m if resolved.world else 0.0) as progress:
         result = drive_session(resolved, folder, progress.watch)
-    outputs = session.outputs
-    with Progress("writing report and scene"):
-        metrics = write_exports(folder, report=outputs.report, scene=outputs.scene is not None)
-    results = {"bundle": str(folder), "digest": result.digest, **metrics, **result.summary}
-    return Outcome(0, results, summary_text(folder, metrics, result.summary))
+    return finish(result, report=session.outputs.report, scene=session.outputs.scene is not None)
 
 
 def _with_options(session: SessionProfile, words: Namespace) -> SessionProfile:

@@ -1,10 +1,13 @@
 """What a command hands back to the command line."""
 
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
+
+INTERRUPTED: Final = 130
+"""Exit code of what SIGINT or SIGTERM ended, as a shell reports a Ctrl-C; a drive's bundle is whole all the same."""
 
 
 class Outcome(NamedTuple):
-    """The end of a command: its exit code (0 good, 1 the check failed), its results for `--json`, its text."""
+    """The end of a command: its exit code (see cli.py), its results for `--json`, its text."""
 
     code: int
     results: dict[str, Any]

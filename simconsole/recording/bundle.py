@@ -5,6 +5,7 @@ them and may be missing. The manifest is written twice: at the start, so that a 
 at the end with sizes and checksums.
 """
 
+import contextlib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from types import TracebackType
@@ -60,6 +61,8 @@ class Bundle:
 class BundleWriter:
     """Records one drive. Leaving it without `finish` keeps an unfinished but readable bundle.
 
+    Leaving it by an error before the first tick leaves nothing: a device or port could not be had, no drive began.
+
     Attributes:
         folder: where it is.
         log: append one row per tick here; look at `log.failure` for a disk that gave up.
@@ -79,6 +82,7 @@ class BundleWriter:
             RecordingError: the folder exists and is not empty, or cannot be written.
         """
         self.folder = folder
+        self._made = [path for path in (folder, *folder.parents) if not path.exists()]  # innermost first
         try:
             folder.mkdir(parents=True, exist_ok=True)
             if any(folder.iterdir()):
@@ -124,6 +128,16 @@ class BundleWriter:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.log.close()
+        if error is not None and self.log.ticks == 0:
+            self._discard()
+
+    def _discard(self) -> None:
+        """Remove what was made. The folder was empty before, so that all in it belongs to this drive."""
+        with contextlib.suppress(OSError):
+            for path in self.folder.iterdir():
+                path.unlink()
+            for path in self._made:
+                path.rmdir()
 
 
 def open_bundle(folder: Path) -> Bundle:

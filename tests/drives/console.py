@@ -1,0 +1,90 @@
+"""Runs simconsole as people do: as a program, from the command line."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+PATIENCE_S = 120.0
+"""A deadline against hanging, far above what anything takes."""
+
+
+def words(*arguments: object) -> list[str]:
+    return [sys.executable, "-m", "simconsole", *map(str, arguments)]
+
+
+def environment(**changes: str) -> dict[str, str]:
+    """The environment of a machine with no display."""
+    kept = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    return {**kept, "SDL_VIDEODRIVER": "dummy", **changes}
+
+
+def simconsole(*arguments: object, **changes: str) -> "subprocess.CompletedProcess[str]":
+    """Run one command to its end, with pipes for its output."""
+    return subprocess.run(
+        words(*arguments), capture_output=True, text=True, timeout=PATIENCE_S, env=environment(**changes), check=False
+    )
+
+
+def results(done: "subprocess.CompletedProcess[str]") -> dict[str, Any]:
+    """What `--json` printed on the last line."""
+    found = json.loads(done.stdout.splitlines()[-1])
+    assert isinstance(found, dict)
+    return found
+
+
+def complaint(done: "subprocess.CompletedProcess[str]") -> str:
+    """The one line of a command that refused: code 2, nothing but that line, no traceback."""
+    assert done.returncode == 2, done.stdout + done.stderr
+    assert done.stdout == ""
+    lines = done.stderr.splitlines()
+    assert len(lines) == 1, done.stderr
+    assert lines[0].startswith("simconsole ")
+    return lines[0]
+
+
+def wait_until(condition: Callable[[], object], what: str, patience_s: float = PATIENCE_S) -> None:
+    """Look until `condition` holds."""
+    deadline_s = time.monotonic() + patience_s
+    while not condition():
+        assert time.monotonic() < deadline_s, f"{what}: not within {patience_s} s"
+        time.sleep(0.02)
+
+
+class Running:
+    """A command that runs meanwhile, in a process group of its own; its output goes to files."""
+
+    def __init__(self, folder: Path, *arguments: object, **changes: str) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        self.out, self.err = folder / "stdout", folder / "stderr"
+        with self.out.open("wb") as out, self.err.open("wb") as err:
+            self.process = subprocess.Popen(
+                words(*arguments), stdout=out, stderr=err, env=environment(**changes), process_group=0
+            )
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self.process.poll() is None:
+            self.process.kill()
+            self.process.wait()
+
+    def interrupt_group(self) -> None:
+        """What a terminal does at Ctrl-C."""
+        os.killpg(self.process.pid, signal.SIGINT)
+
+    def end(self) -> "subprocess.CompletedProcess[str]":
+        """Wait for its end and return it as `simconsole` does."""
+        code = self.process.wait(PATIENCE_S)
+        return subprocess.CompletedProcess(
+            self.process.args, code, self.out.read_text("utf-8"), self.err.read_text("utf-8")
+        )

@@ -1,0 +1,131 @@
+"""The main job, end to end: a person at the wheel, an autopilot over rosbridge, a bundle that tells all of it."""
+
+import json
+from itertools import pairwise
+
+import numpy as np
+
+from simconsole.profile_files import load
+from simconsole.profiles.device import CockpitProfile
+from simconsole.recording.bundle import open_bundle, verify
+from simconsole.signals import Button, Event, Mode, Reason, Validity
+from simconsole.units import RAD_PER_DEG
+
+from .conftest import Demo
+
+
+def test_it_writes_a_whole_bundle_with_report_and_scene(demo: Demo) -> None:
+    assert verify(demo.bundle) == []
+    assert demo.results["bundle"] == str(demo.bundle)
+    assert open_bundle(demo.bundle).manifest.digest == demo.results["digest"]
+    report = (demo.bundle / "report.html").read_text("utf-8")
+    assert "First drive" in report
+    assert "<svg" in report
+    assert (demo.bundle / "scene.rrd").stat().st_size > 100_000
+    for name in ("bundle", "report", "scene"):
+        assert any(line.split()[0] == name for line in demo.done.stdout.splitlines()), name
+
+
+def test_on_a_pipe_it_shows_no_progress_and_ends_with_its_results(demo: Demo) -> None:
+    assert demo.done.stderr == ""
+    assert "\r" not in demo.done.stdout
+    assert "\x1b" not in demo.done.stdout
+    *table, last = demo.done.stdout.splitlines()
+    assert json.loads(last)["ticks"] == len(demo.table.ticks)
+    named = {line.split("  ")[1].strip() for line in table}
+    assert {"distance", "duration", "lateral error", "tick lateness", "real-time factor"} <= named
+
+
+def test_the_mode_goes_from_person_to_autopilot_and_back(demo: Demo) -> None:
+    changes = demo.results["mode_changes"]
+    assert [(change["mode"], change["reason"]) for change in changes] == [
+        ("MANUAL", "controls ready"),
+        ("AUTONOMOUS", "driver asked"),
+        ("MANUAL", "driver turned the wheel"),
+    ]
+    modes = demo.table.column("arbitration.mode")
+    reasons = demo.table.column("arbitration.reason")
+    assert [(float(Mode.MANUAL), float(Reason.ARMED)), (float(Mode.AUTONOMOUS), float(Reason.PERSON_ASKED))] == [
+        (modes[change["tick"] - 1], reasons[change["tick"] - 1]) for change in changes[:2]
+    ]
+    assert reasons[-1] == Reason.STEERING_OVERRIDE
+    assert not demo.table.column("events.events").any(), "nobody but the person changed the mode, no answer was missed"
+
+
+def test_the_person_asks_by_a_button_and_takes_back_by_the_wheel(demo: Demo) -> None:
+    _, engaged, taken = (change["tick"] - 1 for change in demo.results["mode_changes"])
+    edges = demo.table.column("driver.edges").astype(int)
+    pressed = np.flatnonzero(edges & int(Button.AUTONOMOUS))
+    assert len(pressed) > 0
+    assert pressed[-1] <= engaged < pressed[-1] + 250
+    wheel = demo.table.column("driver.hand_wheel_rad")
+    brake = demo.table.column("driver.brake")
+    assert np.abs(wheel[engaged:taken] - wheel[engaged]).max() < 8.0 * RAD_PER_DEG + 0.2
+    assert np.abs(wheel[taken - 25 : taken + 1] - wheel[engaged]).max() > 8.0 * RAD_PER_DEG
+    assert brake[engaged : taken + 1].max() == 0.0, "the steering alone took over"
+
+
+def test_the_car_drives_off_from_standstill_and_stands_at_the_end(demo: Demo) -> None:
+    speed = demo.table.column("vehicle.vx_mps")
+    assert abs(speed[0]) < 1e-3
+    assert abs(speed[-1]) < 0.01, "tyres still swing a little"
+    assert demo.table.column("vehicle.engine_running").all(), "the person never stalls it"
+
+
+def test_the_autopilot_keeps_to_the_path_and_to_its_speed(demo: Demo) -> None:
+    part = demo.results["autonomous"]
+    assert part["lateral_rms_m"] <= 0.10
+    assert part["lateral_max_m"] <= 0.30
+    assert part["mean_speed_kmh"] >= 35.0
+    assert part["distance_m"] >= 2600.0
+    assert demo.results["above_limit_s"] == 0.0
+
+
+def test_the_drive_never_waited_in_vain_and_ran_faster_than_real_time(demo: Demo) -> None:
+    assert demo.results["unanswered"] == 0
+    assert demo.results["exchanges"] >= demo.results["duration_s"] * 49.0, "50 exchanges in each simulated second"
+    assert demo.results["real_time_factor"] > 1.0
+
+
+def test_every_command_in_autonomy_was_made_for_the_state_before(demo: Demo) -> None:
+    autonomous = demo.table.column("arbitration.mode") == float(Mode.AUTONOMOUS)
+    age = demo.table.column("remote.age_ticks")[autonomous]
+    assert age.max() == 4.0, "a command every 20 ms, answered in lockstep, is at most 4 ticks of 4 ms old"
+    assert demo.table.column("remote.refused").max() == 0.0
+
+
+def test_samples_come_from_the_wheels_own_polarity(demo: Demo) -> None:
+    # T500 RS on Linux: a released pedal reads +1 after its 10 bits went through SDL, a pressed one -1.
+    profile = load("devices", "t500rs_th8rs", CockpitProfile)
+    for pedal in ("throttle", "brake", "clutch"):
+        raw = demo.table.column(f"sample.{pedal}_axis")
+        axis = getattr(profile.pedals, pedal)
+        assert axis.rest_raw > 0.9 > -0.9 > axis.full_raw
+        assert np.median(raw) > 0.98, pedal
+        assert raw.min() < 0.8, f"{pedal} was used"
+        assert demo.table.column(f"driver.{pedal}")[raw == raw.max()].max() == 0.0
+    steps = demo.table.column("sample.wheel_axis") * 32768.0
+    assert np.allclose(steps, np.round(steps), atol=0.51), "16 bits, as SDL hands them over"
+    assert demo.table.column("sample.wheel_axis").max() > demo.table.column("sample.wheel_axis").min()
+
+
+def test_gears_are_shifted_one_by_one_through_the_h_pattern(demo: Demo) -> None:
+    buttons = demo.table.column("sample.shifter_buttons").astype(int)
+    held = set(buttons.tolist())
+    assert 0 in held
+    assert all(mask & (mask - 1) == 0 for mask in held), "never two gears at once"
+    profile = load("devices", "t500rs_th8rs", CockpitProfile)
+    gear_of = {0: 0, **{1 << button: gear for gear, button in enumerate(profile.shifter.gears, start=1)}}
+    lever = [gear_of[int(buttons[0])]]
+    lever += [gear_of[int(after)] for before, after in pairwise(buttons) if before != after]
+    assert lever[:6] == [0, 1, 0, 2, 0, 3], "through neutral between two gears"
+    manual = demo.table.column("arbitration.mode") == float(Mode.MANUAL)
+    driven = demo.table.column("vehicle.gear")[manual]
+    assert {1.0, 2.0, 3.0} <= set(driven.tolist())
+
+
+def test_the_cockpit_is_live_throughout(demo: Demo) -> None:
+    for part in ("wheel", "throttle", "brake", "clutch", "shifter"):
+        assert demo.table.column(f"driver.{part}_validity")[-1] == Validity.LIVE, part
+        assert not (demo.table.column(f"driver.{part}_validity") > float(Validity.LIVE)).any(), part
+    assert not (demo.table.column("events.events").astype(int) & int(Event.EMERGENCY_STOP)).any()

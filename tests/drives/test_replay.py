@@ -1,0 +1,147 @@
+"""Replay re-simulates: an equal drive is equal to the last bit, and one forged value is found where it acts first."""
+
+import json
+import shutil
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from simconsole.recording.bundle import open_bundle, verify
+from simconsole.replaying import replay_bundle
+
+from .conftest import Demo
+from .console import complaint, results, simconsole
+
+REPLAYS = 20
+FORGED_TICK = 400
+
+
+@pytest.fixture
+def copy(short: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copytree(short, tmp_path / "copy"))
+
+
+def test_replay_of_the_demo_finds_every_hash_equal(demo: Demo) -> None:
+    done = simconsole("replay", demo.bundle, "--json")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert results(done) == {
+        "equal": True,
+        "ticks": len(demo.table.ticks),
+        "digest": demo.results["digest"],
+        "difference": None,
+    }
+    assert "every hash equal" in done.stdout
+
+
+def test_twenty_replays_of_the_demo_are_equal(demo: Demo) -> None:
+    # In two processes: each compiled code is loaded anew, and two cores share the work.
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+        found = list(pool.map(replay_bundle, [demo.bundle] * REPLAYS))
+    assert found == [(True, len(demo.table.ticks), None, bytes.fromhex(demo.results["digest"]))] * REPLAYS
+
+
+def test_the_plain_functions_replay_what_compiled_code_drove(short: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from simconsole import compiling, replaying
+
+    monkeypatch.setattr(replaying, "compiled", compiling.plain)
+    found = replay_bundle(short)
+    assert found.equal, str(found.difference)
+    assert found.ticks == 750
+
+
+def test_one_forged_brake_value_is_named_with_tick_and_field(
+    copy: Path, rewrite_log: Callable[..., None], rewrite_checksums: Callable[[Path], None]
+) -> None:
+    table = open_bundle(copy).log.table()
+    before = table.column("sample.brake_axis")[FORGED_TICK - 1]
+    rewrite_log(copy / "drive.log", FORGED_TICK, "sample.brake_axis", before - 0.5)
+    rewrite_checksums(copy)
+    assert verify(copy) == [], "the forgery is perfect: only driving it again can tell"
+    done = simconsole("replay", copy, "--json")
+    assert done.returncode == 1
+    found = results(done)
+    assert not found["equal"]
+    assert found["ticks"] == FORGED_TICK - 1
+    assert found["difference"]["tick"] == FORGED_TICK
+    assert found["difference"]["field"] == "driver.brake"
+    assert f"tick {FORGED_TICK}: driver.brake: recorded" in done.stdout
+
+
+def test_a_forged_brake_value_in_the_demo_is_found_too(
+    demo: Demo, tmp_path: Path, rewrite_log: Callable[..., None], rewrite_checksums: Callable[[Path], None]
+) -> None:
+    forged = Path(shutil.copytree(demo.bundle, tmp_path / "forged"))
+    manual = np.flatnonzero(demo.table.column("driver.brake") > 0.2)
+    tick = int(demo.table.ticks[manual[len(manual) // 2]])
+    rewrite_log(forged / "drive.log", tick, "sample.brake_axis", 0.0)
+    rewrite_checksums(forged)
+    found = replay_bundle(forged)
+    assert not found.equal
+    assert found.difference is not None
+    assert found.difference[:2] == (tick, "driver.brake")
+
+
+def test_one_changed_vehicle_value_is_named_with_tick_and_field(
+    copy: Path, rewrite_checksums: Callable[[Path], None]
+) -> None:
+    session = json.loads((copy / "session.json").read_text())
+    session["vehicle"]["body"]["mass_kg"] *= 1.01
+    (copy / "session.json").write_text(json.dumps(session))
+    assert any("session.json" in problem for problem in verify(copy))
+    rewrite_checksums(copy)
+    assert verify(copy) == []
+    done = simconsole("replay", copy, "--json")
+    assert done.returncode == 1, done.stdout + done.stderr
+    difference = results(done)["difference"]
+    assert 1 <= difference["tick"] <= FORGED_TICK
+    assert difference["field"].split(".")[0] in ("vehicle", "platform")
+    assert f"tick {difference['tick']}: {difference['field']}: recorded" in done.stdout
+
+
+def test_a_session_altered_into_nonsense_is_one_line(copy: Path, rewrite_checksums: Callable[[Path], None]) -> None:
+    session = json.loads((copy / "session.json").read_text())
+    session["vehicle"]["body"]["mass_kg"] = -1
+    (copy / "session.json").write_text(json.dumps(session))
+    rewrite_checksums(copy)
+    assert f"{copy / 'session.json'}: vehicle.body.mass_kg: value -1" in complaint(simconsole("replay", copy))
+
+
+@pytest.mark.parametrize("command", ["replay", "report", "view"])
+def test_a_bundle_cut_short_is_one_line(copy: Path, command: str) -> None:
+    log = copy / "drive.log"
+    size = log.stat().st_size
+    with log.open("r+b") as file:
+        file.truncate(size // 2)
+    before = sorted(path.name for path in copy.iterdir())
+    line = complaint(simconsole(command, copy, *(["--no-open"] if command == "view" else [])))
+    assert f"{log}: " in line
+    assert "truncated" in line
+    assert str(size) in line
+    assert sorted(path.name for path in copy.iterdir()) == before
+
+
+def test_compare_finds_two_drives_of_one_script_equal(short: Path, script: Path, tmp_path: Path) -> None:
+    again = tmp_path / "again"
+    done = simconsole("drive", "--headless", "--driver", f"script:{script}", "--for", 3, "--out", again)
+    assert done.returncode == 0, done.stderr
+    compared = simconsole("compare", short, again, "--json")
+    assert compared.returncode == 0, compared.stdout
+    assert results(compared) == {"equal": True, "ticks": 750, "difference": None}
+    assert (short / "drive.log").read_bytes() == (again / "drive.log").read_bytes()
+
+
+def test_compare_names_the_first_difference_with_a_window(
+    short: Path, copy: Path, rewrite_log: Callable[..., None], rewrite_checksums: Callable[[Path], None]
+) -> None:
+    rewrite_log(copy / "drive.log", FORGED_TICK, "vehicle.vx_mps", 7.25)
+    rewrite_checksums(copy)
+    done = simconsole("compare", short, copy, "--json")
+    assert done.returncode == 1
+    difference = results(done)["difference"]
+    assert difference["tick"] == FORGED_TICK
+    assert "vehicle.vx_mps" in str(difference)
+    assert "7.25" in done.stdout

@@ -1,0 +1,89 @@
+"""F05 of the fault catalogue, from the command line: a recording that cannot be read is one line and exit code 2."""
+
+import json
+import shutil
+import struct
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from zlib import crc32
+
+import pytest
+
+from simconsole.recording.framing import MAGIC
+
+from ..drives.conftest import rewrite_checksums, script, short
+from ..drives.console import complaint, results, simconsole
+
+__all__ = ["rewrite_checksums", "script", "short"]
+
+
+@pytest.fixture
+def copy(short: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copytree(short, tmp_path / "copy"))
+
+
+def change_header(log: Path, **changes: object) -> None:
+    """Write another header, its checksum right, before the same ticks."""
+    content = log.read_bytes()
+    start = len(MAGIC)
+    size, _ = struct.unpack_from("<II", content, start)
+    header = json.loads(content[start + 8 : start + 8 + size])
+    text = json.dumps({**header, **changes}).encode()
+    log.write_bytes(MAGIC + struct.pack("<II", len(text), crc32(text)) + text + content[start + 8 + size :])
+
+
+@pytest.mark.parametrize("command", ["replay", "report"])
+def test_f05_recording_of_a_newer_version(copy: Path, rewrite_checksums: Callable[[Path], None], command: str) -> None:
+    change_header(copy / "drive.log", schema=99)
+    manifest = json.loads((copy / "manifest.json").read_text())
+    entry = manifest["files"]["drive.log"]
+    entry["size_bytes"] = (copy / "drive.log").stat().st_size
+    (copy / "manifest.json").write_text(json.dumps(manifest))
+    line = complaint(simconsole(command, copy))
+    assert f"{copy / 'drive.log'}: schema: 99 cannot be read, this simconsole reads 1 to 1" in line
+
+
+def test_f05_bundle_of_a_newer_version(copy: Path) -> None:
+    manifest = json.loads((copy / "manifest.json").read_text())
+    (copy / "manifest.json").write_text(json.dumps({**manifest, "schema": 99, "invented": True}))
+    for command in ("replay", "verify", "report"):
+        assert f"{copy / 'manifest.json'}: schema: 99 cannot be read" in complaint(simconsole(command, copy))
+
+
+def test_f05_recording_of_another_endianness(copy: Path) -> None:
+    other = "big" if sys.byteorder == "little" else "little"
+    change_header(copy / "drive.log", byte_order=other)
+    manifest = json.loads((copy / "manifest.json").read_text())
+    manifest["files"]["drive.log"]["size_bytes"] = (copy / "drive.log").stat().st_size
+    (copy / "manifest.json").write_text(json.dumps(manifest))
+    line = complaint(simconsole("replay", copy))
+    assert f"{copy / 'drive.log'}: byte_order: '{other}' cannot be read here" in line
+
+
+def test_f05_recording_cut_in_its_header(copy: Path) -> None:
+    with (copy / "drive.log").open("r+b") as file:
+        file.truncate(20)
+    assert f"{copy / 'drive.log'}: " in complaint(simconsole("replay", copy))
+
+
+def test_f05_drive_that_was_killed_can_still_be_replayed(copy: Path) -> None:
+    # What a kill -9 leaves: the first manifest, and a log that ends in the middle of a tick.
+    manifest = json.loads((copy / "manifest.json").read_text())
+    del manifest["files"]["drive.log"], manifest["ticks"], manifest["digest"], manifest["summary"]
+    (copy / "manifest.json").write_text(json.dumps({**manifest, "finished": False}))
+    log = copy / "drive.log"
+    with log.open("r+b") as file:
+        file.truncate(log.stat().st_size - 100)
+    done = simconsole("replay", copy, "--json")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert results(done)["ticks"] == 749
+    checked = simconsole("verify", copy)
+    assert checked.returncode == 1
+    assert "the drive was not finished" in checked.stdout
+
+
+def test_f05_folder_that_is_no_bundle(tmp_path: Path) -> None:
+    for command in ("replay", "verify", "report"):
+        assert f"{tmp_path / 'manifest.json'}: not a bundle" in complaint(simconsole(command, tmp_path))
+    assert list(tmp_path.iterdir()) == []
