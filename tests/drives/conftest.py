@@ -7,8 +7,8 @@ import pytest
 
 from simconsole.recording.bundle import open_bundle
 from simconsole.recording.log import LogTable
+from tests.recording.conftest import rewrite_checksums, rewrite_log
 
-from ..recording.conftest import rewrite_checksums, rewrite_log
 from .console import results, simconsole
 
 __all__ = ["rewrite_checksums", "rewrite_log"]

@@ -11,9 +11,8 @@ from zlib import crc32
 import pytest
 
 from simconsole.recording.framing import MAGIC
-
-from ..drives.conftest import rewrite_checksums, script, short
-from ..drives.console import complaint, results, simconsole
+from tests.drives.conftest import rewrite_checksums, script, short
+from tests.drives.console import complaint, results, simconsole
 
 __all__ = ["rewrite_checksums", "script", "short"]
 
