@@ -1,4 +1,7 @@
-"""Rules for the whole run: in CI (`CI=true`) a skipped or expected-to-fail test is a failure."""
+"""Rules for the whole run: in CI (`CI=true`) a skipped or expected-to-fail test is a failure; figures are printed.
+
+A test that measures something keeps it with `record_property(NAME, TEXT)`; the figures stand above the summary line.
+"""
 
 import os
 
@@ -15,3 +18,10 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
         reporter.write_line(f"not run, and nothing may be left out in CI: {report.nodeid} {report.longrepr}")
     if left_out and session.exitstatus == pytest.ExitCode.OK:
         session.exitstatus = pytest.ExitCode.TESTS_FAILED
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Print what the tests measured; none of them passes or fails by it."""
+    figures = [figure for report in terminalreporter.stats.get("passed", []) for figure in report.user_properties]
+    for name, text in figures:
+        terminalreporter.write_line(f"measured: {name}: {text}")

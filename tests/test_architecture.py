@@ -5,10 +5,12 @@ import itertools
 import os
 import re
 import shutil
+import statistics
 import subprocess
 import sys
+import time
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple, get_type_hints
 
@@ -181,6 +183,17 @@ def test_help_loads_no_heavy_library(words: list[str]) -> None:
         f"import contextlib\nfrom simconsole.cli import main\nwith contextlib.suppress(SystemExit):\n    main({words})"
     )
     assert loaded_by(code, forbid=[*HEAVY, "numpy", "websockets", "asyncio"]) == set()
+
+
+def test_help_is_there_and_its_time_is_printed(record_property: Callable[[str, object], None]) -> None:
+    times_s = []
+    for _ in range(5):
+        began_s = time.perf_counter()
+        done = subprocess.run([sys.executable, "-m", "simconsole", "--help"], cwd=ROOT, capture_output=True, text=True)
+        times_s.append(time.perf_counter() - began_s)
+        assert done.returncode == 0
+        assert "demo" in done.stdout
+    record_property("simconsole --help, median of 5", f"{statistics.median(times_s):.2f} s (aim 0.3 s)")
 
 
 def test_importing_every_core_loads_no_heavy_library() -> None:
