@@ -13,7 +13,7 @@ from simconsole.control.arbitration import arbitrate
 from simconsole.control.gate import gate
 from simconsole.control.settings import ControlSettings
 from simconsole.devices.calibration import calibrate
-from simconsole.devices.cockpit import ABSENT, CockpitSettings
+from simconsole.devices.cockpit import CockpitSettings
 from simconsole.kernels import Row, kernel, put, take
 from simconsole.rows import (
     ARBITRATION_AT,
@@ -39,7 +39,8 @@ from simconsole.rows import (
     columns,
 )
 from simconsole.signals import (
-    NEVER_TICKS,
+    NO_COMMAND,
+    NO_SAMPLE,
     ArbiterMemory,
     Arbitration,
     DeviceSample,
@@ -60,10 +61,6 @@ CONTROL_AT: Final = COCKPIT_WIDTH
 CONTROL_WIDTH: Final = len(ControlSettings._fields)
 PHYSICS_HZ: Final = 1000
 """The vehicle integrates at a fixed 1 ms whatever the tick."""
-
-NO_SAMPLE: Final = ABSENT
-NO_COMMAND: Final = RemoteCommand(*(0.0,) * REMOTE_WIDTH)._replace(age_ticks=NEVER_TICKS)
-NO_EVENTS: Final = EventInput(events=0.0)
 
 
 class Console(NamedTuple):

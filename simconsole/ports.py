@@ -2,9 +2,8 @@
 
 from typing import Protocol
 
-from simconsole.pipeline import NO_COMMAND, NO_EVENTS, NO_SAMPLE
 from simconsole.rows import Snapshot
-from simconsole.signals import DeviceSample, EventInput, RemoteCommand
+from simconsole.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE, DeviceSample, EventInput, RemoteCommand
 
 
 class DeviceSource(Protocol):

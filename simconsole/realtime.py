@@ -10,10 +10,10 @@ import numpy as np
 from simconsole.assembly import ResolvedSession
 from simconsole.errors import BridgeError
 from simconsole.exports import LIVE_SCENE, scene_job
-from simconsole.pipeline import NO_COMMAND, Console
+from simconsole.pipeline import Console
 from simconsole.rows import REMOTE_WIDTH, Snapshot
 from simconsole.shared_memory import EventCounters, Ring
-from simconsole.signals import NEVER_TICKS, EventInput, RemoteCommand
+from simconsole.signals import NEVER_TICKS, NO_COMMAND, EventInput, RemoteCommand
 from simconsole.station_programs import (
     ADDRESS,
     COMMAND,

@@ -2,9 +2,8 @@
 
 from collections.abc import Sequence
 
-from simconsole.pipeline import NO_COMMAND
 from simconsole.profiles.scenario import EventStep, RemoteStep
-from simconsole.signals import NEVER_TICKS, Event, EventInput, RemoteCommand, RemoteKind
+from simconsole.signals import NEVER_TICKS, NO_COMMAND, Event, EventInput, RemoteCommand, RemoteKind
 from simconsole.units import RAD_PER_DEG
 
 

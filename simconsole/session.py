@@ -14,13 +14,14 @@ from simconsole.assembly import ResolvedSession, assemble
 from simconsole.casting import Opened, open_headless, open_realtime
 from simconsole.compiling import compiled
 from simconsole.drive import run
-from simconsole.pipeline import NO_COMMAND, NO_EVENTS, NO_SAMPLE, Console, ConsoleState, advance, decide
+from simconsole.pipeline import Console, ConsoleState, advance, decide
 from simconsole.profile_files import to_text
 from simconsole.recording.bundle import BundleWriter
 from simconsole.recording.framing import LogHeader
 from simconsole.recording.log import LogWriter
 from simconsole.replaying import SESSION_FILE
 from simconsole.rows import INPUT_WIDTH, Snapshot, TickInputs
+from simconsole.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE
 
 ENDLESS_TICKS = 2**53
 

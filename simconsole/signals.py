@@ -284,3 +284,13 @@ class TickTiming(NamedTuple):
 
     late_ns: int
     work_ns: int
+
+
+NO_SAMPLE: Final = DeviceSample(*(0.0,) * 9, NEVER_TICKS, NEVER_TICKS, NEVER_TICKS)
+"""A cockpit that is not there."""
+
+NO_COMMAND: Final = RemoteCommand(*(0.0,) * len(RemoteCommand._fields))._replace(age_ticks=NEVER_TICKS, direction=1.0)
+"""A controller that has said nothing; until it does, forwards is the direction it means."""
+
+NO_EVENTS: Final = EventInput(events=0.0)
+"""A tick in which nothing happened."""

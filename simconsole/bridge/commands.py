@@ -6,12 +6,12 @@ is not newer than the last one's. A stamp of 0 is no stamp: such messages are ta
 
 from typing import Any, Final, NamedTuple
 
-from simconsole.bridge.inputs import NO_COMMAND, BridgeInputs
+from simconsole.bridge.inputs import BridgeInputs
 from simconsole.bridge.protocol import Accept
 from simconsole.errors import RemoteProtocolError
 from simconsole.kernels import is_finite
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.signals import Event, RemoteKind
+from simconsole.signals import NO_COMMAND, Event, RemoteKind
 from simconsole.trigonometry import atan2
 from simconsole.units import NS_PER_S
 

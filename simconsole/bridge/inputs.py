@@ -1,12 +1,9 @@
 """The newest accepted command and the edges since the last tick: latest wins, however many arrive between two ticks."""
 
 from collections.abc import Callable
-from typing import Final
 
-from simconsole.signals import NEVER_TICKS, EventInput, RemoteCommand
+from simconsole.signals import NEVER_TICKS, NO_COMMAND, EventInput, RemoteCommand
 from simconsole.units import NS_PER_S
-
-NO_COMMAND: Final = RemoteCommand(*(0.0,) * len(RemoteCommand._fields))._replace(age_ticks=NEVER_TICKS, direction=1.0)
 
 OnCommand = Callable[[RemoteCommand, int | None], None]
 """Takes the command, its age 0, and when it was received in ns (None before the first)."""

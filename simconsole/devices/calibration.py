@@ -6,14 +6,14 @@ seen at rest (else unknown), and only then scaled.
 
 from typing import NamedTuple
 
-from simconsole.devices.cockpit import ABSENT, NOBODY, CockpitSettings
+from simconsole.devices.cockpit import NOBODY, CockpitSettings
 from simconsole.devices.lever import held_roles, lever_gear, shown_gear, stepped_gear
 from simconsole.devices.settings import settings
 from simconsole.devices.validity import axis_good, mask_good, next_validity, trusted
 from simconsole.kernels import clip, kernel
-from simconsole.signals import DeviceSample, DriverInput
+from simconsole.signals import NO_SAMPLE, DeviceSample, DriverInput
 
-__all__ = ["ABSENT", "NOBODY", "CockpitSettings", "calibrate", "settings"]
+__all__ = ["NOBODY", "NO_SAMPLE", "CockpitSettings", "calibrate", "settings"]
 
 
 class Pedal(NamedTuple):

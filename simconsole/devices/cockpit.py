@@ -2,7 +2,7 @@
 
 from typing import Final, NamedTuple
 
-from simconsole.signals import NEVER_TICKS, DeviceSample, DriverInput
+from simconsole.signals import DriverInput
 
 
 class CockpitSettings(NamedTuple):
@@ -50,6 +50,3 @@ class CockpitSettings(NamedTuple):
 
 NOBODY: Final = DriverInput(*(0.0,) * len(DriverInput._fields))
 """The person before the first tick: nothing seen (`Validity.UNKNOWN` is 0), nothing pressed."""
-
-ABSENT: Final = DeviceSample(*(0.0,) * 9, NEVER_TICKS, NEVER_TICKS, NEVER_TICKS)
-"""A cockpit that is not there."""

@@ -1,27 +1,16 @@
 """Where device samples come from: one protocol, a lazy registry of what stands behind it."""
 
 from pathlib import Path
-from typing import Protocol
 
 from simconsole.devices.keyboard import KeyboardSource, Keys
 from simconsole.devices.script import ScriptSource
 from simconsole.devices.settings import settings
 from simconsole.errors import ProfileError
+from simconsole.ports import DeviceSource
 from simconsole.profile_files import find, load
 from simconsole.profiles.device import CockpitProfile, ScriptProfile
-from simconsole.signals import DeviceSample
 
 DRIVERS = "sdl, trace:FILE, script:FILE or keyboard"
-
-
-class DeviceSource(Protocol):
-    """A cockpit. Polled once per tick; nothing in it may block."""
-
-    def poll(self, tick: int) -> DeviceSample:
-        """Return the newest sample for `tick`, its ages in whole ticks."""
-
-    def close(self) -> None:
-        """Release the devices. Twice is harmless."""
 
 
 def open_source(driver: str, cockpit: CockpitProfile, *, tick_hz: int, keys: Keys | None = None) -> DeviceSource:

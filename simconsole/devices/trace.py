@@ -14,11 +14,10 @@ import re
 from collections.abc import Callable, Iterable, Iterator
 from typing import Final, NamedTuple
 
-from simconsole.devices.cockpit import ABSENT
 from simconsole.devices.validity import axis_good, mask_good
 from simconsole.errors import ProfileError
 from simconsole.kernels import is_finite
-from simconsole.signals import DeviceSample
+from simconsole.signals import NO_SAMPLE, DeviceSample
 
 SCHEMA: Final = 1
 COLUMNS: Final = ("tick", *DeviceSample._fields)
@@ -139,7 +138,7 @@ class TracePlayer:
         self._rows = rows
         self._offset: int | None = None
         self._tick = 0
-        self._sample = ABSENT
+        self._sample = NO_SAMPLE
 
     def poll(self, tick: int) -> DeviceSample:
         """Return the row of this tick.

@@ -3,11 +3,11 @@
 from typing import Any, Final
 
 from simconsole.devices.calibration import calibrate, travel
-from simconsole.devices.cockpit import ABSENT, NOBODY, CockpitSettings
+from simconsole.devices.cockpit import NOBODY, CockpitSettings
 from simconsole.devices.settings import settings
 from simconsole.devices.validity import trusted
 from simconsole.profiles.device import CockpitProfile, PedalAxis
-from simconsole.signals import Button, DeviceSample, DriverInput
+from simconsole.signals import NO_SAMPLE, Button, DeviceSample, DriverInput
 from simconsole.units import DEG_PER_RAD
 
 PEDALS: Final = ("throttle", "brake", "clutch", "handbrake")
@@ -22,7 +22,7 @@ class Watch:
         self._profile = profile
         self._settings: CockpitSettings = settings(profile, tick_hz)
         self._tick_s = 1.0 / tick_hz
-        self._before = ABSENT
+        self._before = NO_SAMPLE
         self.driver: DriverInput = NOBODY
         self._least = dict.fromkeys(PEDALS, 1.0)
         self._most = dict.fromkeys(PEDALS, 0.0)

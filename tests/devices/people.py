@@ -2,9 +2,9 @@
 
 from collections.abc import Iterable
 
-from simconsole.devices.calibration import ABSENT, NOBODY, CockpitSettings, calibrate
+from simconsole.devices.calibration import NOBODY, CockpitSettings, calibrate
 from simconsole.devices.uncalibrate import Intent, uncalibrate
-from simconsole.signals import DeviceSample, DriverInput
+from simconsole.signals import NO_SAMPLE, DeviceSample, DriverInput
 
 TICK_S = 0.004
 
@@ -14,7 +14,7 @@ class Seat:
 
     def __init__(self, settings: CockpitSettings) -> None:
         self.settings = settings
-        self.before = ABSENT
+        self.before = NO_SAMPLE
         self.driver = NOBODY
 
     def feel(self, sample: DeviceSample, ticks: int = 1) -> DriverInput:

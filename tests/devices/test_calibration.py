@@ -8,12 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from simconsole.compiling import compiled
-from simconsole.devices.calibration import ABSENT, NOBODY, CockpitSettings, calibrate, settings
+from simconsole.devices.calibration import NOBODY, CockpitSettings, calibrate, settings
 from simconsole.devices.uncalibrate import Intent, uncalibrate
 from simconsole.devices.validity import ARMED, LIVE, LOST, STALE, UNKNOWN
 from simconsole.profile_files import load
 from simconsole.profiles.device import CockpitProfile
-from simconsole.signals import NEVER_TICKS, Button, DeviceSample
+from simconsole.signals import NEVER_TICKS, NO_SAMPLE, Button, DeviceSample
 
 from .people import TICK_S, Seat
 
@@ -43,7 +43,7 @@ def validities(seat: Seat) -> set[float]:
 
 def test_nothing_is_known_before_the_first_sample() -> None:
     seat = Seat(SETTINGS)
-    assert seat.feel(ABSENT)[:9] == (0.0,) * 9
+    assert seat.feel(NO_SAMPLE)[:9] == (0.0,) * 9
     assert validities(seat) == {UNKNOWN}
 
 
@@ -237,7 +237,7 @@ def test_compiled_twin_gives_equal_bits(name: str) -> None:
     print("seed", seed)
     cockpit = settings(load("devices", name, CockpitProfile), 250)
     twin = compiled(calibrate)
-    before, plain, fast = ABSENT, NOBODY, NOBODY
+    before, plain, fast = NO_SAMPLE, NOBODY, NOBODY
     for sample in random_samples(seed, 4000, cockpit):
         plain = calibrate(sample, before, plain, cockpit, TICK_S)
         fast = twin(sample, before, fast, cockpit, TICK_S)

@@ -14,14 +14,14 @@ from simconsole.devices.person_mind import Phase
 from simconsole.devices.sdl import SdlSource
 from simconsole.devices.settings import settings as cockpit_settings
 from simconsole.devices.virtual_cockpit import VirtualCockpit
-from simconsole.pipeline import NO_COMMAND, NO_EVENTS, Console, advance, build_console, initial_state
+from simconsole.pipeline import Console, advance, build_console, initial_state
 from simconsole.profile_files import load
 from simconsole.profiles.control import ControlProfile
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.person import PersonPlan, When
 from simconsole.profiles.vehicle import VehicleProfile
 from simconsole.rows import Snapshot, TickInputs
-from simconsole.signals import Mode, Reason, RemoteCommand, RemoteKind
+from simconsole.signals import NO_COMMAND, NO_EVENTS, Mode, Reason, RemoteCommand, RemoteKind
 from simconsole.vehicle.platform import Ground, Pose
 from simconsole.vehicle.registry import build
 
@@ -39,7 +39,9 @@ class Scene(NamedTuple):
 def console(cockpit: CockpitProfile, pose: Pose, slope_x: float = 0.0) -> Console:
     profile = load("vehicles", "hatchback", VehicleProfile)  # type: ignore[arg-type]  # a union
     platform = build(profile, pose, Ground(1.0, slope_x, 0.0))
-    control = control_settings(ControlProfile(), platform.steering_ratio, platform.max_road_wheel_rad, HZ)
+    control = control_settings(
+        ControlProfile(), platform.steering_ratio, platform.max_road_wheel_rad, platform.wheelbase_m, HZ
+    )
     return build_console(cockpit_settings(cockpit, HZ), control, platform, HZ, compiled)
 
 

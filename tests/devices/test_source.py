@@ -9,12 +9,13 @@ import pytest
 
 from simconsole.devices.calibration import CockpitSettings, settings
 from simconsole.devices.record import TraceWriter
-from simconsole.devices.source import DeviceSource, open_source
+from simconsole.devices.source import open_source
 from simconsole.devices.trace import TraceHeader
 from simconsole.devices.uncalibrate import Intent, uncalibrate
 from simconsole.devices.validity import LIVE, axis_good, mask_good
 from simconsole.errors import DeviceNotFound, ProfileError
 from simconsole.keys import Key
+from simconsole.ports import DeviceSource
 from simconsole.profile_files import load
 from simconsole.profiles.device import CockpitProfile
 
