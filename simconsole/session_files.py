@@ -6,6 +6,7 @@ import msgspec
 
 from simconsole.assembly import ResolvedSession
 from simconsole.errors import ProfileError
+from simconsole.profile_errors import convert
 from simconsole.profile_files import MAX_DATA_BYTES, find, load
 from simconsole.profiles.device import CockpitProfile, ScriptProfile
 from simconsole.profiles.scenario import ScenarioProfile
@@ -30,12 +31,12 @@ def resolve(session: SessionProfile) -> ResolvedSession:
 
 
 def load_session(name_or_path: str) -> SessionProfile:
-    """Return the session profile of that name or file.
+    """Return the session profile of that name or file; a script or trace that it names lies beside it.
 
     Raises:
-        ProfileError: missing or wrong.
+        ProfileError: missing or wrong, or its script or trace lies outside its folder.
     """
-    return load("sessions", name_or_path, SessionProfile)
+    return _driver_beside(load("sessions", name_or_path, SessionProfile), find("sessions", name_or_path))
 
 
 def load_scenario(name_or_path: str) -> tuple[ScenarioProfile, Path]:
@@ -65,7 +66,16 @@ def override(session: SessionProfile, **sections: dict[str, object]) -> SessionP
     plain = msgspec.to_builtins(session)
     for section, keys in sections.items():
         plain[section].update(keys)
-    try:
-        return msgspec.convert(plain, SessionProfile)
-    except msgspec.ValidationError as error:
-        raise ProfileError(f"command line: {error}") from None
+    return convert(plain, SessionProfile, "command line")
+
+
+def _driver_beside(session: SessionProfile, path: Path) -> SessionProfile:
+    """Return `session` with the whole path of its script or trace: a profile opens nothing outside its own folder."""
+    kind, _, name = session.devices.driver.partition(":")
+    if not name:
+        return session
+    folder = path.parent.resolve()
+    beside = (folder / name).resolve()
+    if not beside.is_relative_to(folder):
+        raise ProfileError(f'{path}: devices.driver: value "{session.devices.driver}": a file inside {path.parent}')
+    return override(session, devices={"driver": f"{kind}:{beside}"})

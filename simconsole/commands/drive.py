@@ -1,5 +1,6 @@
 """`simconsole drive`: one session, seated or headless."""
 
+import math
 import time
 from argparse import Namespace
 from pathlib import Path
@@ -7,6 +8,7 @@ from pathlib import Path
 from simconsole.commands.driven import finish
 from simconsole.commands.outcome import Outcome
 from simconsole.commands.progress import Progress
+from simconsole.errors import ProfileError
 from simconsole.profiles.session import SessionProfile
 from simconsole.session import drive as drive_session
 from simconsole.session_files import load_session, override, resolve
@@ -24,6 +26,8 @@ def drive(words: Namespace) -> Outcome:
 
 def _with_options(session: SessionProfile, words: Namespace) -> SessionProfile:
     if words.duration_s is not None:
+        if not math.isfinite(words.duration_s):
+            raise ProfileError(f"command line: --for: value {words.duration_s}: a finite number of seconds")
         session = override(session, scenario={"duration_s": words.duration_s})
     if words.driver is not None:
         devices = {"driver": words.driver}
