@@ -1,0 +1,247 @@
+"""A paced drive with every output in a process of its own: what happens when one of them, or the core, is killed."""
+
+import json
+import os
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import msgspec
+import pytest
+
+from simconsole.recording.bundle import open_bundle, verify
+from simconsole.recording.log import LogTable
+from simconsole.replaying import replay_bundle
+from simconsole.rows import Snapshot
+from simconsole.shared_memory import Ring
+from simconsole.signals import Mode, Reason
+from simconsole.station_programs import SNAPSHOTS, snapshot_of
+from simconsole.stations import STATUS, StationStatus
+from tests.drives.console import Running, results, wait_until
+
+TICK_HZ = 250
+STATIONS = {"bridge", "hud", "scene"}
+SESSION = """\
+schema: 1
+title: Every station
+environment: {world: urban}
+scenario: {vehicle: hatchback}
+features: {autopilot: urban}
+outputs:
+  bridge: {port: 0}
+  hud: {width_px: 320, height_px: 240, rate_hz: 10}
+  scene: {rate_hz: 5, flush_s: 0.2}
+devices:
+  driver: DRIVER
+  person:
+    {title: hands over early, sit_s: 0.3, cruise_kmh: 15, autonomy: {distance_m: 2},
+     take_back: {distance_m: 2000}, stop: {distance_m: 2100}}
+mode: {pacing: realtime, tick_hz: 250}
+"""
+PERSON = SESSION.replace("DRIVER", "virtual")
+# Asks for autonomy again and again until a controller is there, and never takes back.
+PASSENGER = SESSION.replace("DRIVER", "script:passenger.yaml")
+ASKS = "points:\n  - {time_s: 0.0, throttle: 0, brake: 0, clutch: 0, hand_wheel_deg: 0, gear: 0}\n" + "".join(
+    f"  - {{time_s: {time_s}, press: [autonomous]}}\n" for time_s in range(2, 120, 2)
+)
+PLAIN = """\
+schema: 1
+title: One station
+scenario: {vehicle: hatchback}
+outputs: {bridge: {port: 0}, hud: null, scene: null, report: false}
+devices:
+  driver: virtual
+  person: {title: sits, autonomy: {time_s: 3000}}
+mode: {pacing: realtime, tick_hz: 250}
+"""
+
+
+class Drive:
+    """A running drive, seen through its run folder, as any station sees it."""
+
+    def __init__(self, running: Running, bundle: Path) -> None:
+        self.running = running
+        self.bundle = bundle
+        self.core = running.process.pid
+        wait_until(lambda: self.ended() or self._folders(), "run folder")
+        self.folder = self._folders()[0]
+        wait_until(lambda: self.ended() or (self.folder / SNAPSHOTS).exists(), "ring")
+        wait_until(lambda: self.ended() or self._ring() is not None, "ring's header")
+
+    def ended(self) -> bool:
+        code = self.running.process.poll()
+        assert code is None, self.running.err.read_text()
+        return False
+
+    def _folders(self) -> list[Path]:
+        return list(Path("/dev/shm").glob(f"simconsole-{self.core}-*"))
+
+    def _ring(self) -> Ring | None:
+        try:
+            return Ring.open(self.folder / SNAPSHOTS)
+        except Exception:  # noqa: BLE001  # its header is not written yet
+            return None
+
+    def now(self) -> Snapshot | None:
+        record = Ring.open(self.folder / SNAPSHOTS).latest()
+        return None if record is None else snapshot_of(record, TICK_HZ)
+
+    def tick(self) -> int:
+        self.ended()
+        snapshot = self.now()
+        return 0 if snapshot is None else snapshot.tick
+
+    def mode(self) -> float:
+        self.ended()
+        snapshot = self.now()
+        return -1.0 if snapshot is None else snapshot.arbitration.mode
+
+    def speed_mps(self) -> float:
+        snapshot = self.now()
+        return 0.0 if snapshot is None else snapshot.vehicle.vx_mps
+
+    def stations(self) -> dict[str, StationStatus]:
+        self.ended()
+        try:
+            return msgspec.json.decode((self.folder / STATUS).read_bytes(), type=dict[str, StationStatus])
+        except OSError:
+            return {}
+
+    def family(self) -> set[int]:
+        """Every process of this drive but the core: warden, stations, autopilot."""
+        found, parents = set[int](), {self.core}
+        while parents:
+            parents = {pid for pid, parent in processes().items() if parent in parents} - found
+            found |= parents
+        return found
+
+    def kill_station(self, name: str) -> None:
+        """Kill one and wait until another runs in its place, while the drive goes on."""
+        before, tick = self.stations()[name], self.tick()
+        os.kill(before.process_id, signal.SIGKILL)
+
+        def restarted() -> bool:
+            now = self.stations()[name]
+            return now.restarts > before.restarts and now.process_id not in (0, before.process_id)
+
+        wait_until(restarted, f"{name} again")
+        wait_until(lambda: self.tick() > tick + TICK_HZ // 5, "the drive going on")
+
+
+def processes() -> dict[int, int]:
+    """Every living process with its parent. One that has ended but was not waited for does not live."""
+    found = {}
+    for path in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            state, parent = path.read_text().rpartition(")")[2].split()[:2]
+        except OSError:
+            continue  # ended meanwhile
+        if state not in "ZX":
+            found[int(path.parent.name)] = int(parent)
+    return found
+
+
+@contextmanager
+def drive(folder: Path, text: str) -> Iterator[Drive]:
+    (folder / "passenger.yaml").write_text(ASKS)
+    session, bundle = folder / "session.yaml", folder / "bundle"
+    session.write_text(text)
+    with Running(folder, "drive", session, "--out", bundle, "--json") as running:
+        yield Drive(running, bundle)
+
+
+class Disturbed(NamedTuple):
+    """One drive in which every station was killed once, ended by Ctrl-C."""
+
+    family: set[int]
+    folder: Path
+    code: int
+    bundle: Path
+    results: dict[str, Any]
+    errors: str
+    table: LogTable
+
+
+@pytest.fixture(scope="module")
+def disturbed(tmp_path_factory: pytest.TempPathFactory) -> Disturbed:
+    folder = tmp_path_factory.mktemp("disturbed")
+    with drive(folder, PASSENGER) as driven:
+        wait_until(lambda: set(driven.stations()) == STATIONS, "all stations")
+        wait_until(lambda: driven.mode() == Mode.AUTONOMOUS and driven.speed_mps() > 2.0, "autonomy at speed")
+        family = driven.family()
+        driven.kill_station("bridge")
+        driven.kill_station("hud")
+        driven.kill_station("scene")
+        wait_until(lambda: driven.mode() == Mode.STOPPED, "the safe stop")
+        family |= driven.family()
+        driven.running.interrupt_group()
+        done = driven.running.end()
+    table = open_bundle(driven.bundle).log.table()
+    return Disturbed(family, driven.folder, done.returncode, driven.bundle, results(done), done.stderr, table)
+
+
+def test_each_killed_station_is_restarted_and_the_drive_goes_on(disturbed: Disturbed) -> None:
+    assert set(disturbed.results["station_restarts"]) == STATIONS
+    assert all(count >= 1 for count in disturbed.results["station_restarts"].values())
+    ticks = disturbed.table.ticks
+    assert ticks.tolist() == list(range(1, len(ticks) + 1)), "no tick was lost"
+
+
+def test_a_bridge_killed_in_autonomy_ends_in_a_recorded_safe_stop(disturbed: Disturbed) -> None:
+    mode, reason = disturbed.table.column("arbitration.mode"), disturbed.table.column("arbitration.reason")
+    stale = (mode == float(Mode.MINIMAL_RISK)) & (reason == float(Reason.COMMAND_STALE))
+    at = stale.tolist().index(True)
+    assert mode[at - 1] == Mode.AUTONOMOUS
+    assert mode[-1] == Mode.STOPPED
+    assert ("MINIMAL RISK", "STOPPED") == tuple(change["mode"] for change in disturbed.results["mode_changes"][-2:])
+    age = disturbed.table.column("remote.age_ticks")
+    assert age[at] > 0.2 * TICK_HZ >= age[at - 1], "200 ms after the last command, not sooner and not later"
+    assert disturbed.table.column("vehicle.vx_mps")[at] > 1.0
+    assert abs(disturbed.table.column("vehicle.vx_mps")[-1]) < 0.1
+
+
+def test_ctrl_c_leaves_a_whole_bundle_and_code_130(disturbed: Disturbed) -> None:
+    assert disturbed.code == 130
+    assert disturbed.results["interrupted"] is True
+    assert "Traceback" not in disturbed.errors
+    assert verify(disturbed.bundle) == []
+    assert {"report.html", "scene.rrd"} <= {path.name for path in disturbed.bundle.iterdir()}
+    found = replay_bundle(disturbed.bundle)
+    assert found.equal, str(found.difference)
+
+
+def test_nothing_outlives_a_drive_that_was_interrupted(disturbed: Disturbed) -> None:
+    assert len(disturbed.family) >= 5, "warden, three stations, autopilot"
+    wait_until(lambda: not disturbed.family & set(processes()), "the end of every process")
+    assert not disturbed.folder.exists()
+
+
+def test_nothing_outlives_a_core_that_was_killed(tmp_path: Path) -> None:
+    with drive(tmp_path, PERSON) as driven:
+        wait_until(lambda: set(driven.stations()) == STATIONS, "all stations")
+        wait_until(lambda: len(driven.family()) >= 5 and driven.tick() > TICK_HZ, "a second of driving")
+        family, tick = driven.family(), driven.tick()
+        os.kill(driven.core, signal.SIGKILL)
+        driven.running.process.wait()
+        wait_until(lambda: not family & set(processes()), "the end of every process")
+        wait_until(lambda: not driven.folder.exists(), "the end of the run folder")
+        bundle = open_bundle(driven.bundle)
+        assert not bundle.manifest.finished
+        assert replay_bundle(driven.bundle).ticks >= tick, "every tick that was published had been recorded"
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_the_drive_in_order(tmp_path: Path, number: signal.Signals) -> None:
+    with drive(tmp_path, PLAIN) as driven:
+        wait_until(lambda: set(driven.stations()) == {"bridge"} and driven.tick() > 10, "driving")
+        family = driven.family()
+        os.kill(driven.core, number)
+        done = driven.running.end()
+        assert done.returncode == 130
+        assert results(done)["interrupted"] is True
+        assert verify(driven.bundle) == []
+        assert not family & set(processes())
+        assert not driven.folder.exists()
+        assert json.loads((driven.bundle / "manifest.json").read_text())["finished"] is True
