@@ -55,8 +55,9 @@ def check_scenario(name_or_path: str, update_golden: bool = False) -> Verdict:
     """
     scenario, path = load_scenario(name_or_path)
     recorder, columns = drive_scenario(scenario)
-    problems = [problem for check in scenario.checks if (problem := judge(check, recorder.rows, columns, scenario))]
     tick_hz = scenario.session.mode.tick_hz
+    judged = [judge(check, recorder.rows, columns, tick_hz, str(path)) for check in scenario.checks]
+    problems = [problem for problem in judged if problem is not None]
     driven = golden.sample(recorder.rows, tick_hz, scenario.golden_hz, columns, recorder.digest.hex())
     golden_path = path.parent / "golden" / f"{path.stem}.csv"
     if update_golden:
@@ -82,30 +83,33 @@ def drive_scenario(scenario: ScenarioProfile) -> tuple[MemoryRecorder, tuple[str
     return recorder, console.columns
 
 
-def judge(check: Check, rows: Row, columns: tuple[str, ...], scenario: ScenarioProfile) -> str | None:
-    """Return what is wrong with one bound, None if it holds.
+def judge(check: Check, rows: Row, columns: tuple[str, ...], tick_hz: int, origin: str) -> str | None:
+    """Return what is wrong with one bound, None if it holds; `origin` (the scenario's file) opens an error.
 
     Raises:
         ProfileError: the bound names a column that no row has.
     """
     if check.column not in columns:
-        raise ProfileError(f"{scenario.title}: checks: column {check.column}: value unknown: a column of a row")
-    tick_hz = scenario.session.mode.tick_hz
-    first, last = round(check.from_s * tick_hz), len(rows)
-    if check.at_s is not None:
-        first, last = round(check.at_s * tick_hz) - 1, round(check.at_s * tick_hz)
-    elif check.until_s is not None:
-        last = round(check.until_s * tick_hz)
-    values = rows[max(0, first) : last, columns.index(check.column)]
+        raise ProfileError(f"{origin}: checks: column: value {check.column}: a column of a row, as in its golden")
+    first, last = _ticks(check, len(rows), tick_hz)
+    values = rows[first:last, columns.index(check.column)]
     low = -np.inf if check.min is None else check.min
     high = np.inf if check.max is None else check.max
-    good = (values >= low) & (values <= high)
-    if len(values) and good.all():
-        return None
+    good = (values >= low) & (values <= high)  # so that NaN is never good
     if not len(values):
-        return f"{check.column}: no tick between {check.from_s} s and {check.until_s} s"
+        return f"{check.column}: no tick from {first + 1} to {last}, the drive has {len(rows)}"
+    if good.all():
+        return None
     at = int(np.flatnonzero(~good)[0])
-    return f"tick {max(0, first) + at + 1}: {check.column}: {float(values[at])!r} not in {low} to {high}"
+    return f"tick {first + at + 1}: {check.column}: {float(values[at])!r} not in {low} to {high}"
+
+
+def _ticks(check: Check, ticks: int, tick_hz: int) -> tuple[int, int]:
+    """Return the rows a bound looks at, the last one not included."""
+    if check.at_s is not None:
+        last = max(1, round(check.at_s * tick_hz))
+        return last - 1, last
+    return round(check.from_s * tick_hz), ticks if check.until_s is None else round(check.until_s * tick_hz)
 
 
 def _against_golden(path: Path, driven: golden.Golden) -> list[str]:
