@@ -226,7 +226,9 @@ def test_finder_of_module_level_imports_looks_into_blocks_but_not_into_functions
 
 
 def signal_fields() -> list[tuple[str, str]]:
-    classes: list[Any] = [value for value in vars(signals).values() if hasattr(value, "_fields")]
+    classes: list[Any] = [
+        value for value in vars(signals).values() if isinstance(value, type) and hasattr(value, "_fields")
+    ]
     return [(record.__name__, field) for record in classes for field in record._fields]
 
 
