@@ -82,6 +82,7 @@ def _driving(commands: Any) -> None:
     autopilot = _command(commands, "autopilot", "remote:autopilot", "the path tracker, as a ROS-side program")
     autopilot.add_argument("--url", default="ws://127.0.0.1:9090", metavar="URL")
     autopilot.add_argument("--course", default="urban", metavar="WORLD")
+    autopilot.add_argument("--wait", type=float, default=10.0, metavar="S", help="how long to wait for the server")
 
 
 def _recordings(commands: Any) -> None:

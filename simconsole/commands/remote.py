@@ -4,14 +4,14 @@ import tempfile
 from argparse import Namespace
 from pathlib import Path
 
-from simconsole.commands.outcome import Outcome, table
+from simconsole.commands.outcome import INTERRUPTED, Outcome, table
 
 
 def autopilot(words: Namespace) -> Outcome:
     """Follow a course over rosbridge until the console closes the connection."""
     from simconsole.autonomy.autopilot import run
 
-    results = run(words.url, words.course)
+    results = run(words.url, words.course, patience_s=words.wait)
     return Outcome(0, results, table([(name, str(value)) for name, value in results.items()]))
 
 
@@ -26,4 +26,5 @@ def bridge(words: Namespace) -> Outcome:
     print(f"rosbridge at ws://127.0.0.1:{words.port}", flush=True)
     with tempfile.TemporaryDirectory(prefix="simconsole-bridge-") as folder:
         result = drive(resolve(session), Path(folder))
-    return Outcome(0, result.summary, f"served {result.ticks} ticks, lateness {result.summary['lateness']}")
+    code = INTERRUPTED if result.interrupted else 0
+    return Outcome(code, result.summary, f"served {result.ticks} ticks, lateness {result.summary['lateness']}")

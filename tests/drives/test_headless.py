@@ -1,5 +1,8 @@
 """`simconsole drive --headless`: every driver that needs no hardware, from the command line into a bundle."""
 
+import os
+import pty
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +12,7 @@ from simconsole.devices.trace import COLUMNS
 from simconsole.recording.bundle import open_bundle, verify
 from simconsole.signals import NEVER_TICKS, Mode, Validity
 
-from .console import results, simconsole
+from .console import PATIENCE_S, environment, results, simconsole, words
 
 PERSON = """\
 schema: 1
@@ -119,3 +122,24 @@ def test_a_session_finds_its_script_beside_itself(tmp_path: Path, script: Path) 
     done = simconsole("drive", session, "--for", 1, "--out", tmp_path / "bundle", "--json")
     assert done.returncode == 0, done.stderr
     assert open_bundle(tmp_path / "bundle").log.table().column("driver.clutch").max() == pytest.approx(1.0)
+
+
+def test_on_a_terminal_progress_is_shown_and_wiped(plain: Path, tmp_path: Path, script: Path) -> None:
+    terminal, theirs = pty.openpty()
+    drive = words("drive", plain, "--driver", f"script:{script}", "--for", 20, "--out", tmp_path / "bundle")
+    with subprocess.Popen(drive, stdout=subprocess.DEVNULL, stderr=theirs, env=environment()) as process:
+        os.close(theirs)
+        shown = b""
+        while True:
+            try:
+                part = os.read(terminal, 4096)
+            except OSError:  # the other end is closed
+                break
+            if not part:
+                break
+            shown += part
+        assert process.wait(PATIENCE_S) == 0
+    os.close(terminal)
+    assert b"\r\x1b[Kdriving ..." in shown
+    assert b" km/h " in shown
+    assert shown.endswith(b"\r\x1b[K"), "nothing of it stays"

@@ -1,0 +1,81 @@
+"""The paper's first example as two programs: the ROS side sends desired speed and pose, the console rolls the ball."""
+
+import math
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import simconsole
+from simconsole.recording.bundle import open_bundle, verify
+from simconsole.recording.log import LogTable
+from simconsole.replaying import replay_bundle
+from simconsole.signals import Mode
+
+from .console import PATIENCE_S, Running, environment
+from .controllers import free_port
+
+EXAMPLE = Path(simconsole.__file__).parents[1] / "examples" / "roll_a_ball" / "roll_a_ball.py"
+WAYPOINTS_M = [(2.0, 0.0), (2.0, 2.0), (0.0, 2.0), (0.0, 0.0)]
+
+
+class Rolled:
+    """What is left of one drive of the ball."""
+
+    def __init__(self, folder: Path) -> None:
+        self.bundle = folder / "bundle"
+        port = free_port()
+        shipped = (EXAMPLE.parents[2] / "profiles" / "sessions" / "roll_a_ball.yaml").read_text()
+        assert shipped.count("port: 9090") == 1
+        session = folder / "session.yaml"
+        session.write_text(shipped.replace("port: 9090", f"port: {port}"))
+        with Running(folder, "drive", session, "--out", self.bundle, "--json") as console:
+            example = subprocess.run(
+                [sys.executable, str(EXAMPLE), "--url", f"ws://127.0.0.1:{port}"],
+                capture_output=True,
+                text=True,
+                timeout=PATIENCE_S,
+                env=environment(PYTHONPATH=os.pathsep.join(entry for entry in sys.path if entry)),
+                check=False,
+            )
+            self.done = console.end()
+        assert example.returncode == 0, example.stderr
+        assert self.done.returncode == 0, self.done.stderr
+        self.said = example.stdout
+        self.table: LogTable = open_bundle(self.bundle).log.table()
+
+
+@pytest.fixture(scope="module")
+def rolled(tmp_path_factory: pytest.TempPathFactory) -> Rolled:
+    return Rolled(tmp_path_factory.mktemp("ball"))
+
+
+def test_the_ball_rolls_from_waypoint_to_waypoint(rolled: Rolled) -> None:
+    reached = [(float(x), float(y)) for x, y in re.findall(r"reached \(([-\d.]+), ([-\d.]+)\)", rolled.said)]
+    assert reached[:4] == WAYPOINTS_M
+    assert "the drive has ended" in rolled.said
+    x, y = rolled.table.column("vehicle.x_m"), rolled.table.column("vehicle.y_m")
+    for waypoint in WAYPOINTS_M:
+        assert np.hypot(x - waypoint[0], y - waypoint[1]).min() < 0.05
+    speed = np.hypot(rolled.table.column("vehicle.vx_mps"), rolled.table.column("vehicle.vy_mps"))
+    assert math.isclose(speed.max(), 0.8, abs_tol=0.05), "at the speed that was asked for"
+
+
+def test_nobody_sits_at_the_wheel_and_the_ros_side_asks_for_control(rolled: Rolled) -> None:
+    modes = rolled.table.column("arbitration.mode")
+    assert modes[0] == Mode.PARKED
+    assert modes[-1] == Mode.AUTONOMOUS
+    assert (rolled.table.column("remote.refused") == 0.0).all()
+
+
+def test_the_ball_replays_and_is_reported_as_the_car_is(rolled: Rolled) -> None:
+    assert verify(rolled.bundle) == []
+    found = replay_bundle(rolled.bundle)
+    assert found.equal, str(found.difference)
+    assert found.ticks == len(rolled.table.ticks) == 2000
+    assert "<svg" in (rolled.bundle / "report.html").read_text("utf-8")
+    assert (rolled.bundle / "scene.rrd").stat().st_size > 10_000
