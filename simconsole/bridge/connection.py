@@ -10,7 +10,8 @@ from websockets.http11 import Request
 from websockets.protocol import SEND_EOF, State
 from websockets.server import ServerProtocol
 
-from simconsole.bridge.handshake import FORBIDDEN, FULL, is_host_allowed, origins
+from simconsole.bridge.forms import Binary, Dialect
+from simconsole.bridge.handshake import FORBIDDEN, FULL, dialect_of, is_host_allowed, origins
 from simconsole.bridge.session import Session
 from simconsole.bridge.wire import RECEIVE_BYTES, TextAssembler, is_data
 from simconsole.errors import RemoteProtocolError
@@ -25,7 +26,7 @@ _logger = logging.getLogger("simconsole.bridge.lockstep")
 class Owner(Protocol):
     """Who is told what happens on a connection."""
 
-    def connected(self, peer: str) -> Session:
+    def connected(self, peer: str, dialect: Dialect) -> Session:
         """Take in a client whose handshake is done."""
 
     def received(self, session: Session, text: bytes) -> None:
@@ -98,7 +99,10 @@ class Connection:
                 text = session.next_text(now_ns)
                 if text is None:
                     break
-                self._web.send_text(text)
+                if isinstance(text, Binary):
+                    self._web.send_binary(text)
+                else:
+                    self._web.send_text(text)
                 self._collect()
         self._collect()
         self._send()
@@ -129,7 +133,7 @@ class Connection:
             response = self._web.accept(request)
         self._web.send_response(response)
         if self._web.state is State.OPEN:
-            self.session = self._owner.connected(self.peer)
+            self.session = self._owner.connected(self.peer, dialect_of(request.path))
 
     def _take(self, frame: Frame, session: Session) -> None:
         try:

@@ -74,6 +74,7 @@ class ConsoleBridge:
     def publish(self, snapshot: Snapshot, now_ns: int, *, odometry: bool = False) -> None:
         """Queue every message of `snapshot` that is due and wanted; with `odometry`, that in any case."""
         self.router.ros_time_ns = self._intake.ros_time_ns = snapshot.t_ns
+        self.router.calls.expire(now_ns)
         moment: Moment | None = None
         for output in self._outputs:
             due = is_due(snapshot.tick, output.last_tick, snapshot.tick_hz, output.rate_hz)

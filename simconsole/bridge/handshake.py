@@ -4,6 +4,7 @@ import re
 from collections.abc import Sequence
 from typing import Final
 
+from simconsole.bridge.forms import Dialect
 from simconsole.profiles.bridge import BridgeProfile
 
 _LOCAL: Final = ("localhost", "127.0.0.1", "[::1]")
@@ -26,3 +27,8 @@ def is_host_allowed(host: str | None, profile: BridgeProfile) -> bool:
     name = _PORT.sub("", host).lower()
     bind = f"[{profile.host}]" if ":" in profile.host else profile.host
     return name in {*_LOCAL, bind.lower(), *(allowed.lower() for allowed in profile.allowed_hosts)}
+
+
+def dialect_of(path: str) -> Dialect:
+    """Return how times and headers are spelled for a client: by ROS 1 if the path of its URL is /ros1."""
+    return "ros1" if path.partition("?")[0].rstrip("/") == "/ros1" else "ros2"

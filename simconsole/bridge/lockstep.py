@@ -14,6 +14,7 @@ import msgspec
 
 from simconsole.bridge.connection import Connection
 from simconsole.bridge.console import ConsoleBridge
+from simconsole.bridge.forms import Dialect
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.session import Session
 from simconsole.bridge.topics import ODOMETRY
@@ -148,10 +149,10 @@ class LockstepBridge:
         self._selector.close()
         self._listener.close()
 
-    def connected(self, peer: str) -> Session:
+    def connected(self, peer: str, dialect: Dialect) -> Session:
         """Take in a client (Connection's owner)."""
         _logger.info("%s connected", peer)
-        return self.console.router.connect(peer)
+        return self.console.router.connect(peer, dialect=dialect)
 
     def received(self, session: Session, text: bytes) -> None:
         """Apply a text of a client (Connection's owner)."""

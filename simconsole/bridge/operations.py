@@ -18,6 +18,11 @@ SEVERITY: Final[dict[str, int]] = {"none": 0, "error": 1, "warning": 2, "info": 
 DEFAULT_LEVEL: Final = "error"
 
 
+Compression = Literal["none", "png", "cbor", "cbor-raw"]
+FragmentSize = Annotated[int, Meta(ge=16)] | None
+"""The most characters of a message in one piece; smaller ones would cost more in frames than in content."""
+
+
 class Advertise(Struct):
     """A client will publish."""
 
@@ -51,7 +56,8 @@ class Subscribe(Struct):
     id: Id = None
     throttle_rate: Annotated[float, Meta(ge=0.0, le=3.6e6)] = 0.0
     queue_length: Annotated[int, Meta(ge=0)] = 0
-    compression: Literal["none", "png", "cbor", "cbor-raw"] = "none"
+    compression: Compression = "none"
+    fragment_size: FragmentSize = None
 
 
 class Unsubscribe(Struct):
@@ -76,7 +82,132 @@ class SetLevel(Struct):
     id: Id = None
 
 
-Operation = Advertise | Unadvertise | Publish | Subscribe | Unsubscribe | Status | SetLevel
+class CallService(Struct):
+    """A request, either way; `timeout` in s."""
+
+    service: str
+    args: Any = None
+    id: Id = None
+    type: str | None = None
+    timeout: Annotated[float, Meta(ge=0.0, le=3600.0)] = 0.0
+    fragment_size: FragmentSize = None
+    compression: Compression = "none"
+
+
+class ServiceResponse(Struct):
+    """The answer to a request, either way; on failure `values` is why, as text."""
+
+    service: str
+    values: Any = None
+    result: bool = True
+    id: Id = None
+
+
+class AdvertiseService(Struct):
+    """A client will answer requests."""
+
+    service: str
+    type: str
+    id: Id = None
+
+
+class UnadvertiseService(Struct):
+    """A client will no longer answer requests."""
+
+    service: str
+    id: Id = None
+
+
+class AdvertiseAction(Struct):
+    """A client will pursue goals."""
+
+    action: str
+    type: str
+    id: Id = None
+
+
+class UnadvertiseAction(Struct):
+    """A client will no longer pursue goals."""
+
+    action: str
+    id: Id = None
+
+
+class SendActionGoal(Struct):
+    """A goal, either way; `feedback` asks to be told of its progress."""
+
+    action: str
+    action_type: str | None = None
+    args: Any = None
+    feedback: bool = False
+    id: Id = None
+    fragment_size: FragmentSize = None
+    compression: Compression = "none"
+
+
+class CancelActionGoal(Struct):
+    """A goal is no longer wanted, either way."""
+
+    action: str
+    id: Id
+
+
+class ActionFeedback(Struct):
+    """How far a goal is, either way."""
+
+    action: str
+    id: Id
+    values: Any = None
+
+
+class ActionResult(Struct):
+    """How a goal ended, either way; `status` is one of action_msgs/GoalStatus."""
+
+    action: str
+    id: Id
+    values: Any = None
+    status: int = 0
+    result: bool = True
+
+
+class Fragment(Struct):
+    """One of `total` pieces of a text; rosbridge_suite writes the total as a fraction."""
+
+    data: str
+    num: Annotated[float, Meta(ge=0.0, le=1e9)]
+    total: Annotated[float, Meta(gt=0.0, le=1e9)]
+    id: Id = None
+
+
+class Auth(Struct):
+    """Who the client is: a token, or what rosauth's clients make of one (`mac` and what went into it)."""
+
+    mac: str = ""
+    client: str = ""
+    dest: str = ""
+    rand: str = ""
+    t: int = 0
+    level: str = ""
+    end: int = 0
+    token: str = ""
+    id: Id = None
+
+
+CallOperation = (
+    CallService
+    | ServiceResponse
+    | AdvertiseService
+    | UnadvertiseService
+    | AdvertiseAction
+    | UnadvertiseAction
+    | SendActionGoal
+    | CancelActionGoal
+    | ActionFeedback
+    | ActionResult
+)
+Operation = (
+    Advertise | Unadvertise | Publish | Subscribe | Unsubscribe | Status | SetLevel | Fragment | Auth | CallOperation
+)
 
 OPERATIONS: Final[dict[str, type[Operation]]] = {
     "advertise": Advertise,
@@ -86,6 +217,18 @@ OPERATIONS: Final[dict[str, type[Operation]]] = {
     "unsubscribe": Unsubscribe,
     "status": Status,
     "set_level": SetLevel,
+    "fragment": Fragment,
+    "auth": Auth,
+    "call_service": CallService,
+    "service_response": ServiceResponse,
+    "advertise_service": AdvertiseService,
+    "unadvertise_service": UnadvertiseService,
+    "advertise_action": AdvertiseAction,
+    "unadvertise_action": UnadvertiseAction,
+    "send_action_goal": SendActionGoal,
+    "cancel_action_goal": CancelActionGoal,
+    "action_feedback": ActionFeedback,
+    "action_result": ActionResult,
 }
 
 

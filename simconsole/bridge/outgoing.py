@@ -4,34 +4,57 @@ No client can make this grow: a topic keeps at most its depth of messages, and a
 """
 
 from collections import deque
-from typing import Final
+from collections.abc import Iterator
+from typing import Final, NamedTuple
 
+from simconsole.bridge.forms import PLAIN, Binary, Form
+from simconsole.bridge.fragments import split
 from simconsole.bridge.operations import Id
 from simconsole.units import NS_PER_S
 
-MAX_REPLIES: Final = 64
+MAX_REPLIES: Final = 256
 NS_PER_MS: Final = NS_PER_S // 1000
+
+
+_PREFERRED: Final = ("cbor-raw", "cbor", "png", "none")
+"""Of several subscriptions of one client to one topic, as rosbridge_suite has it."""
+
+
+class _Wish(NamedTuple):
+    throttle_ns: int
+    depth: int
+    form: Form
+    fragment_size: int | None
 
 
 class Outlet:
     """The messages of one topic on their way to one client."""
 
-    __slots__ = ("default_depth", "depth", "dropped", "head", "next_ns", "texts", "throttle_ns", "wishes")
+    __slots__ = (
+        "default_depth", "depth", "dropped", "form", "fragment_size", "head", "next_ns", "texts", "throttle_ns",
+        "topic", "wishes",
+    )  # fmt: skip
 
-    def __init__(self, head: bytes, default_depth: int) -> None:
+    def __init__(self, head: bytes, default_depth: int, topic: str = "") -> None:
         """Start empty; `head` is the publish operation up to its message, in the client's spelling of the topic."""
         self.head = head
+        self.topic = topic
+        self.form: Form = PLAIN
+        self.fragment_size: int | None = None
         self.default_depth = default_depth
         self.depth = default_depth
         self.throttle_ns = 0
         self.next_ns = 0
         self.dropped = 0
         self.texts: deque[bytes] = deque()
-        self.wishes: dict[Id, tuple[int, int]] = {}
+        self.wishes: dict[Id, _Wish] = {}
 
-    def wish(self, identifier: Id, throttle_ms: float, depth: int) -> None:
+    def wish(
+        self, identifier: Id, throttle_ms: float, depth: int, form: Form = PLAIN, fragment_size: int | None = None
+    ) -> None:
         """Add or replace the subscription `identifier`; depth 0 asks for the topic's own."""
-        self.wishes[identifier] = (int(throttle_ms * NS_PER_MS), depth or self.default_depth)
+        throttle_ns = int(throttle_ms * NS_PER_MS)
+        self.wishes[identifier] = _Wish(throttle_ns, depth or self.default_depth, form, fragment_size)
         self._merge()
 
     def withdraw(self, identifier: Id) -> bool:
@@ -46,8 +69,11 @@ class Outlet:
     def _merge(self) -> None:
         # Several subscriptions of one client to one topic are served by one delivery: the most demanding wins.
         if self.wishes:
-            self.throttle_ns = min(throttle for throttle, _ in self.wishes.values())
-            self.depth = max(depth for _, depth in self.wishes.values())
+            wishes = self.wishes.values()
+            self.throttle_ns = min(wish.throttle_ns for wish in wishes)
+            self.depth = max(wish.depth for wish in wishes)
+            self.form = min((wish.form for wish in wishes), key=lambda form: _PREFERRED.index(form.compression))
+            self.fragment_size = min((wish.fragment_size for wish in wishes if wish.fragment_size), default=None)
 
 
 class Outgoing:
@@ -58,15 +84,20 @@ class Outgoing:
         self.max_bytes = max_bytes
         self.bytes = 0
         self.dropped = 0
-        self._replies: deque[bytes] = deque()
+        self._replies: deque[tuple[bytes, int | None]] = deque()
+        self._reply_bytes = 0
+        self._pieces: Iterator[bytes] = iter(())
+        self._piece: bytes | None = None
+        self._messages = 0
         self._waiting: dict[Outlet, None] = {}
 
-    def reply(self, text: bytes) -> None:
-        """Queue an answer to the client itself; of too many the oldest is dropped."""
-        if len(self._replies) >= MAX_REPLIES:
-            self._replies.popleft()
+    def reply(self, text: bytes, fragment_size: int | None = None) -> None:
+        """Queue an answer to the client itself; of too many, or too long ones, the oldest is dropped."""
+        self._replies.append((text, fragment_size))
+        self._reply_bytes += len(text)
+        while len(self._replies) > MAX_REPLIES or (self._reply_bytes > self.max_bytes and len(self._replies) > 1):
+            self._reply_bytes -= len(self._replies.popleft()[0])
             self.dropped += 1
-        self._replies.append(text)
 
     def put(self, outlet: Outlet, text: bytes) -> int:
         """Queue a message of a topic; return how many were dropped for it."""
@@ -86,8 +117,13 @@ class Outgoing:
 
     def take(self, now_ns: int) -> bytes | None:
         """Return the next text that may be sent at `now_ns`, or None."""
+        if self._piece is not None:
+            piece, self._piece = self._piece, next(self._pieces, None)
+            return piece
         if self._replies:
-            return self._replies.popleft()
+            text, size = self._replies.popleft()
+            self._reply_bytes -= len(text)
+            return self._in_pieces(text, size)
         for outlet in self._waiting:
             if outlet.next_ns <= now_ns:
                 break
@@ -99,11 +135,20 @@ class Outgoing:
         del self._waiting[outlet]
         if outlet.texts:
             self._waiting[outlet] = None
-        return text
+        return self._in_pieces(text, outlet.fragment_size)
+
+    def _in_pieces(self, text: bytes, size: int | None) -> bytes:
+        """Return a text or, if it is longer than the client wants, its first piece; the others are taken next."""
+        if size is None or len(text) <= size or isinstance(text, Binary):
+            return text
+        self._messages += 1
+        self._pieces = split(text, size, f"f{self._messages}")
+        first, self._piece = next(self._pieces), next(self._pieces, None)
+        return first
 
     def due_ns(self) -> int | None:
         """Return when the next waiting text may be sent (0: now), None when nothing waits."""
-        if self._replies:
+        if self._replies or self._piece is not None:
             return 0
         return min((outlet.next_ns for outlet in self._waiting), default=None)
 

@@ -7,13 +7,17 @@ nothing a client sends raises: it is answered with a status and counted.
 from collections.abc import Callable
 from typing import Any, Final, Literal, NamedTuple
 
-import msgspec
-
+from simconsole.bridge.calls import Calls
 from simconsole.bridge.documents import Document, has_duplicate_keys, read
+from simconsole.bridge.forms import Dialect, Encoder, Form
+from simconsole.bridge.fragments import Assembler
 from simconsole.bridge.lease import Lease
 from simconsole.bridge.messages import Registry, is_stamped
 from simconsole.bridge.operations import (
     Advertise,
+    Auth,
+    CallOperation,
+    Fragment,
     Operation,
     Publish,
     SetLevel,
@@ -33,6 +37,8 @@ from simconsole.units import NS_PER_S
 
 RELAY_DEPTH: Final = 100
 """Messages kept of a topic between clients for a slow subscriber that did not say how many it wants."""
+
+_UINT32: Final = 0xFFFFFFFF
 
 Accept = Callable[[dict[str, Any], Any, int], None]
 """Takes a command as decoded, typed, and the time; raises RemoteProtocolError to refuse it."""
@@ -66,7 +72,8 @@ class Topic:
         self.owned = owned
         self.command = command
         self.latch = latch
-        self.latched: bytes | None = None
+        self.latched: Encoder | None = None
+        self.sequence = 0
         self.head = publish_head(name)
         self.publishers: set[int] = set()
         self.subscribers: dict[int, tuple[Session, Outlet]] = {}
@@ -90,6 +97,7 @@ class Router:
         self._topics: dict[str, Topic] = {}
         self._sessions: dict[int, Session] = {}
         self._numbers = 0
+        self.calls = Calls(registry, limits)
 
     @property
     def sessions(self) -> tuple[Session, ...]:
@@ -109,10 +117,12 @@ class Router:
             raise LocalProtocolError(f"{topic.name}: two of the console's topics have this name")
         self._topics[topic.name] = topic
 
-    def connect(self, peer: str, wake: Callable[[], None] = lambda: None) -> Session:
+    def connect(self, peer: str, wake: Callable[[], None] = lambda: None, dialect: Dialect = "ros2") -> Session:
         """Take in a client; `peer` names it in logs, `wake` is called when something waits for it."""
         self._numbers += 1
-        session = Session(self._numbers, peer, self._limits.queued_bytes, wake)
+        limits = self._limits
+        assembler = Assembler(limits.message_bytes, limits.message_fragments)
+        session = Session(self._numbers, peer, limits.queued_bytes, wake, dialect, assembler)
         self._sessions[session.number] = session
         return session
 
@@ -128,6 +138,7 @@ class Router:
                 self._clear(topic)
         session.outlets.clear()
         session.advertised.clear()
+        self.calls.disconnect(session)
         return self.lease.release(session.number, now_ns)
 
     def wanted(self, name: str) -> bool:
@@ -142,12 +153,22 @@ class Router:
     def receive(self, session: Session, text: bytes, now_ns: int) -> Outcome:
         """Apply one text of a client. Never raises for what is in it."""
         session.received += 1
+        self.calls.expire(now_ns)
+        return self._receive(session, text, now_ns, False)
+
+    def _receive(self, session: Session, text: bytes, now_ns: int, assembled: bool) -> Outcome:
         document = Document({}, False)
         try:
             document = read(text)
-            return self._apply(session, read_operation(document.fields), document, text, now_ns)
+            operation = read_operation(document.fields)
+            if not isinstance(operation, Fragment):
+                return self._apply(session, operation, document, text, now_ns)
+            if assembled:
+                raise RemoteProtocolError("a fragment of fragments")
+            whole = session.assembler.add(operation, now_ns)
         except BridgeError as error:
             return self._refuse(session, document.fields, str(error), now_ns)
+        return Outcome("done", "", "") if whole is None else self._receive(session, whole, now_ns, True)
 
     def refuse(self, session: Session, reason: str, now_ns: int) -> Outcome:
         """Answer something that was not even text, such as a binary message."""
@@ -156,7 +177,7 @@ class Router:
 
     def _refuse(self, session: Session, fields: dict[str, Any], reason: str, now_ns: int) -> Outcome:
         session.refused += 1
-        name = fields.get("topic")
+        name = next((fields[key] for key in ("topic", "service", "action") if key in fields), "")
         name = name[:256] if isinstance(name, str) else ""
         topic = self._topics.get(name if name.startswith("/") else f"/{name}")
         # A stranger's mistakes must not count against the commander who drives.
@@ -176,6 +197,11 @@ class Router:
         if isinstance(operation, SetLevel):
             session.set_level(operation.level)
             return Outcome("done", "", "")
+        if isinstance(operation, Auth):
+            return Outcome("done", "", "")
+        if isinstance(operation, CallOperation):
+            return Outcome("done", self.calls.apply(session, operation, now_ns), "")
+        assert not isinstance(operation, Fragment)
         name = resolve_topic(operation.topic)
         if isinstance(operation, Publish):
             return self._publish(session, name, operation, document, text, now_ns)
@@ -242,12 +268,12 @@ class Router:
     def _distribute(self, topic: Topic, message: Any, now_ns: int) -> None:
         if not topic.subscribers and not topic.latch:
             return
-        body = msgspec.json.encode(message) + b"}"
+        topic.sequence = (topic.sequence + 1) & _UINT32
+        encoder = Encoder(self.registry, topic.type, message, topic.sequence, self.ros_time_ns)
         if topic.latch:
-            topic.latched = body
-        text = topic.head + body
+            topic.latched = encoder
         for session, outlet in topic.subscribers.values():
-            session.deliver(outlet, text if outlet.head is topic.head else outlet.head + body, now_ns)
+            session.deliver(outlet, encoder.text(outlet.form, outlet.head, outlet.topic), now_ns)
 
     def _topic(self, name: str, type_name: str | None) -> Topic:
         """Return the topic, created if a client names its type."""
@@ -264,8 +290,7 @@ class Router:
         return topic
 
     def _subscribe(self, session: Session, name: str, operation: Subscribe, now_ns: int) -> None:
-        if operation.compression != "none":
-            raise RemoteProtocolError(f"compression {operation.compression} is not supported here")
+        form = Form(session.dialect, operation.compression)
         outlet = session.outlets.get(name)
         if outlet is None:
             if len(session.outlets) >= self._limits.subscriptions:
@@ -273,15 +298,16 @@ class Router:
             topic = self._topic(name, operation.type)
             # The client is answered with the name it used, which is what it looks up.
             head = topic.head if operation.topic == name else publish_head(operation.topic)
-            outlet = session.outlets[name] = Outlet(head, topic.depth)
+            outlet = session.outlets[name] = Outlet(head, topic.depth, operation.topic)
             topic.subscribers[session.number] = (session, outlet)
             if topic.latched is not None:
-                session.deliver(outlet, head + topic.latched, now_ns)
+                session.deliver(outlet, topic.latched.text(form, head, operation.topic), now_ns)
         else:
             self._topic(name, operation.type)
         if operation.id not in outlet.wishes and len(outlet.wishes) >= self._limits.subscriptions:
             raise RemoteProtocolError(f"{self._limits.subscriptions} subscriptions are the most allowed")
-        outlet.wish(operation.id, operation.throttle_rate, min(operation.queue_length, self._limits.queue_length))
+        depth = min(operation.queue_length, self._limits.queue_length)
+        outlet.wish(operation.id, operation.throttle_rate, depth, form, operation.fragment_size)
 
     def _unsubscribe(self, session: Session, name: str, operation: Unsubscribe) -> None:
         outlet = session.outlets.get(name)

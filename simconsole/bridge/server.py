@@ -18,7 +18,8 @@ from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
 from simconsole.bridge.console import ConsoleBridge
-from simconsole.bridge.handshake import FORBIDDEN, FULL, is_host_allowed, origins
+from simconsole.bridge.forms import Binary
+from simconsole.bridge.handshake import FORBIDDEN, FULL, dialect_of, is_host_allowed, origins
 from simconsole.bridge.inputs import OnCommand, OnEvents
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.session import Session
@@ -131,7 +132,9 @@ class BridgeServer:
         sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         client = _Client(connection)
         address = connection.remote_address
-        session = self.console.router.connect(f"{address[0]}:{address[1]}", client.ready.set)
+        assert connection.request is not None
+        dialect = dialect_of(connection.request.path)
+        session = self.console.router.connect(f"{address[0]}:{address[1]}", client.ready.set, dialect)
         self._clients[session] = client
         _logger.info("%s connected", session.peer)
         sender = asyncio.create_task(self._send(session, client))
@@ -162,7 +165,7 @@ class BridgeServer:
             try:
                 while (text := session.next_text(self._clock_ns())) is not None:
                     client.sending_since_ns = self._clock_ns()
-                    await client.connection.send(text, text=True)
+                    await client.connection.send(text, text=not isinstance(text, Binary))
                     client.sending_since_ns = None
             except ConnectionClosed:
                 return
@@ -178,6 +181,7 @@ class BridgeServer:
         while True:
             await asyncio.sleep(_WATCH_S)
             now_ns = self._clock_ns()
+            self.console.router.calls.expire(now_ns)
             for session, client in list(self._clients.items()):
                 if client.sending_since_ns is not None and now_ns - client.sending_since_ns > limit_ns:
                     _logger.warning("%s took nothing for %g s and is cut", session.peer, self._profile.stall_close_s)

@@ -4,6 +4,8 @@ import re
 from collections.abc import Callable
 from typing import Final
 
+from simconsole.bridge.forms import Dialect
+from simconsole.bridge.fragments import Assembler
 from simconsole.bridge.operations import DEFAULT_LEVEL, SEVERITY, Id, write_status
 from simconsole.bridge.outgoing import Outgoing, Outlet
 from simconsole.errors import RemoteProtocolError
@@ -16,8 +18,18 @@ _NAME: Final = re.compile(r"/?[A-Za-z_][A-Za-z0-9_]*(?:/[A-Za-z_][A-Za-z0-9_]*)*
 class Session:
     """State of one connection. It is created, changed and removed by its router alone, except for taking texts."""
 
-    def __init__(self, number: int, peer: str, max_bytes: int, wake: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        number: int,
+        peer: str,
+        max_bytes: int,
+        wake: Callable[[], None],
+        dialect: Dialect = "ros2",
+        assembler: Assembler | None = None,
+    ) -> None:
         """Start with nothing; `wake` is called whenever there may be something to send."""
+        self.dialect: Dialect = dialect
+        self.assembler = assembler or Assembler(max_bytes, 256)
         self.number = number
         self.peer = peer
         self.outgoing = Outgoing(max_bytes)
@@ -50,6 +62,11 @@ class Session:
         if SEVERITY[level] <= self._level:
             self.outgoing.reply(write_status(level, text, identifier))
             self._wake()
+
+    def answer(self, text: bytes, fragment_size: int | None = None) -> None:
+        """Send something that is meant for this client alone."""
+        self.outgoing.reply(text, fragment_size)
+        self._wake()
 
     def deliver(self, outlet: Outlet, text: bytes, now_ns: int) -> None:
         """Queue a message of a subscribed topic; tell the client, at most once a second, when some were dropped."""

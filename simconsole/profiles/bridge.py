@@ -28,6 +28,8 @@ class BridgeLimits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     message_fragments: Annotated[int, Meta(ge=1, le=65_536)] = 256
     subscriptions: Annotated[int, Meta(ge=1, le=4096)] = 256
     topics: Annotated[int, Meta(ge=16, le=4096)] = 256
+    calls: Annotated[int, Meta(ge=1, le=4096)] = 64
+    call_s: Annotated[float, Meta(gt=0.0, le=3600.0)] = 30.0
     queue_length: Annotated[int, Meta(ge=1, le=100_000)] = 1000
     queued_bytes: Annotated[int, Meta(ge=65_536, le=67_108_864)] = 1_048_576
 

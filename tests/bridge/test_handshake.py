@@ -2,7 +2,7 @@ import re
 
 import pytest
 
-from simconsole.bridge.handshake import is_host_allowed, origins
+from simconsole.bridge.handshake import dialect_of, is_host_allowed, origins
 from simconsole.profiles.bridge import BridgeProfile
 
 
@@ -48,3 +48,10 @@ def test_other_names_are_not(host: str | None) -> None:
 
 def test_address_of_version_6_is_written_in_brackets() -> None:
     assert is_host_allowed("[fe80::1]:9090", BridgeProfile(host="fe80::1"))
+
+
+@pytest.mark.parametrize(
+    ("path", "dialect"), [("/", "ros2"), ("/ros1", "ros1"), ("/ros1/?x=1", "ros1"), ("/ros12", "ros2"), ("", "ros2")]
+)
+def test_dialect_of_a_path(path: str, dialect: str) -> None:
+    assert dialect_of(path) == dialect

@@ -49,7 +49,7 @@ def test_operations_are_read(fields: dict[str, Any], operation: object) -> None:
     [
         ({}, "no op"),
         ({"op": 5}, "no op"),
-        ({"op": "call_service", "service": "/x"}, "'call_service' is not supported here, only advertise"),
+        ({"op": "call_servise", "service": "/x"}, "'call_servise' is not supported here, only advertise"),
         ({"op": "Publish"}, "not supported"),
         ({"op": "publish", "topic": "/a"}, "publish: .*missing required field `msg`"),
         ({"op": "publish", "msg": {}}, "publish: .*missing required field `topic`"),
@@ -59,6 +59,11 @@ def test_operations_are_read(fields: dict[str, Any], operation: object) -> None:
         ({"op": "subscribe", "topic": "/a", "queue_length": 1.5}, r"\$.queue_length"),
         ({"op": "subscribe", "topic": "/a", "compression": "zip"}, r"\$.compression"),
         ({"op": "subscribe", "topic": "/a", "id": {}}, r"\$.id"),
+        ({"op": "subscribe", "topic": "/a", "fragment_size": 1}, r"\$.fragment_size"),
+        ({"op": "call_service"}, "call_service: .*missing required field `service`"),
+        ({"op": "fragment", "id": 0, "data": 5, "num": 0, "total": 1}, r"\$.data"),
+        ({"op": "fragment", "id": 0, "data": "x", "num": -1, "total": 1}, r"\$.num"),
+        ({"op": "cancel_action_goal", "action": "/a"}, "missing required field `id`"),
         ({"op": "set_level", "level": "loud"}, r"\$.level"),
     ],
 )

@@ -2,6 +2,7 @@ import random
 
 import pytest
 
+from simconsole.bridge.forms import Form
 from simconsole.bridge.outgoing import MAX_REPLIES, Outgoing, Outlet
 
 
@@ -132,3 +133,32 @@ def test_bounds_hold_under_random_use(seed: int) -> None:
         assert outgoing.bytes == sum(len(text) for each in outlets for text in each.texts) <= 500
         assert all(len(each.texts) <= each.depth for each in outlets)
     assert put == taken + outgoing.dropped + sum(len(each.texts) for each in outlets)
+
+
+def test_replies_are_bounded_in_bytes_too() -> None:
+    outgoing = Outgoing(100)
+    for letter in (b"a", b"b", b"c"):
+        outgoing.reply(letter * 45)
+    assert drain(outgoing) == [b"b" * 45, b"c" * 45]
+    outgoing.reply(b"d" * 200)
+    assert drain(outgoing) == [b"d" * 200]
+
+
+def test_pieces_of_one_message_stay_together() -> None:
+    outgoing, topic = Outgoing(1000), Outlet(b"", 1)
+    topic.wish("a", 0.0, 9, fragment_size=50)
+    topic.wish("b", 0.0, 9, fragment_size=20)
+    outgoing.put(topic, b"x" * 45)
+    first = outgoing.take(0)
+    outgoing.reply(b"later")
+    assert outgoing.due_ns() == 0
+    texts = [first, *drain(outgoing)]
+    assert [b'"fragment"' in (text or b"") for text in texts] == [True, True, True, False]
+    assert outgoing.due_ns() is None
+
+
+def test_most_demanding_form_wins() -> None:
+    topic = Outlet(b"", 1)
+    for number, compression in enumerate(("none", "png", "cbor", "cbor-raw")):
+        topic.wish(number, 0.0, 1, Form("ros2", compression))  # type: ignore[arg-type]  # the literals are listed here
+        assert topic.form.compression == compression

@@ -1,3 +1,4 @@
+import json
 from collections.abc import Callable
 from typing import Any
 
@@ -105,13 +106,24 @@ def test_message_without_a_stamp_is_stamped_with_the_present(peer: Any) -> None:
         ({"op": "advertise", "topic": "/new", "type": "nonsense"}, "not a message type name"),
         ({"op": "subscribe", "topic": "/new"}, "give its type"),
         ({"op": "subscribe", "topic": "/odom", "type": "std_msgs/String"}, "is nav_msgs/msg/Odometry"),
-        ({"op": "subscribe", "topic": "/odom", "compression": "png"}, "compression png"),
+        ({"op": "subscribe", "topic": "/odom", "compression": "zip"}, "`$.compression`"),
         ({"op": "unsubscribe", "topic": "/odom"}, "not subscribed"),
         ({"op": "unsubscribe", "topic": "/chatter", "id": "other"}, "not subscribed"),
         ({"op": "unadvertise", "topic": "/new"}, "not advertised"),
         ({"op": "unadvertise", "topic": "/chatter", "id": "other"}, "not advertised"),
-        ({"op": "call_service", "service": "/x"}, "not supported here"),
-        ({"op": "fragment", "id": 0, "data": "x", "num": 0, "total": 1}, "not supported here"),
+        ({"op": "advertise_service", "service": "/x y", "type": "std_srvs/Empty"}, "not a topic name"),
+        ({"op": "service_response", "service": "/x", "values": {}}, "nobody waits for this"),
+        ({"op": "fragment", "id": "q1", "data": "x", "num": 1, "total": 1}, "whole number below 1"),
+        (
+            {
+                "op": "fragment",
+                "id": "q1",
+                "data": '{"op":"fragment","id":"q1","data":"","num":0,"total":1}',
+                "num": 0,
+                "total": 1,
+            },
+            "a fragment of fragments",
+        ),
     ],
 )
 def test_refusal_is_answered_with_id_and_reason(peer: Any, operation: dict[str, Any], complaint: str) -> None:
@@ -130,7 +142,7 @@ def test_refusal_is_answered_with_id_and_reason(peer: Any, operation: dict[str, 
 
 
 def test_refused_topics_leave_nothing_behind(peer: Any) -> None:
-    peer.send(op="subscribe", topic="/new", type="std_msgs/String", compression="png")
+    peer.send(op="subscribe", topic="/new", type="std_msgs/String", compression="zip")
     peer.send(op="advertise", topic="/new", type="demo/Nothing")
     assert peer.session.outlets == {}
     assert peer.session.advertised == {}
@@ -323,3 +335,38 @@ def test_stalled_client_costs_bounded_memory_and_no_one_a_message(
     kept = len(stalled.heard())
     assert kept > 0
     assert kept + stalled.session.outgoing.dropped == 1000
+
+
+def test_text_in_fragments_is_applied_once_it_is_whole(peer: Any) -> None:
+    text = json.dumps({"op": "advertise", "id": "mine", **CHATTER})
+    for number in (2, 0, 1):
+        at = number * 20
+        data = text[at : at + 20] if number < 2 else text[at:]
+        outcome = peer.send(op="fragment", id=0, data=data, num=number, total=2.7)
+    assert outcome.kind == "done"
+    assert peer.session.advertised == {"/chatter": {"mine"}}
+
+
+def test_each_subscriber_has_its_own_form(bridge: ConsoleBridge, join: Callable[..., Any]) -> None:
+    plain, small = join(bridge), join(bridge)
+    old = join(bridge)
+    old.session.dialect = "ros1"
+    topic = {"topic": "/p", "type": "geometry_msgs/PointStamped"}
+    for client in (plain, old):
+        client.send(op="subscribe", **topic)
+    small.send(op="subscribe", fragment_size=40, **topic)
+    plain.send(op="advertise", **topic)
+    for _ in range(2):
+        plain.publish("/p", {"header": {"stamp": {"secs": 1, "nsecs": 2}}, "point": {"x": None}})
+    point = {"x": None, "y": 0.0, "z": 0.0}
+    new_header = {"stamp": {"sec": 1, "nanosec": 2}, "frame_id": ""}
+    assert [message["msg"] for message in plain.heard()] == [{"header": new_header, "point": point}] * 2
+    headers = [message["msg"]["header"] for message in old.heard()]
+    assert headers == [{"seq": number, "stamp": {"secs": 1, "nsecs": 2}, "frame_id": ""} for number in (1, 2)]
+    pieces = small.heard()
+    assert {piece["op"] for piece in pieces} == {"fragment"}
+    assert all(len(piece["data"]) <= 40 and type(piece["total"]) is int for piece in pieces)
+    first, second = ([piece for piece in pieces if piece["id"] == name] for name in ("f1", "f2"))
+    assert [piece["num"] for piece in first] == list(range(first[0]["total"]))
+    whole = "".join(piece["data"] for piece in second)
+    assert json.loads(whole) == {"op": "publish", "topic": "/p", "msg": {"header": new_header, "point": point}}

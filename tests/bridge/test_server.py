@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+import cbor2
 import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
@@ -251,3 +252,15 @@ def test_client_that_takes_nothing_is_cut() -> None:
         await server.close()
 
     asyncio.run(main())
+
+
+def test_binary_forms_and_dialects_go_over_the_wire(serving: Callable[..., Any], snapshot: Callable[..., Any]) -> None:
+    server = serving()
+    with connect(server.url) as modern, connect(f"{server.url}/ros1") as old:
+        send(modern, op="subscribe", topic="/clock", compression="cbor")
+        send(old, op="subscribe", topic="/clock")
+        for peer in (modern, old):
+            settle(peer)
+        server.snapshots.put(snapshot(250))
+        assert cbor2.loads(modern.recv(timeout=10.0))["msg"] == {"clock": {"sec": 1, "nanosec": 0}}
+        assert answer(old)["msg"] == {"clock": {"secs": 1, "nsecs": 0}}

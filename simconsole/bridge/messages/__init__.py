@@ -5,6 +5,7 @@ from functools import cache
 from simconsole.bridge.messages.definition import Definition, FieldType, full_name, parse, parse_all
 from simconsole.bridge.messages.registry import Registry, is_stamped
 from simconsole.bridge.messages.ros_text import TEXT as ROS_TEXT
+from simconsole.bridge.messages.service_text import ACTIONS, SERVICES
 from simconsole.bridge.messages.vehicle_text import TEXT as VEHICLE_TEXT
 
 __all__ = [
@@ -24,6 +25,10 @@ def standard_registry() -> Registry:
     registry = Registry()
     for definition in _standard_definitions():
         registry.add_definition(definition)
+    for name, text in SERVICES.items():
+        registry.add_service(name, text)
+    for name, text in ACTIONS.items():
+        registry.add_action(name, text)
     return registry
 
 

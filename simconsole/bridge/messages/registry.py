@@ -4,6 +4,7 @@ A generated class checks types, integer ranges and array lengths and refuses unk
 definition's defaults. Nothing is generated before it is first asked for.
 """
 
+import re
 from typing import Annotated, Any
 
 import msgspec
@@ -24,6 +25,8 @@ from simconsole.bridge.messages.definition import (
 from simconsole.errors import BridgeError, RemoteProtocolError
 
 INT64_MAX = 2**63 - 1
+_PARTS = re.compile(r"^---[ \t]*$", re.MULTILINE)
+_KIND = re.compile(r"/(?:srv|action)/")
 
 
 class Registry:
@@ -54,6 +57,28 @@ class Registry:
         if known is not None and known != definition:
             raise BridgeError(f"{definition.name}: already defined differently")
         self._definitions[definition.name] = definition
+
+    def add_service(self, name: str, text: str) -> None:
+        """Add a service from its `.srv` text. Raises as `add_all`."""
+        self._add_parts(name, text, ("Request", "Response"))
+
+    def add_action(self, name: str, text: str) -> None:
+        """Add an action from its `.action` text. Raises as `add_all`."""
+        self._add_parts(name, text, ("Goal", "Result", "Feedback"))
+
+    def _add_parts(self, name: str, text: str, parts: tuple[str, ...]) -> None:
+        texts = _PARTS.split(text)
+        if len(texts) != len(parts):
+            raise BridgeError(f"{name}: has {len(texts)} parts divided by ---, expected {len(parts)}")
+        for part, body in zip(parts, texts, strict=True):
+            self.add(f"{_KIND.sub('/', name)}_{part}", body)
+
+    def part(self, name: str, part: str) -> str | None:
+        """Return the type of a service's Request or Response, an action's Goal, Result or Feedback; None if unknown."""
+        try:
+            return self.resolve(f"{_KIND.sub('/', name)}_{part}")
+        except BridgeError:
+            return None
 
     def names(self) -> tuple[str, ...]:
         """Return all known type names, three-part, sorted."""

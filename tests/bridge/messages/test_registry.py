@@ -143,3 +143,16 @@ def test_which_types_are_stamped(registry: Registry) -> None:
     assert is_stamped(registry.definition("nav_msgs/Odometry"))
     assert not is_stamped(registry.definition("geometry_msgs/Twist"))
     assert not is_stamped(registry.definition("std_msgs/Empty"))
+
+
+def test_parts_of_services_and_actions() -> None:
+    registry = standard_registry()
+    for name in ("demo/Grip", "demo/srv/Grip"):
+        registry.add_service(name, "float32 force_n\n---\nbool held\n")
+    assert registry.part("demo/srv/Grip", "Request") == registry.part("demo/Grip", "Request")
+    assert registry.struct("demo/Grip_Response")().held is False
+    registry.add_action("demo/action/Lift", "float32 to_m\n---\n---\nfloat32 at_m\n")
+    assert [bool(registry.part("demo/action/Lift", part)) for part in ("Goal", "Result", "Feedback")] == [True] * 3
+    assert registry.part("demo/srv/Nothing", "Request") is None
+    with pytest.raises(BridgeError, match="has 2 parts divided by ---, expected 3"):
+        registry.add_action("demo/Half", "---\n")

@@ -1,0 +1,354 @@
+"""Services and actions between clients, and services of the console itself.
+
+Every call has an end: an answer, its time limit, or the end of either side; nothing of it is kept after that. A call
+never waits for another, so that one slow provider holds up nobody else.
+"""
+
+from collections.abc import Callable
+from typing import Any, Final, NamedTuple
+
+import msgspec
+
+from simconsole.bridge.forms import Dialect, spell
+from simconsole.bridge.messages import Registry
+from simconsole.bridge.operations import (
+    ActionFeedback,
+    ActionResult,
+    AdvertiseAction,
+    AdvertiseService,
+    CallOperation,
+    CallService,
+    CancelActionGoal,
+    Id,
+    SendActionGoal,
+    ServiceResponse,
+    UnadvertiseAction,
+    UnadvertiseService,
+)
+from simconsole.bridge.session import Session, resolve_topic
+from simconsole.errors import BridgeError, RemoteProtocolError
+from simconsole.profiles.bridge import BridgeLimits
+from simconsole.units import NS_PER_S
+
+ABORTED: Final = 6
+"""action_msgs/GoalStatus."""
+
+Handler = Callable[[dict[str, Any]], dict[str, Any]]
+"""A service of the console: takes its arguments, returns its values; raises RemoteProtocolError to fail."""
+
+
+class _Builtin(NamedTuple):
+    type: str
+    handler: Handler
+
+
+class _Provider(NamedTuple):
+    session: Session
+    type: str
+
+
+class _Call(NamedTuple):
+    """A request or goal that is with its provider."""
+
+    caller: Session
+    caller_id: Id
+    provider: Session
+    name: str
+    called: str  # the caller's spelling
+    type: str
+    deadline_ns: int | None
+    fragment_size: int | None
+    feedback: bool
+    is_goal: bool
+
+
+class Calls:
+    """All services and actions of one server."""
+
+    def __init__(self, registry: Registry, limits: BridgeLimits) -> None:
+        """Start without any."""
+        self._registry = registry
+        self._limits = limits
+        self._builtins: dict[str, _Builtin] = {}
+        self._services: dict[str, _Provider] = {}
+        self._actions: dict[str, _Provider] = {}
+        self._calls: dict[str, _Call] = {}
+        self._numbers = 0
+        self._next_deadline_ns: int | None = None
+
+    @property
+    def open(self) -> int:
+        """Calls that wait for their answer."""
+        return len(self._calls)
+
+    def add_builtin(self, name: str, type_name: str, handler: Handler) -> None:
+        """Add a service of the console."""
+        self._builtins[name] = _Builtin(type_name, handler)
+
+    def services(self) -> dict[str, str]:
+        """Return the type of every service by name."""
+        everything: dict[str, _Builtin | _Provider] = {**self._builtins, **self._services}
+        return {name: entry.type for name, entry in sorted(everything.items())}
+
+    def actions(self) -> dict[str, str]:
+        """Return the type of every action by name."""
+        return {name: provider.type for name, provider in sorted(self._actions.items())}
+
+    def providers(self) -> dict[str, str]:
+        """Return who provides each service of a client."""
+        return {name: provider.session.peer for name, provider in self._services.items()}
+
+    def apply(self, session: Session, operation: CallOperation, now_ns: int) -> str:
+        """Apply one operation of a client; return the service or action it is about.
+
+        Raises:
+            RemoteProtocolError: it cannot be applied. A failed call is answered and raises nothing.
+        """
+        if isinstance(operation, CallService | ServiceResponse | AdvertiseService | UnadvertiseService):
+            name = resolve_topic(operation.service)
+        else:
+            name = resolve_topic(operation.action)
+        match operation:
+            case CallService():
+                self._call(session, name, operation, now_ns)
+            case ServiceResponse():
+                self._respond(session, name, operation)
+            case AdvertiseService() | AdvertiseAction():
+                self._advertise(session, name, operation)
+            case UnadvertiseService() | UnadvertiseAction():
+                self._unadvertise(session, name, operation)
+            case SendActionGoal():
+                self._goal(session, name, operation)
+            case CancelActionGoal():
+                self._cancel(session, name, operation)
+            case ActionFeedback():
+                self._feedback(session, name, operation)
+            case ActionResult():
+                self._result(session, name, operation)
+        return name
+
+    def expire(self, now_ns: int) -> None:
+        """End the calls whose time is over; cheap when there are none."""
+        if self._next_deadline_ns is None or now_ns < self._next_deadline_ns:
+            return
+        for identifier, call in list(self._calls.items()):
+            if call.deadline_ns is not None and now_ns >= call.deadline_ns:
+                del self._calls[identifier]
+                self._fail(call, "no answer within the time limit")
+        self._next_deadline_ns = min(
+            (call.deadline_ns for call in self._calls.values() if call.deadline_ns is not None), default=None
+        )
+
+    def disconnect(self, session: Session) -> None:
+        """Remove everything of a client: what it provides, what it asked for, what it was asked."""
+        for table in (self._services, self._actions):
+            for name in [name for name, provider in table.items() if provider.session is session]:
+                del table[name]
+        for identifier, call in list(self._calls.items()):
+            if call.caller is session:
+                del self._calls[identifier]
+                if call.is_goal:
+                    _send(call.provider, op="cancel_action_goal", action=call.name, id=identifier)
+            elif call.provider is session:
+                del self._calls[identifier]
+                self._fail(call, "whoever was asked is gone")
+
+    def _advertise(self, session: Session, name: str, operation: AdvertiseService | AdvertiseAction) -> None:
+        table = self._services if isinstance(operation, AdvertiseService) else self._actions
+        known = table.get(name)
+        if name in self._builtins or (known is not None and known.session is not session):
+            raise RemoteProtocolError("somebody else provides it already")
+        if known is None and len(self._services) + len(self._actions) >= self._limits.topics:
+            raise RemoteProtocolError(f"there are {self._limits.topics} services and actions already, the most allowed")
+        table[name] = _Provider(session, operation.type[:256])
+
+    def _unadvertise(self, session: Session, name: str, operation: UnadvertiseService | UnadvertiseAction) -> None:
+        is_service = isinstance(operation, UnadvertiseService)
+        table = self._services if is_service else self._actions
+        known = table.get(name)
+        if known is None or known.session is not session:
+            raise RemoteProtocolError("not advertised")
+        del table[name]
+        for identifier, call in list(self._calls.items()):
+            if call.provider is session and call.name == name and call.is_goal is not is_service:
+                del self._calls[identifier]
+                self._fail(call, "it is no longer provided")
+
+    def _call(self, session: Session, name: str, operation: CallService, now_ns: int) -> None:
+        size = operation.fragment_size
+        try:
+            if operation.compression not in ("none", "png"):
+                raise RemoteProtocolError(f"compression {operation.compression} is not there for services")
+            builtin = self._builtins.get(name)
+            if builtin is not None:
+                args = self._args(builtin.type, "Request", operation.args)
+                args = self._spell("ros2", builtin.type, "Request", args)
+                values = self._spell(session.dialect, builtin.type, "Response", builtin.handler(args))
+                _respond(session, operation.service, operation.id, values, True, size)
+                return
+            provider = self._services.get(name)
+            if provider is None:
+                raise RemoteProtocolError("nobody provides this service")
+            deadline_ns = now_ns + int((operation.timeout or self._limits.call_s) * NS_PER_S)
+            identifier = self._open(session, operation.id, provider, name, operation.service, deadline_ns, size)
+            args = self._arguments(provider, "Request", operation.args, identifier)
+        except BridgeError as error:
+            _respond(session, operation.service, operation.id, f"{name}: {error}", False, size)
+            return
+        if self._next_deadline_ns is None or deadline_ns < self._next_deadline_ns:
+            self._next_deadline_ns = deadline_ns
+        _send(provider.session, op="call_service", id=identifier, service=name, args=args)
+
+    def _respond(self, session: Session, name: str, operation: ServiceResponse) -> None:
+        identifier, call = self._called(session, name, operation.id)
+        del self._calls[identifier]
+        values, result = operation.values, operation.result
+        # rosbridge_suite for ROS 1 looks at the values alone, and its clients' handlers return nothing that counts.
+        if isinstance(values, dict) and (values or result):
+            try:
+                values, result = self._checked(call, "Response", values), True
+            except BridgeError as error:
+                self._fail(call, f"the answer does not fit: {error}")
+                raise
+        elif result and values is None:
+            values = {}
+        _respond(call.caller, call.called, call.caller_id, values, result, call.fragment_size)
+
+    def _goal(self, session: Session, name: str, operation: SendActionGoal) -> None:
+        try:
+            provider = self._actions.get(name)
+            if provider is None:
+                raise RemoteProtocolError("nobody provides this action")
+            identifier = self._open(
+                session, operation.id, provider, name, operation.action, None, operation.fragment_size,
+                operation.feedback, True,
+            )  # fmt: skip
+            args = self._arguments(provider, "Goal", operation.args, identifier)
+        except BridgeError as error:
+            _end(session, operation.action, operation.id, f"{name}: {error}", ABORTED, False, operation.fragment_size)
+            return
+        kind = operation.action_type or provider.type
+        _send(
+            provider.session, op="send_action_goal", id=identifier, action=name, action_type=kind, args=args,
+            feedback=operation.feedback,
+        )  # fmt: skip
+
+    def _cancel(self, session: Session, name: str, operation: CancelActionGoal) -> None:
+        for identifier, call in self._calls.items():
+            if call.is_goal and call.caller is session and (call.name, call.caller_id) == (name, operation.id):
+                _send(call.provider, op="cancel_action_goal", action=name, id=identifier)
+                return
+        raise RemoteProtocolError("no such goal is pursued")
+
+    def _feedback(self, session: Session, name: str, operation: ActionFeedback) -> None:
+        _, call = self._called(session, name, operation.id)
+        values = self._checked(call, "Feedback", operation.values)
+        if call.feedback:
+            text = _encode(op="action_feedback", action=call.called, id=call.caller_id, values=values)
+            call.caller.answer(text, call.fragment_size)
+
+    def _result(self, session: Session, name: str, operation: ActionResult) -> None:
+        identifier, call = self._called(session, name, operation.id)
+        del self._calls[identifier]
+        values = operation.values
+        if isinstance(values, dict) and (values or operation.result):
+            try:
+                values = self._checked(call, "Result", values)
+            except BridgeError as error:
+                self._fail(call, f"the result does not fit: {error}")
+                raise
+        size = call.fragment_size
+        _end(call.caller, call.called, call.caller_id, values, operation.status, operation.result, size)
+
+    def _open(
+        self,
+        caller: Session,
+        caller_id: Id,
+        provider: _Provider,
+        name: str,
+        called: str,
+        deadline_ns: int | None,
+        fragment_size: int | None,
+        feedback: bool = False,
+        is_goal: bool = False,
+    ) -> str:
+        if sum(call.caller is caller for call in self._calls.values()) >= self._limits.calls:
+            raise RemoteProtocolError(f"{self._limits.calls} calls at a time are the most allowed")
+        self._numbers += 1
+        identifier = f"{'goal' if is_goal else 'call'}:{name}:{self._numbers}"
+        self._calls[identifier] = _Call(
+            caller, caller_id, provider.session, name, called, provider.type, deadline_ns, fragment_size, feedback,
+            is_goal,
+        )  # fmt: skip
+        return identifier
+
+    def _arguments(self, provider: _Provider, part: str, args: Any, identifier: str) -> Any:
+        try:
+            return self._spell(provider.session.dialect, provider.type, part, self._args(provider.type, part, args))
+        except BridgeError:
+            del self._calls[identifier]
+            raise
+
+    def _called(self, session: Session, name: str, identifier: Id) -> tuple[str, _Call]:
+        """Return the call that a provider speaks of."""
+        call = self._calls.get(identifier) if isinstance(identifier, str) else None
+        if call is None or call.provider is not session or call.name != name:
+            raise RemoteProtocolError("nobody waits for this: no call has this id")
+        assert isinstance(identifier, str)
+        return identifier, call
+
+    def _fail(self, call: _Call, reason: str) -> None:
+        reason = f"{call.name}: {reason}"
+        if call.is_goal:
+            _end(call.caller, call.called, call.caller_id, reason, ABORTED, False, call.fragment_size)
+        else:
+            _respond(call.caller, call.called, call.caller_id, reason, False, call.fragment_size)
+
+    def _args(self, type_name: str, part: str, args: Any) -> Any:
+        """Return arguments by name: a list is in the order of the definition."""
+        full = self._registry.part(type_name, part)
+        if args is None:
+            args = {}
+        if full is not None and isinstance(args, list):
+            fields = self._registry.definition(full).fields
+            if len(args) > len(fields):
+                raise RemoteProtocolError(f"{len(args)} arguments, expected at most {len(fields)}")
+            args = {field.name: value for field, value in zip(fields, args, strict=False)}
+        if not isinstance(args, dict | list):
+            raise RemoteProtocolError("args must be an object or an array")
+        return args
+
+    def _checked(self, call: _Call, part: str, values: Any) -> Any:
+        return self._spell(call.caller.dialect, call.type, part, values)
+
+    def _spell(self, dialect: Dialect, type_name: str, part: str, values: Any) -> Any:
+        """Return values checked against their type, if it is known here, in the receiver's dialect."""
+        full = self._registry.part(type_name, part)
+        if full is None:
+            return values
+        return spell(self._registry, full, self._registry.from_plain(full, values), dialect)
+
+
+def _encode(**fields: Any) -> bytes:
+    if fields.get("id") is None:
+        fields.pop("id", None)
+    try:
+        return msgspec.json.encode(fields)
+    except RecursionError:
+        raise RemoteProtocolError("nested too deep") from None
+
+
+def _send(session: Session, **fields: Any) -> None:
+    session.answer(_encode(**fields))
+
+
+def _respond(session: Session, service: str, identifier: Id, values: Any, result: bool, size: int | None) -> None:
+    text = _encode(op="service_response", service=service, id=identifier, values=values, result=result)
+    session.answer(text, size)
+
+
+def _end(
+    session: Session, action: str, identifier: Id, values: Any, status: int, result: bool, size: int | None
+) -> None:
+    text = _encode(op="action_result", action=action, id=identifier, values=values, status=status, result=result)
+    session.answer(text, size)

@@ -1,0 +1,132 @@
+"""The forms a message takes on the wire: JSON, PNG, CBOR and CDR, with ROS 1's or ROS 2's spelling of times.
+
+A topic's message is brought into each form that somebody wants once, whoever many want it.
+"""
+
+import base64
+import math
+import struct
+import zlib
+from typing import Any, Final, Literal, NamedTuple
+
+import cbor2
+import msgspec
+import orjson
+
+from simconsole.bridge.messages import Registry
+from simconsole.bridge.messages.cdr import serialize
+from simconsole.bridge.messages.definition import DURATION, HEADER, TIME, FieldType
+from simconsole.bridge.operations import Compression
+from simconsole.units import NS_PER_S
+
+Dialect = Literal["ros1", "ros2"]
+
+# RFC 8746: typed arrays, little-endian. As rosbridge_suite has them; octets are a byte string.
+_TYPED: Final[dict[str, tuple[int, str]]] = {
+    "uint16": (69, "H"),
+    "uint32": (70, "I"),
+    "uint64": (71, "Q"),
+    "int8": (72, "b"),
+    "int16": (77, "h"),
+    "int32": (78, "i"),
+    "int64": (79, "q"),
+    "float32": (85, "f"),
+    "float64": (86, "d"),
+}
+_PNG: Final = b"\x89PNG\r\n\x1a\n"
+
+
+class Binary(bytes):
+    """What goes out in a binary WebSocket message; plain bytes go out as text."""
+
+
+class Form(NamedTuple):
+    """How a subscriber wants its messages."""
+
+    dialect: Dialect = "ros2"
+    compression: Compression = "none"
+
+
+PLAIN: Final = Form()
+
+
+class Encoder:
+    """One message on its way to many: each form made at most once."""
+
+    def __init__(self, registry: Registry, type_name: str, message: Any, sequence: int, now_ns: int) -> None:
+        """Take a typed message; `sequence` is ROS 1's header number, `now_ns` when cbor-raw says it was received."""
+        self._registry = registry
+        self._type = type_name
+        self._message = message
+        self._sequence = sequence
+        self._now_ns = now_ns
+        self._json: dict[Dialect, bytes] = {}
+        self._made: dict[tuple[Form, bytes], bytes] = {}
+
+    def text(self, form: Form, head: bytes, topic: str) -> bytes:
+        """Return the publish operation in `form`; `head` is that of JSON, `topic` the client's spelling."""
+        if form.compression == "none":
+            return head + self._body(form.dialect)
+        key = (form, head)
+        if key not in self._made:
+            self._made[key] = self._compressed(form, head, topic)
+        return self._made[key]
+
+    def _body(self, dialect: Dialect) -> bytes:
+        body = self._json.get(dialect)
+        if body is None:
+            message = self._message if dialect == "ros2" else self._spelled(dialect, False)
+            body = self._json[dialect] = msgspec.json.encode(message) + b"}"
+        return body
+
+    def _spelled(self, dialect: Dialect, typed: bool) -> Any:
+        return spell(self._registry, self._type, self._message, dialect, typed, self._sequence)
+
+    def _compressed(self, form: Form, head: bytes, topic: str) -> bytes:
+        if form.compression == "png":
+            return orjson.dumps({"op": "png", "data": png(head + self._body(form.dialect))})
+        if form.compression == "cbor":
+            message = self._spelled(form.dialect, True)
+        else:
+            seconds, nanoseconds = divmod(self._now_ns, NS_PER_S)
+            raw = serialize(self._registry, self._type, self._message)
+            message = {"secs": seconds, "nsecs": nanoseconds, "bytes": raw}
+        return Binary(cbor2.dumps({"op": "publish", "topic": topic, "msg": message}))
+
+
+def spell(registry: Registry, name: str, message: Any, dialect: Dialect, typed: bool = False, sequence: int = 0) -> Any:
+    """Return a typed message as plain values in a dialect's spelling; `typed` makes numeric arrays CBOR's."""
+    if name in (TIME, DURATION) and dialect == "ros1":
+        return {"secs": message.sec, "nsecs": message.nanosec}
+    plain: dict[str, Any] = {}
+    if name == HEADER and dialect == "ros1":
+        plain["seq"] = sequence
+    for field in registry.definition(name).fields:
+        plain[field.name] = _spell_field(registry, field.type, getattr(message, field.name), dialect, typed, sequence)
+    return plain
+
+
+def _spell_field(registry: Registry, kind: FieldType, value: Any, dialect: Dialect, typed: bool, sequence: int) -> Any:
+    if kind.is_message:
+        if kind.array:
+            return [spell(registry, kind.base, item, dialect, typed, sequence) for item in value]
+        return spell(registry, kind.base, value, dialect, typed, sequence)
+    if typed and kind.array and kind.base in _TYPED:
+        tag, letter = _TYPED[kind.base]
+        return cbor2.CBORTag(tag, struct.pack(f"<{len(value)}{letter}", *value))
+    return value
+
+
+def png(text: bytes) -> str:
+    """Return a text as the base64 of a PNG whose RGB bytes it is, padded with newlines (rosbridge_suite's way)."""
+    width = max(1, math.isqrt(len(text) // 3))
+    height = max(1, math.ceil(len(text) / (3 * width)))
+    padded = text.ljust(3 * width * height, b"\n")
+    lines = b"".join(b"\0" + padded[at : at + 3 * width] for at in range(0, len(padded), 3 * width))
+    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    parts = (_chunk(b"IHDR", header), _chunk(b"IDAT", zlib.compress(lines, 1)), _chunk(b"IEND", b""))
+    return base64.b64encode(_PNG + b"".join(parts)).decode()
+
+
+def _chunk(name: bytes, data: bytes) -> bytes:
+    return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
