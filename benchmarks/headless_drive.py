@@ -70,9 +70,8 @@ def main() -> None:
                 baselines.append(given.seconds / (time.perf_counter() - began))
         print(f"round {number + 1}: drive {factors[-1]:7.1f} x real time   log alone {baselines[-1]:8.1f} x")
     factor, baseline = statistics.median(factors), statistics.median(baselines)
-    print(
-        f"median of {given.rounds} rounds of {given.seconds:g} s at {console.tick_hz} Hz, {console.width} columns, one core:"
-    )
+    size = f"{console.tick_hz} Hz, {console.width} columns, one core"
+    print(f"median of {given.rounds} rounds of {given.seconds:g} s at {size}:")
     print(f"  drive, log included  {factor:8.1f} x real time   ({1e6 / (factor * console.tick_hz):.1f} us a tick)")
     print(f"  log alone (baseline) {baseline:8.1f} x real time   ({1e6 / (baseline * console.tick_hz):.1f} us a tick)")
 

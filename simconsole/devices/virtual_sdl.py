@@ -1,7 +1,7 @@
 """Virtual joysticks inside SDL: the real ids, names, axes and polarity, with no hardware. All ctypes is here.
 
 SDL's virtual joysticks appear to pygame as any other. They live in the one copy of SDL that pygame has mapped, which
-is found in /proc/self/maps: loading a library by name would give a second, separate SDL (facts/devices.md 1.2).
+is found in /proc/self/maps: loading a library by name would give a second, separate SDL.
 Values take effect at the next pump of the event queue.
 """
 

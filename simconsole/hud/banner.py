@@ -28,7 +28,7 @@ from simconsole.hud.view import HudView
 from simconsole.signals import Mode
 
 FLASH_HZ: Final = 2.0
-"""Only escalated alerts flash, between 1 and 5 Hz (facts/visuals 4, rule 10)."""
+"""Only escalated alerts flash, between 1 and 5 Hz."""
 
 
 class Alert(IntEnum):

@@ -73,7 +73,7 @@ def check_screen(screen: Screen, name: str) -> None:
         name: what to call its profile in the message.
 
     Raises:
-        ProfileError: names the keys to change (facts/visuals 4, rules 1 and 15).
+        ProfileError: names the keys to change.
     """
     safe = screen.safe()
     for view in sample_views():

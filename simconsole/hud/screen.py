@@ -7,7 +7,7 @@ from simconsole.hud.draw import Box
 from simconsole.profiles.view import HudProfile
 
 DRIVING_ARCMIN: Final = 20.0
-"""Cap height of text needed while driving, minutes of arc (facts/visuals 4, rule 1: 20' best)."""
+"""Cap height of text needed while driving, minutes of arc (20' is best, 16' the least; ISO 15008 practice)."""
 SECONDARY_ARCMIN: Final = 16.0
 """Cap height of labels and units (rule 1: 16' at least)."""
 SPEED_ARCMIN: Final = 60.0

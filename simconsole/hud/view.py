@@ -10,7 +10,7 @@ from simconsole.units import KMH_PER_MPS, RPM_PER_RADPS
 from simconsole.words import gear_words, mode_words, reason_words
 
 STALE_S: Final = 0.5
-"""Older snapshots are not shown: NO DATA (facts/visuals 4, rule 9)."""
+"""Older snapshots are not shown: NO DATA."""
 SPEED_HYSTERESIS_KMH: Final = 0.5
 """The shown integer follows only when the speed has left it by this much more than rounding (rule 11)."""
 SPEED_PERIOD_S: Final = 0.2

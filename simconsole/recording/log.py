@@ -28,7 +28,7 @@ from simconsole.recording.framing import (
 )
 
 SYNC_INTERVAL_S: Final = 1.0
-"""Longest time whose ticks a power cut may take (facts/reliability.md P03)."""
+"""Longest time whose ticks a power cut may take."""
 
 _synchronise = getattr(os, "fdatasync", os.fsync)
 

@@ -1,6 +1,6 @@
 """The scene in rerun: the only place that calls it, and only ever in a process of its own.
 
-rerun's log() may block for good (facts/visuals 1), so nothing here may run beside the tick loop.
+rerun's log() may block for good when its viewer freezes, so nothing here may run beside the tick loop.
 """
 
 from pathlib import Path

@@ -93,7 +93,7 @@ def test_no_two_texts_touch(screen: Screen) -> None:
 
 
 def test_pixels_per_degree_are_those_of_the_reference_seat() -> None:
-    # facts/visuals 4, rule 1: 1400 px on 1.6 m at 2.2 m are 34 px per degree.
+    # 1400 px on 1.6 m at 2.2 m are 34 px per degree.
     assert SCREEN.px_per_arcmin * 60.0 == pytest.approx(34.0, abs=0.5)
 
 
