@@ -13,6 +13,7 @@ from simconsole.inline import LockstepLink, end_program, start_autopilot
 from simconsole.pacing import Pacer, UnpacedPacer, realtime_hints
 from simconsole.pipeline import Console
 from simconsole.ports import CommandSource, NobodyCommands, Station
+from simconsole.profiles.bridge import BridgeProfile
 from simconsole.rows import Snapshot
 from simconsole.seating import open_seating
 from simconsole.shared_memory import make_run_folder, remove_run_folder
@@ -64,6 +65,8 @@ def open_realtime(
     """
     from simconsole.realtime import bridge_address, make_memory, station_specs
 
+    if resolved.session.outputs.bridge is not None:
+        _check_address(resolved.session.outputs.bridge)
     folder = make_run_folder()
     stack.callback(remove_run_folder, folder)
     ring, port, keys = make_memory(folder, console)
@@ -86,6 +89,13 @@ def open_realtime(
         return {**pace.summary(), "station_restarts": supervisor.counters(), "not_granted": missing}
 
     return Opened(cast, seating.finished, summary)
+
+
+def _check_address(profile: BridgeProfile) -> None:
+    """Listen for a moment where the bridge will: a taken port is one line now, not a station that dies and dies."""
+    from simconsole.bridge.wire import listen
+
+    listen(profile.host, profile.port).close()
 
 
 def _end_programs(programs: list[Popen[bytes]]) -> None:

@@ -1,5 +1,6 @@
 """What a person can get wrong at the command line: one line, exit code 2, nothing made, nothing lost."""
 
+import socket
 import subprocess
 import sys
 from pathlib import Path
@@ -122,6 +123,20 @@ def test_lockstep_needs_a_bridge(tmp_path: Path) -> None:
     session = tmp_path / "session.yaml"
     session.write_text("schema: 1\ndevices: {driver: none}\nmode: {pacing: lockstep}\n")
     assert "outputs.bridge: value missing: " in drive(tmp_path, session, "--for", 1)
+
+
+@pytest.mark.parametrize("pacing", ["realtime", "lockstep"])
+def test_a_port_that_is_taken_is_one_line(tmp_path: Path, pacing: str) -> None:
+    session = tmp_path / "session.yaml"
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        session.write_text(
+            f"schema: 1\noutputs: {{bridge: {{port: {port}}}, hud: null, scene: null}}\n"
+            f"devices: {{driver: none}}\nmode: {{pacing: {pacing}}}\n"
+        )
+        line = complaint(simconsole("drive", session, "--for", 1, "--out", tmp_path / "bundle"))
+    assert f"cannot listen on 127.0.0.1 port {port}: " in line
+    assert not (tmp_path / "bundle").exists()
 
 
 def test_with_json_the_refusal_is_the_last_line_too(tmp_path: Path) -> None:

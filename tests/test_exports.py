@@ -1,0 +1,61 @@
+import shutil
+from pathlib import Path
+
+import pytest
+
+from simconsole.errors import RecordingError
+from simconsole.exports import LIVE_SCENE, REPORT, SCENE, write_exports, write_report, write_scene
+from simconsole.recording.bundle import open_bundle, verify
+from simconsole.recording.manifest import MANIFEST
+from tests.drives.conftest import script, short
+
+__all__ = ["script", "short"]
+
+
+@pytest.fixture
+def bare(short: Path, tmp_path: Path) -> Path:
+    """A bundle with nothing made from it yet."""
+    folder = Path(shutil.copytree(short, tmp_path / "bare"))
+    (folder / REPORT).unlink()
+    (folder / SCENE).unlink()
+    return folder
+
+
+def test_exports_are_listed_and_change_nothing_of_the_drive(bare: Path) -> None:
+    log = (bare / "drive.log").read_bytes()
+    (bare / LIVE_SCENE).write_bytes(b"what a scene station saw")
+    metrics = write_exports(bare)
+    assert metrics["duration_s"] == 3.0
+    driven_m = open_bundle(bare).log.table().column("vehicle.distance_m")[-1]
+    assert metrics["distance_m"] == pytest.approx(driven_m, abs=1e-4)
+    assert (bare / "drive.log").read_bytes() == log
+    assert verify(bare) == []
+    assert {name for name, entry in open_bundle(bare).manifest.files.items() if entry.export} == {REPORT, SCENE}
+    assert not (bare / LIVE_SCENE).exists(), "the whole scene takes its place"
+
+
+def test_a_report_alone_leaves_the_scene_alone(bare: Path) -> None:
+    write_report(bare)
+    assert (bare / REPORT).exists()
+    assert not (bare / SCENE).exists()
+
+
+def test_metrics_without_any_file(bare: Path) -> None:
+    before = (bare / MANIFEST).read_bytes()
+    assert write_exports(bare, report=False, scene=False)["duration_s"] == 3.0
+    assert (bare / MANIFEST).read_bytes() == before
+    assert not (bare / REPORT).exists()
+
+
+def test_a_scene_is_made_by_a_process_of_its_own(bare: Path) -> None:
+    import sys
+
+    before = set(sys.modules)
+    assert write_scene(bare) == bare / SCENE
+    assert not [name for name in set(sys.modules) - before if name.split(".")[0] == "rerun"]
+
+
+def test_a_folder_that_is_no_bundle_gets_nothing(tmp_path: Path) -> None:
+    with pytest.raises(RecordingError, match="not a bundle"):
+        write_exports(tmp_path)
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,99 @@
+import numpy as np
+import pytest
+
+from simconsole.inline import LockstepLink, end_program, start_autopilot
+from simconsole.rows import Snapshot
+from simconsole.signals import NO_COMMAND, Event, EventInput, RemoteCommand
+
+PERIOD_TICKS = 5
+
+
+class Server:
+    """A bridge whose controller answers as told, and which notes what is asked of it."""
+
+    def __init__(self, answers: bool = True) -> None:
+        self.answers = answers
+        self.clients = 1
+        self.sequence = 0.0
+        self.raised = 0
+        self.exchanged: list[int] = []
+        self.published: list[int] = []
+
+    def exchange(self, snapshot: Snapshot, timeout_s: float) -> bool:
+        self.exchanged.append(snapshot.tick)
+        self.sequence += self.answers
+        return self.answers
+
+    def publish(self, snapshot: Snapshot) -> None:
+        self.published.append(snapshot.tick)
+
+    def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
+        events, self.raised = self.raised, 0
+        return NO_COMMAND._replace(sequence=self.sequence), EventInput(float(events))
+
+
+@pytest.fixture
+def server() -> Server:
+    return Server()
+
+
+def drive(link: LockstepLink, first: int, last: int) -> list[int]:
+    """Take and publish tick by tick, as the drive loop does; return the events of each tick."""
+    seen = []
+    for tick in range(first, last + 1):
+        seen.append(int(link.take(tick)[1].events))
+        link.publish(Snapshot(tick, 250, np.zeros(4)))
+    return seen
+
+
+def test_the_drive_waits_once_in_each_period_and_never_in_between(server: Server) -> None:
+    link = LockstepLink(server, PERIOD_TICKS, 1.0)
+    assert drive(link, 1, 20) == [0] * 20
+    assert server.exchanged == [5, 10, 15, 20]
+    assert server.published == []
+    assert link.counters() == {"exchanges": 4, "unanswered": 0}
+
+
+def test_a_missing_answer_is_one_event_in_the_next_tick_and_is_not_waited_for_again(server: Server) -> None:
+    server.answers = False
+    link = LockstepLink(server, PERIOD_TICKS, 1.0)
+    events = drive(link, 1, 30)
+    assert [tick for tick, event in enumerate(events, start=1) if event] == [6]
+    assert events[5] == Event.NO_ANSWER
+    assert server.exchanged == [5]
+    assert server.published == [10, 15, 20, 25, 30]
+    assert link.counters() == {"exchanges": 1, "unanswered": 1}
+
+
+def test_a_controller_that_spoke_again_is_waited_for_again(server: Server) -> None:
+    server.answers = False
+    link = LockstepLink(server, PERIOD_TICKS, 1.0)
+    drive(link, 1, 12)
+    server.sequence += 1.0
+    server.answers = True
+    drive(link, 13, 20)
+    assert server.exchanged == [5, 15, 20]
+
+
+def test_without_a_client_there_is_nobody_to_wait_for(server: Server) -> None:
+    server.clients = 0
+    link = LockstepLink(server, PERIOD_TICKS, 1.0)
+    assert drive(link, 1, 20) == [0] * 20
+    assert server.exchanged == []
+    assert server.published == [5, 10, 15, 20]
+
+
+def test_a_missing_answer_does_not_hide_other_events(server: Server) -> None:
+    server.answers = False
+    link = LockstepLink(server, PERIOD_TICKS, 1.0)
+    drive(link, 1, 5)
+    server.raised = int(Event.COMMANDER_LOST)
+    assert int(link.take(6)[1].events) == Event.COMMANDER_LOST | Event.NO_ANSWER
+
+
+def test_an_autopilot_with_nobody_to_drive_for_is_ended() -> None:
+    program = start_autopilot("ws://127.0.0.1:9", "urban")
+    assert program.poll() is None
+    program.terminate()
+    end_program(program)
+    assert program.returncode is not None

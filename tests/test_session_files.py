@@ -1,0 +1,83 @@
+from pathlib import Path
+
+import pytest
+
+from simconsole import profile_files
+from simconsole.errors import ProfileError
+from simconsole.profiles.session import SessionProfile
+from simconsole.session_files import load_scenario, load_session, override, resolve
+
+
+def write(path: Path, text: str) -> str:
+    path.write_text(text)
+    return str(path)
+
+
+@pytest.mark.parametrize("name", profile_files.names("sessions"))
+def test_every_shipped_session_resolves_to_profiles_in_full(name: str) -> None:
+    resolved = resolve(load_session(name))
+    assert resolved.session.title
+    assert (resolved.world is None) == (resolved.session.environment.world is None)
+
+
+@pytest.mark.parametrize("name", profile_files.names("scenarios"))
+def test_every_shipped_scenario_loads_with_its_file(name: str) -> None:
+    scenario, path = load_scenario(name)
+    assert path.stem == name
+    assert scenario.checks
+
+
+def test_a_session_has_the_papers_six_sections() -> None:
+    sections = [field for field in SessionProfile.__struct_fields__ if field not in ("schema", "title")]
+    assert sections == ["environment", "scenario", "features", "outputs", "devices", "mode"]
+
+
+def test_override_replaces_single_keys_and_leaves_the_rest() -> None:
+    demo = load_session("demo")
+    changed = override(demo, mode={"pacing": "realtime"}, scenario={"duration_s": 3.5})
+    assert changed.mode.pacing == "realtime"
+    assert changed.mode.tick_hz == demo.mode.tick_hz
+    assert changed.scenario.duration_s == 3.5
+    assert changed.scenario.vehicle == demo.scenario.vehicle
+    assert changed.devices == demo.devices
+    assert demo.mode.pacing == "lockstep"
+
+
+@pytest.mark.parametrize(
+    ("section", "keys", "message"),
+    [
+        ("mode", {"pacing": "slow"}, 'mode.pacing: value "slow": '),
+        ("scenario", {"duration_s": 0.0}, "scenario.duration_s: value 0.0: a number, above 0"),
+        ("devices", {"driver": "trace:"}, 'devices.driver: value "trace:": '),
+    ],
+)
+def test_override_refuses_what_a_profile_refuses(section: str, keys: dict[str, object], message: str) -> None:
+    with pytest.raises(ProfileError, match=f"^command line: {message}"):
+        override(load_session("demo"), **{section: keys})
+
+
+def test_script_and_trace_of_a_session_lie_beside_it(tmp_path: Path) -> None:
+    for driver, whole in (
+        ("script:person.yaml", f"script:{tmp_path / 'person.yaml'}"),
+        ("trace:deeper/trace.csv", f"trace:{tmp_path / 'deeper' / 'trace.csv'}"),
+        ("virtual", "virtual"),
+    ):
+        path = write(tmp_path / "session.yaml", f"schema: 1\ndevices: {{driver: '{driver}'}}\n")
+        assert load_session(path).devices.driver == whole
+
+
+def test_a_link_does_not_lead_a_session_out_of_its_folder(tmp_path: Path) -> None:
+    inside = tmp_path / "inside"
+    inside.mkdir()
+    (tmp_path / "secret.yaml").write_text("points: []\n")
+    (inside / "linked.yaml").symlink_to(tmp_path / "secret.yaml")
+    path = write(inside / "session.yaml", "schema: 1\ndevices: {driver: 'script:linked.yaml'}\n")
+    with pytest.raises(ProfileError, match=r'devices\.driver: value "script:linked\.yaml": a file inside '):
+        load_session(path)
+
+
+def test_a_profile_that_is_named_but_missing_is_one_line(tmp_path: Path) -> None:
+    path = write(tmp_path / "session.yaml", "schema: 1\nscenario: {vehicle: spaceship}\n")
+    with pytest.raises(ProfileError, match=r"'spaceship': one of ball, hatchback") as caught:
+        resolve(load_session(path))
+    assert "\n" not in str(caught.value)
