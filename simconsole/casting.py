@@ -7,6 +7,7 @@ from subprocess import Popen
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from simconsole.assembly import ResolvedSession
+from simconsole.commander import Commander
 from simconsole.drive import Cast, Recorder
 from simconsole.errors import BridgeError, ProfileError
 from simconsole.inline import LockstepLink, end_program, start_autopilot
@@ -14,6 +15,7 @@ from simconsole.pacing import Pacer, UnpacedPacer, realtime_hints
 from simconsole.pipeline import Console
 from simconsole.ports import CommandSource, NobodyCommands, Station
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.profiles.session import SessionProfile
 from simconsole.rows import Snapshot
 from simconsole.seating import open_seating
 from simconsole.shared_memory import make_run_folder, remove_run_folder
@@ -21,6 +23,7 @@ from simconsole.stations import Supervisor
 
 if TYPE_CHECKING:
     from simconsole.bridge.lockstep import LockstepBridge
+    from simconsole.canbus.station import InlineCan
 
 
 class Opened(NamedTuple):
@@ -31,26 +34,36 @@ class Opened(NamedTuple):
     summary: Callable[[], dict[str, Any]]
 
 
-def open_headless(resolved: ResolvedSession, console: Console, recorder: Recorder, stack: ExitStack) -> Opened:
+def open_headless(
+    resolved: ResolvedSession, console: Console, recorder: Recorder, bundle: Path, stack: ExitStack
+) -> Opened:
     """Open a drive that runs as fast as it goes, everything inline.
 
     Raises:
         ProfileError: the session needs lockstep for what it asks.
         BridgeError: the bridge cannot listen, or the autopilot did not connect.
+        CanError: the CAN bus cannot be opened.
         DeviceError: a device is missing.
     """
+    check_commander(resolved.session)
     commands: CommandSource = NobodyCommands()
     stations: tuple[Station, ...] = ()
     pace = UnpacedPacer()
     counters: Callable[[], dict[str, Any]] = dict
+    can_summary: Callable[[], dict[str, Any]] = dict
     if resolved.session.mode.pacing == "lockstep":
         link = _open_lockstep(resolved, console, stack)
         commands, stations, counters = link, (link,), link.counters
     elif resolved.session.features.autopilot is not None:
         raise ProfileError("mode.pacing: value free: lockstep or realtime, where features.autopilot drives")
+    can = _open_can(resolved, console, bundle, stack)
+    if can is not None:
+        by_can = resolved.session.features.commander == "can"
+        commands = Commander(can, commands) if by_can else Commander(commands, can)
+        stations, can_summary = (*stations, can), can.summary
     seating = open_seating(resolved, console, stack)
     cast = Cast(seating.devices, commands, recorder, stations, pace, seating.seat)
-    return Opened(cast, seating.finished, lambda: {**pace.summary(), **counters()})
+    return Opened(cast, seating.finished, lambda: {**pace.summary(), **counters(), **can_summary()})
 
 
 def open_realtime(
@@ -61,15 +74,26 @@ def open_realtime(
     Raises:
         StationError: shared memory or the stations cannot be had.
         BridgeError: the bridge station does not listen.
+        CanError: the CAN station does not open its bus.
+        ProfileError: the session's commander has no way in.
         DeviceError: a device is missing.
     """
-    from simconsole.realtime import bridge_address, make_memory, station_specs
+    from simconsole.realtime import (
+        add_can_memory,
+        bridge_address,
+        can_summary,
+        make_memory,
+        station_specs,
+        wait_for_can,
+    )
 
+    check_commander(resolved.session)
     if resolved.session.outputs.bridge is not None:
         _check_address(resolved.session.outputs.bridge)
     folder = make_run_folder()
     stack.callback(remove_run_folder, folder)
     ring, port, keys = make_memory(folder, console)
+    commands = add_can_memory(resolved, console, folder, port)
     supervisor = Supervisor(folder, station_specs(resolved, console, folder, bundle))
     programs: list[Popen[bytes]] = []
     stack.callback(_end_programs, programs)
@@ -80,13 +104,16 @@ def open_realtime(
         address = bridge_address(folder, supervisor.alive)
         if session.features.autopilot is not None:
             programs.append(start_autopilot(address, session.features.autopilot))
+    if session.outputs.can is not None:
+        wait_for_can(folder, supervisor.alive)
     seating = open_seating(resolved, console, stack, None if session.outputs.hud is None else keys)
     missing = stack.enter_context(realtime_hints())
     pace = Pacer(console.tick_hz)
-    cast = Cast(seating.devices, port, recorder, (ring, supervisor), pace, seating.seat)
+    cast = Cast(seating.devices, commands, recorder, (ring, supervisor), pace, seating.seat)
 
     def summary() -> dict[str, Any]:
-        return {**pace.summary(), "station_restarts": supervisor.counters(), "not_granted": missing}
+        stations = {"station_restarts": supervisor.counters(), **can_summary(folder)}
+        return {**pace.summary(), **stations, "not_granted": missing}
 
     return Opened(cast, seating.finished, summary)
 
@@ -127,3 +154,37 @@ def _wait_for_controller(bridge: "LockstepBridge", program: Popen[bytes] | None,
     if program is not None and program.poll() is not None:
         raise BridgeError(f"the autopilot ended with exit code {program.returncode} before it connected")
     raise BridgeError(f"no controller subscribed to odometry at {bridge.url} within {patience_s:g} s")
+
+
+def check_commander(session: SessionProfile) -> None:
+    """Refuse a session whose `features.commander` could never command.
+
+    Raises:
+        ProfileError: it could not.
+    """
+    if session.features.commander != "can":
+        return
+    if session.outputs.can is None:
+        raise ProfileError("features.commander: value can: needs outputs.can")
+    if session.mode.pacing == "lockstep":
+        raise ProfileError("mode.pacing: value lockstep: realtime or free, where features.commander is can")
+    if session.features.autopilot is not None:
+        raise ProfileError("features.autopilot: value set: none, where features.commander is can")
+
+
+def _open_can(resolved: ResolvedSession, console: Console, bundle: Path, stack: ExitStack) -> "InlineCan | None":
+    session = resolved.session
+    if session.outputs.can is None:
+        return None
+    from simconsole.canbus.messages import wheel_columns
+    from simconsole.canbus.station import InlineCan, put_on_bus
+
+    on_bus = put_on_bus(
+        session.outputs.can,
+        console.tick_hz,
+        commanding=session.features.commander == "can",
+        wheels=wheel_columns(console.columns),
+        folder=bundle,
+    )
+    stack.callback(on_bus.port.close)
+    return InlineCan(on_bus)

@@ -25,6 +25,7 @@ def parser() -> argparse.ArgumentParser:
     _driving(commands)
     _recordings(commands)
     _tools(commands)
+    _can(commands)
     return root
 
 
@@ -96,6 +97,26 @@ def _recordings(commands: Any) -> None:
     compare = _command(commands, "compare", "recordings:compare", "find the first differing tick and field")
     compare.add_argument("bundle", metavar="A")
     compare.add_argument("other", metavar="B")
+
+
+def _can(commands: Any) -> None:
+    can = _command(commands, "can", "can:can", "the CAN bus: watch it, be an ECU on it, play a log back")
+    can.add_argument("action", choices=("monitor", "send", "replay"))
+    can.add_argument("--interface", metavar="I", help="a back end of python-can (default: udp_multicast)")
+    can.add_argument("--channel", metavar="C", help="what that back end calls its channel")
+    can.add_argument("--port", type=int, metavar="P", help="UDP port of udp_multicast")
+    can.add_argument("--bitrate", type=int, metavar="BPS")
+    can.add_argument("--for", dest="duration_s", type=float, metavar="S", help="monitor, send: end after S seconds")
+    can.add_argument("--file", metavar="FILE", help="replay: the log (.blf, .log); monitor: keep one there")
+    can.add_argument("--node", choices=("ECU", "CONSOLE"), default="ECU", help="replay: whose messages")
+    can.add_argument("--speed", type=float, default=1.0, metavar="X", help="replay: times as fast")
+    can.add_argument("--road-wheel-deg", type=float, default=0.0, metavar="DEG", help="send: left-positive")
+    can.add_argument("--accel", dest="accel_mps2", type=float, default=0.0, metavar="MPS2", help="send")
+    can.add_argument("--hold", dest="speed_mps", type=float, metavar="MPS", help="send: hold this speed instead")
+    can.add_argument("--direction", choices=("drive", "neutral", "reverse"), default="drive", help="send")
+    can.add_argument("--engage", action="store_true", help="send: ask for autonomy until it is granted")
+    requests = ("REQUEST_MANUAL", "REQUEST_SHARED", "REQUEST_TAKEOVER", "EMERGENCY_STOP", "RESET", "MARK")
+    can.add_argument("--request", choices=requests, help="send: ask for this once")
 
 
 def _tools(commands: Any) -> None:

@@ -10,6 +10,7 @@
     +-- BridgeError             the rosbridge link
     |   +-- LocalProtocolError  we broke the protocol: a bug here
     |   +-- RemoteProtocolError the peer broke the protocol: answered with a status
+    +-- CanError                the CAN bus, a DBC or a frame
     +-- RecordingError          a bundle or log that cannot be read
     +-- StationError            a consumer process or its shared memory
 
@@ -49,6 +50,10 @@ class LocalProtocolError(BridgeError):
 
 class RemoteProtocolError(BridgeError):
     """The peer sent something the protocol forbids; nothing of it was applied."""
+
+
+class CanError(SimConsoleError):
+    """The CAN bus cannot be opened, a DBC cannot be read, or a frame may not or cannot be sent."""
 
 
 class RecordingError(SimConsoleError):

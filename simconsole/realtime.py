@@ -3,19 +3,25 @@
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import numpy as np
 
 from simconsole.assembly import ResolvedSession
-from simconsole.errors import BridgeError
+from simconsole.commander import Commander
+from simconsole.errors import BridgeError, CanError
 from simconsole.exports import LIVE_SCENE, scene_job
 from simconsole.pipeline import Console
+from simconsole.ports import CommandSource
 from simconsole.rows import REMOTE_WIDTH, Snapshot
 from simconsole.shared_memory import EventCounters, Ring
 from simconsole.signals import NEVER_TICKS, NO_COMMAND, EventInput, RemoteCommand
 from simconsole.station_programs import (
     ADDRESS,
+    CAN_COMMAND,
+    CAN_EVENTS,
+    CAN_STATUS,
     COMMAND,
     EVENTS,
     KEYS,
@@ -42,8 +48,8 @@ class RingStation:
         self._ring.write(snapshot.row, snapshot.tick)
 
 
-class BridgePort:
-    """The bridge station's slot and event counters, read once a tick. Ages are whole ticks since receipt."""
+class CommandPort:
+    """A station's command slot and event counters, read once a tick. Ages are whole ticks since receipt."""
 
     def __init__(self, slot: Ring, events: EventCounters, tick_hz: int) -> None:
         self._slot = slot
@@ -83,7 +89,7 @@ class KeyPort:
         return int(record.values[0]), age_ns * self._tick_hz // NS_PER_S
 
 
-def make_memory(folder: Path, console: Console) -> tuple[RingStation, BridgePort, KeyPort]:
+def make_memory(folder: Path, console: Console) -> tuple[RingStation, CommandPort, KeyPort]:
     """Make every file of the run folder, as their writers' side or readers' side in the core.
 
     Raises:
@@ -93,7 +99,20 @@ def make_memory(folder: Path, console: Console) -> tuple[RingStation, BridgePort
     command = Ring.create(folder / COMMAND, REMOTE_WIDTH, SLOT_CAPACITY)
     keys = Ring.create(folder / KEYS, 1, SLOT_CAPACITY)
     events = EventCounters.create(folder / EVENTS)
-    return RingStation(snapshots), BridgePort(command, events, console.tick_hz), KeyPort(keys, console.tick_hz)
+    return RingStation(snapshots), CommandPort(command, events, console.tick_hz), KeyPort(keys, console.tick_hz)
+
+
+def add_can_memory(resolved: ResolvedSession, console: Console, folder: Path, ros: CommandPort) -> CommandSource:
+    """Make the CAN station's files where the session has one; return whose commands drive.
+
+    Raises:
+        StationError: one cannot be made.
+    """
+    if resolved.session.outputs.can is None:
+        return ros
+    slot = Ring.create(folder / CAN_COMMAND, REMOTE_WIDTH, SLOT_CAPACITY)
+    can = CommandPort(slot, EventCounters.create(folder / CAN_EVENTS), console.tick_hz)
+    return Commander(can, ros) if resolved.session.features.commander == "can" else Commander(ros, can)
 
 
 def station_specs(resolved: ResolvedSession, console: Console, folder: Path, bundle: Path) -> list[StationSpec]:
@@ -104,6 +123,17 @@ def station_specs(resolved: ResolvedSession, console: Console, folder: Path, bun
     if outputs.bridge is not None:
         arguments = {"profile": msgspec.to_builtins(outputs.bridge), "tick_hz": tick_hz}
         specs.append(StationSpec(name="bridge", target="simconsole.station_programs:bridge", arguments=arguments))
+    if outputs.can is not None:
+        from simconsole.canbus.messages import wheel_columns
+
+        arguments = {
+            "profile": msgspec.to_builtins(outputs.can),
+            "tick_hz": tick_hz,
+            "commanding": resolved.session.features.commander == "can",
+            "wheels": wheel_columns(console.columns),
+            "bundle": str(bundle.absolute()),
+        }
+        specs.append(StationSpec(name="canbus", target="simconsole.station_programs:canbus", arguments=arguments))
     if outputs.hud is not None:
         arguments = {
             "profile": msgspec.to_builtins(outputs.hud),
@@ -133,3 +163,25 @@ def bridge_address(folder: Path, alive: Callable[[], bool], patience_s: float = 
             return (folder / ADDRESS).read_text("utf-8")
         time.sleep(0.02)
     raise BridgeError("the bridge does not listen; its own message stands above")
+
+
+def wait_for_can(folder: Path, alive: Callable[[], bool], patience_s: float = START_PATIENCE_S) -> None:
+    """Wait until the CAN station has opened its bus.
+
+    Raises:
+        CanError: it does not in time.
+    """
+    deadline_s = time.monotonic() + patience_s
+    while alive() and time.monotonic() < deadline_s:
+        if (folder / CAN_STATUS).exists():
+            return
+        time.sleep(0.02)
+    raise CanError("the CAN bus is not open; the station's own message stands above")
+
+
+def can_summary(folder: Path) -> dict[str, Any]:
+    """Return what the CAN station last said of itself, at most a second old; empty without one."""
+    try:
+        return {"can": msgspec.json.decode((folder / CAN_STATUS).read_bytes())}
+    except (OSError, msgspec.DecodeError):
+        return {}

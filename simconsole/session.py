@@ -120,7 +120,7 @@ def _open(resolved: ResolvedSession, console: Console, bundle: BundleWriter, sta
     recorder = LogRecorder(bundle.log)
     if resolved.session.mode.pacing == "realtime":
         return open_realtime(resolved, console, recorder, bundle.folder, stack)
-    return open_headless(resolved, console, recorder, stack)
+    return open_headless(resolved, console, recorder, bundle.folder, stack)
 
 
 def _bundle(resolved: ResolvedSession, console: Console, folder: Path) -> BundleWriter:

@@ -13,6 +13,7 @@ import numpy as np
 
 from simconsole.kernels import Row
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.profiles.can import CanProfile
 from simconsole.profiles.control import ControlProfile
 from simconsole.profiles.view import HudProfile
 from simconsole.rows import REMOTE_WIDTH, Snapshot
@@ -24,6 +25,9 @@ COMMAND: Final = "bridge.command"
 EVENTS: Final = "bridge.events"
 KEYS: Final = "hud.keys"
 ADDRESS: Final = "bridge.address"
+CAN_COMMAND: Final = "can.command"
+CAN_EVENTS: Final = "can.events"
+CAN_STATUS: Final = "can.json"
 SCENE_JOB: Final = "scene.npz"
 SNAPSHOT_CAPACITY: Final = 1024
 SLOT_CAPACITY: Final = 4
@@ -48,6 +52,39 @@ def bridge(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) ->
         part.replace(folder / ADDRESS)
 
     serve(profile, snapshots, write_command, events.raise_events, stop, on_ready=ready)
+
+
+def canbus(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> None:
+    """Be on the CAN bus.
+
+    Arguments: `profile` (CanProfile), `tick_hz`, `commanding`, `wheels` (columns or None), `bundle` (for the logs).
+    """
+    from simconsole.canbus.station import put_on_bus, serve
+
+    snapshots = NewestOnce(Ring.open(folder / SNAPSHOTS), int(arguments["tick_hz"]))
+    slot = Ring.open(folder / CAN_COMMAND, writable=True)
+    events = EventCounters.open(folder / CAN_EVENTS, writable=True)
+    wheels = arguments["wheels"]
+    on_bus = put_on_bus(
+        msgspec.convert(arguments["profile"], CanProfile),
+        int(arguments["tick_hz"]),
+        commanding=bool(arguments["commanding"]),
+        wheels=None if wheels is None else (int(wheels[0]), int(wheels[1])),
+        folder=Path(arguments["bundle"]),
+    )
+
+    def write_command(command: RemoteCommand, receipt_ns: int | None) -> None:
+        slot.write(np.array(command), NO_RECEIPT if receipt_ns is None else receipt_ns)
+
+    def write_status(status: dict[str, Any]) -> None:
+        part = folder / f"{CAN_STATUS}.part"
+        part.write_bytes(msgspec.json.encode(status))
+        part.replace(folder / CAN_STATUS)
+
+    try:
+        serve(on_bus, snapshots, write_command, events.raise_events, write_status, stop)
+    finally:
+        on_bus.port.close()
 
 
 def hud(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> None:

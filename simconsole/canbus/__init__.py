@@ -1,1 +1,1 @@
-"""The CAN bus: its room is ready, a later release fills it."""
+"""The console on a CAN bus: codec, protection, schedule and node without a bus; port, station and tools with one."""

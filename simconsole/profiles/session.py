@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from msgspec import Meta, Struct
 
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.profiles.can import CanProfile
 from simconsole.profiles.control import ControlProfile
 from simconsole.profiles.person import PersonPlan
 from simconsole.profiles.view import HudProfile, SceneProfile
@@ -46,6 +47,8 @@ class Features(Section, frozen=True, kw_only=True):
     """What the console does beside driving: who may command, and how it supervises them."""
 
     control: ControlProfile = ControlProfile()
+    commander: Literal["ros", "can"] = "ros"
+    """Whose commands drive, for the whole drive: the ROS side's, or the ECU's on `outputs.can`."""
     autopilot: Name | None = None
     """Start `simconsole autopilot` on this course, as a program of its own that only speaks rosbridge."""
 
@@ -54,6 +57,7 @@ class Outputs(Section, frozen=True, kw_only=True):
     """Who sees the drive."""
 
     bridge: BridgeProfile | None = None
+    can: CanProfile | None = None
     hud: HudProfile | None = HudProfile()
     scene: SceneProfile | None = SceneProfile()
     report: bool = True

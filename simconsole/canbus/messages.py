@@ -1,0 +1,147 @@
+"""What the console says on the bus, from a snapshot, and what the ECU's command means."""
+
+from collections.abc import Callable, Mapping
+from typing import Final, NamedTuple
+
+from simconsole.rows import Snapshot
+from simconsole.signals import DriverInput, Event, RemoteKind, Validity, VehicleState
+from simconsole.units import RPM_PER_RADPS
+
+REQUESTS: Final[dict[int, Event]] = {
+    1: Event.REQUEST_AUTONOMOUS,
+    2: Event.REQUEST_MANUAL,
+    3: Event.REQUEST_SHARED,
+    4: Event.REQUEST_TAKEOVER,
+    5: Event.EMERGENCY_STOP,
+    6: Event.RESET,
+    7: Event.MARK,
+}
+"""ECU_COMMAND.REQUEST; 0 asks for nothing."""
+WHEEL_COLUMNS: Final = ("platform.front_wheel_radps", "platform.rear_wheel_radps")
+"""Columns of a row that SC_WHEELS needs; vehicles without them do not send it."""
+_MOST_MS: Final = 1023.0
+
+
+class Link(NamedTuple):
+    """How the console receives ECU_COMMAND, for SC_STATUS."""
+
+    state: float
+    age_ms: float
+
+
+class Moment(NamedTuple):
+    """One snapshot with what several messages read of it, and the link."""
+
+    snapshot: Snapshot
+    vehicle: VehicleState
+    driver: DriverInput
+    link: Link
+    wheels: tuple[int, int] | None
+
+
+Builder = Callable[[Moment], Mapping[str, float]]
+
+
+def steering(now: Moment) -> Mapping[str, float]:
+    """Return SC_STEERING."""
+    return {
+        "WHEEL_VALIDITY": now.driver.wheel_validity,
+        "HAND_WHEEL_ANGLE": now.driver.hand_wheel_rad,
+        "HAND_WHEEL_RATE": now.driver.hand_wheel_radps,
+        "ROAD_WHEEL_ANGLE": now.vehicle.road_wheel_rad,
+    }
+
+
+def pedals(now: Moment) -> Mapping[str, float]:
+    """Return SC_PEDALS."""
+    driver = now.driver
+    return {
+        "THROTTLE": driver.throttle,
+        "BRAKE": driver.brake,
+        "CLUTCH": driver.clutch,
+        "HANDBRAKE": driver.handbrake,
+        "THROTTLE_LIVE": float(driver.throttle_validity == Validity.LIVE),
+        "BRAKE_LIVE": float(driver.brake_validity == Validity.LIVE),
+    }
+
+
+def actuation(now: Moment) -> Mapping[str, float]:
+    """Return SC_ACTUATION."""
+    command = now.snapshot.command
+    return {
+        "ROAD_WHEEL_COMMAND": command.road_wheel_rad,
+        "THROTTLE_COMMAND": command.throttle,
+        "BRAKE_COMMAND": command.brake,
+        "GATE_LIMITS": command.gate_active,
+    }
+
+
+def motion(now: Moment) -> Mapping[str, float]:
+    """Return SC_MOTION."""
+    vehicle = now.vehicle
+    return {
+        "SPEED": vehicle.vx_mps,
+        "YAW_RATE": vehicle.yaw_rate_radps,
+        "ACCEL_X": vehicle.ax_mps2,
+        "ACCEL_Y": vehicle.ay_mps2,
+    }
+
+
+def wheels(now: Moment) -> Mapping[str, float]:
+    """Return SC_WHEELS."""
+    assert now.wheels is not None
+    front, rear = now.wheels
+    return {
+        "FRONT_AXLE_SPEED": float(now.snapshot.row[front]),
+        "REAR_AXLE_SPEED": float(now.snapshot.row[rear]),
+    }
+
+
+def powertrain(now: Moment) -> Mapping[str, float]:
+    """Return SC_POWERTRAIN."""
+    vehicle = now.vehicle
+    return {
+        "GEAR": vehicle.gear,
+        "LEVER": now.driver.gear,
+        "ENGINE_RUNNING": vehicle.engine_running,
+        "AUTOMATIC": now.snapshot.command.automatic,
+        "ENGINE_SPEED": vehicle.engine_radps * RPM_PER_RADPS,
+        "CLUTCH_OPEN": vehicle.clutch,
+    }
+
+
+def status(now: Moment) -> Mapping[str, float]:
+    """Return SC_STATUS."""
+    arbitration = now.snapshot.arbitration
+    return {
+        "MODE": arbitration.mode,
+        "REASON": arbitration.reason,
+        "REFUSAL": arbitration.refusal,
+        "REMOTE_LATERAL": arbitration.remote_lateral,
+        "REMOTE_LONGITUDINAL": arbitration.remote_longitudinal,
+        "TAKEOVER_STAGE": arbitration.takeover_stage,
+        "COMMAND_STATE": now.link.state,
+        "COMMAND_AGE": min(now.link.age_ms, _MOST_MS),
+    }
+
+
+BUILDERS: Final[dict[str, Builder]] = {
+    "SC_STEERING": steering,
+    "SC_PEDALS": pedals,
+    "SC_ACTUATION": actuation,
+    "SC_MOTION": motion,
+    "SC_WHEELS": wheels,
+    "SC_POWERTRAIN": powertrain,
+    "SC_STATUS": status,
+}
+
+
+def wheel_columns(columns: tuple[str, ...]) -> tuple[int, int] | None:
+    """Return where a row holds the wheels' speeds, None where the vehicle has none."""
+    if not all(name in columns for name in WHEEL_COLUMNS):
+        return None
+    return columns.index(WHEEL_COLUMNS[0]), columns.index(WHEEL_COLUMNS[1])
+
+
+COMMAND_KIND: Final = float(RemoteKind.ACCELERATION)
+"""ECU_COMMAND is a command of this kind."""

@@ -1,0 +1,37 @@
+"""The CAN section of a session profile: which bus, how the command is watched, what is logged."""
+
+from typing import Annotated, Literal
+
+from msgspec import Meta, Struct
+
+Interface = Literal[
+    "virtual", "udp_multicast", "socketcan", "pcan", "vector", "kvaser", "ixxat", "slcan", "gs_usb", "usb2can"
+]
+"""Back ends of python-can by their names there; vendor ones need the vendor's driver."""
+
+
+class CanProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """One CAN bus with the console on it.
+
+    udp_multicast is kept on this machine (loopback interface, hop limit 0): CAN frames carry no sender and no token,
+    so they must not be accepted from a network. A real bus is reached through its own interface.
+    """
+
+    interface: Interface = "udp_multicast"
+    channel: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.:/-]{0,127}$")] = "239.74.163.2"
+    """What the back end calls a channel: a multicast group (IPv4), can0, PCAN_USBBUS1, 0."""
+    port: Annotated[int, Meta(ge=1024, le=65_535)] = 43_113
+    """UDP port of udp_multicast; other back ends have none."""
+    bitrate_bps: Annotated[int, Meta(ge=10_000, le=1_000_000)] | None = None
+    """Asked of back ends that set it themselves; socketcan's is set by `ip link`."""
+    log: tuple[Literal["blf", "candump"], ...] = ("blf",)
+    """Which logs of the bus lie in the bundle: can.blf, can.log."""
+    command_timeout_ms: Annotated[float, Meta(ge=20.0, le=10_000.0)] = 200.0
+    """No good command for so long: the reception starts anew (facts: commands are stale after 200 ms)."""
+    counter_step_max: Annotated[int, Meta(ge=1, le=7)] = 2
+    """Largest step of a message's counter that is still in sequence: 2 lets one frame be lost."""
+    invalid_max: Annotated[int, Meta(ge=1, le=100)] = 5
+    """So many bad frames in a row, and the counter is learnt anew (opendbc: 5 wrong counters)."""
+    retry_first_s: Annotated[float, Meta(ge=1.0, le=30.0)] = 1.0
+    retry_last_s: Annotated[float, Meta(ge=1.0, le=30.0)] = 30.0
+    """A bus that went off is opened again after the first time, then after twice as long each, up to the last."""

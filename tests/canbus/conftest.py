@@ -1,0 +1,47 @@
+"""The codec of the shipped DBC, a snapshot, and a bus of this test's own."""
+
+import itertools
+import os
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from simconsole.canbus.codec import Codec
+from simconsole.canbus.station import load_codec
+from simconsole.profiles.can import CanProfile
+from simconsole.rows import ARBITRATION_AT, COMMAND_AT, DRIVER_AT, PLATFORM_AT, VEHICLE_AT, Snapshot
+from simconsole.signals import Arbitration, DriverInput, Mode, Reason, Validity, VehicleCommand, VehicleState
+
+_channels = itertools.count()
+
+
+@pytest.fixture(scope="session")
+def codec() -> Codec:
+    return load_codec()
+
+
+@pytest.fixture
+def profile() -> CanProfile:
+    """A virtual bus that no other test is on."""
+    return CanProfile(interface="virtual", channel=f"test-{os.getpid()}-{next(_channels)}", log=())
+
+
+@pytest.fixture
+def snapshot() -> Callable[[int], Snapshot]:
+    """A car at 15 m/s, driven autonomously by 60 %, at a tick of 250 Hz; two wheel speeds behind the stages."""
+    row = np.zeros(PLATFORM_AT + 2)
+
+    def put(at: int, record: type, **values: float) -> None:
+        for name, value in values.items():
+            row[at + record._fields.index(name)] = value  # type: ignore[attr-defined]
+
+    put(DRIVER_AT, DriverInput, hand_wheel_rad=-3.0, hand_wheel_radps=1.5, throttle=0.25, brake=0.5, clutch=1.0)
+    put(DRIVER_AT, DriverInput, gear=-1.0, wheel_validity=float(Validity.LIVE), throttle_validity=2.0)
+    put(ARBITRATION_AT, Arbitration, mode=float(Mode.AUTONOMOUS), reason=float(Reason.REMOTE_ASKED))
+    put(ARBITRATION_AT, Arbitration, remote_lateral=0.6, remote_longitudinal=1.0, takeover_stage=1.0)
+    put(COMMAND_AT, VehicleCommand, road_wheel_rad=0.3, throttle=0.75, brake=0.1, automatic=1.0, gate_active=5.0)
+    put(VEHICLE_AT, VehicleState, vx_mps=15.0, yaw_rate_radps=-0.4, ax_mps2=1.25, ay_mps2=-6.0, road_wheel_rad=0.29)
+    put(VEHICLE_AT, VehicleState, gear=3.0, engine_radps=300.0, engine_running=1.0, clutch=0.4)
+    row[PLATFORM_AT:] = (48.0, 50.0)
+    return lambda tick: Snapshot(tick, 250, row)

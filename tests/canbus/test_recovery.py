@@ -1,0 +1,34 @@
+from simconsole.canbus.recovery import Recovery
+
+
+def test_waits_double_from_one_to_thirty_seconds() -> None:
+    recovery = Recovery(1.0, 30.0)
+    now_s, waits = 100.0, []
+    for _ in range(8):
+        recovery.went_down("bus-off", now_s)
+        due_s = now_s
+        while not recovery.is_due(due_s):
+            due_s += 0.5
+        waits.append(due_s - now_s)
+        now_s = due_s
+    assert waits == [1, 2, 4, 8, 16, 30, 30, 30]
+    assert recovery.downs == 1
+
+
+def test_bus_that_falls_again_at_once_waits_longer_one_that_held_does_not() -> None:
+    recovery = Recovery(1.0, 30.0)
+    recovery.went_down("bus-off", 40.0)
+    assert recovery.is_due(41.0)
+    recovery.came_up(41.0)
+    recovery.went_down("bus-off", 42.0)
+    assert not recovery.is_due(43.9)
+    recovery.came_up(44.0)
+    recovery.went_down("bus-off", 74.0)
+    assert recovery.is_due(75.0)
+    assert recovery.downs == 3
+
+
+def test_up_is_never_due() -> None:
+    recovery = Recovery(1.0, 30.0)
+    assert recovery.up
+    assert not recovery.is_due(1e9)

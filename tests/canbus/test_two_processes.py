@@ -1,0 +1,127 @@
+"""The console and an ECU in two processes that share nothing but CAN frames, over multicast on loopback."""
+
+import contextlib
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from simconsole.canbus.codec import ECU, Codec
+from simconsole.canbus.port import CanPort, read_log
+from simconsole.canbus.tools import monitor
+from simconsole.profile_files import to_text
+from simconsole.profiles.can import CanProfile
+from simconsole.recording.bundle import open_bundle
+from simconsole.rows import ARBITRATION_AT, REMOTE_AT, VEHICLE_AT
+from simconsole.session_files import load_session, override
+from simconsole.signals import Mode, RemoteCommand, RemoteKind
+
+ROOT = Path(__file__).resolve().parents[2]
+DRIVE_S = 5.0
+
+
+@pytest.fixture
+def port() -> int:
+    """A UDP port that nobody uses now."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as found:
+        found.bind(("127.0.0.1", 0))
+        return int(found.getsockname()[1])
+
+
+@contextlib.contextmanager
+def running(*words: str) -> Iterator["subprocess.Popen[str]"]:
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    command = [sys.executable, "-m", "simconsole", *words, "--json"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def results(process: "subprocess.Popen[str]") -> dict[str, Any]:
+    out, err = process.communicate(timeout=120)
+    assert process.returncode == 0, err
+    found: dict[str, Any] = json.loads(out.splitlines()[-1])
+    return found
+
+
+def test_ecu_drives_the_car_by_can_alone(port: int, tmp_path: Path) -> None:
+    session = override(
+        load_session("can"),
+        scenario={"duration_s": DRIVE_S},
+        outputs={"can": {"port": port, "log": ["blf", "candump"]}},
+    )
+    (tmp_path / "can.yaml").write_text(to_text(session))
+    bundle = tmp_path / "bundle"
+    with (
+        running("can", "send", "--port", str(port), "--engage", "--hold", "4", "--road-wheel-deg", "5") as ecu,
+        running("drive", str(tmp_path / "can.yaml"), "--out", str(bundle)) as drive,
+    ):
+        driven = results(drive)
+        ecu.send_signal(signal.SIGINT)
+        said = results(ecu)
+    assert Mode.AUTONOMOUS in said["modes"]
+    rows = open_bundle(bundle).log.table().rows
+    autonomous = rows[:, ARBITRATION_AT] == Mode.AUTONOMOUS
+    assert autonomous.any()
+    assert not rows[: autonomous.argmax(), VEHICLE_AT + 6].any(), "it stood until the ECU had it"
+    assert 1.0 < rows[:, VEHICLE_AT + 6].max() < 4.5
+    assert rows[-1, VEHICLE_AT + 3] > 0.02, "it turned left"
+    accepted = rows[:, REMOTE_AT + RemoteCommand._fields.index("sequence")]
+    assert accepted[-1] > 50
+    assert set(rows[accepted > 0, REMOTE_AT]) == {float(RemoteKind.ACCELERATION)}
+    assert driven["can"]["node"]["refused"] == 0
+    frames = {suffix: read_log(bundle / f"can.{suffix}") for suffix in ("blf", "log")}
+    assert [frame for _, frame in frames["blf"]] == [frame for _, frame in frames["log"]]
+    ids = {frame.can_id for _, frame in frames["blf"]}
+    assert ids == {0x100, 0x101, 0x102, 0x110, 0x111, 0x112, 0x120, 0x200}
+    assert {"can.blf", "can.log"} <= set(open_bundle(bundle).manifest.files)
+
+
+def test_what_monitor_kept_is_replayed_and_heard_again(port: int, codec: Codec, tmp_path: Path) -> None:
+    profile = CanProfile(port=port, log=())
+    path = tmp_path / "heard.blf"
+    with running("can", "send", "--port", str(port), "--for", "1") as ecu:
+        heard = monitor(profile, codec, say=lambda line: None, logs=(path,), stop=lambda: ecu.poll() is not None)
+        assert 0 < results(ecu)["sent"] <= 50  # late by a period: that one is not made up for
+    states = heard["messages"]["ECU_COMMAND"]["states"]
+    assert sum(states.values()) == len(read_log(path)) > 0
+    listening = CanPort(profile, frozenset(), codec.ids(ECU))
+    with running("can", "replay", "--port", str(port), "--file", str(path), "--speed", "5") as process:
+        assert results(process)["sent"] == len(read_log(path))
+    again = []
+    while (frame := listening.receive(0.0)) is not None:
+        again.append(frame)
+    listening.close()
+    assert again == [frame for _, frame in read_log(path)]
+
+
+def test_frames_stay_on_this_machine(port: int) -> None:
+    """The group is joined on loopback only: what comes in on another interface is another group's business."""
+    can_port = CanPort(CanProfile(port=port), frozenset({0x100}), frozenset({0x200}))
+    bus = can_port._bus
+    assert bus is not None
+    with socket.socket(fileno=os.dup(bus.fileno())) as same:
+        assert same.getsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL) == 0
+        assert same.getsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, 4) == socket.inet_aton("127.0.0.1")
+    members = [
+        line.split()
+        for line in Path("/proc/net/igmp").read_text().splitlines()  # group addresses under each interface
+    ]
+    interface, found = "", set()
+    for words in members:
+        if ":" in words[:3]:
+            interface = words[1]
+        elif words[0] == socket.inet_aton("239.74.163.2")[::-1].hex().upper():
+            found.add(interface)
+    can_port.close()
+    assert found == {"lo"}
