@@ -127,9 +127,14 @@ def _tools(commands: Any) -> None:
     devices.add_argument("--for", dest="duration_s", type=float, default=10.0, metavar="S")
     devices.add_argument("--out", metavar="FILE", default="trace.csv", help="what `record` writes")
 
-    bridge = _command(commands, "bridge", "remote:bridge", "the rosbridge server alone, on a standing vehicle")
-    bridge.add_argument("action", choices=("serve",))
+    bridge = _command(commands, "bridge", "rosbridge:bridge", "rosbridge: serve it alone, make its certificate")
+    bridge.add_argument("action", choices=("serve", "cert"))
+    bridge.add_argument("--host", default="127.0.0.1", metavar="H")
     bridge.add_argument("--port", type=int, default=9090, metavar="P")
     bridge.add_argument("--for", dest="duration_s", type=float, metavar="S")
+    bridge.add_argument("--tokens", metavar="FILE", help="lines of `ROLE TOKEN`: view, publish or control")
+    bridge.add_argument("--certificate", metavar="FILE", help="speak TLS only; its key stands beside it as .key")
+    bridge.add_argument("--trust-network", action="store_true", help="other machines need no token and no TLS")
+    bridge.add_argument("--out", metavar="DIR", default=".", help="where `cert` writes")
 
     _command(commands, "doctor", "doctor:doctor", "what this machine has and lacks")

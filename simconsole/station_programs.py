@@ -37,6 +37,7 @@ NO_RECEIPT: Final = -1
 def bridge(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> None:
     """Serve rosbridge. Arguments: `profile` (BridgeProfile), `tick_hz`."""
     from simconsole.bridge.server import serve
+    from simconsole.bridge.wire import address_url
 
     profile = msgspec.convert(arguments["profile"], BridgeProfile)
     snapshots = NewestOnce(Ring.open(folder / SNAPSHOTS), int(arguments["tick_hz"]))
@@ -48,7 +49,7 @@ def bridge(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) ->
 
     def ready(port: int) -> None:
         part = folder / f"{ADDRESS}.part"
-        part.write_text(f"ws://{profile.host}:{port}", "utf-8")
+        part.write_text(address_url(profile.host, port, profile.certificate is not None), "utf-8")
         part.replace(folder / ADDRESS)
 
     serve(profile, snapshots, write_command, events.raise_events, stop, on_ready=ready)

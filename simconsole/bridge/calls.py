@@ -9,6 +9,7 @@ from typing import Any, Final, NamedTuple
 
 import msgspec
 
+from simconsole.bridge.access import Role
 from simconsole.bridge.forms import Dialect, spell
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.operations import (
@@ -40,6 +41,7 @@ Handler = Callable[[dict[str, Any]], dict[str, Any]]
 class _Builtin(NamedTuple):
     type: str
     handler: Handler
+    role: Role
 
 
 class _Provider(NamedTuple):
@@ -81,9 +83,9 @@ class Calls:
         """Calls that wait for their answer."""
         return len(self._calls)
 
-    def add_builtin(self, name: str, type_name: str, handler: Handler) -> None:
-        """Add a service of the console."""
-        self._builtins[name] = _Builtin(type_name, handler)
+    def add_builtin(self, name: str, type_name: str, handler: Handler, role: Role = Role.VIEW) -> None:
+        """Add a service of the console, for clients of at least `role`."""
+        self._builtins[name] = _Builtin(type_name, handler, role)
 
     def services(self) -> dict[str, str]:
         """Return the type of every service by name."""
@@ -181,12 +183,16 @@ class Calls:
                 raise RemoteProtocolError(f"compression {operation.compression} is not there for services")
             builtin = self._builtins.get(name)
             if builtin is not None:
+                if session.role < builtin.role:
+                    raise RemoteProtocolError(f"this needs the role {builtin.role.name.lower()}")
                 args = self._args(builtin.type, "Request", operation.args)
                 args = self._spell("ros2", builtin.type, "Request", args)
                 values = self._spell(session.dialect, builtin.type, "Response", builtin.handler(args))
                 _respond(session, operation.service, operation.id, values, True, size)
                 return
             provider = self._services.get(name)
+            if session.role < Role.PUBLISH:
+                raise RemoteProtocolError("services of other clients need the role publish")
             if provider is None:
                 raise RemoteProtocolError("nobody provides this service")
             deadline_ns = now_ns + int((operation.timeout or self._limits.call_s) * NS_PER_S)

@@ -13,6 +13,7 @@ Example:
 
 import logging
 import socket
+import ssl
 import time
 from collections import deque
 from types import TracebackType
@@ -39,18 +40,38 @@ _logger = logging.getLogger("simconsole.bridge.client")
 class BridgeClient:
     """A connection to a rosbridge server. Not safe to share between threads."""
 
-    def __init__(self, url: str, *, registry: Registry | None = None, connect_timeout_s: float = 5.0) -> None:
+    def __init__(
+        self,
+        url: str,
+        *,
+        registry: Registry | None = None,
+        connect_timeout_s: float = 5.0,
+        token: str | None = None,
+        certificate: str | None = None,
+    ) -> None:
         """Remember where to connect; `connect` does it.
 
+        Args:
+            url: ws://HOST:PORT or wss://HOST:PORT.
+            registry: message types, the standard ones without.
+            connect_timeout_s: how long `connect` waits.
+            token: shown to the server at once.
+            certificate: a PEM file that a wss:// server is checked against, in place of the system's authorities.
+
         Raises:
-            BridgeError: `url` is not a ws:// address.
+            BridgeError: `url` is not such an address, or the certificate cannot be read.
         """
         try:
             self._uri = parse_uri(url)
         except InvalidURI as error:
             raise BridgeError(f"url: {error}") from None
+        self._tls: ssl.SSLContext | None = None
+        self._token = token
         if self._uri.secure:
-            raise BridgeError(f"url: {url}: only ws:// is supported here")
+            try:
+                self._tls = ssl.create_default_context(cafile=certificate)
+            except OSError as error:
+                raise BridgeError(f"certificate: {certificate}: {error}") from None
         self.url = url
         self.protocol = ClientProtocol(registry)
         self._connect_timeout_s = connect_timeout_s
@@ -97,11 +118,17 @@ class BridgeClient:
         try:
             address = (self._uri.host, self._uri.port)
             self._socket = socket.create_connection(address, timeout=self._connect_timeout_s)
+            if self._tls is not None:
+                self._socket = self._tls.wrap_socket(self._socket, server_hostname=self._uri.host)
             self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         except OSError as error:
+            self._drop()
             raise BridgeError(f"{self.url}: cannot connect: {error}") from None
         self._web = WebSocketClientProtocol(self._uri, max_size=MAX_MESSAGE_BYTES, logger=_logger)
-        self._web.send_request(self._web.connect())
+        request = self._web.connect()
+        if self._token is not None:
+            request.headers["Authorization"] = f"Bearer {self._token}"
+        self._web.send_request(request)
         self._flush()
         while self._web.state is State.CONNECTING and self._web.handshake_exc is None:
             if not self._read(deadline - time.monotonic()):
@@ -185,6 +212,8 @@ class BridgeClient:
         assert self._socket is not None
         for data in self._web.data_to_send():
             try:
+                if data is SEND_EOF and self._tls is not None:
+                    continue  # half a TLS connection cannot be closed; the whole one is, in a moment
                 if data is SEND_EOF:
                     self._socket.shutdown(socket.SHUT_WR)
                 else:

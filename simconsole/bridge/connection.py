@@ -10,8 +10,9 @@ from websockets.http11 import Request
 from websockets.protocol import SEND_EOF, State
 from websockets.server import ServerProtocol
 
+from simconsole.bridge.access import Role
 from simconsole.bridge.forms import Binary, Dialect
-from simconsole.bridge.handshake import FORBIDDEN, FULL, dialect_of, is_host_allowed, origins
+from simconsole.bridge.handshake import FORBIDDEN, FULL, UNKNOWN, dialect_of, is_host_allowed, origins
 from simconsole.bridge.session import Session
 from simconsole.bridge.wire import RECEIVE_BYTES, TextAssembler, is_data
 from simconsole.errors import RemoteProtocolError
@@ -26,7 +27,10 @@ _logger = logging.getLogger("simconsole.bridge.lockstep")
 class Owner(Protocol):
     """Who is told what happens on a connection."""
 
-    def connected(self, peer: str, dialect: Dialect) -> Session:
+    def role_of(self, path: str, authorization: str | None) -> Role:
+        """Return what a client may do; raises RemoteProtocolError for a token that is not known."""
+
+    def connected(self, peer: str, dialect: Dialect, role: Role) -> Session:
         """Take in a client whose handshake is done."""
 
     def received(self, session: Session, text: bytes) -> None:
@@ -125,15 +129,25 @@ class Connection:
             host = request.headers.get("Host")
         except MultipleValuesError:
             host = None
+        role = self._role(request)
         if self._is_full:
             response = self._web.reject(503, f"{FULL}\n")
         elif not is_host_allowed(host, self._profile):
             response = self._web.reject(403, f"{FORBIDDEN}\n")
+        elif role is None:
+            response = self._web.reject(401, f"{UNKNOWN}\n")
         else:
             response = self._web.accept(request)
         self._web.send_response(response)
-        if self._web.state is State.OPEN:
-            self.session = self._owner.connected(self.peer, dialect_of(request.path))
+        if self._web.state is State.OPEN and role is not None:
+            self.session = self._owner.connected(self.peer, dialect_of(request.path), role)
+
+    def _role(self, request: Request) -> Role | None:
+        given = request.headers.get_all("Authorization")
+        try:
+            return self._owner.role_of(request.path, given[0] if given else None)
+        except RemoteProtocolError:
+            return None
 
     def _take(self, frame: Frame, session: Session) -> None:
         try:

@@ -1,10 +1,14 @@
 """Who may open a connection: the Origin of web pages and the Host a server is addressed by (N15, N16)."""
 
+import ipaddress
 import re
 from collections.abc import Sequence
 from typing import Final
+from urllib.parse import parse_qs, urlsplit
 
+from simconsole.bridge.access import Access, Role
 from simconsole.bridge.forms import Dialect
+from simconsole.errors import ProfileError
 from simconsole.profiles.bridge import BridgeProfile
 
 _LOCAL: Final = ("localhost", "127.0.0.1", "[::1]")
@@ -12,6 +16,7 @@ _LOCAL_PAGE: Final = re.compile(r"https?://(?:localhost|127\.0\.0\.1|\[::1\])(?:
 _PORT: Final = re.compile(r":\d{1,5}$")
 
 FORBIDDEN: Final = "this server does not answer to that Host"
+UNKNOWN: Final = "this server does not know that token"
 FULL: Final = "too many clients"
 
 
@@ -32,3 +37,42 @@ def is_host_allowed(host: str | None, profile: BridgeProfile) -> bool:
 def dialect_of(path: str) -> Dialect:
     """Return how times and headers are spelled for a client: by ROS 1 if the path of its URL is /ros1."""
     return "ros1" if path.partition("?")[0].rstrip("/") == "/ros1" else "ros2"
+
+
+def role_at(path: str, authorization: str | None, access: Access) -> Role:
+    """Return the role a client has from its first request on: by header `Authorization: Bearer`, or by ?token=.
+
+    Raises:
+        RemoteProtocolError: it gives a token that this server does not know.
+    """
+    kind, _, token = (authorization or "").partition(" ")
+    tokens = parse_qs(urlsplit(path).query).get("token", [])
+    if kind.lower() == "bearer":
+        tokens = [token.strip(), *tokens]
+    return max((access.role_of(token) for token in tokens), default=access.anonymous)
+
+
+def is_loopback(host: str) -> bool:
+    """Return whether a server on `host` can only be reached from this machine."""
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"
+
+
+def check_exposure(profile: BridgeProfile) -> None:
+    """Refuse to be reachable from other machines without a token and TLS, unless the network is said to be trusted.
+
+    Raises:
+        ProfileError: naming what is missing.
+    """
+    if (profile.certificate is None) is not (profile.certificate_key is None):
+        raise ProfileError("outputs.bridge.certificate: certificate and certificate_key belong together")
+    if is_loopback(profile.host) or profile.trust_network:
+        return
+    lacks = [name for name in ("tokens", "certificate") if getattr(profile, name) is None]
+    if lacks:
+        raise ProfileError(
+            f"outputs.bridge.host: {profile.host} can be reached from other machines: set {' and '.join(lacks)} "
+            "(simconsole bridge cert), or trust_network if everyone on it may drive"
+        )

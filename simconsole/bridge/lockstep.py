@@ -12,13 +12,16 @@ from typing import Final, Self
 
 import msgspec
 
+from simconsole.bridge.access import Role
 from simconsole.bridge.connection import Connection
 from simconsole.bridge.console import ConsoleBridge
 from simconsole.bridge.forms import Dialect
+from simconsole.bridge.handshake import role_at
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.session import Session
 from simconsole.bridge.topics import ODOMETRY
-from simconsole.bridge.wire import address_url, listen, log_outcome
+from simconsole.bridge.wire import address_url, listen, load_access, log_outcome
+from simconsole.errors import ProfileError
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.rows import Snapshot
 from simconsole.signals import EventInput, RemoteCommand
@@ -47,7 +50,12 @@ class LockstepBridge:
         """
         if odometry_hz is not None:
             profile = msgspec.structs.replace(profile, rates_hz={**profile.rates_hz, ODOMETRY: odometry_hz})
+        if profile.certificate is not None:
+            raise ProfileError(
+                "outputs.bridge.certificate: a headless drive's bridge speaks no TLS; drive in real time"
+            )
         self.console = ConsoleBridge(profile, registry)
+        self.console.router.access = load_access(profile)
         self._profile = profile
         self._now_ns = 0
         self._lost_at: float | None = None
@@ -149,10 +157,14 @@ class LockstepBridge:
         self._selector.close()
         self._listener.close()
 
-    def connected(self, peer: str, dialect: Dialect) -> Session:
+    def role_of(self, path: str, authorization: str | None) -> Role:
+        """Return what a client may do (Connection's owner)."""
+        return role_at(path, authorization, self.console.router.access)
+
+    def connected(self, peer: str, dialect: Dialect, role: Role) -> Session:
         """Take in a client (Connection's owner)."""
         _logger.info("%s connected", peer)
-        return self.console.router.connect(peer, dialect=dialect)
+        return self.console.router.connect(peer, dialect=dialect, role=role)
 
     def received(self, session: Session, text: bytes) -> None:
         """Apply a text of a client (Connection's owner)."""

@@ -7,6 +7,7 @@ nothing a client sends raises: it is answered with a status and counted.
 from collections.abc import Callable
 from typing import Any, Final, Literal, NamedTuple
 
+from simconsole.bridge.access import OPEN, Role
 from simconsole.bridge.calls import Calls
 from simconsole.bridge.documents import Document, has_duplicate_keys, read
 from simconsole.bridge.forms import Dialect, Encoder, Form
@@ -17,6 +18,7 @@ from simconsole.bridge.operations import (
     Advertise,
     Auth,
     CallOperation,
+    CallService,
     Fragment,
     Operation,
     Publish,
@@ -98,6 +100,7 @@ class Router:
         self._sessions: dict[int, Session] = {}
         self._numbers = 0
         self.calls = Calls(registry, limits)
+        self.access = OPEN
 
     @property
     def sessions(self) -> tuple[Session, ...]:
@@ -117,12 +120,19 @@ class Router:
             raise LocalProtocolError(f"{topic.name}: two of the console's topics have this name")
         self._topics[topic.name] = topic
 
-    def connect(self, peer: str, wake: Callable[[], None] = lambda: None, dialect: Dialect = "ros2") -> Session:
+    def connect(
+        self,
+        peer: str,
+        wake: Callable[[], None] = lambda: None,
+        dialect: Dialect = "ros2",
+        role: Role | None = None,
+    ) -> Session:
         """Take in a client; `peer` names it in logs, `wake` is called when something waits for it."""
+        role = self.access.anonymous if role is None else role
         self._numbers += 1
         limits = self._limits
         assembler = Assembler(limits.message_bytes, limits.message_fragments)
-        session = Session(self._numbers, peer, limits.queued_bytes, wake, dialect, assembler)
+        session = Session(self._numbers, peer, limits.queued_bytes, wake, dialect, assembler, role)
         self._sessions[session.number] = session
         return session
 
@@ -181,7 +191,9 @@ class Router:
         name = name[:256] if isinstance(name, str) else ""
         topic = self._topics.get(name if name.startswith("/") else f"/{name}")
         # A stranger's mistakes must not count against the commander who drives.
-        if topic is not None and topic.command is not None and topic.command.leased:
+        if session.role < Role.CONTROL:
+            pass
+        elif topic is not None and topic.command is not None and topic.command.leased:
             if self.lease.is_open_to(session.number, now_ns):
                 self._on_refused()
         elif not fields and self.lease.holder(now_ns) == session.number:
@@ -198,7 +210,10 @@ class Router:
             session.set_level(operation.level)
             return Outcome("done", "", "")
         if isinstance(operation, Auth):
+            session.role = self.access.admit(operation)
             return Outcome("done", "", "")
+        needed = Role.VIEW if isinstance(operation, Subscribe | Unsubscribe | CallService) else Role.PUBLISH
+        self._require(session, needed)
         if isinstance(operation, CallOperation):
             return Outcome("done", self.calls.apply(session, operation, now_ns), "")
         assert not isinstance(operation, Fragment)
@@ -214,6 +229,11 @@ class Router:
         else:
             self._unadvertise(session, name, operation)
         return Outcome("done", name, "")
+
+    def _require(self, session: Session, role: Role) -> None:
+        if session.role < role:
+            held = f"role {session.role.name.lower()}" if session.role else "no token"
+            raise RemoteProtocolError(f"this needs the role {role.name.lower()}; you have {held}")
 
     def _publish(
         self, session: Session, name: str, operation: Publish, document: Document, text: bytes, now_ns: int
@@ -243,6 +263,7 @@ class Router:
         text: bytes,
         now_ns: int,
     ) -> Outcome:
+        self._require(session, Role.CONTROL)
         if document.literals:
             raise RemoteProtocolError("NaN and Infinity are not JSON and no command")
         if has_duplicate_keys(text, document.fields):

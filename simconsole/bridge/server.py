@@ -17,13 +17,15 @@ from websockets.asyncio.server import serve as serve_websockets
 from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
+from simconsole.bridge.access import Role
 from simconsole.bridge.console import ConsoleBridge
 from simconsole.bridge.forms import Binary
-from simconsole.bridge.handshake import FORBIDDEN, FULL, dialect_of, is_host_allowed, origins
+from simconsole.bridge.handshake import FORBIDDEN, FULL, UNKNOWN, dialect_of, is_host_allowed, origins, role_at
 from simconsole.bridge.inputs import OnCommand, OnEvents
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.session import Session
-from simconsole.bridge.wire import address_url, listen, log_outcome
+from simconsole.bridge.wire import address_url, listen, load_access, load_tls, log_outcome
+from simconsole.errors import RemoteProtocolError
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.rows import Snapshot
 from simconsole.units import NS_PER_S
@@ -60,6 +62,8 @@ class BridgeServer:
         """Build the bridge; `start` opens it. Arguments and errors as `ConsoleBridge`; `clock_ns` is its clock."""
         self.console = ConsoleBridge(profile, registry, on_command, on_events)
         self._profile = profile
+        self._access = self.console.router.access = load_access(profile)
+        self._tls = load_tls(profile)
         self._clock_ns = clock_ns
         self._clients: dict[Session, _Client] = {}
         self._server: Server | None = None
@@ -74,7 +78,7 @@ class BridgeServer:
     @property
     def url(self) -> str:
         """Where clients connect."""
-        return address_url(self._profile.host, self._port)
+        return address_url(self._profile.host, self._port, self._tls is not None)
 
     @property
     def clients(self) -> int:
@@ -92,6 +96,7 @@ class BridgeServer:
         self._server = await serve_websockets(
             self._serve_client,
             sock=listener,
+            ssl=self._tls,
             origins=cast("Any", origins(self._profile)),  # a NewType of str there
             process_request=self._admit,
             compression=None,
@@ -123,9 +128,17 @@ class BridgeServer:
         hosts = request.headers.get_all("Host")
         if len(hosts) != 1 or not is_host_allowed(hosts[0], self._profile):
             return connection.respond(HTTPStatus.FORBIDDEN, f"{FORBIDDEN}\n")
+        try:
+            self._role(request)
+        except RemoteProtocolError:
+            return connection.respond(HTTPStatus.UNAUTHORIZED, f"{UNKNOWN}\n")
         if len(self._clients) >= self._profile.limits.clients:
             return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, f"{FULL}\n")
         return None
+
+    def _role(self, request: Request) -> Role:
+        given = request.headers.get_all("Authorization")
+        return role_at(request.path, given[0] if given else None, self._access)
 
     async def _serve_client(self, connection: ServerConnection) -> None:
         sock: socket.socket = connection.transport.get_extra_info("socket")
@@ -134,7 +147,8 @@ class BridgeServer:
         address = connection.remote_address
         assert connection.request is not None
         dialect = dialect_of(connection.request.path)
-        session = self.console.router.connect(f"{address[0]}:{address[1]}", client.ready.set, dialect)
+        role = self._role(connection.request)
+        session = self.console.router.connect(f"{address[0]}:{address[1]}", client.ready.set, dialect, role)
         self._clients[session] = client
         _logger.info("%s connected", session.peer)
         sender = asyncio.create_task(self._send(session, client))

@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable
 from typing import Final
 
+from simconsole.bridge.access import Role
 from simconsole.bridge.forms import Dialect
 from simconsole.bridge.fragments import Assembler
 from simconsole.bridge.operations import DEFAULT_LEVEL, SEVERITY, Id, write_status
@@ -26,9 +27,11 @@ class Session:
         wake: Callable[[], None],
         dialect: Dialect = "ros2",
         assembler: Assembler | None = None,
+        role: Role = Role.CONTROL,
     ) -> None:
         """Start with nothing; `wake` is called whenever there may be something to send."""
         self.dialect: Dialect = dialect
+        self.role = role
         self.assembler = assembler or Assembler(max_bytes, 256)
         self.number = number
         self.peer = peer

@@ -2,13 +2,18 @@
 
 import logging
 import socket
+import ssl
+from pathlib import Path
 from typing import Final
 
 from websockets.frames import Frame, Opcode
 
+from simconsole.bridge.access import OPEN, Access, Role, read_tokens
+from simconsole.bridge.handshake import check_exposure
 from simconsole.bridge.protocol import Outcome
 from simconsole.bridge.session import Session
-from simconsole.errors import BridgeError, RemoteProtocolError
+from simconsole.errors import BridgeError, ProfileError, RemoteProtocolError
+from simconsole.profiles.bridge import BridgeProfile
 
 RECEIVE_BYTES: Final = 65_536
 _BACKLOG: Final = 64
@@ -69,9 +74,43 @@ def listen(host: str, port: int) -> socket.socket:
     return listener
 
 
-def address_url(host: str, port: int) -> str:
-    """Return the ws:// address of a server."""
-    return f"ws://[{host}]:{port}" if ":" in host else f"ws://{host}:{port}"
+def address_url(host: str, port: int, secure: bool = False) -> str:
+    """Return the ws:// or wss:// address of a server."""
+    scheme = "wss" if secure else "ws"
+    return f"{scheme}://[{host}]:{port}" if ":" in host else f"{scheme}://{host}:{port}"
+
+
+def load_access(profile: BridgeProfile) -> Access:
+    """Return who may do what on a server of `profile`.
+
+    Raises:
+        ProfileError: the file of tokens cannot be used, or the server would be open to other machines.
+    """
+    check_exposure(profile)
+    if profile.tokens is None:
+        return OPEN
+    try:
+        text = Path(profile.tokens).read_text("utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise ProfileError(f"outputs.bridge.tokens: {profile.tokens}: {error}") from None
+    return Access(read_tokens(text, profile.tokens), Role[profile.anonymous.upper()])
+
+
+def load_tls(profile: BridgeProfile) -> ssl.SSLContext | None:
+    """Return what a server of `profile` encrypts with, None without a certificate.
+
+    Raises:
+        ProfileError: the certificate or its key cannot be used.
+    """
+    if profile.certificate is None or profile.certificate_key is None:
+        return None
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+    context.minimum_version = ssl.TLSVersion.TLSv1_2
+    try:
+        context.load_cert_chain(profile.certificate, profile.certificate_key)
+    except (OSError, ssl.SSLError) as error:
+        raise ProfileError(f"outputs.bridge.certificate: {profile.certificate}: {error}") from None
+    return context
 
 
 def log_outcome(logger: logging.Logger, session: Session, outcome: Outcome) -> None:

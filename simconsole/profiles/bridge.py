@@ -9,6 +9,9 @@ Namespace = Annotated[str, Meta(pattern=r"^(/[A-Za-z][A-Za-z0-9_]*)*$", max_leng
 Rate = Annotated[float, Meta(ge=0.0, le=1000.0)]
 
 
+Path = Annotated[str, Meta(min_length=1, max_length=4096)]
+
+
 class CommandLimits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What a command may ask at most; anything beyond is refused whole, because it is a mistake and not a wish."""
 
@@ -52,6 +55,15 @@ class BridgeProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """Web pages that may connect beside those of this machine; programs send no origin and always may."""
     allowed_hosts: tuple[Annotated[str, Meta(pattern=r"^[A-Za-z0-9.:\[\]-]+$")], ...] = ()
     """Host names, without port, by which this server may be addressed beside `host` and localhost."""
+    tokens: Path | None = None
+    """A file of lines `ROLE TOKEN`; without one whoever can connect may do everything."""
+    anonymous: Literal["none", "view", "publish"] = "none"
+    """What a client may do that shows no token, where there are tokens."""
+    certificate: Path | None = None
+    certificate_key: Path | None = None
+    """PEM files; with them the server speaks TLS only (wss://)."""
+    trust_network: bool = False
+    """Listen on an address others can reach without token and TLS."""
     sender_clock: Literal["own", "console"] = "own"
     """console: senders stamp with /clock, so that stamps from the future and stale ones are refused too."""
     max_stamp_age_ms: Annotated[float, Meta(gt=0.0, le=10_000.0)] = 200.0

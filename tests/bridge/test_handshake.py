@@ -1,8 +1,11 @@
 import re
+from typing import Any
 
 import pytest
 
-from simconsole.bridge.handshake import dialect_of, is_host_allowed, origins
+from simconsole.bridge.access import Access, Role
+from simconsole.bridge.handshake import check_exposure, dialect_of, is_host_allowed, origins, role_at
+from simconsole.errors import ProfileError, RemoteProtocolError
 from simconsole.profiles.bridge import BridgeProfile
 
 
@@ -55,3 +58,55 @@ def test_address_of_version_6_is_written_in_brackets() -> None:
 )
 def test_dialect_of_a_path(path: str, dialect: str) -> None:
     assert dialect_of(path) == dialect
+
+
+ACCESS = Access({"v" * 16: Role.VIEW, "c" * 16: Role.CONTROL}, Role.NONE)
+
+
+@pytest.mark.parametrize(
+    ("path", "header", "role"),
+    [
+        ("/", None, Role.NONE),
+        ("/", "Basic abc", Role.NONE),
+        ("/", "Bearer " + "c" * 16, Role.CONTROL),
+        ("/ros1?token=" + "v" * 16, None, Role.VIEW),
+        ("/?token=" + "v" * 16, "bearer " + "c" * 16, Role.CONTROL),
+    ],
+)
+def test_role_from_the_first_request_on(path: str, header: str | None, role: Role) -> None:
+    assert role_at(path, header, ACCESS) is role
+
+
+@pytest.mark.parametrize(("path", "header"), [("/?token=x", None), ("/", "Bearer x"), ("/", "Bearer ")])
+def test_wrong_token_is_refused_at_the_door(path: str, header: str | None) -> None:
+    with pytest.raises(RemoteProtocolError, match="not a token"):
+        role_at(path, header, ACCESS)
+
+
+@pytest.mark.parametrize(
+    ("profile", "complaint"),
+    [
+        ({"host": "0.0.0.0"}, "set tokens and certificate"),
+        ({"host": "::", "tokens": "t"}, "set certificate"),
+        ({"host": "car.example", "certificate": "c", "certificate_key": "k"}, "set tokens"),
+        ({"certificate": "c"}, "belong together"),
+    ],
+)
+def test_server_that_others_can_reach_needs_token_and_tls(profile: dict[str, Any], complaint: str) -> None:
+    with pytest.raises(ProfileError, match=complaint):
+        check_exposure(BridgeProfile(**profile))
+
+
+@pytest.mark.parametrize(
+    "profile",
+    [
+        {},
+        {"host": "localhost"},
+        {"host": "::1"},
+        {"host": "127.8.8.8"},
+        {"host": "0.0.0.0", "trust_network": True},
+        {"host": "0.0.0.0", "tokens": "t", "certificate": "c", "certificate_key": "k"},
+    ],
+)
+def test_exposure_that_is_fine(profile: dict[str, Any]) -> None:
+    check_exposure(BridgeProfile(**profile))

@@ -33,3 +33,16 @@ def test_it_ends_by_itself_when_told_so() -> None:
 
 def test_a_port_that_is_none_is_one_line() -> None:
     assert "outputs.bridge.port: value 70000" in complaint(simconsole("bridge", "serve", "--port", 70000))
+
+
+def test_it_is_not_open_to_other_machines_by_accident() -> None:
+    refused = complaint(simconsole("bridge", "serve", "--host", "0.0.0.0", "--port", free_port()))
+    assert "set tokens and certificate" in refused
+
+
+def test_it_serves_others_with_a_certificate_and_a_token(tmp_path: Path) -> None:
+    made = results(simconsole("bridge", "cert", "--host", "0.0.0.0", "--out", tmp_path, "--json"))
+    options = ("--tokens", made["tokens"], "--certificate", made["certificate"])
+    done = simconsole("bridge", "serve", "--host", "0.0.0.0", "--port", free_port(), "--for", 0.5, *options, "--json")
+    assert done.returncode == 0, done.stderr
+    assert "rosbridge at wss://0.0.0.0" in done.stdout

@@ -1,0 +1,90 @@
+"""Who may do what: tokens, the roles they give, and rosauth's way of showing one.
+
+view: subscribe and ask about the console. publish: talk to other clients too. control: command the console.
+"""
+
+import hashlib
+import hmac
+from collections.abc import Callable, Mapping
+from enum import IntEnum
+from typing import Final
+
+from simconsole.bridge.operations import Auth
+from simconsole.errors import ProfileError, RemoteProtocolError
+
+MIN_TOKEN: Final = 16
+
+
+class Role(IntEnum):
+    """What a client may do; each includes those below."""
+
+    NONE = 0
+    VIEW = 1
+    PUBLISH = 2
+    CONTROL = 3
+
+
+class Access:
+    """The tokens of one server."""
+
+    def __init__(self, tokens: Mapping[str, Role], anonymous: Role) -> None:
+        """Give each token its role; `anonymous` is that of a client without one."""
+        self._tokens = dict(tokens)
+        self.anonymous = anonymous
+
+    def role_of(self, token: str) -> Role:
+        """Return the role of a token.
+
+        Raises:
+            RemoteProtocolError: it is none of this server's.
+        """
+        return self._role(lambda known: hmac.compare_digest(known.encode(), token.encode("utf-8", "replace")))
+
+    def admit(self, auth: Auth) -> Role:
+        """Return the role that an auth operation shows: by a token, or by rosauth's SHA-512 over token and fields.
+
+        Raises:
+            RemoteProtocolError: it shows none.
+        """
+        if auth.token or not self._tokens:
+            return self.role_of(auth.token) if self._tokens else self.anonymous
+        shown = f"{auth.client}{auth.dest}{auth.rand}{auth.t}{auth.level}{auth.end}"
+
+        def fits(known: str) -> bool:
+            digest = hashlib.sha512(f"{known}{shown}".encode("utf-8", "replace")).hexdigest()
+            return hmac.compare_digest(digest.encode(), auth.mac.lower().encode("utf-8", "replace"))
+
+        return self._role(fits)
+
+    def _role(self, fits: Callable[[str], bool]) -> Role:
+        # Every token is compared, whichever fits, so that the time tells nothing.
+        roles = [role for known, role in self._tokens.items() if fits(known)]
+        if not roles:
+            raise RemoteProtocolError("not a token of this server")
+        return max(roles)
+
+
+OPEN: Final = Access({}, Role.CONTROL)
+"""A server for its own machine: whoever is there may do everything."""
+
+
+def read_tokens(text: str, name: str) -> dict[str, Role]:
+    """Return the tokens of a file whose lines are `ROLE TOKEN`; empty lines and # comments are passed over.
+
+    Raises:
+        ProfileError: naming the file and the line.
+    """
+    roles = {role.name.lower(): role for role in Role if role is not Role.NONE}
+    tokens: dict[str, Role] = {}
+    for number, line in enumerate(text.splitlines(), start=1):
+        words = line.partition("#")[0].split()
+        if not words:
+            continue
+        if len(words) != 2 or words[0] not in roles:
+            raise ProfileError(f"{name}: line {number}: expected a role ({', '.join(roles)}) and a token")
+        if len(words[1]) < MIN_TOKEN or words[1] in tokens:
+            raise ProfileError(f"{name}: line {number}: a token has at least {MIN_TOKEN} characters and stands once")
+        tokens[words[1]] = roles[words[0]]
+    if not tokens:
+        raise ProfileError(f"{name}: no token in it")
+    return tokens

@@ -1,0 +1,58 @@
+"""`simconsole bridge`: the rosbridge server alone, and the certificate it needs to be reached from other machines."""
+
+import secrets
+import tempfile
+from argparse import Namespace
+from pathlib import Path
+
+from simconsole.commands.outcome import INTERRUPTED, Outcome
+
+
+def bridge(words: Namespace) -> Outcome:
+    """Do what `words.action` names."""
+    return {"serve": serve, "cert": cert}[words.action](words)
+
+
+def serve(words: Namespace) -> Outcome:
+    """Serve rosbridge on a standing car that nobody sits in, in real time, until interrupted; nothing is kept."""
+    from simconsole.bridge.wire import address_url, load_access, load_tls
+    from simconsole.session import drive
+    from simconsole.session_files import load_session, override, resolve
+
+    certificate = words.certificate
+    section = {
+        "host": words.host,
+        "port": words.port,
+        "tokens": words.tokens,
+        "certificate": certificate,
+        "certificate_key": None if certificate is None else str(Path(certificate).with_suffix(".key")),
+        "trust_network": words.trust_network,
+    }
+    session = override(load_session("bridge"), outputs={"bridge": section})
+    if words.duration_s is not None:
+        session = override(session, scenario={"duration_s": words.duration_s})
+    if session.outputs.bridge is not None:
+        # Here and not only in the server's own process: a refusal shall be one line, at once.
+        load_access(session.outputs.bridge)
+        load_tls(session.outputs.bridge)
+    print(f"rosbridge at {address_url(words.host, words.port, certificate is not None)}", flush=True)
+    with tempfile.TemporaryDirectory(prefix="simconsole-bridge-") as folder:
+        result = drive(resolve(session), Path(folder))
+    code = INTERRUPTED if result.interrupted else 0
+    return Outcome(code, result.summary, f"served {result.ticks} ticks, lateness {result.summary['lateness']}")
+
+
+def cert(words: Namespace) -> Outcome:
+    """Write a self-signed certificate for `--host`, its key and a control token, readable by their owner alone."""
+    from simconsole.commands.certificate import make, write_private
+
+    folder = Path(words.out)
+    folder.mkdir(parents=True, exist_ok=True)
+    certificate, key, tokens = folder / "bridge.pem", folder / "bridge.key", folder / "bridge.tokens"
+    written = make(words.host)
+    certificate.write_bytes(written.certificate)
+    write_private(key, written.key)
+    write_private(tokens, f"control {secrets.token_urlsafe(24)}\n".encode())
+    paths = {"certificate": str(certificate), "key": str(key), "tokens": str(tokens)}
+    command = f"simconsole bridge serve --host {words.host} --tokens {tokens} --certificate {certificate}"
+    return Outcome(0, {**paths, "until": written.until}, f"good until {written.until}; serve with\n{command}")

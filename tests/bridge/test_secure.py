@@ -1,0 +1,111 @@
+"""Tokens and TLS over real sockets, on both servers and from our own client."""
+
+import ssl
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from websockets.exceptions import ConnectionClosed, InvalidStatus
+from websockets.sync.client import connect
+
+from simconsole.bridge.client import BridgeClient
+from simconsole.bridge.lockstep import LockstepBridge
+from simconsole.bridge.server import BridgeServer
+from simconsole.bridge.wire import load_tls
+from simconsole.commands.certificate import make, write_private
+from simconsole.errors import BridgeError, ProfileError
+from simconsole.profiles.bridge import BridgeProfile
+
+TOKEN = "c" * 20
+
+
+@pytest.fixture
+def files(tmp_path: Path) -> dict[str, str]:
+    written = make("127.0.0.1")
+    (tmp_path / "b.pem").write_bytes(written.certificate)
+    write_private(tmp_path / "b.key", written.key)
+    write_private(tmp_path / "tokens", f"control {TOKEN}\n".encode())
+    names = {"certificate": "b.pem", "certificate_key": "b.key", "tokens": "tokens"}
+    return {key: str(tmp_path / name) for key, name in names.items()}
+
+
+def test_encrypted_and_authenticated(
+    serving: Callable[..., Any], files: dict[str, str], control: Callable[..., Any]
+) -> None:
+    server = serving(**files)
+    url = server.url.replace("ws://", "wss://")
+    with BridgeClient(url, token=TOKEN, certificate=files["certificate"]) as client:
+        client.connect()
+        client.advertise("/control/command/control_cmd", "autoware_control_msgs/Control")
+        client.publish("/control/command/control_cmd", control(0.25))
+        assert server.command().road_wheel_rad == 0.25
+    with pytest.raises(BridgeError, match=r"cannot connect: .*CERTIFICATE_VERIFY_FAILED"):
+        BridgeClient(url, token=TOKEN).connect()
+    with pytest.raises(BridgeError, match=r"refused: .*401"):
+        BridgeClient(url, token="wrong", certificate=files["certificate"]).connect()
+    with pytest.raises(BridgeError):
+        BridgeClient(server.url, token=TOKEN, connect_timeout_s=2.0).connect()
+
+
+def test_stock_client_authenticates_after_connecting(serving: Callable[..., Any], files: dict[str, str]) -> None:
+    server = serving(tokens=files["tokens"])
+    with connect(server.url) as peer:
+        peer.send('{"op":"subscribe","topic":"/odom"}')
+        assert "needs the role view; you have no token" in str(peer.recv(timeout=10.0))
+        peer.send(f'{{"op":"auth","token":"{TOKEN}"}}')
+        peer.send('{"op":"publish","topic":"/console/request","msg":{"data":"mark"}}')
+        assert server.events.get(timeout=10.0)
+    with connect(f"{server.url}/?token={TOKEN}") as peer:
+        peer.send('{"op":"publish","topic":"/console/request","msg":{"data":"mark"}}')
+        assert server.events.get(timeout=10.0)
+
+
+def test_lockstep_asks_for_the_token_too(files: dict[str, str]) -> None:
+    profile = BridgeProfile(port=0, tokens=files["tokens"])
+    with LockstepBridge(profile) as bridge:
+        failures: list[int] = []
+
+        def come(token: str) -> None:
+            try:
+                with connect(bridge.url, additional_headers={"Authorization": f"Bearer {token}"}) as peer:
+                    peer.send('{"op":"subscribe","topic":"/odom"}')
+                    peer.recv(timeout=5.0)
+            except InvalidStatus as error:
+                failures.append(error.response.status_code)
+            except (TimeoutError, OSError, ConnectionClosed):
+                pass
+
+        stranger = threading.Thread(target=come, args=("wrong",))
+        stranger.start()
+        assert not bridge.wait_for_client(0.5)
+        friend = threading.Thread(target=come, args=(TOKEN,), daemon=True)
+        friend.start()
+        assert bridge.wait_for_client(10.0)
+        assert failures == [401]
+    for thread in (stranger, friend):
+        thread.join(timeout=10.0)
+
+
+def test_profiles_that_cannot_be_served(files: dict[str, str], tmp_path: Path) -> None:
+    with pytest.raises(ProfileError, match="speaks no TLS"):
+        LockstepBridge(BridgeProfile(port=0, **files))
+    with pytest.raises(ProfileError, match="can be reached from other machines"):
+        BridgeServer(BridgeProfile(host="0.0.0.0"))
+    with pytest.raises(ProfileError, match=r"outputs\.bridge\.tokens"):
+        BridgeServer(BridgeProfile(tokens=str(tmp_path / "none")))
+    with pytest.raises(ProfileError, match=r"outputs\.bridge\.certificate"):
+        BridgeServer(BridgeProfile(certificate=files["tokens"], certificate_key=files["tokens"]))
+    context = load_tls(BridgeProfile(**files))
+    assert context is not None
+    assert context.minimum_version is ssl.TLSVersion.TLSv1_2
+
+
+def test_key_is_for_its_owner_alone(files: dict[str, str]) -> None:
+    assert Path(files["certificate_key"]).stat().st_mode & 0o777 == 0o600
+
+
+def test_certificate_that_cannot_be_read() -> None:
+    with pytest.raises(BridgeError, match="certificate: /nowhere"):
+        BridgeClient("wss://localhost:1", certificate="/nowhere")
