@@ -7,6 +7,10 @@ import os
 
 import pytest
 
+from tests.drives.fixtures import script, short
+
+__all__ = ["script", "short"]
+
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
     """Turn a good run into a bad one where something was left out."""

@@ -1,15 +1,13 @@
 """The commands as a person meets them: what they print, how they end, what they load."""
 
+import shutil
 import sys
 from pathlib import Path
 
 import pytest
 
 from simconsole.cli import parser
-from tests.drives.conftest import rewrite_checksums, script, short
 from tests.drives.console import complaint, results, simconsole
-
-__all__ = ["rewrite_checksums", "script", "short"]
 
 COMMANDS = {
     "demo",
@@ -86,10 +84,7 @@ def test_verify_says_that_a_bundle_is_whole_or_what_is_wrong(short: Path, tmp_pa
     done = simconsole("verify", short)
     assert done.returncode == 0
     assert done.stdout == f"{short}: whole\n"
-    spoilt = tmp_path / "spoilt"
-    spoilt.mkdir()
-    for path in short.iterdir():
-        (spoilt / path.name).write_bytes(path.read_bytes())
+    spoilt = Path(shutil.copytree(short, tmp_path / "spoilt"))
     content = bytearray((spoilt / "drive.log").read_bytes())
     content[-2000] ^= 1
     (spoilt / "drive.log").write_bytes(content)
@@ -106,7 +101,8 @@ def test_compare_finds_a_bundle_equal_to_itself(short: Path) -> None:
     assert results(done) == {"equal": True, "ticks": 750, "difference": None}
 
 
-def test_report_is_written_again_alike(short: Path) -> None:
+def test_report_is_written_again(short: Path, tmp_path: Path) -> None:
+    short = Path(shutil.copytree(short, tmp_path / "copy"))
     (short / "report.html").unlink()
     done = simconsole("report", short, "--json")
     assert done.returncode == 0, done.stderr
@@ -116,7 +112,8 @@ def test_report_is_written_again_alike(short: Path) -> None:
     assert simconsole("verify", short).returncode == 0
 
 
-def test_view_writes_the_scene_without_opening_it(short: Path) -> None:
+def test_view_writes_the_scene_without_opening_it(short: Path, tmp_path: Path) -> None:
+    short = Path(shutil.copytree(short, tmp_path / "copy"))
     (short / "scene.rrd").unlink()
     done = simconsole("view", short, "--no-open", "--json")
     assert done.returncode == 0, done.stderr

@@ -7,9 +7,6 @@ from simconsole.errors import RecordingError
 from simconsole.exports import LIVE_SCENE, REPORT, SCENE, write_exports, write_report, write_scene
 from simconsole.recording.bundle import open_bundle, verify
 from simconsole.recording.manifest import MANIFEST
-from tests.drives.conftest import script, short
-
-__all__ = ["script", "short"]
 
 
 @pytest.fixture

@@ -11,10 +11,10 @@ from zlib import crc32
 import pytest
 
 from simconsole.recording.framing import MAGIC
-from tests.drives.conftest import rewrite_checksums, script, short
 from tests.drives.console import complaint, results, simconsole
+from tests.recording.conftest import rewrite_checksums
 
-__all__ = ["rewrite_checksums", "script", "short"]
+__all__ = ["rewrite_checksums"]
 
 
 @pytest.fixture
