@@ -20,6 +20,7 @@ COMMANDS = {
     "view",
     "devices",
     "bridge",
+    "can",
     "autopilot",
     "doctor",
 }
