@@ -34,8 +34,8 @@ from simconsole.units import NS_PER_S
 ABORTED: Final = 6
 """action_msgs/GoalStatus."""
 
-Handler = Callable[[dict[str, Any]], dict[str, Any]]
-"""A service of the console: takes its arguments, returns its values; raises RemoteProtocolError to fail."""
+Handler = Callable[[dict[str, Any], Dialect], dict[str, Any]]
+"""A service of the console: takes arguments and the caller's dialect, returns values; raises BridgeError to fail."""
 
 
 class _Builtin(NamedTuple):
@@ -96,9 +96,9 @@ class Calls:
         """Return the type of every action by name."""
         return {name: provider.type for name, provider in sorted(self._actions.items())}
 
-    def providers(self) -> dict[str, str]:
-        """Return who provides each service of a client."""
-        return {name: provider.session.peer for name, provider in self._services.items()}
+    def providers(self) -> dict[str, int]:
+        """Return the number of the client that provides each service of a client."""
+        return {name: provider.session.number for name, provider in self._services.items()}
 
     def apply(self, session: Session, operation: CallOperation, now_ns: int) -> str:
         """Apply one operation of a client; return the service or action it is about.
@@ -187,7 +187,7 @@ class Calls:
                     raise RemoteProtocolError(f"this needs the role {builtin.role.name.lower()}")
                 args = self._args(builtin.type, "Request", operation.args)
                 args = self._spell("ros2", builtin.type, "Request", args)
-                values = self._spell(session.dialect, builtin.type, "Response", builtin.handler(args))
+                values = self._spell(session.dialect, builtin.type, "Response", builtin.handler(args, session.dialect))
                 _respond(session, operation.service, operation.id, values, True, size)
                 return
             provider = self._services.get(name)

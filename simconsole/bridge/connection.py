@@ -140,7 +140,7 @@ class Connection:
             response = self._web.accept(request)
         self._web.send_response(response)
         if self._web.state is State.OPEN and role is not None:
-            self.session = self._owner.connected(self.peer, dialect_of(request.path), role)
+            self.session = self._owner.connected(self.peer, dialect_of(request.path, self._profile), role)
 
     def _role(self, request: Request) -> Role | None:
         given = request.headers.get_all("Authorization")

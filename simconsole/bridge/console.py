@@ -7,6 +7,7 @@ from simconsole.bridge.commands import CommandIntake
 from simconsole.bridge.inputs import BridgeInputs, OnCommand, OnEvents
 from simconsole.bridge.messages import Registry, standard_registry
 from simconsole.bridge.protocol import Outcome, Router
+from simconsole.bridge.rosapi import RosApi
 from simconsole.bridge.session import Session
 from simconsole.bridge.topics import GLOBAL_TOPICS, ODOMETRY, ONCE, Moment, Outputs, is_due
 from simconsole.errors import ProfileError
@@ -55,6 +56,7 @@ class ConsoleBridge:
             int(profile.lease_ms * 1e6),
             self.inputs.refuse,
         )
+        RosApi(self.router)
         self._intake = CommandIntake(self.inputs, profile)
         self.router.on_new_commander = self._intake.forget_stamps
         self._out = Outputs(self.router.registry, profile)

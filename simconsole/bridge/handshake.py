@@ -34,9 +34,12 @@ def is_host_allowed(host: str | None, profile: BridgeProfile) -> bool:
     return name in {*_LOCAL, bind.lower(), *(allowed.lower() for allowed in profile.allowed_hosts)}
 
 
-def dialect_of(path: str) -> Dialect:
-    """Return how times and headers are spelled for a client: by ROS 1 if the path of its URL is /ros1."""
-    return "ros1" if path.partition("?")[0].rstrip("/") == "/ros1" else "ros2"
+def dialect_of(path: str, profile: BridgeProfile) -> Dialect:
+    """Return how times and headers are spelled for a client: as its URL's path, /ros1 or /ros2, says if it does."""
+    name = path.partition("?")[0].strip("/")
+    if name == "ros1":
+        return "ros1"
+    return "ros2" if name == "ros2" else profile.dialect
 
 
 def role_at(path: str, authorization: str | None, access: Access) -> Role:

@@ -107,6 +107,11 @@ class Router:
         """The clients connected now."""
         return tuple(self._sessions.values())
 
+    @property
+    def topics(self) -> dict[str, Topic]:
+        """Every topic by name."""
+        return dict(sorted(self._topics.items()))
+
     def add_output(self, name: str, type_name: str, depth: int = 1, latch: bool = False) -> None:
         """Add a topic that only the console publishes, keeping the `depth` newest messages for a slow client."""
         self._add(Topic(name, self.registry.resolve(type_name), depth, True, None, latch))

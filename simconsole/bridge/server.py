@@ -146,7 +146,7 @@ class BridgeServer:
         client = _Client(connection)
         address = connection.remote_address
         assert connection.request is not None
-        dialect = dialect_of(connection.request.path)
+        dialect = dialect_of(connection.request.path, self._profile)
         role = self._role(connection.request)
         session = self.console.router.connect(f"{address[0]}:{address[1]}", client.ready.set, dialect, role)
         self._clients[session] = client

@@ -55,6 +55,8 @@ class BridgeProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """Web pages that may connect beside those of this machine; programs send no origin and always may."""
     allowed_hosts: tuple[Annotated[str, Meta(pattern=r"^[A-Za-z0-9.:\[\]-]+$")], ...] = ()
     """Host names, without port, by which this server may be addressed beside `host` and localhost."""
+    dialect: Literal["ros2", "ros1"] = "ros2"
+    """How times and headers are spelled for clients whose URL's path is neither /ros1 nor /ros2."""
     tokens: Path | None = None
     """A file of lines `ROLE TOKEN`; without one whoever can connect may do everything."""
     anonymous: Literal["none", "view", "publish"] = "none"

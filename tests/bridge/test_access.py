@@ -119,8 +119,8 @@ def test_role_grows_with_authentication(client: Callable[[Role], Any]) -> None:
 
 def test_service_of_the_console_for_some(client: Callable[[Role], Any]) -> None:
     viewer = client(Role.VIEW)
-    viewer.bridge.router.calls.add_builtin("/set", "std_srvs/Empty", lambda args: {}, Role.CONTROL)
-    viewer.bridge.router.calls.add_builtin("/get", "std_srvs/Empty", lambda args: {})
+    viewer.bridge.router.calls.add_builtin("/set", "std_srvs/Empty", lambda args, dialect: {}, Role.CONTROL)
+    viewer.bridge.router.calls.add_builtin("/get", "std_srvs/Empty", lambda args, dialect: {})
     for service in ("/set", "/get"):
         viewer.send(op="call_service", service=service)
     assert [answer["result"] for answer in viewer.heard()] == [False, True]

@@ -156,7 +156,7 @@ def test_service_belongs_to_one_client(bridge: ConsoleBridge, pair: tuple[Any, A
     other.send(op="call_service", service="/add", id="q")
     asked = provider.heard()[-1]
     assert other.send(op="service_response", service="/add", id=asked["id"], values={}).kind == "refused"
-    assert bridge.router.calls.providers() == {"/add": "peer"}
+    assert bridge.router.calls.providers() == {"/add": provider.session.number}
 
 
 def test_numbers_of_calls_and_services_are_bounded(join: Callable[..., Any]) -> None:
@@ -182,7 +182,7 @@ def test_unknown_type_is_passed_on_as_it_is(bridge: ConsoleBridge, join: Callabl
 
 
 def test_service_of_the_console(bridge: ConsoleBridge, join: Callable[..., Any]) -> None:
-    def add(args: dict[str, Any]) -> dict[str, Any]:
+    def add(args: dict[str, Any], dialect: str) -> dict[str, Any]:
         if args["a"] < 0:
             raise RemoteProtocolError("a must not be negative")
         return {"sum": args["a"] + args["b"]}

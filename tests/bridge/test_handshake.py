@@ -57,7 +57,12 @@ def test_address_of_version_6_is_written_in_brackets() -> None:
     ("path", "dialect"), [("/", "ros2"), ("/ros1", "ros1"), ("/ros1/?x=1", "ros1"), ("/ros12", "ros2"), ("", "ros2")]
 )
 def test_dialect_of_a_path(path: str, dialect: str) -> None:
-    assert dialect_of(path) == dialect
+    assert dialect_of(path, BridgeProfile()) == dialect
+
+
+def test_dialect_of_the_profile_is_for_who_does_not_say() -> None:
+    profile = BridgeProfile(dialect="ros1")
+    assert [dialect_of(path, profile) for path in ("/", "/ros1", "/ros2")] == ["ros1", "ros1", "ros2"]
 
 
 ACCESS = Access({"v" * 16: Role.VIEW, "c" * 16: Role.CONTROL}, Role.NONE)

@@ -5,6 +5,8 @@ from functools import cache
 from simconsole.bridge.messages.definition import Definition, FieldType, full_name, parse, parse_all
 from simconsole.bridge.messages.registry import Registry, is_stamped
 from simconsole.bridge.messages.ros_text import TEXT as ROS_TEXT
+from simconsole.bridge.messages.rosapi_text import SERVICES as ROSAPI_SERVICES
+from simconsole.bridge.messages.rosapi_text import TYPE_DEF
 from simconsole.bridge.messages.service_text import ACTIONS, SERVICES
 from simconsole.bridge.messages.vehicle_text import TEXT as VEHICLE_TEXT
 
@@ -25,13 +27,16 @@ def standard_registry() -> Registry:
     registry = Registry()
     for definition in _standard_definitions():
         registry.add_definition(definition)
-    for name, text in SERVICES.items():
-        registry.add_service(name, text)
-    for name, text in ACTIONS.items():
-        registry.add_action(name, text)
     return registry
 
 
 @cache
 def _standard_definitions() -> tuple[Definition, ...]:
-    return (*parse_all(ROS_TEXT), *parse_all(VEHICLE_TEXT))
+    registry = Registry()
+    for text in (ROS_TEXT, VEHICLE_TEXT, TYPE_DEF):
+        registry.add_all(text)
+    for name, text in {**SERVICES, **ROSAPI_SERVICES}.items():
+        registry.add_service(name, text)
+    for name, text in ACTIONS.items():
+        registry.add_action(name, text)
+    return tuple(registry.definition(name) for name in registry.names())

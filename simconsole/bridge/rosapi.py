@@ -1,0 +1,269 @@
+"""rosapi, built in: the services by which clients ask for topics, types, services, nodes, parameters and the time.
+
+The console is the node /simconsole, client number n is /client_n. Parameters live as long as the server and mean
+nothing to the console.
+"""
+
+from typing import Any, Final
+
+import orjson
+
+from simconsole.bridge.access import Role
+from simconsole.bridge.forms import Dialect
+from simconsole.bridge.messages.definition import Definition, FieldType
+from simconsole.bridge.protocol import Router, Topic
+from simconsole.bridge.session import resolve_topic
+from simconsole.errors import BridgeError, RemoteProtocolError
+from simconsole.units import NS_PER_S
+
+NODE: Final = "/simconsole"
+MAX_PARAMETERS: Final = 256
+MAX_PARAMETER: Final = 16_384
+_DISTRO: Final = "jazzy"
+"""The release whose message definitions the console speaks."""
+_RULE: Final = "=" * 80
+
+Fields = dict[str, Any]
+
+
+class RosApi:
+    """Answers for one router."""
+
+    def __init__(self, router: Router) -> None:
+        """Add the services to `router`."""
+        self._router = router
+        self._registry = router.registry
+        self._parameters: dict[str, str] = {}
+        for name, type_name, handler, role in (
+            ("topics", "Topics", self._topics, Role.VIEW),
+            ("topics_for_type", "TopicsForType", self._topics_for_type, Role.VIEW),
+            ("topics_and_raw_types", "TopicsAndRawTypes", self._topics_and_raw_types, Role.VIEW),
+            ("topic_type", "TopicType", self._topic_type, Role.VIEW),
+            ("publishers", "Publishers", self._publishers, Role.VIEW),
+            ("subscribers", "Subscribers", self._subscribers, Role.VIEW),
+            ("services", "Services", self._services, Role.VIEW),
+            ("services_for_type", "ServicesForType", self._services_for_type, Role.VIEW),
+            ("service_type", "ServiceType", self._service_type, Role.VIEW),
+            ("service_providers", "ServiceProviders", self._service_providers, Role.VIEW),
+            ("service_node", "ServiceNode", self._service_node, Role.VIEW),
+            ("action_servers", "GetActionServers", self._action_servers, Role.VIEW),
+            ("nodes", "Nodes", self._nodes, Role.VIEW),
+            ("node_details", "NodeDetails", self._node_details, Role.VIEW),
+            ("message_details", "MessageDetails", self._message_details, Role.VIEW),
+            ("service_request_details", "ServiceRequestDetails", self._request_details, Role.VIEW),
+            ("service_response_details", "ServiceResponseDetails", self._response_details, Role.VIEW),
+            ("get_param", "GetParam", self._get_param, Role.VIEW),
+            ("has_param", "HasParam", self._has_param, Role.VIEW),
+            ("get_param_names", "GetParamNames", self._get_param_names, Role.VIEW),
+            ("set_param", "SetParam", self._set_param, Role.PUBLISH),
+            ("delete_param", "DeleteParam", self._delete_param, Role.PUBLISH),
+            ("get_time", "GetTime", self._get_time, Role.VIEW),
+            ("get_ros_version", "GetROSVersion", self._get_ros_version, Role.VIEW),
+        ):
+            router.calls.add_builtin(f"/rosapi/{name}", f"rosapi/{type_name}", handler, role)
+
+    def _topics(self, args: Fields, dialect: Dialect) -> Fields:
+        topics = self._router.topics
+        return {"topics": list(topics), "types": [_spelled(topic.type, dialect) for topic in topics.values()]}
+
+    def _topics_for_type(self, args: Fields, dialect: Dialect) -> Fields:
+        try:
+            wanted = self._registry.resolve(args["type"])
+        except BridgeError:
+            return {"topics": []}
+        return {"topics": [name for name, topic in self._router.topics.items() if topic.type == wanted]}
+
+    def _topics_and_raw_types(self, args: Fields, dialect: Dialect) -> Fields:
+        texts = [self._full_text(topic.type) for topic in self._router.topics.values()]
+        return {**self._topics(args, dialect), "typedefs_full_text": texts}
+
+    def _topic_type(self, args: Fields, dialect: Dialect) -> Fields:
+        topic = self._router.topics.get(resolve_topic(args["topic"]))
+        return {"type": "" if topic is None else _spelled(topic.type, dialect)}
+
+    def _publishers(self, args: Fields, dialect: Dialect) -> Fields:
+        topic = self._topic(args)
+        return {"publishers": [node for node in self._node_names() if self._publishes(node, topic)]}
+
+    def _subscribers(self, args: Fields, dialect: Dialect) -> Fields:
+        topic = self._topic(args)
+        return {"subscribers": [node for node in self._node_names() if self._subscribes(node, topic)]}
+
+    def _topic(self, args: Fields) -> Topic:
+        name = resolve_topic(args["topic"])
+        topic = self._router.topics.get(name)
+        if topic is None:
+            raise RemoteProtocolError(f"there is no topic {name}")
+        return topic
+
+    def _services(self, args: Fields, dialect: Dialect) -> Fields:
+        return {"services": list(self._router.calls.services())}
+
+    def _services_for_type(self, args: Fields, dialect: Dialect) -> Fields:
+        wanted = _short(args["type"])
+        return {"services": [name for name, kind in self._router.calls.services().items() if _short(kind) == wanted]}
+
+    def _service_type(self, args: Fields, dialect: Dialect) -> Fields:
+        return {"type": self._router.calls.services().get(resolve_topic(args["service"]), "")}
+
+    def _service_providers(self, args: Fields, dialect: Dialect) -> Fields:
+        # As rosapi has it: asked by type, and by name too since that is what its clients send.
+        wanted = args["service"]
+        names = [name for name, kind in self._router.calls.services().items() if _short(kind) == _short(wanted)]
+        providers = [self._provider(name) for name in names] or [self._provider(resolve_topic(wanted))]
+        return {"providers": sorted({provider for provider in providers if provider})}
+
+    def _service_node(self, args: Fields, dialect: Dialect) -> Fields:
+        return {"node": self._provider(resolve_topic(args["service"]))}
+
+    def _provider(self, service: str) -> str:
+        if service not in self._router.calls.services():
+            return ""
+        number = self._router.calls.providers().get(service)
+        return NODE if number is None else f"/client_{number}"
+
+    def _action_servers(self, args: Fields, dialect: Dialect) -> Fields:
+        return {"action_servers": list(self._router.calls.actions())}
+
+    def _node_names(self) -> list[str]:
+        return [NODE, *(f"/client_{session.number}" for session in self._router.sessions)]
+
+    def _nodes(self, args: Fields, dialect: Dialect) -> Fields:
+        return {"nodes": self._node_names()}
+
+    def _node_details(self, args: Fields, dialect: Dialect) -> Fields:
+        node = args["node"]
+        if node not in self._node_names():
+            raise RemoteProtocolError(f"there is no node {node[:80]}")
+        topics = self._router.topics.items()
+        return {
+            "subscribing": [name for name, topic in topics if self._subscribes(node, topic)],
+            "publishing": [name for name, topic in topics if self._publishes(node, topic)],
+            "services": [name for name in self._router.calls.services() if self._provider(name) == node],
+        }
+
+    def _publishes(self, node: str, topic: Topic) -> bool:
+        if node == NODE:
+            return topic.owned and topic.command is None
+        return int(node.rpartition("_")[2]) in topic.publishers
+
+    def _subscribes(self, node: str, topic: Topic) -> bool:
+        return topic.command is not None if node == NODE else int(node.rpartition("_")[2]) in topic.subscribers
+
+    def _message_details(self, args: Fields, dialect: Dialect) -> Fields:
+        return {"typedefs": self._typedefs(self._registry.resolve(args["type"]))}
+
+    def _request_details(self, args: Fields, dialect: Dialect) -> Fields:
+        return {"typedefs": self._part(args["type"], "Request")}
+
+    def _response_details(self, args: Fields, dialect: Dialect) -> Fields:
+        return {"typedefs": self._part(args["type"], "Response")}
+
+    def _part(self, type_name: str, part: str) -> list[Fields]:
+        full = self._registry.part(type_name, part)
+        if full is None:
+            raise RemoteProtocolError(f"service type {type_name[:80]} is not known here")
+        return self._typedefs(full)
+
+    def _used(self, name: str) -> list[Definition]:
+        """Return a definition and all it is made of, each once, itself first."""
+        found: dict[str, Definition] = {}
+        waiting = [name]
+        while waiting:
+            current = waiting.pop(0)
+            if current not in found:
+                found[current] = self._registry.definition(current)
+                waiting += [field.type.base for field in found[current].fields if field.type.is_message]
+        return list(found.values())
+
+    def _typedefs(self, name: str) -> list[Fields]:
+        return [
+            {
+                "type": _spelled(definition.name, "ros1"),
+                "fieldnames": [field.name for field in definition.fields],
+                "fieldtypes": [_spelled(field.type.base, "ros1") for field in definition.fields],
+                "fieldarraylen": [_array_length(field.type) for field in definition.fields],
+                "examples": [_example(field.type) for field in definition.fields],
+                "constnames": list(definition.constants),
+                "constvalues": [str(value) for value in definition.constants.values()],
+            }
+            for definition in self._used(name)
+        ]
+
+    def _full_text(self, name: str) -> str:
+        first, *others = self._used(name)
+        parts = [f"{_RULE}\nMSG: {_spelled(other.name, 'ros1')}\n{_text(other)}" for other in others]
+        return "".join([_text(first), *parts])
+
+    def _get_param(self, args: Fields, dialect: Dialect) -> Fields:
+        return {"value": self._parameters.get(args["name"]) or args["default_value"] or args["default"] or "null"}
+
+    def _has_param(self, args: Fields, dialect: Dialect) -> Fields:
+        return {"exists": args["name"] in self._parameters}
+
+    def _get_param_names(self, args: Fields, dialect: Dialect) -> Fields:
+        return {"names": sorted(self._parameters)}
+
+    def _set_param(self, args: Fields, dialect: Dialect) -> Fields:
+        name, value = args["name"], args["value"]
+        if not name or len(name) + len(value) > MAX_PARAMETER:
+            raise RemoteProtocolError(f"a parameter has a name and at most {MAX_PARAMETER} characters")
+        if name not in self._parameters and len(self._parameters) >= MAX_PARAMETERS:
+            raise RemoteProtocolError(f"there are {MAX_PARAMETERS} parameters already, the most allowed")
+        try:
+            orjson.loads(value)
+        except orjson.JSONDecodeError as error:
+            raise RemoteProtocolError(f"value is not JSON: {error}") from None
+        self._parameters[name] = value
+        return {}
+
+    def _delete_param(self, args: Fields, dialect: Dialect) -> Fields:
+        self._parameters.pop(args["name"], None)
+        return {}
+
+    def _get_time(self, args: Fields, dialect: Dialect) -> Fields:
+        seconds, nanoseconds = divmod(self._router.ros_time_ns, NS_PER_S)
+        return {"time": {"sec": seconds, "nanosec": nanoseconds}}
+
+    def _get_ros_version(self, args: Fields, dialect: Dialect) -> Fields:
+        return {"version": 1, "distro": "noetic"} if dialect == "ros1" else {"version": 2, "distro": _DISTRO}
+
+
+def _spelled(name: str, dialect: Dialect) -> str:
+    return name.replace("/msg/", "/") if dialect == "ros1" else name
+
+
+def _short(name: str) -> str:
+    return name.replace("/srv/", "/")
+
+
+def _array_length(kind: FieldType) -> int:
+    """Return rosapi's number for an array: -1 none, 0 any length."""
+    return kind.size if kind.array == "fixed" else 0 if kind.array else -1
+
+
+def _example(kind: FieldType) -> str:
+    if kind.array:
+        return "[]"
+    if kind.is_message:
+        return "{}"
+    return {"bool": "False", "string": "", "wstring": "", "float32": "0.0", "float64": "0.0"}.get(kind.base, "0")
+
+
+def _text(definition: Definition) -> str:
+    """Return a definition as `.msg` text; of a constant only the value is known, its type is the narrowest usual."""
+    lines = [f"{_constant_type(value)} {name}={value}" for name, value in definition.constants.items()]
+    for field in definition.fields:
+        kind = field.type
+        limit = f"<={kind.string_limit}" if kind.string_limit else ""
+        size = {"": "", "fixed": f"[{kind.size}]", "bounded": f"[<={kind.size}]", "unbounded": "[]"}[kind.array]
+        lines.append(f"{_spelled(kind.base, 'ros1')}{limit}{size} {field.name}")
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _constant_type(value: Any) -> str:
+    if isinstance(value, bool):
+        return "bool"
+    if isinstance(value, int):
+        return "uint8" if 0 <= value <= 255 else "int64"
+    return "float64" if isinstance(value, float) else "string"
