@@ -105,7 +105,7 @@ def open_realtime(
         if session.features.autopilot is not None:
             programs.append(start_autopilot(address, session.features.autopilot))
     if session.outputs.can is not None:
-        wait_for_can(folder, supervisor.alive)
+        wait_for_can(folder, lambda: supervisor.alive() and not supervisor.counters().get("canbus"))
     seating = open_seating(resolved, console, stack, None if session.outputs.hud is None else keys)
     missing = stack.enter_context(realtime_hints())
     pace = Pacer(console.tick_hz)

@@ -87,6 +87,17 @@ def test_ecu_drives_the_car_by_can_alone(port: int, tmp_path: Path) -> None:
     assert {"can.blf", "can.log"} <= set(open_bundle(bundle).manifest.files)
 
 
+def test_bus_that_is_not_there_refuses_the_drive(tmp_path: Path) -> None:
+    session = override(load_session("can"), outputs={"can": {"interface": "socketcan", "channel": "can97"}})
+    (tmp_path / "can.yaml").write_text(to_text(session))
+    with running("drive", str(tmp_path / "can.yaml"), "--out", str(tmp_path / "bundle")) as drive:
+        _, err = drive.communicate(timeout=60)
+    assert drive.returncode == 2
+    first, *_, last = err.splitlines()
+    assert first.startswith("simconsole station: CAN socketcan can97: cannot be opened")
+    assert last == "simconsole drive: the CAN bus is not open; the station's own message stands above"
+
+
 def test_what_monitor_kept_is_replayed_and_heard_again(port: int, codec: Codec, tmp_path: Path) -> None:
     profile = CanProfile(port=port, log=())
     path = tmp_path / "heard.blf"
