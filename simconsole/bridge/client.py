@@ -79,6 +79,8 @@ class BridgeClient:
         self._web: WebSocketClientProtocol | None = None
         self._texts = TextAssembler(MAX_FRAGMENTS)
         self._received: deque[Received] = deque()
+        self.heard_s = 0.0
+        """When something last arrived, on the monotonic clock."""
 
     def __enter__(self) -> Self:
         """Return the client; it is closed at the end of the block."""
@@ -122,7 +124,7 @@ class BridgeClient:
                 self._socket = self._tls.wrap_socket(self._socket, server_hostname=self._uri.host)
             self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         except OSError as error:
-            self._drop()
+            self.drop()
             raise BridgeError(f"{self.url}: cannot connect: {error}") from None
         self._web = WebSocketClientProtocol(self._uri, max_size=MAX_MESSAGE_BYTES, logger=_logger)
         request = self._web.connect()
@@ -132,11 +134,11 @@ class BridgeClient:
         self._flush()
         while self._web.state is State.CONNECTING and self._web.handshake_exc is None:
             if not self._read(deadline - time.monotonic()):
-                self._drop()
+                self.drop()
                 raise BridgeError(f"{self.url}: no answer within {self._connect_timeout_s} s")
         if self._web.handshake_exc is not None:
             reason = self._web.handshake_exc
-            self._drop()
+            self.drop()
             raise BridgeError(f"{self.url}: refused: {reason}")
         for text in self.protocol.wishes():
             self._send(text)
@@ -149,7 +151,7 @@ class BridgeClient:
                 self._flush()
             except BridgeError:
                 pass
-        self._drop()
+        self.drop()
 
     def advertise(self, topic: str, type_name: str) -> None:
         """Announce that this client publishes `topic`. Errors as `ClientProtocol.advertise`."""
@@ -220,7 +222,7 @@ class BridgeClient:
                     self._socket.settimeout(self._connect_timeout_s)
                     self._socket.sendall(data)
             except OSError as error:
-                self._drop()
+                self.drop()
                 raise BridgeError(f"{self.url}: connection lost: {error}") from None
 
     def _read(self, timeout_s: float) -> bool:
@@ -233,9 +235,10 @@ class BridgeClient:
         except TimeoutError:
             return False
         except OSError as error:
-            self._drop()
+            self.drop()
             raise BridgeError(f"{self.url}: connection lost: {error}") from None
         if data:
+            self.heard_s = time.monotonic()
             self._web.receive_data(data)
         else:
             self._web.receive_eof()
@@ -244,7 +247,7 @@ class BridgeClient:
         if self._web is not None:
             self._flush()
         if web.state is State.CLOSED and web.handshake_exc is None:
-            self._drop()
+            self.drop()
             if not self._received:
                 raise BridgeError(f"{self.url}: connection closed by the server ({web.close_code})")
         return True
@@ -262,7 +265,18 @@ class BridgeClient:
                 if received is not None:
                     self._received.append(received)
 
-    def _drop(self) -> None:
+    def ping(self) -> None:
+        """Ask the server for a sign of life.
+
+        Raises:
+            BridgeError: the connection is lost.
+        """
+        if self._web is not None and self._web.state is State.OPEN:
+            self._web.send_ping(b"")
+            self._flush()
+
+    def drop(self) -> None:
+        """Close without a word: the other side is gone."""
         if self._socket is not None:
             self._socket.close()
         self._socket = None

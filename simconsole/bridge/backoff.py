@@ -1,0 +1,62 @@
+"""When to try again, and when to give a silent connection up: rules without a clock."""
+
+from typing import Final
+
+FIRST_S: Final = 0.1
+CAP_S: Final = 1.5
+"""With its jitter below 2 s, so that a server that is back is found again within that."""
+JITTER: Final = 0.25
+PING_AFTER_S: Final = 1.0
+DEAD_AFTER_S: Final = 3.0
+
+
+class Backoff:
+    """Pauses between attempts: doubled each time up to a cap, and scattered so that not all clients come at once."""
+
+    def __init__(self, first_s: float = FIRST_S, cap_s: float = CAP_S) -> None:
+        """Begin with `first_s`, never more than `cap_s` before the scatter."""
+        self._first_s = first_s
+        self._cap_s = cap_s
+        self._next_s = first_s
+
+    def pause_s(self, chance: float) -> float:
+        """Return the next pause; `chance`, 0 to 1, places it within 25 % about its middle."""
+        pause_s = self._next_s * (1.0 + JITTER * (2.0 * chance - 1.0))
+        self._next_s = min(self._cap_s, 2.0 * self._next_s)
+        return pause_s
+
+    def reset(self) -> None:
+        """Begin again: the connection stands."""
+        self._next_s = self._first_s
+
+
+class Liveness:
+    """Silence on a connection: after 1 s a ping is due, once a second; after 3 s it is dead."""
+
+    def __init__(self) -> None:
+        """Start at time 0; `begin` sets it."""
+        self._heard_s = 0.0
+        self._pinged_s = 0.0
+
+    def begin(self, now_s: float) -> None:
+        """Take a new connection."""
+        self._heard_s = self._pinged_s = now_s
+
+    def heard(self, at_s: float) -> None:
+        """Note that something arrived."""
+        self._heard_s = max(self._heard_s, at_s)
+
+    def is_dead(self, now_s: float) -> bool:
+        """Return whether the other side is to be taken for gone."""
+        return now_s - self._heard_s >= DEAD_AFTER_S
+
+    def ping_due(self, now_s: float) -> bool:
+        """Return whether to ping now, and take it as done."""
+        due = now_s - max(self._heard_s, self._pinged_s) >= PING_AFTER_S
+        if due:
+            self._pinged_s = now_s
+        return due
+
+    def patience_s(self, now_s: float) -> float:
+        """Return how long there is nothing to do about silence."""
+        return max(0.0, min(max(self._heard_s, self._pinged_s) + PING_AFTER_S, self._heard_s + DEAD_AFTER_S) - now_s)
