@@ -1,7 +1,7 @@
 """Profiles of vehicles: what a person would read off a data sheet or set by hand, with bounds and units in the keys."""
 
 from itertools import pairwise
-from typing import Annotated, TypeAlias
+from typing import Annotated, Literal, TypeAlias
 
 import msgspec
 
@@ -26,17 +26,18 @@ def require(good: bool, what: str) -> None:
 
 
 class BodyProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Mass and shape."""
+    """Mass and shape. Inertias are of the body on its springs, that of yaw of the whole car."""
 
     mass_kg: Annotated[float, msgspec.Meta(ge=300.0, le=5000.0)]
     yaw_inertia_kgm2: Annotated[float, msgspec.Meta(ge=100.0, le=20000.0)]
+    roll_inertia_kgm2: Annotated[float, msgspec.Meta(ge=50.0, le=10000.0)]
+    pitch_inertia_kgm2: Annotated[float, msgspec.Meta(ge=100.0, le=20000.0)]
     wheelbase_m: Annotated[float, msgspec.Meta(ge=1.0, le=6.0)]
     front_mass_share: Annotated[float, msgspec.Meta(ge=0.3, le=0.7)]
     cg_height_m: Annotated[float, msgspec.Meta(ge=0.1, le=1.5)]
     drag_area_m2: Annotated[float, msgspec.Meta(ge=0.0, le=5.0)]  # drag coefficient times frontal area
-    pitch_deg_per_mps2: Annotated[float, msgspec.Meta(ge=0.0, le=2.0)]
-    roll_deg_per_mps2: Annotated[float, msgspec.Meta(ge=0.0, le=2.0)]
-    sway_s: Annotated[float, msgspec.Meta(ge=0.02, le=1.0)]  # lag of load transfer, pitch and roll
+    front_lift_area_m2: Annotated[float, msgspec.Meta(ge=-3.0, le=3.0)]  # positive: up
+    rear_lift_area_m2: Annotated[float, msgspec.Meta(ge=-3.0, le=3.0)]
     length_m: Length
     width_m: Length
     height_m: Length
@@ -44,17 +45,33 @@ class BodyProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
 
 
 class AxleProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """One axle: both tyres, wheels and brakes together."""
+    """One axle. Inertia, tyre damping and brakes are of both wheels together; springs and dampers of one wheel."""
 
+    track_m: Annotated[float, msgspec.Meta(ge=0.5, le=3.0)]
+    unsprung_kg: Annotated[float, msgspec.Meta(ge=20.0, le=500.0)]  # both wheels with brakes and half of the arms
+    spring_npm: Annotated[float, msgspec.Meta(ge=5000.0, le=200000.0)]
+    damper_nspm: Annotated[float, msgspec.Meta(ge=100.0, le=20000.0)]
+    roll_bar_nmprad: Annotated[float, msgspec.Meta(ge=0.0, le=200000.0)]
+    roll_centre_m: Annotated[float, msgspec.Meta(ge=-0.2, le=0.5)]  # height
+    travel_m: Annotated[float, msgspec.Meta(ge=0.02, le=0.3)]  # from rest to either stop
+    stop_npm: Annotated[float, msgspec.Meta(ge=0.0, le=500000.0)]
+    tyre_spring_npm: Annotated[float, msgspec.Meta(ge=50000.0, le=800000.0)]  # vertical
+    tyre_damper_nspm: Annotated[float, msgspec.Meta(ge=0.0, le=5000.0)]
     wheel_radius_m: Annotated[float, msgspec.Meta(ge=0.1, le=0.8)]
     wheel_inertia_kgm2: Annotated[float, msgspec.Meta(ge=0.2, le=50.0)]
     slip_stiffness: Annotated[float, msgspec.Meta(ge=2.0, le=40.0)]  # force / load per unit of longitudinal slip
     cornering_stiffness_per_rad: Annotated[float, msgspec.Meta(ge=2.0, le=40.0)]  # force / load per slip angle
-    relaxation_x_m: Annotated[float, msgspec.Meta(ge=0.1, le=2.0)]
-    relaxation_y_m: Annotated[float, msgspec.Meta(ge=0.1, le=2.0)]
+    relaxation_x_m: Annotated[float, msgspec.Meta(ge=0.02, le=2.0)]
+    relaxation_y_m: Annotated[float, msgspec.Meta(ge=0.02, le=2.0)]
     damping_nspm: Annotated[float, msgspec.Meta(ge=0.0, le=3000.0)]
     locked_damping_nspm: Annotated[float, msgspec.Meta(ge=0.0, le=50000.0)]
     friction: Annotated[float, msgspec.Meta(ge=0.05, le=2.0)]  # on a ground of friction 1
+    sliding_share: Annotated[float, msgspec.Meta(ge=0.5, le=0.99)]  # of the friction, fully sliding
+    friction_fall: Annotated[float, msgspec.Meta(ge=0.0, le=0.5)]  # share lost per static load more
+    stiffness_fall: Annotated[float, msgspec.Meta(ge=0.0, le=0.5)]
+    camber_slip_per_rad: Annotated[float, msgspec.Meta(ge=0.0, le=0.5)]
+    camber_offset_slip: Annotated[float, msgspec.Meta(ge=0.0, le=0.01)]  # of any camber, however small
+    camber_per_roll: Annotated[float, msgspec.Meta(ge=-1.5, le=1.5)]  # camber gained per roll against the axle
     rolling_resistance: Annotated[float, msgspec.Meta(ge=0.0, le=0.1)]
     brake_nm: Torque
     handbrake_nm: Torque
@@ -64,13 +81,32 @@ class SteeringProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_
     """Hand wheel to road wheels and back."""
 
     ratio: Annotated[float, msgspec.Meta(ge=5.0, le=30.0)]
-    max_road_wheel_deg: Annotated[float, msgspec.Meta(ge=5.0, le=60.0)]
+    max_road_wheel_deg: Annotated[float, msgspec.Meta(ge=5.0, le=65.0)]
     lag_s: Seconds
     max_road_wheel_degps: Annotated[float, msgspec.Meta(ge=5.0, le=500.0)]
+    friction_deg: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)]  # road-wheel deviation that rack and column hold
+    compliance_deg_per_100nm: Annotated[float, msgspec.Meta(ge=0.0, le=2.0)]
+    ackermann_share: Share
     pneumatic_trail_m: Annotated[float, msgspec.Meta(ge=0.0, le=0.2)]
     caster_trail_m: Annotated[float, msgspec.Meta(ge=0.0, le=0.2)]
-    unassisted_share: Share  # of the tyres' torque that the power steering leaves to the hands
+    unassisted_share: Share  # of the tyres' torque that the power steering leaves to the hands, standing
+    unassisted_share_at_100kmh: Share
+    most_nm: Annotated[float, msgspec.Meta(ge=1.0, le=50.0)]  # towards which the assistance bends the torque
     damping_nms: Annotated[float, msgspec.Meta(ge=0.0, le=10.0)]
+    rim_friction_nm: Annotated[float, msgspec.Meta(ge=0.0, le=3.0)]
+
+
+class AidsProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Driver aids and their switches."""
+
+    anti_lock: bool
+    traction_control: bool
+    stability_control: bool
+    hill_hold: bool
+    characteristic_speed_kmh: Annotated[float, msgspec.Meta(ge=20.0, le=500.0)]  # of the yaw rate that ESC expects
+    stability_lateral_mps2: Annotated[float, msgspec.Meta(ge=1.0, le=15.0)]
+    stability_nm_per_radps: Annotated[float, msgspec.Meta(ge=0.0, le=100000.0)]
+    stability_nm: Torque
 
 
 class TorquePoint(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -118,6 +154,9 @@ class GearboxProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_f
     reverse: Ratio
     final: Ratio
     synchro_rpm: Annotated[float, msgspec.Meta(ge=0.0, le=2000.0)]  # a gear goes in against this mismatch
+    driven: Literal["front", "rear"]
+    lock_nm: Torque  # limited slip: what the differential always keeps between its wheels; 0: open
+    lock_share: Share  # and its share of the driving torque
     clutch_nm: Torque
     bite_closed: Share  # pedal position below which the clutch transmits everything
     bite_open: Share  # pedal position above which it transmits nothing
@@ -168,7 +207,7 @@ class AutomaticProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown
 class CarProfile(
     msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, tag_field="platform", tag="car"
 ):
-    """A front-wheel-drive car with a manual gearbox that can also work itself."""
+    """A car with a manual gearbox that can also work itself."""
 
     body: BodyProfile
     front: AxleProfile
@@ -177,6 +216,7 @@ class CarProfile(
     engine: EngineProfile
     gearbox: GearboxProfile
     automatic: AutomaticProfile
+    aids: AidsProfile
 
     def __post_init__(self) -> None:
         """Refuse an automatic that does not fit the engine, and wheels too light for their tyres at steps of 1 ms.

@@ -16,11 +16,15 @@ class Pose(NamedTuple):
 
 
 class Ground(NamedTuple):
-    """The ground under the vehicle: friction coefficient and the slope of its plane along x and y of `map`."""
+    """The ground under the vehicle: friction coefficient and the slope of its plane along x and y of `map`.
+
+    `right_share` is the share of the friction under the vehicle's right wheels: below 1 on split friction.
+    """
 
     friction: float
     slope_x: float
     slope_y: float
+    right_share: float = 1.0
 
 
 class Platform(NamedTuple):

@@ -63,7 +63,9 @@ def rows(
 ) -> Iterator[Row]:
     """Drive from a rolling start and yield every row."""
     wheel = speed_mps / 0.306
-    start = CarState(*vehicle.initial_state)._replace(vx_mps=speed_mps, front_wheel_radps=wheel, rear_wheel_radps=wheel)
+    start = CarState(*vehicle.initial_state)._replace(
+        vx_mps=speed_mps, fl_radps=wheel, fr_radps=wheel, rl_radps=wheel, rr_radps=wheel
+    )
     previous: Row = np.zeros(PLATFORM_AT + len(start))
     put(previous, PLATFORM_AT, start)
     for command in given:

@@ -5,19 +5,30 @@ from typing import Final
 
 import numpy as np
 
-from simconsole.profiles.vehicle import AutomaticProfile, AxleProfile, CarProfile, EngineProfile, GearboxProfile
+from simconsole.kernels import put
+from simconsole.profiles.vehicle import (
+    AidsProfile,
+    AutomaticProfile,
+    AxleProfile,
+    CarProfile,
+    EngineProfile,
+    GearboxProfile,
+)
+from simconsole.rows import PLATFORM_AT
 from simconsole.trigonometry import wrap_angle
-from simconsole.units import RAD_PER_DEG, RADPS_PER_RPM, STANDARD_GRAVITY_MPS2
+from simconsole.units import MPS_PER_KMH, RAD_PER_DEG, RADPS_PER_RPM, STANDARD_GRAVITY_MPS2
 from simconsole.vehicle.car.outputs import vehicle_state
 from simconsole.vehicle.car.parameters import (
+    AidParameters,
     AxleParameters,
     BodyParameters,
     CarParameters,
     EngineParameters,
     GearParameters,
+    SteeringParameters,
 )
 from simconsole.vehicle.car.state import CAR_WIDTH, CarState
-from simconsole.vehicle.car.step import step
+from simconsole.vehicle.car.step import load_car, step
 from simconsole.vehicle.platform import Ground, Platform, Pose
 
 AIR_KGPM3: Final = 1.225
@@ -25,6 +36,9 @@ AIR_KGPM3: Final = 1.225
 
 LEAST_FRICTION: Final = 0.01
 """Slipperier than wet ice; with none at all a tyre would have no limit to divide by."""
+
+TRAIL_END: Final = 1.7
+"""Demand at which the pneumatic trail is gone: before the side force has its maximum, as measured tyres show."""
 
 RAMPS: Final = 8
 LIMIT_BAND_RPM: Final = 100.0
@@ -41,17 +55,24 @@ def build_car(profile: CarProfile, pose: Pose, ground: Ground) -> Platform:
         engine_radps=car.engine.idle_radps,
         engine_running=1.0,
         lever_adopted=1.0,
+        throttle_share=1.0,
+        fl_brake_share=1.0,
+        fr_brake_share=1.0,
+        rl_brake_share=1.0,
+        rr_brake_share=1.0,
     )
     body = profile.body
+    row = np.zeros(PLATFORM_AT + CAR_WIDTH)
+    put(row, PLATFORM_AT, initial)
     return Platform(
         name="car",
         state=CarState,
         initial_state=tuple(initial),
-        initial_vehicle=vehicle_state(initial, car, 0.0),
+        initial_vehicle=vehicle_state(load_car(row), car, 0.0),
         parameters=np.array([value for group in car for value in group], dtype=np.float64),
         step=step,
         steering_ratio=profile.steering.ratio,
-        max_road_wheel_rad=car.body.max_road_wheel_rad,
+        max_road_wheel_rad=car.steering.max_road_wheel_rad,
         wheelbase_m=body.wheelbase_m,
         length_m=body.length_m,
         width_m=body.width_m,
@@ -62,54 +83,128 @@ def build_car(profile: CarProfile, pose: Pose, ground: Ground) -> Platform:
 
 def car_parameters(profile: CarProfile, ground: Ground) -> CarParameters:
     """Return the parameters of the kernels, in SI."""
+    front = _axle(profile, profile.front, ground, True)
+    rear = _axle(profile, profile.rear, ground, False)
+    driven = profile.rear if profile.gearbox.driven == "rear" else profile.front
     return CarParameters(
-        body=_body(profile, ground),
+        body=_body(profile, ground, front, rear),
+        steering=_steering(profile),
         engine=_engine(profile.engine),
-        gears=_gears(profile.gearbox, profile.automatic, profile.engine, profile.front.wheel_radius_m),
-        front=_axle(profile.front, ground),
-        rear=_axle(profile.rear, ground),
+        gears=_gears(profile.gearbox, profile.automatic, profile.engine, driven.wheel_radius_m),
+        aids=_aids(profile.aids),
+        front=front,
+        rear=rear,
     )
 
 
-def _body(profile: CarProfile, ground: Ground) -> BodyParameters:
-    body, steering = profile.body, profile.steering
+def _gravity(ground: Ground) -> float:
+    return STANDARD_GRAVITY_MPS2 / math.sqrt(1.0 + ground.slope_x**2 + ground.slope_y**2)
+
+
+def _body(profile: CarProfile, ground: Ground, front: AxleParameters, rear: AxleParameters) -> BodyParameters:
+    body = profile.body
+    sprung = body.mass_kg - profile.front.unsprung_kg - profile.rear.unsprung_kg
+    arm = (front.roll_arm_m * rear.ahead_m - rear.roll_arm_m * front.ahead_m) / (rear.ahead_m - front.ahead_m)
     return BodyParameters(
         mass_kg=body.mass_kg,
+        sprung_kg=sprung,
+        roll_inertia_kgm2=body.roll_inertia_kgm2,
+        pitch_inertia_kgm2=body.pitch_inertia_kgm2,
         yaw_inertia_kgm2=body.yaw_inertia_kgm2,
         cg_to_front_m=body.wheelbase_m * (1.0 - body.front_mass_share),
         cg_to_rear_m=body.wheelbase_m * body.front_mass_share,
         cg_height_m=body.cg_height_m,
         drag_nsspmm=0.5 * AIR_KGPM3 * body.drag_area_m2,
-        sway_s=body.sway_s,
-        pitch_rad_per_mps2=body.pitch_deg_per_mps2 * RAD_PER_DEG,
-        roll_rad_per_mps2=body.roll_deg_per_mps2 * RAD_PER_DEG,
+        front_lift_nsspmm=0.5 * AIR_KGPM3 * body.front_lift_area_m2,
+        rear_lift_nsspmm=0.5 * AIR_KGPM3 * body.rear_lift_area_m2,
+        sway_npm=body.mass_kg * _gravity(ground) * arm,
         slope_x=ground.slope_x,
         slope_y=ground.slope_y,
-        gravity_plane_mps2=STANDARD_GRAVITY_MPS2 / math.sqrt(1.0 + ground.slope_x**2 + ground.slope_y**2),
-        steering_lag_s=steering.lag_s,
-        steering_radps=steering.max_road_wheel_degps * RAD_PER_DEG,
-        max_road_wheel_rad=steering.max_road_wheel_deg * RAD_PER_DEG,
-        pneumatic_trail_m=steering.pneumatic_trail_m,
-        caster_trail_m=steering.caster_trail_m,
-        hand_torque_gain=steering.unassisted_share / steering.ratio,
-        hand_damping_nms=steering.damping_nms,
+        gravity_plane_mps2=_gravity(ground),
     )
 
 
-def _axle(axle: AxleProfile, ground: Ground) -> AxleParameters:
+def _steering(profile: CarProfile) -> SteeringParameters:
+    steering = profile.steering
+    share = steering.unassisted_share
+    per_mps = (steering.unassisted_share_at_100kmh - share) / (100.0 * MPS_PER_KMH)
+    return SteeringParameters(
+        natural_radps=2.0 / steering.lag_s,  # a critically damped rack lags behind a ramp by 2 / its natural frequency
+        rate_radps=steering.max_road_wheel_degps * RAD_PER_DEG,
+        max_road_wheel_rad=steering.max_road_wheel_deg * RAD_PER_DEG,
+        friction_rad=steering.friction_deg * RAD_PER_DEG,
+        compliance_radpnm=steering.compliance_deg_per_100nm * RAD_PER_DEG / 100.0,
+        ackermann=steering.ackermann_share * 0.5 * profile.front.track_m / profile.body.wheelbase_m,
+        pneumatic_trail_m=steering.pneumatic_trail_m,
+        trail_end=TRAIL_END,
+        caster_trail_m=steering.caster_trail_m,
+        hand_torque_gain=share / steering.ratio,
+        hand_torque_gain_spm=per_mps / steering.ratio,
+        hand_torque_most_nm=steering.most_nm,
+        hand_damping_nms=steering.damping_nms,
+        hand_friction_nm=steering.rim_friction_nm,
+    )
+
+
+def _aids(aids: AidsProfile) -> AidParameters:
+    return AidParameters(
+        anti_lock=float(aids.anti_lock),
+        traction=float(aids.traction_control),
+        stability=float(aids.stability_control),
+        hill_hold=float(aids.hill_hold),
+        understeer_s2pm2=1.0 / (aids.characteristic_speed_kmh * MPS_PER_KMH) ** 2,
+        lateral_mps2=aids.stability_lateral_mps2,
+        stability_nms=aids.stability_nm_per_radps,
+        stability_most_nm=aids.stability_nm,
+    )
+
+
+def _axle(profile: CarProfile, axle: AxleProfile, ground: Ground, at_front: bool) -> AxleParameters:
+    """Return one axle.
+
+    The side force at the ground rolls the sprung mass alone, about the roll centre; what the roll centre's links and
+    the wheels' own mass take goes to the wheels directly. Together both arms give the moment of the whole car.
+    """
+    body = profile.body
+    share = body.front_mass_share if at_front else 1.0 - body.front_mass_share
+    unsprung = profile.front.unsprung_kg + profile.rear.unsprung_kg
+    sprung = body.mass_kg - unsprung
+    sprung_height = (body.mass_kg * body.cg_height_m - unsprung * axle.wheel_radius_m) / sprung
+    friction = axle.friction * max(ground.friction, LEAST_FRICTION)
+    right = friction * ground.right_share if ground.right_share > LEAST_FRICTION else friction * LEAST_FRICTION
     return AxleParameters(
-        wheel_inertia_kgm2=axle.wheel_inertia_kgm2,
+        ahead_m=body.wheelbase_m * (1.0 - share) * (1.0 if at_front else -1.0),
+        half_track_m=0.5 * axle.track_m,
+        wheel_inertia_kgm2=0.5 * axle.wheel_inertia_kgm2,
+        wheel_mass_kg=0.5 * axle.unsprung_kg,
         radius_m=axle.wheel_radius_m,
+        static_n=0.5 * share * body.mass_kg * _gravity(ground),
         stiffness_x_per_m=axle.slip_stiffness / axle.relaxation_x_m,
         stiffness_y_per_m=axle.cornering_stiffness_per_rad / axle.relaxation_y_m,
         decay_x_per_m=1.0 / axle.relaxation_x_m,
         decay_y_per_m=1.0 / axle.relaxation_y_m,
-        damping_nspm=axle.damping_nspm,
-        locked_damping_nspm=axle.locked_damping_nspm,
-        friction=axle.friction * max(ground.friction, LEAST_FRICTION),
+        damping_nspm=0.5 * axle.damping_nspm,
+        locked_damping_nspm=0.5 * axle.locked_damping_nspm,
+        friction_left=friction,
+        friction_right=right,
+        friction_fall=axle.friction_fall,
+        stiffness_fall=axle.stiffness_fall,
+        slide_demand=2.0 * (1.0 + math.sqrt(1.0 - axle.sliding_share**2)) / axle.sliding_share,
+        camber_offset=axle.camber_offset_slip,
+        camber_slip=axle.camber_slip_per_rad,
+        camber_gain=axle.camber_per_roll,
         rolling_resistance=axle.rolling_resistance,
-        brake_nm=axle.brake_nm,
-        handbrake_nm=axle.handbrake_nm,
+        spring_npm=axle.spring_npm,
+        damper_nspm=axle.damper_nspm,
+        bar_npm=axle.roll_bar_nmprad / axle.track_m**2,
+        travel_m=axle.travel_m,
+        stop_npm=axle.stop_npm,
+        carcass_npm=axle.tyre_spring_npm,
+        carcass_nspm=axle.tyre_damper_nspm,
+        roll_arm_m=(sprung_height - axle.roll_centre_m) * sprung / body.mass_kg,
+        link_arm_m=(axle.roll_centre_m * sprung + axle.wheel_radius_m * unsprung) / body.mass_kg,
+        brake_nm=0.5 * axle.brake_nm,
+        handbrake_nm=0.5 * axle.handbrake_nm,
     )
 
 
@@ -177,4 +272,7 @@ def _gears(box: GearboxProfile, auto: AutomaticProfile, engine: EngineProfile, r
         lock_to_radps=auto.lock_to_rpm * RADPS_PER_RPM,
         clutch_opening_per_s=1.0 / auto.clutch_opening_s,
         clutch_closing_per_s=1.0 / auto.clutch_closing_s,
+        rear_driven=1.0 if box.driven == "rear" else 0.0,
+        lock_nm=0.5 * box.lock_nm,
+        lock_share=0.5 * box.lock_share,
     )

@@ -1,67 +1,127 @@
-"""Both axles: where their contact patches slide, what their tyres push."""
+"""The four wheels on the ground: where their contact patches slide, what their tyres push."""
 
 from typing import NamedTuple
 
 from simconsole.kernels import kernel
-from simconsole.trigonometry import cos, sin
-from simconsole.vehicle.car.body import front_load
-from simconsole.vehicle.car.parameters import CarParameters
-from simconsole.vehicle.car.state import CarState
+from simconsole.vehicle.car.parameters import AxleParameters, CarParameters
+from simconsole.vehicle.car.state import BodyState, Car, Wheel
+from simconsole.vehicle.car.steering import Heading, aligning_moment
+from simconsole.vehicle.car.suspension import axle_roll, wheel_load
 from simconsole.vehicle.car.tyre import Tyre, tyre
+
+
+class Contact(NamedTuple):
+    """One tyre on the ground after one step; speed and forces along the body."""
+
+    tyre: Tyre
+    load_n: float
+    ground_mps: float  # of the wheel's centre over the ground, along the wheel
+    force_x_n: float
+    force_y_n: float
 
 
 class Axles(NamedTuple):
     """Tyres of one step and the sum of their forces on the body."""
 
-    front: Tyre
-    rear: Tyre
-    front_load_n: float
-    rear_load_n: float
+    fl: Contact
+    fr: Contact
+    rl: Contact
+    rr: Contact
     force_x_n: float  # along the body
-    force_y_n: float
+    front_y_n: float
+    rear_y_n: float
     moment_nm: float  # about the centre of gravity, left-positive
+    aligning_nm: float  # about the kingpins, left-positive
 
 
 @kernel
-def push(s: CarState, car: CarParameters, angle_rad: float, step_s: float) -> Axles:
-    """Return the tyres one step later, at the new road-wheel angle."""
-    body = car.body
-    c = cos(angle_rad)
-    d = sin(angle_rad)
-    front_n = front_load(body, s.transfer_ax_mps2)
-    rear_n = body.mass_kg * body.gravity_plane_mps2 - front_n
-    front_vy = s.vy_mps + body.cg_to_front_m * s.yaw_rate_radps
+def contact(
+    axle: AxleParameters,
+    friction: float,
+    wheel: Wheel,
+    vx_mps: float,
+    vy_mps: float,
+    c: float,
+    s: float,
+    turned_rad: float,
+    camber_rad: float,
+    step_s: float,
+) -> Contact:
+    """Return one tyre one step later, its wheel pointing along (c, s), its contact patch moving with (vx, vy)."""
+    load = wheel_load(axle, wheel)
     # The contact patch stays on the ground while the wheel turns about it: its deflection turns back in the wheel.
-    turned = angle_rad - s.road_wheel_rad
-    kept_x = s.front_deflection_x_m + turned * s.front_deflection_y_m
-    kept_y = s.front_deflection_y_m - turned * kept_x
-    front = tyre(
-        car.front,
-        front_n,
-        s.vx_mps * c + front_vy * d - s.front_wheel_radps * car.front.radius_m,
-        front_vy * c - s.vx_mps * d,
-        s.front_wheel_radps,
+    kept_x = wheel.deflection_x_m + turned_rad * wheel.deflection_y_m
+    kept_y = wheel.deflection_y_m - turned_rad * kept_x
+    along = vx_mps * c + vy_mps * s
+    t = tyre(
+        axle,
+        friction,
+        load,
+        along - wheel.radps * axle.radius_m,
+        vy_mps * c - vx_mps * s,
+        wheel.radps,
         kept_x,
         kept_y,
+        camber_rad,
         step_s,
     )
-    rear = tyre(
-        car.rear,
-        rear_n,
-        s.vx_mps - s.rear_wheel_radps * car.rear.radius_m,
-        s.vy_mps - body.cg_to_rear_m * s.yaw_rate_radps,
-        s.rear_wheel_radps,
-        s.rear_deflection_x_m,
-        s.rear_deflection_y_m,
-        step_s,
+    force_x = t.force_x_n * c - t.force_y_n * s
+    return Contact(t, load, along, force_x, t.force_x_n * s + t.force_y_n * c)
+
+
+@kernel
+def side_speed(axle: AxleParameters, body: BodyState, left: Wheel, right: Wheel) -> float:
+    """Return the velocity of an axle's contact patches to the left.
+
+    Rolling moves them against the body with the same arms with which their forces roll it: whoever leaves one of the
+    two out makes energy of nothing.
+    """
+    turning = body.vy_mps + axle.ahead_m * body.yaw_rate_radps
+    return turning + axle.roll_arm_m * body.roll_radps + axle.link_arm_m * axle_roll(axle, left.lift_mps, right.lift_mps)
+
+
+@kernel
+def camber(axle: AxleParameters, body: BodyState, left: Wheel, right: Wheel) -> float:
+    """Return the lean of an axle's wheels."""
+    return body.roll_rad + axle.camber_gain * (body.roll_rad - axle_roll(axle, left.lift_m, right.lift_m))
+
+
+@kernel
+def push(car: Car, p: CarParameters, points: Heading, turned_rad: float, step_s: float) -> Axles:
+    """Return the tyres one step later, with the front wheels pointing to `points`."""
+    body = car.body
+    front = p.front
+    rear = p.rear
+    vx = body.vx_mps - p.body.cg_height_m * body.pitch_radps
+    vy = side_speed(front, body, car.fl, car.fr)
+    side = front.half_track_m * body.yaw_rate_radps
+    lean = camber(front, body, car.fl, car.fr)
+    fl = contact(
+        front, front.friction_left, car.fl, vx - side, vy, points.left_cos, points.left_sin, turned_rad, lean, step_s
     )
-    front_y = front.force_x_n * d + front.force_y_n * c
+    fr = contact(
+        front, front.friction_right, car.fr, vx + side, vy, points.right_cos, points.right_sin, turned_rad, lean, step_s
+    )
+    vy = side_speed(rear, body, car.rl, car.rr)
+    side = rear.half_track_m * body.yaw_rate_radps
+    lean = camber(rear, body, car.rl, car.rr)
+    rl = contact(rear, rear.friction_left, car.rl, vx - side, vy, 1.0, 0.0, 0.0, lean, step_s)
+    rr = contact(rear, rear.friction_right, car.rr, vx + side, vy, 1.0, 0.0, 0.0, lean, step_s)
+    front_y = fl.force_y_n + fr.force_y_n
+    rear_y = rl.force_y_n + rr.force_y_n
+    steering = p.steering
+    aligning = aligning_moment(
+        steering, fl.tyre.force_y_n, fl.tyre.demand, car.fl.radps * front.radius_m
+    ) + aligning_moment(steering, fr.tyre.force_y_n, fr.tyre.demand, car.fr.radps * front.radius_m)
     return Axles(
-        front,
-        rear,
-        front_n,
-        rear_n,
-        front.force_x_n * c - front.force_y_n * d + rear.force_x_n,
-        front_y + rear.force_y_n,
-        body.cg_to_front_m * front_y - body.cg_to_rear_m * rear.force_y_n,
+        fl,
+        fr,
+        rl,
+        rr,
+        (fl.force_x_n + fr.force_x_n) + (rl.force_x_n + rr.force_x_n),
+        front_y,
+        rear_y,
+        (front.ahead_m * front_y + rear.ahead_m * rear_y)
+        + (front.half_track_m * (fr.force_x_n - fl.force_x_n) + rear.half_track_m * (rr.force_x_n - rl.force_x_n)),
+        aligning,
     )

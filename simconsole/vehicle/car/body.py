@@ -1,72 +1,103 @@
-"""Body: axle loads and the motion of a rigid body in the plane of the ground."""
+"""Body: motion of a rigid body in six degrees of freedom, roll and pitch small, and of the wheels up and down."""
 
 from math import sqrt
 from typing import NamedTuple
 
 from simconsole.kernels import clip, kernel
-from simconsole.trigonometry import cos, sin
-from simconsole.vehicle.car.parameters import BodyParameters
-from simconsole.vehicle.car.state import CarState
+from simconsole.trigonometry import cos, sin, wrap_angle
+from simconsole.vehicle.car.axles import Axles, Contact
+from simconsole.vehicle.car.parameters import AxleParameters, BodyParameters, CarParameters
+from simconsole.vehicle.car.state import BodyState, Car, Wheel
+from simconsole.vehicle.car.suspension import Travel, strut, travel
+
+MOST_LEAN_RAD = 0.5
+"""Where small angles and springs are no model any more: the body leans and the wheels lift no further."""
+MOST_LIFT_M = 0.5
+
+
+class AxleMotion(NamedTuple):
+    """Wheels of one axle after one step, and what their struts give the body."""
+
+    left_m: float
+    left_mps: float
+    right_m: float
+    right_mps: float
+    force_n: float
+    moment_nm: float  # about the long axis, positive left side up
 
 
 class Motion(NamedTuple):
-    """Pose of base_link, velocities and accelerations of the centre of gravity after one step."""
+    """Body and lifts of all wheels after one step."""
 
-    x_m: float
-    y_m: float
-    yaw_rad: float
-    vx_mps: float
-    vy_mps: float
-    yaw_rate_radps: float
-    ax_mps2: float
-    ay_mps2: float
-    distance_m: float
+    body: BodyState
+    front: AxleMotion
+    rear: AxleMotion
 
 
 @kernel
-def front_load(p: BodyParameters, transfer_ax_mps2: float) -> float:
-    """Return the load of the front axle in N: static share minus what accelerating moves to the rear.
-
-    Quasi-static balance about the rear contact: neither axle ever lifts (5 to 95 %), so that the tyres keep a limit.
-    """
-    share = (p.cg_to_rear_m - p.cg_height_m * transfer_ax_mps2 / p.gravity_plane_mps2) / (
-        p.cg_to_front_m + p.cg_to_rear_m
+def move_axle(
+    axle: AxleParameters, struts: Travel, left: Wheel, right: Wheel, on_left: Contact, on_right: Contact, step_s: float
+) -> AxleMotion:
+    """Return the wheels' vertical motion one step later. The links load them with the side force directly."""
+    left_n = strut(axle, struts.left_m, struts.left_mps, struts.right_m)
+    right_n = strut(axle, struts.right_m, struts.right_mps, struts.left_m)
+    lifted = (on_left.force_y_n + on_right.force_y_n) * axle.link_arm_m / (2.0 * axle.half_track_m)
+    share = step_s / axle.wheel_mass_kg
+    left_mps = left.lift_mps + share * (on_left.load_n - axle.static_n - left_n + lifted)
+    right_mps = right.lift_mps + share * (on_right.load_n - axle.static_n - right_n - lifted)
+    return AxleMotion(
+        clip(left.lift_m + step_s * left_mps, -MOST_LIFT_M, MOST_LIFT_M),
+        left_mps,
+        clip(right.lift_m + step_s * right_mps, -MOST_LIFT_M, MOST_LIFT_M),
+        right_mps,
+        left_n + right_n,
+        axle.half_track_m * (left_n - right_n),
     )
-    return p.mass_kg * p.gravity_plane_mps2 * clip(share, 0.05, 0.95)
 
 
 @kernel
-def move(
-    p: BodyParameters, before: CarState, force_x_n: float, force_y_n: float, moment_nm: float, step_s: float
-) -> Motion:
-    """Advance the body by one semi-implicit step: velocities from the forces, then the pose from the new velocities.
-
-    Args:
-        p: body and ground.
-        before: the car before the step.
-        force_x_n: sum of the tyre forces, forwards.
-        force_y_n: sum of the tyre forces, to the left.
-        moment_nm: of the tyre forces about the centre of gravity.
-        step_s: length of the step.
-    """
+def move(car: Car, p: CarParameters, axles: Axles, step_s: float) -> Motion:
+    """Advance the body by one semi-implicit step: velocities from the forces, then the pose from the new velocities."""
+    before = car.body
+    body = p.body
+    front = move_axle(p.front, travel(p.front, before, car.fl, car.fr), car.fl, car.fr, axles.fl, axles.fr, step_s)
+    rear = move_axle(p.rear, travel(p.rear, before, car.rl, car.rr), car.rl, car.rr, axles.rl, axles.rr, step_s)
     c = cos(before.yaw_rad)
     s = sin(before.yaw_rad)
-    air = p.drag_nsspmm * sqrt(before.vx_mps * before.vx_mps + before.vy_mps * before.vy_mps)
-    ax = (force_x_n - air * before.vx_mps) / p.mass_kg - p.gravity_plane_mps2 * (p.slope_x * c + p.slope_y * s)
-    ay = (force_y_n - air * before.vy_mps) / p.mass_kg - p.gravity_plane_mps2 * (p.slope_y * c - p.slope_x * s)
+    speed = sqrt(before.vx_mps * before.vx_mps + before.vy_mps * before.vy_mps)
+    air = body.drag_nsspmm * speed
+    gravity = body.gravity_plane_mps2
+    ax = (axles.force_x_n - air * before.vx_mps) / body.mass_kg - gravity * (body.slope_x * c + body.slope_y * s)
+    side_n = axles.front_y_n + axles.rear_y_n
+    ay = (side_n - air * before.vy_mps) / body.mass_kg - gravity * (body.slope_y * c - body.slope_x * s)
     # One after the other, not both from the old values: turning the body then neither adds nor takes energy.
     vx = before.vx_mps + step_s * (ax + before.yaw_rate_radps * before.vy_mps)
     vy = before.vy_mps + step_s * (ay - before.yaw_rate_radps * vx)
-    yaw_rate = before.yaw_rate_radps + step_s * moment_nm / p.yaw_inertia_kgm2
-    rear_vy = vy - p.cg_to_rear_m * yaw_rate
-    return Motion(
+    yaw_rate = before.yaw_rate_radps + step_s * (axles.moment_nm + axles.aligning_nm) / body.yaw_inertia_kgm2
+    front_lift = body.front_lift_nsspmm * speed * speed
+    rear_lift = body.rear_lift_nsspmm * speed * speed
+    heave_mps = before.heave_mps + step_s * (front.force_n + rear.force_n + front_lift + rear_lift) / body.sprung_kg
+    rolling = p.front.roll_arm_m * axles.front_y_n + p.rear.roll_arm_m * axles.rear_y_n + body.sway_npm * before.roll_rad
+    roll_radps = before.roll_radps + step_s * (front.moment_nm + rear.moment_nm + rolling) / body.roll_inertia_kgm2
+    pitching = p.front.ahead_m * (front.force_n + front_lift) + p.rear.ahead_m * (rear.force_n + rear_lift)
+    pitching += body.cg_height_m * axles.force_x_n
+    pitch_radps = before.pitch_radps - step_s * pitching / body.pitch_inertia_kgm2
+    rear_vy = vy - body.cg_to_rear_m * yaw_rate
+    moved = BodyState(
         before.x_m + step_s * (vx * c - rear_vy * s),
         before.y_m + step_s * (vx * s + rear_vy * c),
-        before.yaw_rad + step_s * yaw_rate,
+        wrap_angle(before.yaw_rad + step_s * yaw_rate),
         vx,
         vy,
         yaw_rate,
         ax,
         ay,
+        clip(before.heave_m + step_s * heave_mps, -MOST_LIFT_M, MOST_LIFT_M),
+        heave_mps,
+        clip(before.roll_rad + step_s * roll_radps, -MOST_LEAN_RAD, MOST_LEAN_RAD),
+        roll_radps,
+        clip(before.pitch_rad + step_s * pitch_radps, -MOST_LEAN_RAD, MOST_LEAN_RAD),
+        pitch_radps,
         before.distance_m + step_s * sqrt(vx * vx + rear_vy * rear_vy),
     )
+    return Motion(moved, front, rear)

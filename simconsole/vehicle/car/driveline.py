@@ -4,12 +4,13 @@ from typing import Final, NamedTuple
 
 from simconsole.kernels import clip, kernel
 from simconsole.signals import Request
-from simconsole.vehicle.car.axles import Axles
+from simconsole.vehicle.car.aids import Brakes, brake_torques, hill_hold, stability, traction
+from simconsole.vehicle.car.axles import Axles, Contact
 from simconsole.vehicle.car.engine import EngineDrive, engine_drive
-from simconsole.vehicle.car.gearbox import Gearbox, bite, gear_ratio, matched_throttle, work_gearbox
-from simconsole.vehicle.car.parameters import CarParameters
-from simconsole.vehicle.car.powertrain import Shafts, braked, solve_shafts
-from simconsole.vehicle.car.state import CarState
+from simconsole.vehicle.car.gearbox import bite, gear_ratio, matched_throttle, work_gearbox
+from simconsole.vehicle.car.parameters import AxleParameters, CarParameters
+from simconsole.vehicle.car.powertrain import Capacity, Shafts, braked, solve_shafts
+from simconsole.vehicle.car.state import AidState, Car, Gearbox, ShaftState, Wheel
 
 ANTI_STALL_FROM: Final = 0.6
 ANTI_STALL_TO: Final = 0.9
@@ -20,73 +21,119 @@ class Driveline(NamedTuple):
     """Everything that turns, after one step."""
 
     box: Gearbox
-    engine_running: float
-    shafts: Shafts
-    rear_wheel_radps: float
+    shafts: ShaftState
+    brakes: Brakes
+    aids: AidState
+    fl_radps: float
+    fr_radps: float
+    rl_radps: float
+    rr_radps: float
 
 
 @kernel
-def clutch_torque(s: CarState, car: CarParameters, box: Gearbox) -> float:
+def clutch_torque(engine_radps: float, car: CarParameters, box: Gearbox) -> float:
     """Return what the clutch can transmit in N m: nothing in neutral, less where the automatic saves the engine."""
     if box.gear == 0.0:
         return 0.0
     torque = bite(car.gears, box.clutch) * car.gears.clutch_nm
     if box.lever_adopted != 0.0:
         return torque
-    turning = s.engine_radps / car.engine.idle_radps
+    turning = engine_radps / car.engine.idle_radps
     return torque * clip((turning - ANTI_STALL_FROM) / (ANTI_STALL_TO - ANTI_STALL_FROM), 0.0, 1.0)
 
 
 @kernel
-def turn(s: CarState, car: CarParameters, request: Request, axles: Axles, step_s: float) -> Driveline:
-    """Return the driveline one step later, under the tyre forces of `axles`."""
-    box = work_gearbox(
-        car.gears,
-        Gearbox(s.gear, s.clutch, s.lever_adopted, s.wanted_gear, s.shift_left_s, s.since_shift_s),
-        request,
-        s.engine_radps,
-        s.front_wheel_radps,
-        s.vx_mps,
-        step_s,
-    )
-    clutch_nm = clutch_torque(s, car, box)
-    throttle = matched_throttle(car.gears, box, request.throttle, s.engine_radps, s.front_wheel_radps)
-    drive = engine_drive(car.engine, s.engine_radps, s.engine_running, throttle, clutch_nm == 0.0)
-    shafts = turn_front(s, car, request, axles, drive, gear_ratio(car.gears, box.gear), clutch_nm, step_s)
-    rear = car.rear
-    rear_nm = request.brake * rear.brake_nm + request.handbrake * rear.handbrake_nm
-    rear_wheel = braked(
-        s.rear_wheel_radps - step_s * axles.rear.force_x_n * rear.radius_m / rear.wheel_inertia_kgm2,
-        rear.wheel_inertia_kgm2,
-        step_s * (rear_nm + rear.rolling_resistance * axles.rear_load_n * rear.radius_m),
-    )
-    return Driveline(box, drive.running, shafts, rear_wheel)
+def spun(axle: AxleParameters, wheel: Wheel, on_ground: Contact, step_s: float) -> float:
+    """Return the spin of a wheel after its tyre's force, before its brake."""
+    return wheel.radps - step_s * on_ground.tyre.force_x_n * axle.radius_m / axle.wheel_inertia_kgm2
 
 
 @kernel
-def turn_front(
-    s: CarState,
-    car: CarParameters,
-    request: Request,
-    axles: Axles,
-    drive: EngineDrive,
-    ratio: float,
-    clutch_nm: float,
-    step_s: float,
-) -> Shafts:
-    """Return engine and front wheels one step later. Rolling resistance is a friction on the wheel, like the brake."""
-    front = car.front
-    brake_nm = request.brake * front.brake_nm + request.handbrake * front.handbrake_nm
-    return solve_shafts(
-        s.engine_radps + step_s * drive.torque_nm / car.engine.inertia_kgm2,
-        s.front_wheel_radps - step_s * axles.front.force_x_n * front.radius_m / front.wheel_inertia_kgm2,
-        ratio,
-        car.engine.inertia_kgm2,
-        front.wheel_inertia_kgm2,
+def friction_nms(axle: AxleParameters, brake_nm: float, on_ground: Contact, step_s: float) -> float:
+    """Return what brake and rolling resistance can do in a step: both are a friction on the wheel."""
+    return step_s * (brake_nm + axle.rolling_resistance * on_ground.load_n * axle.radius_m)
+
+
+@kernel
+def turn(car: Car, p: CarParameters, request: Request, axles: Axles, step_s: float) -> Driveline:
+    """Return the driveline one step later, under the tyre forces of `axles`."""
+    at_rear = p.gears.rear_driven != 0.0
+    before = car.shafts
+    mean = 0.5 * (car.rl.radps + car.rr.radps) if at_rear else 0.5 * (car.fl.radps + car.fr.radps)
+    box = work_gearbox(p.gears, car.box, request, before.engine_radps, mean, car.body.vx_mps, step_s)
+    clutch_nm = clutch_torque(before.engine_radps, p, box)
+    driven_axle = p.rear if at_rear else p.front
+    left = axles.rl if at_rear else axles.fl
+    right = axles.rr if at_rear else axles.fr
+    share = traction(p.aids, car.aids.throttle_share, left, right, mean * driven_axle.radius_m, step_s)
+    held = hill_hold(p.aids, p.body, car, request, step_s)
+    aids = AidState(share, stability(car, p, request.handbrake, step_s), held.hold_left_s, held.hold_brake)
+    brakes = brake_torques(car, p, request, axles, aids, step_s)
+    throttle = matched_throttle(p.gears, box, request.throttle * share, before.engine_radps, mean)
+    drive = engine_drive(p.engine, before.engine_radps, before.engine_running, throttle, clutch_nm == 0.0)
+    fl = spun(p.front, car.fl, axles.fl, step_s)
+    fr = spun(p.front, car.fr, axles.fr, step_s)
+    rl = spun(p.rear, car.rl, axles.rl, step_s)
+    rr = spun(p.rear, car.rr, axles.rr, step_s)
+    fl_nms = friction_nms(p.front, brakes.fl_nm, axles.fl, step_s)
+    fr_nms = friction_nms(p.front, brakes.fr_nm, axles.fr, step_s)
+    rl_nms = friction_nms(p.rear, brakes.rl_nm, axles.rl, step_s)
+    rr_nms = friction_nms(p.rear, brakes.rr_nm, axles.rr, step_s)
+    most = Capacity(
         step_s * drive.friction_nm,
         step_s * clutch_nm,
-        step_s * (brake_nm + front.rolling_resistance * axles.front_load_n * front.radius_m),
+        rl_nms if at_rear else fl_nms,
+        rr_nms if at_rear else fr_nms,
+        step_s * p.gears.lock_nm,
+        p.gears.lock_share,
+    )
+    shafts = turn_driven(
+        car, p, drive, rl if at_rear else fl, rr if at_rear else fr, gear_ratio(p.gears, box.gear), most, step_s
+    )
+    if at_rear:
+        rl = shafts.left_radps
+        rr = shafts.right_radps
+        fl = braked(fl, p.front.wheel_inertia_kgm2, fl_nms)
+        fr = braked(fr, p.front.wheel_inertia_kgm2, fr_nms)
+    else:
+        fl = shafts.left_radps
+        fr = shafts.right_radps
+        rl = braked(rl, p.rear.wheel_inertia_kgm2, rl_nms)
+        rr = braked(rr, p.rear.wheel_inertia_kgm2, rr_nms)
+    kept = ShaftState(
+        shafts.engine_radps,
+        drive.running,
+        shafts.engine_impulse_nms,
+        shafts.clutch_impulse_nms,
+        shafts.left_impulse_nms,
+        shafts.right_impulse_nms,
+        shafts.lock_impulse_nms,
+    )
+    return Driveline(box, kept, brakes, aids, fl, fr, rl, rr)
+
+
+@kernel
+def turn_driven(
+    car: Car,
+    p: CarParameters,
+    drive: EngineDrive,
+    left_radps: float,
+    right_radps: float,
+    ratio: float,
+    most: Capacity,
+    step_s: float,
+) -> Shafts:
+    """Return engine and driven wheels one step later."""
+    s = car.shafts
+    inertia = p.rear.wheel_inertia_kgm2 if p.gears.rear_driven != 0.0 else p.front.wheel_inertia_kgm2
+    speeds = Shafts(
+        s.engine_radps + step_s * drive.torque_nm / p.engine.inertia_kgm2,
+        left_radps,
+        right_radps,
         s.engine_impulse_nms,
         s.clutch_impulse_nms,
-        s.brake_impulse_nms,
+        s.left_impulse_nms,
+        s.right_impulse_nms,
+        s.lock_impulse_nms,
     )
+    return solve_shafts(speeds, ratio, p.engine.inertia_kgm2, inertia, most)

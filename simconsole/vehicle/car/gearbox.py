@@ -6,11 +6,10 @@ engaged gear and the automatic clutch stay until the person takes them back: by 
 lever where the gearbox is while the clutch is closed.
 """
 
-from typing import NamedTuple
-
 from simconsole.kernels import approach, clip, kernel
 from simconsole.signals import Request
 from simconsole.vehicle.car.parameters import GearParameters
+from simconsole.vehicle.car.state import Gearbox
 
 BACKWARDS_RADPS = -40.0
 """How fast a gear may turn the engine's side backwards when it goes in: rolling at a slow walking pace."""
@@ -21,17 +20,6 @@ ROLLING_MPS = 1.0
 BLIP_BAND_RADPS = 40.0
 BLIP_MOST = 0.7
 """The automatic's throttle by the speed that the engine is short of when it shifts down."""
-
-
-class Gearbox(NamedTuple):
-    """Clutch and gears after one step."""
-
-    gear: float
-    clutch: float
-    lever_adopted: float
-    wanted_gear: float
-    shift_left_s: float
-    since_shift_s: float
 
 
 @kernel

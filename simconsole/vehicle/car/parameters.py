@@ -4,18 +4,38 @@ from typing import Final, NamedTuple
 
 
 class AxleParameters(NamedTuple):
-    """One axle: both wheels, tyres and brakes taken together. Stiffness is per newton of load."""
+    """One axle. Figures of tyre, spring and brake are of one wheel; tyre stiffness is per newton of load."""
 
+    ahead_m: float  # of the centre of gravity, negative: behind
+    half_track_m: float
     wheel_inertia_kgm2: float
+    wheel_mass_kg: float
     radius_m: float
+    static_n: float  # load of one wheel at rest on this ground
     stiffness_x_per_m: float  # slip stiffness / relaxation length
     stiffness_y_per_m: float
     decay_x_per_m: float  # 1 / relaxation length
     decay_y_per_m: float
     damping_nspm: float
     locked_damping_nspm: float
-    friction: float  # of tyre and ground together
+    friction_left: float  # of tyre and ground together, at static load
+    friction_right: float
+    friction_fall: float  # share of the friction lost per static load more
+    stiffness_fall: float  # share of the stiffness lost per static load more
+    slide_demand: float  # demand at which the contact patch slides altogether
+    camber_offset: float  # slip that any camber adds, towards the lean
+    camber_slip: float  # slip per rad of camber
+    camber_gain: float  # camber per rad of roll between body and axle
     rolling_resistance: float
+    spring_npm: float
+    damper_nspm: float
+    bar_npm: float  # force on a wheel per difference of both wheels' travel
+    travel_m: float  # up to the stop, both ways
+    stop_npm: float
+    carcass_npm: float  # vertical stiffness of the tyre
+    carcass_nspm: float
+    roll_arm_m: float  # at which the side force rolls the body
+    link_arm_m: float  # at which it loads the wheels directly: roll centre and the wheels' own mass
     brake_nm: float
     handbrake_nm: float
 
@@ -83,39 +103,74 @@ class GearParameters(NamedTuple):
     lock_to_radps: float
     clutch_opening_per_s: float
     clutch_closing_per_s: float
+    rear_driven: float  # 1: the rear wheels, 0: the front wheels
+    lock_nm: float  # torque that the differential always keeps between its wheels
+    lock_share: float  # and its share of the driving torque
 
 
 class BodyParameters(NamedTuple):
-    """Body, aerodynamics, steering and the plane of the ground."""
+    """Body, aerodynamics and the plane of the ground."""
 
     mass_kg: float
+    sprung_kg: float
+    roll_inertia_kgm2: float
+    pitch_inertia_kgm2: float
     yaw_inertia_kgm2: float
     cg_to_front_m: float
     cg_to_rear_m: float
     cg_height_m: float
     drag_nsspmm: float  # force per squared speed
-    sway_s: float
-    pitch_rad_per_mps2: float
-    roll_rad_per_mps2: float
+    front_lift_nsspmm: float  # positive: up
+    rear_lift_nsspmm: float
+    sway_npm: float  # sprung weight times the mean roll arm, per rad: rolling lets the body down
     slope_x: float
     slope_y: float
     gravity_plane_mps2: float  # gravity / sqrt(1 + slope^2): times slope along, times 1 normal to the plane
-    steering_lag_s: float
-    steering_radps: float
+
+
+class SteeringParameters(NamedTuple):
+    """Hand wheel to road wheels and back."""
+
+    natural_radps: float  # of the rack, critically damped
+    rate_radps: float
     max_road_wheel_rad: float
+    friction_rad: float  # deviation that friction holds
+    compliance_radpnm: float  # by which the tyres' moment turns the wheels
+    ackermann: float  # share of the ideal times half of track over wheelbase
     pneumatic_trail_m: float
+    trail_end: float  # demand at which the pneumatic trail is gone
     caster_trail_m: float
-    hand_torque_gain: float  # assistance / steering ratio
-    hand_damping_nms: float
+    hand_torque_gain: float  # share that the assistance leaves / ratio, standing
+    hand_torque_gain_spm: float  # more of it per speed
+    hand_torque_most_nm: float  # towards which the assistance bends the torque
+    hand_damping_nms: float  # per road-wheel rate
+    hand_friction_nm: float
+
+
+class AidParameters(NamedTuple):
+    """Driver aids; a switch is 0 or 1. Slips are shares of the speed over ground."""
+
+    anti_lock: float
+    traction: float
+    stability: float
+    hill_hold: float
+    understeer_s2pm2: float  # of the yaw rate that ESC expects: r = v d / (L (1 + k v^2))
+    lateral_mps2: float  # which ESC takes for the most that the ground gives
+    stability_nms: float  # brake torque per yaw rate beyond the dead band
+    stability_most_nm: float
 
 
 BODY_AT: Final = 0
 BODY_WIDTH: Final = len(BodyParameters._fields)
-ENGINE_AT: Final = BODY_AT + BODY_WIDTH
+STEERING_AT: Final = BODY_AT + BODY_WIDTH
+STEERING_WIDTH: Final = len(SteeringParameters._fields)
+ENGINE_AT: Final = STEERING_AT + STEERING_WIDTH
 ENGINE_WIDTH: Final = len(EngineParameters._fields)
 GEARS_AT: Final = ENGINE_AT + ENGINE_WIDTH
 GEARS_WIDTH: Final = len(GearParameters._fields)
-FRONT_AT: Final = GEARS_AT + GEARS_WIDTH
+AIDS_AT: Final = GEARS_AT + GEARS_WIDTH
+AIDS_WIDTH: Final = len(AidParameters._fields)
+FRONT_AT: Final = AIDS_AT + AIDS_WIDTH
 AXLE_WIDTH: Final = len(AxleParameters._fields)
 REAR_AT: Final = FRONT_AT + AXLE_WIDTH
 
@@ -124,7 +179,9 @@ class CarParameters(NamedTuple):
     """All of it; the parameter row is these groups one after the other."""
 
     body: BodyParameters
+    steering: SteeringParameters
     engine: EngineParameters
     gears: GearParameters
+    aids: AidParameters
     front: AxleParameters
     rear: AxleParameters

@@ -1,9 +1,10 @@
-"""Engine, clutch and driven wheels as three friction constraints, solved as impulses.
+"""Engine, clutch, differential and driven wheels as friction constraints, solved as impulses.
 
-Engine friction, clutch and wheel brake each try to bring a relative speed to exactly zero and may use at most their
-capacity: sticking and slipping are one law, nothing is divided by a speed, nothing chatters. The three act on one
-shaft, so they are solved together: projected Gauss-Seidel sweeps that start from the last step's impulses (Catto,
-Iterative Dynamics with Temporal Coherence, GDC 2005), which makes a car parked in gear stand with no creep.
+Engine friction, clutch, both wheel brakes and the differential's lock each try to bring a relative speed to exactly
+zero and may use at most their capacity: sticking and slipping are one law, nothing is divided by a speed, nothing
+chatters. They act on one set of shafts, so they are solved together: projected Gauss-Seidel sweeps that start from the
+last step's impulses (Catto, Iterative Dynamics with Temporal Coherence, GDC 2005), which makes a car parked in gear
+stand with no creep. Left and right are always treated alike, so that mirrored drives stay mirrored to the last bit.
 """
 
 from typing import NamedTuple
@@ -15,64 +16,80 @@ class Shafts(NamedTuple):
     """Speeds and friction impulses after one step."""
 
     engine_radps: float
-    wheel_radps: float
+    left_radps: float
+    right_radps: float
     engine_impulse_nms: float
     clutch_impulse_nms: float
-    brake_impulse_nms: float
+    left_impulse_nms: float
+    right_impulse_nms: float
+    lock_impulse_nms: float
+
+
+class Capacity(NamedTuple):
+    """The most that each friction can do in one step, N m s; `lock_share` adds to the lock what the clutch drives."""
+
+    engine_nms: float
+    clutch_nms: float
+    left_nms: float
+    right_nms: float
+    lock_nms: float
+    lock_share: float
 
 
 @kernel
 def solve_shafts(
-    engine_radps: float,
-    wheel_radps: float,
-    ratio: float,
-    engine_inertia_kgm2: float,
-    wheel_inertia_kgm2: float,
-    engine_capacity_nms: float,
-    clutch_capacity_nms: float,
-    brake_capacity_nms: float,
-    engine_impulse_nms: float,
-    clutch_impulse_nms: float,
-    brake_impulse_nms: float,
+    before: Shafts, ratio: float, engine_inertia_kgm2: float, wheel_inertia_kgm2: float, most: Capacity
 ) -> Shafts:
     """Apply the frictions to the speeds that all other torques have already changed.
 
     Args:
-        engine_radps: engine speed.
-        wheel_radps: speed of the driven wheels.
-        ratio: engine speed per wheel speed; 0 in neutral, where the clutch capacity must be 0.
+        before: speeds, and the impulses found in the last step: engine and brakes positive slow a positive speed,
+            the clutch's positive drives the wheels, the lock's positive drives the left wheel.
+        ratio: engine speed per mean wheel speed; 0 in neutral, where the clutch capacity must be 0.
         engine_inertia_kgm2: engine and flywheel.
-        wheel_inertia_kgm2: both driven wheels.
-        engine_capacity_nms: engine friction torque times the step.
-        clutch_capacity_nms: clutch torque times the step.
-        brake_capacity_nms: brake and rolling resistance torque times the step.
-        engine_impulse_nms: impulse found in the last step, positive slows a positive speed.
-        clutch_impulse_nms: the same, positive drives the wheels.
-        brake_impulse_nms: the same as the engine's.
+        wheel_inertia_kgm2: one driven wheel.
+        most: the capacities.
     """
-    clutch_inertia = 1.0 / (1.0 / engine_inertia_kgm2 + ratio * ratio / wheel_inertia_kgm2)
-    friction = clip(engine_impulse_nms, -engine_capacity_nms, engine_capacity_nms)
-    clutch = clip(clutch_impulse_nms, -clutch_capacity_nms, clutch_capacity_nms)
-    brake = clip(brake_impulse_nms, -brake_capacity_nms, brake_capacity_nms)
-    engine = engine_radps - (friction + clutch) / engine_inertia_kgm2
-    wheel = wheel_radps + (ratio * clutch - brake) / wheel_inertia_kgm2
-    for _ in range(3):
-        new = clip(friction + engine * engine_inertia_kgm2, -engine_capacity_nms, engine_capacity_nms)
+    half = 0.5 * ratio
+    clutch_inertia = 1.0 / (1.0 / engine_inertia_kgm2 + 2.0 * half * half / wheel_inertia_kgm2)
+    friction = clip(before.engine_impulse_nms, -most.engine_nms, most.engine_nms)
+    clutch = clip(before.clutch_impulse_nms, -most.clutch_nms, most.clutch_nms)
+    left_brake = clip(before.left_impulse_nms, -most.left_nms, most.left_nms)
+    right_brake = clip(before.right_impulse_nms, -most.right_nms, most.right_nms)
+    bound = most.lock_nms + most.lock_share * abs(ratio * clutch)
+    lock = clip(before.lock_impulse_nms, -bound, bound)
+    engine = before.engine_radps - (friction + clutch) / engine_inertia_kgm2
+    left = before.left_radps + (half * clutch - left_brake + lock) / wheel_inertia_kgm2
+    right = before.right_radps + (half * clutch - right_brake - lock) / wheel_inertia_kgm2
+    for _ in range(4):
+        new = clip(friction + engine * engine_inertia_kgm2, -most.engine_nms, most.engine_nms)
         engine = engine - (new - friction) / engine_inertia_kgm2
         friction = new
-        new = clip(clutch + (engine - ratio * wheel) * clutch_inertia, -clutch_capacity_nms, clutch_capacity_nms)
+        new = clip(clutch + (engine - half * (left + right)) * clutch_inertia, -most.clutch_nms, most.clutch_nms)
         engine = engine - (new - clutch) / engine_inertia_kgm2
-        wheel = wheel + ratio * (new - clutch) / wheel_inertia_kgm2
+        left = left + half * (new - clutch) / wheel_inertia_kgm2
+        right = right + half * (new - clutch) / wheel_inertia_kgm2
         clutch = new
-        new = clip(brake + wheel * wheel_inertia_kgm2, -brake_capacity_nms, brake_capacity_nms)
-        wheel = wheel - (new - brake) / wheel_inertia_kgm2
-        brake = new
-    if abs(brake) < brake_capacity_nms:
-        wheel = 0.0  # the brake holds: what rounding left is not motion, and the tyre asks whether its wheel is held
-    return Shafts(engine, wheel, friction, clutch, brake)
+        bound = most.lock_nms + most.lock_share * abs(ratio * clutch)
+        new = clip(lock - 0.5 * (left - right) * wheel_inertia_kgm2, -bound, bound)
+        left = left + (new - lock) / wheel_inertia_kgm2
+        right = right - (new - lock) / wheel_inertia_kgm2
+        lock = new
+        new = clip(left_brake + left * wheel_inertia_kgm2, -most.left_nms, most.left_nms)
+        left = left - (new - left_brake) / wheel_inertia_kgm2
+        left_brake = new
+        new = clip(right_brake + right * wheel_inertia_kgm2, -most.right_nms, most.right_nms)
+        right = right - (new - right_brake) / wheel_inertia_kgm2
+        right_brake = new
+    # The brake holds: what rounding left is not motion, and the tyre asks whether its wheel is held.
+    if abs(left_brake) < most.left_nms:
+        left = 0.0
+    if abs(right_brake) < most.right_nms:
+        right = 0.0
+    return Shafts(engine, left, right, friction, clutch, left_brake, right_brake, lock)
 
 
 @kernel
 def braked(wheel_radps: float, inertia_kgm2: float, capacity_nms: float) -> float:
-    """Return the speed of free-running wheels after their brake: at most to exactly 0."""
+    """Return the speed of a free-running wheel after its brake: at most to exactly 0."""
     return approach(wheel_radps, 0.0, capacity_nms / inertia_kgm2)

@@ -1,41 +1,165 @@
-"""What the car remembers from one step to the next: its columns of the row."""
+"""What the car remembers from one step to the next: its columns of the row, and the same in groups for the kernels."""
 
 from typing import Final, NamedTuple
 
 
-class CarState(NamedTuple):
-    """State after a step of 1 ms. Wheels and tyres are per axle; deflections are in the wheel's own directions."""
+class BodyState(NamedTuple):
+    """Pose of base_link in map; motion of the centre of gravity along the body; lift and lean above the ground's plane.
 
-    x_m: float  # base_link in map
+    Heave, roll and pitch are measured from the car at rest on level ground: ISO 8855, roll positive left side up,
+    pitch positive nose down.
+    """
+
+    x_m: float
     y_m: float
     yaw_rad: float
-    vx_mps: float  # centre of gravity, along the body
+    vx_mps: float
     vy_mps: float
     yaw_rate_radps: float
-    ax_mps2: float  # centre of gravity, all forces
+    ax_mps2: float
     ay_mps2: float
-    transfer_ax_mps2: float  # what load transfer and pitch follow: tyre force per mass, filtered
-    lean_ay_mps2: float  # what roll follows, filtered
+    heave_m: float
+    heave_mps: float
+    roll_rad: float
+    roll_radps: float
+    pitch_rad: float
+    pitch_radps: float
+    distance_m: float
+
+
+class SteeringState(NamedTuple):
+    """The rack, as the mean angle of the front wheels, and what the rim feels."""
+
     road_wheel_rad: float
-    front_wheel_radps: float
-    rear_wheel_radps: float
-    front_deflection_x_m: float  # of the contact patch against the rim
-    front_deflection_y_m: float
-    rear_deflection_x_m: float
-    rear_deflection_y_m: float
+    road_wheel_radps: float
     hand_wheel_torque_nm: float
+
+
+class Wheel(NamedTuple):
+    """One wheel: spin, deflection of its contact patch against the rim, lift from rest, its share of the brake."""
+
+    radps: float
+    deflection_x_m: float
+    deflection_y_m: float
+    lift_m: float
+    lift_mps: float
+    brake_share: float  # what ABS leaves of the pedal, 0..1
+
+
+class ShaftState(NamedTuple):
+    """Engine, and the friction impulses of the last step: the next solution starts from them."""
+
     engine_radps: float
     engine_running: float
-    engine_impulse_nms: float  # friction of the last step: the next solution starts from it
+    engine_impulse_nms: float
     clutch_impulse_nms: float
-    brake_impulse_nms: float
+    left_impulse_nms: float  # brake of the left driven wheel
+    right_impulse_nms: float
+    lock_impulse_nms: float  # of the differential, positive drives the left wheel
+
+
+class Gearbox(NamedTuple):
+    """Clutch and gears."""
+
     gear: float  # engaged
     clutch: float  # pedal position in force, 0 closed, 1 open
     lever_adopted: float  # 0 after automatic driving, until the person takes the gears back
     wanted_gear: float  # of the shift in progress
     shift_left_s: float  # until the shift in progress is over
     since_shift_s: float
+
+
+class AidState(NamedTuple):
+    """Traction control, stability control, hill hold."""
+
+    throttle_share: float  # what TCS leaves of the throttle, 0..1
+    stability_nm: float  # ESC's brake torque: positive turns the car left
+    hold_left_s: float  # how long the hill hold still holds
+    hold_brake: float  # the pedal that it holds
+
+
+class Car(NamedTuple):
+    """The state in groups, in the order of its columns."""
+
+    body: BodyState
+    steering: SteeringState
+    fl: Wheel
+    fr: Wheel
+    rl: Wheel
+    rr: Wheel
+    shafts: ShaftState
+    box: Gearbox
+    aids: AidState
+
+
+class CarState(NamedTuple):
+    """The columns: the groups of `Car` one after the other, wheels prefixed by where they are (front left first)."""
+
+    x_m: float
+    y_m: float
+    yaw_rad: float
+    vx_mps: float
+    vy_mps: float
+    yaw_rate_radps: float
+    ax_mps2: float
+    ay_mps2: float
+    heave_m: float
+    heave_mps: float
+    roll_rad: float
+    roll_radps: float
+    pitch_rad: float
+    pitch_radps: float
     distance_m: float
+    road_wheel_rad: float
+    road_wheel_radps: float
+    hand_wheel_torque_nm: float
+    fl_radps: float
+    fl_deflection_x_m: float
+    fl_deflection_y_m: float
+    fl_lift_m: float
+    fl_lift_mps: float
+    fl_brake_share: float
+    fr_radps: float
+    fr_deflection_x_m: float
+    fr_deflection_y_m: float
+    fr_lift_m: float
+    fr_lift_mps: float
+    fr_brake_share: float
+    rl_radps: float
+    rl_deflection_x_m: float
+    rl_deflection_y_m: float
+    rl_lift_m: float
+    rl_lift_mps: float
+    rl_brake_share: float
+    rr_radps: float
+    rr_deflection_x_m: float
+    rr_deflection_y_m: float
+    rr_lift_m: float
+    rr_lift_mps: float
+    rr_brake_share: float
+    engine_radps: float
+    engine_running: float
+    engine_impulse_nms: float
+    clutch_impulse_nms: float
+    left_impulse_nms: float
+    right_impulse_nms: float
+    lock_impulse_nms: float
+    gear: float
+    clutch: float
+    lever_adopted: float
+    wanted_gear: float
+    shift_left_s: float
+    since_shift_s: float
+    throttle_share: float
+    stability_nm: float
+    hold_left_s: float
+    hold_brake: float
 
 
 CAR_WIDTH: Final = len(CarState._fields)
+BODY_WIDTH: Final = len(BodyState._fields)
+STEERING_WIDTH: Final = len(SteeringState._fields)
+WHEEL_WIDTH: Final = len(Wheel._fields)
+SHAFT_WIDTH: Final = len(ShaftState._fields)
+BOX_WIDTH: Final = len(Gearbox._fields)
+AID_WIDTH: Final = len(AidState._fields)

@@ -1,28 +1,69 @@
-"""Steering: the road wheels follow the command with lag and limits; the rim feels the front tyres."""
+"""Steering: the rack follows the command, turned a little by its tyres; the rim feels them with assistance."""
+
+from math import sqrt
+from typing import NamedTuple
 
 from simconsole.kernels import approach, clip, kernel
-from simconsole.vehicle.car.parameters import BodyParameters
+from simconsole.trigonometry import cos, sin
+from simconsole.vehicle.car.parameters import SteeringParameters
+from simconsole.vehicle.car.state import SteeringState
 
 ROLLING_MPS = 0.5
 """Rolling speed around which the pneumatic trail gets its direction: behind the wheel's centre as it rolls."""
+SLOW_RADPS = 0.01
+"""Road-wheel rate around which the friction at the rim gets its direction."""
+
+
+class Heading(NamedTuple):
+    """Cosine and sine of both front wheels' angles."""
+
+    left_cos: float
+    left_sin: float
+    right_cos: float
+    right_sin: float
 
 
 @kernel
-def steer(p: BodyParameters, road_wheel_rad: float, command_rad: float, step_s: float) -> float:
-    """Return the road-wheel angle after one step: a first-order lag (implicit), its rate and its angle limited."""
-    target = clip(command_rad, -p.max_road_wheel_rad, p.max_road_wheel_rad)
-    wanted = road_wheel_rad + (target - road_wheel_rad) * (step_s / (p.steering_lag_s + step_s))
-    return approach(road_wheel_rad, wanted, p.steering_radps * step_s)
+def steer(p: SteeringParameters, rack: SteeringState, command_rad: float, moment_nm: float, step_s: float) -> float:
+    """Return the rate of the rack in road-wheel rad/s after one step.
 
-
-@kernel
-def hand_wheel_torque(
-    p: BodyParameters, force_y_n: float, grip: float, rolling_mps: float, road_wheel_radps: float
-) -> float:
-    """Return the torque at the rim in N m, left-positive, with assistance.
-
-    Lateral force times trail. The pneumatic trail shrinks as the contact patch slides (brush model: to 0 at full
-    sliding), which is what a driver feels before the front axle lets go, and lies on the other side when reversing.
+    A critically damped second-order rack (implicit, stable at any stiffness) whose dry friction holds it exactly
+    where it is as long as the deviation is below `friction_rad`. The tyres' moment turns it through its compliance.
     """
-    pneumatic = p.pneumatic_trail_m * grip * rolling_mps / (abs(rolling_mps) + ROLLING_MPS)
-    return -p.hand_torque_gain * force_y_n * (p.caster_trail_m + pneumatic) - p.hand_damping_nms * road_wheel_radps
+    target = clip(command_rad + p.compliance_radpnm * moment_nm, -p.max_road_wheel_rad, p.max_road_wheel_rad)
+    pull = step_s * p.natural_radps * p.natural_radps
+    stiffness = 1.0 + 2.0 * step_s * p.natural_radps + step_s * pull
+    rate = (rack.road_wheel_radps + pull * (target - rack.road_wheel_rad)) / stiffness
+    return clip(approach(rate, 0.0, pull * p.friction_rad / stiffness), -p.rate_radps, p.rate_radps)
+
+
+@kernel
+def heading(p: SteeringParameters, mean_rad: float) -> Heading:
+    """Return where the front wheels point: the inner one further, cot(left) - cot(right) = -track / wheelbase."""
+    c = cos(mean_rad)
+    s = sin(mean_rad)
+    left = c - p.ackermann * s
+    right = c + p.ackermann * s
+    left_size = sqrt(left * left + s * s)
+    right_size = sqrt(right * right + s * s)
+    return Heading(left / left_size, s / left_size, right / right_size, s / right_size)
+
+
+@kernel
+def aligning_moment(p: SteeringParameters, force_y_n: float, demand: float, rolling_mps: float) -> float:
+    """Return the moment about the kingpin in N m, left-positive, of one tyre's side force.
+
+    The pneumatic trail shrinks as the contact patch slides, which is what a driver feels before the front axle lets
+    go, and lies on the other side when reversing.
+    """
+    pneumatic = p.pneumatic_trail_m * clip(1.0 - demand / p.trail_end, 0.0, 1.0)
+    return -force_y_n * (p.caster_trail_m + pneumatic * rolling_mps / (abs(rolling_mps) + ROLLING_MPS))
+
+
+@kernel
+def hand_wheel_torque(p: SteeringParameters, moment_nm: float, road_wheel_radps: float, speed_mps: float) -> float:
+    """Return the torque at the rim in N m, left-positive: the assistance leaves less of it the more there is."""
+    carried = (p.hand_torque_gain + p.hand_torque_gain_spm * clip(abs(speed_mps), 0.0, 50.0)) * moment_nm
+    bent = carried / (1.0 + abs(carried) / p.hand_torque_most_nm)
+    dry = p.hand_friction_nm * road_wheel_radps / (abs(road_wheel_radps) + SLOW_RADPS)
+    return bent - p.hand_damping_nms * road_wheel_radps - dry

@@ -5,12 +5,13 @@ from typing import Final
 from simconsole.kernels import Row, clip, is_finite, kernel, put, take
 from simconsole.rows import COMMAND_AT, COMMAND_WIDTH, PLATFORM_AT, VEHICLE_AT
 from simconsole.signals import Request, VehicleCommand
-from simconsole.trigonometry import wrap_angle
-from simconsole.vehicle.car.axles import push
+from simconsole.vehicle.car.axles import Contact, push
 from simconsole.vehicle.car.body import move
 from simconsole.vehicle.car.driveline import turn
 from simconsole.vehicle.car.outputs import vehicle_state
 from simconsole.vehicle.car.parameters import (
+    AIDS_AT,
+    AIDS_WIDTH,
     AXLE_WIDTH,
     BODY_AT,
     BODY_WIDTH,
@@ -20,33 +21,98 @@ from simconsole.vehicle.car.parameters import (
     GEARS_AT,
     GEARS_WIDTH,
     REAR_AT,
+    STEERING_AT,
+    STEERING_WIDTH,
+    AidParameters,
     AxleParameters,
     BodyParameters,
     CarParameters,
     EngineParameters,
     GearParameters,
+    SteeringParameters,
 )
-from simconsole.vehicle.car.state import CAR_WIDTH, CarState
-from simconsole.vehicle.car.steering import hand_wheel_torque, steer
+from simconsole.vehicle.car.state import (
+    AID_WIDTH,
+    BOX_WIDTH,
+    SHAFT_WIDTH,
+    WHEEL_WIDTH,
+    AidState,
+    BodyState,
+    Car,
+    Gearbox,
+    ShaftState,
+    SteeringState,
+    Wheel,
+)
+from simconsole.vehicle.car.state import BODY_WIDTH as BODY_STATE_WIDTH
+from simconsole.vehicle.car.state import STEERING_WIDTH as STEERING_STATE_WIDTH
+from simconsole.vehicle.car.steering import hand_wheel_torque, heading, steer
 
 STEP_S: Final = 0.001
 """The car integrates at 1 ms whatever the tick; its stiffest mode (a wheel on its tyre) has a period of 30 ms."""
+
+RACK_AT: Final = PLATFORM_AT + BODY_STATE_WIDTH
+FL_AT: Final = RACK_AT + STEERING_STATE_WIDTH
+FR_AT: Final = FL_AT + WHEEL_WIDTH
+RL_AT: Final = FR_AT + WHEEL_WIDTH
+RR_AT: Final = RL_AT + WHEEL_WIDTH
+SHAFTS_AT: Final = RR_AT + WHEEL_WIDTH
+BOX_AT: Final = SHAFTS_AT + SHAFT_WIDTH
+AID_STATE_AT: Final = BOX_AT + BOX_WIDTH
+
+
+@kernel
+def load_parameters(parameters: Row) -> CarParameters:
+    """Return the groups of the parameter row."""
+    return CarParameters(
+        BodyParameters(*take(parameters, BODY_AT, BODY_WIDTH)),
+        SteeringParameters(*take(parameters, STEERING_AT, STEERING_WIDTH)),
+        EngineParameters(*take(parameters, ENGINE_AT, ENGINE_WIDTH)),
+        GearParameters(*take(parameters, GEARS_AT, GEARS_WIDTH)),
+        AidParameters(*take(parameters, AIDS_AT, AIDS_WIDTH)),
+        AxleParameters(*take(parameters, FRONT_AT, AXLE_WIDTH)),
+        AxleParameters(*take(parameters, REAR_AT, AXLE_WIDTH)),
+    )
+
+
+@kernel
+def load_car(row: Row) -> Car:
+    """Return the groups of the state in a row."""
+    return Car(
+        BodyState(*take(row, PLATFORM_AT, BODY_STATE_WIDTH)),
+        SteeringState(*take(row, RACK_AT, STEERING_STATE_WIDTH)),
+        Wheel(*take(row, FL_AT, WHEEL_WIDTH)),
+        Wheel(*take(row, FR_AT, WHEEL_WIDTH)),
+        Wheel(*take(row, RL_AT, WHEEL_WIDTH)),
+        Wheel(*take(row, RR_AT, WHEEL_WIDTH)),
+        ShaftState(*take(row, SHAFTS_AT, SHAFT_WIDTH)),
+        Gearbox(*take(row, BOX_AT, BOX_WIDTH)),
+        AidState(*take(row, AID_STATE_AT, AID_WIDTH)),
+    )
+
+
+@kernel
+def store_car(row: Row, car: Car) -> None:
+    """Write the state into a row."""
+    put(row, PLATFORM_AT, car.body)
+    put(row, RACK_AT, car.steering)
+    put(row, FL_AT, car.fl)
+    put(row, FR_AT, car.fr)
+    put(row, RL_AT, car.rl)
+    put(row, RR_AT, car.rr)
+    put(row, SHAFTS_AT, car.shafts)
+    put(row, BOX_AT, car.box)
+    put(row, AID_STATE_AT, car.aids)
 
 
 @kernel
 def step(previous: Row, row: Row, parameters: Row, substeps: int) -> None:
     """Advance the car by one tick: the platform interface of vehicle/platform.py."""
-    car = CarParameters(
-        BodyParameters(*take(parameters, BODY_AT, BODY_WIDTH)),
-        EngineParameters(*take(parameters, ENGINE_AT, ENGINE_WIDTH)),
-        GearParameters(*take(parameters, GEARS_AT, GEARS_WIDTH)),
-        AxleParameters(*take(parameters, FRONT_AT, AXLE_WIDTH)),
-        AxleParameters(*take(parameters, REAR_AT, AXLE_WIDTH)),
-    )
+    p = load_parameters(parameters)
     command = VehicleCommand(*take(row, COMMAND_AT, COMMAND_WIDTH))
-    state = CarState(*take(previous, PLATFORM_AT, CAR_WIDTH))
+    car = load_car(previous)
     request = Request(
-        command.road_wheel_rad if is_finite(command.road_wheel_rad) else state.road_wheel_rad,
+        command.road_wheel_rad if is_finite(command.road_wheel_rad) else car.steering.road_wheel_rad,
         pedal(command.throttle),
         pedal(command.brake),
         pedal(command.clutch),
@@ -55,9 +121,9 @@ def step(previous: Row, row: Row, parameters: Row, substeps: int) -> None:
         command.automatic,
     )
     for _ in range(substeps):
-        state = substep(state, car, request)
-    put(row, PLATFORM_AT, state)
-    put(row, VEHICLE_AT, vehicle_state(state, car, command.automatic))
+        car = substep(car, p, request)
+    store_car(row, car)
+    put(row, VEHICLE_AT, vehicle_state(car, p, command.automatic))
 
 
 @kernel
@@ -67,50 +133,36 @@ def pedal(value: float) -> float:
 
 
 @kernel
-def substep(s: CarState, car: CarParameters, request: Request) -> CarState:
+def substep(car: Car, p: CarParameters, request: Request) -> Car:
     """Advance the car by 1 ms: steer, push against the ground, turn the shafts, move."""
-    body = car.body
-    angle = steer(body, s.road_wheel_rad, request.road_wheel_rad, STEP_S)
-    axles = push(s, car, angle, STEP_S)
-    line = turn(s, car, request, axles, STEP_S)
-    motion = move(body, s, axles.force_x_n, axles.force_y_n, axles.moment_nm, STEP_S)
-    torque = hand_wheel_torque(
-        body,
-        axles.front.force_y_n,
-        axles.front.grip,
-        line.shafts.wheel_radps * car.front.radius_m,
-        (angle - s.road_wheel_rad) / STEP_S,
+    rack = car.steering
+    # The rack works against the tyres of the last step: their moment is part of the rack's torque.
+    mean_rad = rack.road_wheel_rad + STEP_S * rack.road_wheel_radps
+    axles = push(car, p, heading(p.steering, mean_rad), mean_rad - rack.road_wheel_rad, STEP_S)
+    moved = SteeringState(mean_rad, rack.road_wheel_radps, rack.hand_wheel_torque_nm)
+    rate = steer(p.steering, moved, request.road_wheel_rad, axles.aligning_nm, STEP_S)
+    line = turn(car, p, request, axles, STEP_S)
+    motion = move(car, p, axles, STEP_S)
+    torque = hand_wheel_torque(p.steering, axles.aligning_nm, rate, car.body.vx_mps)
+    front = motion.front
+    rear = motion.rear
+    brakes = line.brakes
+    return Car(
+        motion.body,
+        SteeringState(mean_rad, rate, torque),
+        wheel(axles.fl, line.fl_radps, front.left_m, front.left_mps, brakes.fl_share),
+        wheel(axles.fr, line.fr_radps, front.right_m, front.right_mps, brakes.fr_share),
+        wheel(axles.rl, line.rl_radps, rear.left_m, rear.left_mps, brakes.rear_share),
+        wheel(axles.rr, line.rr_radps, rear.right_m, rear.right_mps, brakes.rear_share),
+        line.shafts,
+        line.box,
+        line.aids,
     )
-    share = STEP_S / (body.sway_s + STEP_S)
-    return CarState(
-        motion.x_m,
-        motion.y_m,
-        wrap_angle(motion.yaw_rad),
-        motion.vx_mps,
-        motion.vy_mps,
-        motion.yaw_rate_radps,
-        motion.ax_mps2,
-        motion.ay_mps2,
-        s.transfer_ax_mps2 + share * (axles.force_x_n / body.mass_kg - s.transfer_ax_mps2),
-        s.lean_ay_mps2 + share * (axles.force_y_n / body.mass_kg - s.lean_ay_mps2),
-        angle,
-        line.shafts.wheel_radps,
-        line.rear_wheel_radps,
-        axles.front.deflection_x_m,
-        axles.front.deflection_y_m,
-        axles.rear.deflection_x_m,
-        axles.rear.deflection_y_m,
-        torque,
-        line.shafts.engine_radps,
-        line.engine_running,
-        line.shafts.engine_impulse_nms,
-        line.shafts.clutch_impulse_nms,
-        line.shafts.brake_impulse_nms,
-        line.box.gear,
-        line.box.clutch,
-        line.box.lever_adopted,
-        line.box.wanted_gear,
-        line.box.shift_left_s,
-        line.box.since_shift_s,
-        motion.distance_m,
+
+
+@kernel
+def wheel(on_ground: Contact, radps: float, lift_m: float, lift_mps: float, brake_share: float) -> Wheel:
+    """Return a wheel after its step."""
+    return Wheel(
+        radps, on_ground.tyre.deflection_x_m, on_ground.tyre.deflection_y_m, lift_m, lift_mps, brake_share
     )
