@@ -1,10 +1,17 @@
 """The car at rest: the tyre law must hold it with no clamp of speed and no switch to kinematics."""
 
+import random
+
 import pytest
 
+from simconsole.kernels import put
+from simconsole.rows import COMMAND_AT, PLATFORM_AT
 from simconsole.vehicle.platform import Ground, Pose
 
-from .driving import Drive, platform
+from .driving import IDLE, Drive, platform
+from .rolling import rolling
+
+SEED = 23
 
 CREEP_M = 1e-4  # 0.1 mm
 SETTLING_S = 10.0
@@ -91,3 +98,37 @@ def test_same_law_forwards_and_backwards() -> None:
     assert results[0][0] == pytest.approx(-results[1][0], rel=1e-3)
     assert results[0][1] == pytest.approx(-results[1][1], rel=1e-2)
     assert abs(results[0][2]) < 1e-6
+
+
+@pytest.mark.parametrize("speed_mps", [6.0, -4.0])
+@pytest.mark.parametrize("slope", [0.15, -0.15])
+def test_holds_after_braking_from_forwards_and_from_reverse(speed_mps: float, slope: float) -> None:
+    drive = rolling(speed_mps, Ground(1.0, slope, 0.0))
+    drive.hold(4.0, brake=0.6, clutch=1.0)
+    assert creep(drive, brake=0.6, clutch=1.0) < CREEP_M
+
+
+def test_from_any_state_full_brake_brings_rest() -> None:
+    """Speeds, spins, leans, lifts, deflections, friction, slope."""
+    print(f"seed {SEED}")
+    rng = random.Random(SEED)
+    worst = 0.0
+    for _ in range(250):
+        drive = rolling(0.0, Ground(rng.uniform(0.3, 1.2), rng.uniform(-0.1, 0.1), rng.uniform(-0.1, 0.1)))
+        spread = {"vx": 25.0, "vy": 8.0, "yaw_rate": 2.0, "roll_rad": 0.08, "pitch_rad": 0.05, "heave_m": 0.05}
+        spread |= {"lift_m": 0.03, "lift_mps": 0.5, "deflection": 0.02, "radps": 60.0, "heave_mps": 0.5}
+        state = drive.state._asdict()
+        for name in state:
+            if name.startswith(("vx", "vy", "yaw_rate", "roll", "pitch", "heave", "fl_", "fr_", "rl_", "rr_")):
+                size = next((size for part, size in spread.items() if part in name), 0.0)
+                state[name] += rng.uniform(-size, size)
+        put(drive.row, PLATFORM_AT, state.values())
+        for _ in range(200):
+            row = drive.row.copy()
+            put(row, COMMAND_AT, IDLE._replace(brake=1.0, clutch=1.0))
+            drive.step(drive.row, row, drive.vehicle.parameters, 100)
+            drive.row = row
+        seen = drive.state
+        worst = max(worst, abs(seen.vx_mps) + abs(seen.vy_mps) + abs(seen.yaw_rate_radps))
+    print(f"at most {worst:.2g} m/s after 20 s")
+    assert worst < 1e-6

@@ -55,7 +55,9 @@ def anti_lock(share: float, active: bool, spin_mps: float, ground_mps: float, st
 
 
 @kernel
-def traction(aids: AidParameters, share: float, driven: Contact, other: Contact, spin_mps: float, step_s: float) -> float:
+def traction(
+    aids: AidParameters, share: float, driven: Contact, other: Contact, spin_mps: float, step_s: float
+) -> float:
     """Return the share of the throttle one step later, by how much faster the driven wheels turn than they travel."""
     speed = 0.5 * abs(driven.ground_mps + other.ground_mps)
     if aids.traction != 0.0 and abs(spin_mps) > (1.0 + SPIN_SLIP) * speed + SPIN_MPS:

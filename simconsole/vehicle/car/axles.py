@@ -77,7 +77,9 @@ def side_speed(axle: AxleParameters, body: BodyState, left: Wheel, right: Wheel)
     two out makes energy of nothing.
     """
     turning = body.vy_mps + axle.ahead_m * body.yaw_rate_radps
-    return turning + axle.roll_arm_m * body.roll_radps + axle.link_arm_m * axle_roll(axle, left.lift_mps, right.lift_mps)
+    return (
+        turning + axle.roll_arm_m * body.roll_radps + axle.link_arm_m * axle_roll(axle, left.lift_mps, right.lift_mps)
+    )
 
 
 @kernel

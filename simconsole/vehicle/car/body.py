@@ -6,7 +6,7 @@ from typing import NamedTuple
 from simconsole.kernels import clip, kernel
 from simconsole.trigonometry import cos, sin, wrap_angle
 from simconsole.vehicle.car.axles import Axles, Contact
-from simconsole.vehicle.car.parameters import AxleParameters, BodyParameters, CarParameters
+from simconsole.vehicle.car.parameters import AxleParameters, CarParameters
 from simconsole.vehicle.car.state import BodyState, Car, Wheel
 from simconsole.vehicle.car.suspension import Travel, strut, travel
 
@@ -77,7 +77,9 @@ def move(car: Car, p: CarParameters, axles: Axles, step_s: float) -> Motion:
     front_lift = body.front_lift_nsspmm * speed * speed
     rear_lift = body.rear_lift_nsspmm * speed * speed
     heave_mps = before.heave_mps + step_s * (front.force_n + rear.force_n + front_lift + rear_lift) / body.sprung_kg
-    rolling = p.front.roll_arm_m * axles.front_y_n + p.rear.roll_arm_m * axles.rear_y_n + body.sway_npm * before.roll_rad
+    rolling = (
+        p.front.roll_arm_m * axles.front_y_n + p.rear.roll_arm_m * axles.rear_y_n + body.sway_npm * before.roll_rad
+    )
     roll_radps = before.roll_radps + step_s * (front.moment_nm + rear.moment_nm + rolling) / body.roll_inertia_kgm2
     pitching = p.front.ahead_m * (front.force_n + front_lift) + p.rear.ahead_m * (rear.force_n + rear_lift)
     pitching += body.cg_height_m * axles.force_x_n

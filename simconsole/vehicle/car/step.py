@@ -163,6 +163,4 @@ def substep(car: Car, p: CarParameters, request: Request) -> Car:
 @kernel
 def wheel(on_ground: Contact, radps: float, lift_m: float, lift_mps: float, brake_share: float) -> Wheel:
     """Return a wheel after its step."""
-    return Wheel(
-        radps, on_ground.tyre.deflection_x_m, on_ground.tyre.deflection_y_m, lift_m, lift_mps, brake_share
-    )
+    return Wheel(radps, on_ground.tyre.deflection_x_m, on_ground.tyre.deflection_y_m, lift_m, lift_mps, brake_share)

@@ -1,0 +1,29 @@
+"""A hatchback that already rolls, with chosen driver aids."""
+
+import msgspec
+
+from simconsole.kernels import put
+from simconsole.profile_files import load
+from simconsole.profiles.vehicle import CarProfile
+from simconsole.rows import PLATFORM_AT, VEHICLE_AT
+from simconsole.vehicle.car.state import CarState
+from simconsole.vehicle.platform import Ground
+from simconsole.vehicle.registry import build
+
+from .driving import LEVEL, ORIGIN, Drive
+
+RADIUS_M = 0.306
+
+
+def rolling(speed_mps: float, ground: Ground = LEVEL, **aids: bool) -> Drive:
+    profile = load("vehicles", "hatchback", CarProfile)
+    drive = Drive(
+        build(msgspec.structs.replace(profile, aids=msgspec.structs.replace(profile.aids, **aids)), ORIGIN, ground)
+    )
+    spin = speed_mps / RADIUS_M
+    start = CarState(*drive.vehicle.initial_state)._replace(
+        vx_mps=speed_mps, fl_radps=spin, fr_radps=spin, rl_radps=spin, rr_radps=spin
+    )
+    put(drive.row, PLATFORM_AT, start)
+    put(drive.row, VEHICLE_AT, drive.vehicle.initial_vehicle._replace(vx_mps=speed_mps))
+    return drive
