@@ -1,5 +1,4 @@
-"""The car: four wheels on springs under a body of six degrees of freedom, with tyre deflection, rack, clutch, gears,
-engine, friction brakes and driver aids.
+"""The car: four sprung wheels, six degrees of freedom, tyre deflection, rack, clutch, gears, engine, brakes, aids.
 
 One step of 1 ms is `step.substep`; it knows the order. `state.py` and `parameters.py` hold what it works on;
 `assembly.py` turns a profile into a platform.
