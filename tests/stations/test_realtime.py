@@ -149,7 +149,11 @@ def drive(folder: Path, text: str) -> Iterator[Drive]:
     session, bundle = folder / "session.yaml", folder / "bundle"
     session.write_text(text)
     with Running(folder, "drive", session, "--out", bundle, "--json") as running:
-        yield Drive(running, bundle)
+        try:
+            yield Drive(running, bundle)
+        except AssertionError as error:
+            error.add_note(f"the drive said: {running.err.read_text('utf-8') or 'nothing'}")
+            raise
 
 
 class Disturbed(NamedTuple):
