@@ -127,8 +127,10 @@ def _tools(commands: Any) -> None:
     devices.add_argument("--for", dest="duration_s", type=float, default=10.0, metavar="S")
     devices.add_argument("--out", metavar="FILE", default="trace.csv", help="what `record` writes")
 
-    bridge = _command(commands, "bridge", "rosbridge:bridge", "rosbridge: serve it alone, make its certificate")
-    bridge.add_argument("action", choices=("serve", "cert"))
+    bridge = _command(commands, "bridge", "rosbridge:bridge", "rosbridge: serve it alone, check any server")
+    bridge.add_argument("action", choices=("serve", "check", "cert"))
+    bridge.add_argument("url", nargs="?", metavar="URL", help="the server to `check`, any rosbridge server")
+    bridge.add_argument("--token", metavar="T", help="shown to the server to `check`")
     bridge.add_argument("--host", default="127.0.0.1", metavar="H")
     bridge.add_argument("--port", type=int, default=9090, metavar="P")
     bridge.add_argument("--for", dest="duration_s", type=float, metavar="S")

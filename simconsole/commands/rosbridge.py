@@ -1,16 +1,16 @@
-"""`simconsole bridge`: the rosbridge server alone, and the certificate it needs to be reached from other machines."""
+"""`simconsole bridge`: the rosbridge server alone, how any such server behaves, a certificate for ours."""
 
 import secrets
 import tempfile
 from argparse import Namespace
 from pathlib import Path
 
-from simconsole.commands.outcome import INTERRUPTED, Outcome
+from simconsole.commands.outcome import INTERRUPTED, Outcome, table
 
 
 def bridge(words: Namespace) -> Outcome:
     """Do what `words.action` names."""
-    return {"serve": serve, "cert": cert}[words.action](words)
+    return {"serve": serve, "check": check, "cert": cert}[words.action](words)
 
 
 def serve(words: Namespace) -> Outcome:
@@ -40,6 +40,20 @@ def serve(words: Namespace) -> Outcome:
         result = drive(resolve(session), Path(folder))
     code = INTERRUPTED if result.interrupted else 0
     return Outcome(code, result.summary, f"served {result.ticks} ticks, lateness {result.summary['lateness']}")
+
+
+def check(words: Namespace) -> Outcome:
+    """Try how the server at `words.url` behaves where rosbridge servers differ; 1 if it deviates anywhere."""
+    from simconsole.bridge import conformance
+
+    url = words.url or f"ws://{words.host}:{words.port}"
+    rows = conformance.check(url, words.token)
+    passed = sum(row.passed for row in rows)
+    lines = [
+        ("pass" if row.passed else "DEVIATION", f"{row.name}: {row.found}" if row.found else row.name) for row in rows
+    ]
+    results = {"url": url, "passed": passed, "rows": [row._asdict() for row in rows]}
+    return Outcome(0 if passed == len(rows) else 1, results, f"{table(lines)}\n{passed} of {len(rows)} pass")
 
 
 def cert(words: Namespace) -> Outcome:

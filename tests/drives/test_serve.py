@@ -46,3 +46,22 @@ def test_it_serves_others_with_a_certificate_and_a_token(tmp_path: Path) -> None
     done = simconsole("bridge", "serve", "--host", "0.0.0.0", "--port", free_port(), "--for", 0.5, *options, "--json")
     assert done.returncode == 0, done.stderr
     assert "rosbridge at wss://0.0.0.0" in done.stdout
+
+
+def test_our_own_server_passes_the_check(tmp_path: Path) -> None:
+    port = free_port()
+    with Running(tmp_path, "bridge", "serve", "--port", port) as server:
+        controller = Controller(port, lambda count, stamp: [])
+        controller.start()
+        wait_until(lambda: controller.odometry > 0, "odometry")
+        done = simconsole("bridge", "check", f"ws://127.0.0.1:{port}", "--json")
+        server.process.send_signal(signal.SIGINT)
+        server.end()
+        controller.join(30.0)
+    assert done.returncode == 0, done.stdout
+    assert results(done)["passed"] == len(results(done)["rows"])
+    assert "DEVIATION" not in done.stdout
+
+
+def test_check_of_a_server_that_is_not_there() -> None:
+    assert "ws://127.0.0.1" in complaint(simconsole("bridge", "check", f"ws://127.0.0.1:{free_port()}"))

@@ -1,0 +1,245 @@
+"""`simconsole bridge check`: how a rosbridge server behaves where implementations differ, row by row.
+
+Each row opens a connection of its own, on which it talks over a topic that nobody else uses.
+"""
+
+import itertools
+import json
+import time
+from collections.abc import Callable
+from typing import Any, Final, NamedTuple
+
+from websockets.exceptions import WebSocketException
+from websockets.sync.client import ClientConnection, connect
+
+from simconsole.errors import BridgeError
+
+_NUMBERS: Final = itertools.count(1)
+_PATIENCE_S: Final = 2.0
+_QUIET_S: Final = 0.4
+"""How long nothing more may come for something to count as not sent."""
+_OPEN_S: Final = 5.0
+_ODOMETRY: Final = "nav_msgs/msg/Odometry"
+
+
+class Row(NamedTuple):
+    """One behaviour: whether it is the protocol's, and what the server did if not."""
+
+    name: str
+    passed: bool
+    found: str
+
+
+class DeviationError(Exception):
+    """A server that does not do what a row asks."""
+
+
+class _Talk:
+    """One connection to the server."""
+
+    def __init__(self, peer: ClientConnection) -> None:
+        self._peer = peer
+        self.topic = f"/conformance/t{time.time_ns() % 10**9}_{next(_NUMBERS)}"
+
+    def send(self, **operation: Any) -> None:
+        self._peer.send(json.dumps(operation))
+
+    def send_text(self, text: str) -> None:
+        self._peer.send(text)
+
+    def next(self, timeout_s: float = _PATIENCE_S) -> dict[str, Any] | None:
+        """Return the next message, decoded strictly, None when none came."""
+        try:
+            text = self._peer.recv(timeout=timeout_s)
+        except TimeoutError:
+            return None
+        if isinstance(text, bytes):
+            return {"op": "binary", "bytes": text}
+        try:
+            decoded = json.loads(text, parse_constant=_refuse_literal)
+        except ValueError as error:
+            raise DeviationError(f"sent invalid JSON: {error}") from None
+        return decoded if isinstance(decoded, dict) else {}
+
+    def want(self, op: str) -> dict[str, Any]:
+        """Return the next message of an operation; others that come before it are passed over."""
+        deadline_s = time.monotonic() + _PATIENCE_S
+        while (left_s := deadline_s - time.monotonic()) > 0.0:
+            message = self.next(left_s)
+            if message is not None and message.get("op") == op:
+                return message
+        raise DeviationError(f"no {op} came")
+
+    def pair(self, kind: str, **more: Any) -> None:
+        """Advertise and subscribe this connection's own topic."""
+        self.send(op="advertise", topic=self.topic, type=kind)
+        self.send(op="subscribe", topic=self.topic, type=kind, **more)
+
+    def echo(self, kind: str, msg: Any, **more: Any) -> dict[str, Any]:
+        """Return how a message of this connection comes back to it."""
+        self.pair(kind, **more)
+        self.send(op="publish", topic=self.topic, msg=msg)
+        content = self.want("publish")["msg"]
+        return content if isinstance(content, dict) else {}
+
+
+def _refuse_literal(literal: str) -> None:
+    raise ValueError(f"the literal {literal}")
+
+
+def _expect(holds: bool, found: str) -> None:
+    if not holds:
+        raise DeviationError(found)
+
+
+def _null_in(talk: _Talk) -> None:
+    data = talk.echo("std_msgs/msg/Float64", {"data": None})["data"]
+    _expect(data is None, f"null came back as {data}")
+
+
+def _literal_in(talk: _Talk) -> None:
+    talk.pair("std_msgs/msg/Float64")
+    talk.send_text(f'{{"op":"publish","topic":"{talk.topic}","msg":{{"data":NaN}}}}')
+    data = talk.want("publish")["msg"]["data"]
+    _expect(data is None, f"NaN came back as {data}")
+
+
+def _not_a_number_in_array(talk: _Talk) -> None:
+    covariance = [None] + [0.0] * 35
+    pose = talk.echo(_ODOMETRY, {"pose": {"covariance": covariance}})["pose"]
+    _expect(pose["covariance"][0] is None, f"came back as {pose['covariance'][0]}")
+
+
+def _integer_for_float(talk: _Talk) -> None:
+    data = talk.echo("std_msgs/msg/Float64", {"data": 3})["data"]
+    _expect(data == 3.0, f"3 came back as {data}")
+
+
+def _octets(talk: _Talk) -> None:
+    data = talk.echo("std_msgs/msg/UInt8MultiArray", {"data": [1, 2, 255]})["data"]
+    _expect(data == "AQL/", f"[1, 2, 255] came back as {data}")
+
+
+def _out_of_range(talk: _Talk) -> None:
+    talk.pair("std_msgs/msg/UInt8")
+    talk.send(op="publish", topic=talk.topic, msg={"data": 999}, id="range")
+    status = talk.want("status")
+    _expect(status.get("id") == "range", "status without the id")
+    _expect("data" in str(status.get("msg")), "status without the field")
+
+
+def _both_stamps(talk: _Talk) -> None:
+    for stamp in ({"sec": 5, "nanosec": 6}, {"secs": 5, "nsecs": 6}):
+        header = talk.echo("geometry_msgs/msg/PointStamped", {"header": {"stamp": stamp}})["header"]
+        _expect(list(header["stamp"].values()) == [5, 6], f"{stamp} came back as {header['stamp']}")
+
+
+def _both_names(talk: _Talk) -> None:
+    for kind in ("std_msgs/String", "std_msgs/msg/String"):
+        _expect(talk.echo(kind, {"data": kind})["data"] == kind, f"{kind} did not work")
+
+
+def _survives_garbage(talk: _Talk) -> None:
+    talk.send_text('{"op": "publish", "topic": ')
+    data = talk.echo("std_msgs/msg/String", {"data": "after"})["data"]
+    _expect(data == "after", f"came back as {data}")
+
+
+def _garbage_has_status(talk: _Talk) -> None:
+    talk.send_text('{"op": "publish", "topic": ')
+    talk.want("status")
+
+
+def _unknown_has_status(talk: _Talk) -> None:
+    talk.send(op="no_such_operation", id="unknown")
+    _expect(talk.want("status").get("id") == "unknown", "status without the id")
+
+
+def _set_level(talk: _Talk) -> None:
+    talk.send(op="set_level", level="none")
+    talk.send(op="no_such_operation")
+    _expect(talk.next(_QUIET_S) is None, "a status came in spite of level none")
+
+
+def _fragments(talk: _Talk) -> None:
+    talk.pair("std_msgs/msg/String", fragment_size=100)
+    identifiers = set()
+    for _ in range(2):
+        talk.send(op="publish", topic=talk.topic, msg={"data": "x" * 400})
+        pieces = [talk.want("fragment")]
+        _expect(isinstance(pieces[0]["total"], int), f"total is {pieces[0]['total']}")
+        pieces += [talk.want("fragment") for _ in range(pieces[0]["total"] - 1)]
+        whole = json.loads("".join(piece["data"] for piece in sorted(pieces, key=lambda piece: int(piece["num"]))))
+        _expect(whole["msg"]["data"] == "x" * 400, "the pieces do not make the message")
+        identifiers |= {str(piece["id"]) for piece in pieces}
+    _expect(len(identifiers) == 2, "two messages in pieces have one id")
+
+
+def _once(talk: _Talk) -> None:
+    talk.pair("std_msgs/msg/String", id="first")
+    talk.send(op="subscribe", topic=talk.topic, type="std_msgs/msg/String", id="second")
+    talk.send(op="publish", topic=talk.topic, msg={"data": "once"})
+    talk.want("publish")
+    _expect(talk.next(_QUIET_S) is None, "it came more than once")
+
+
+def _failed_call(talk: _Talk) -> None:
+    talk.send(op="call_service", service=f"{talk.topic}_nothing", id="call")
+    answer = talk.want("service_response")
+    _expect(answer.get("id") == "call" and answer.get("result") is False, f"answered {answer}"[:200])
+
+
+def _cbor(talk: _Talk) -> None:
+    talk.pair("std_msgs/msg/String", compression="cbor")
+    talk.send(op="publish", topic=talk.topic, msg={"data": "x"})
+    _expect(b"publish" in talk.want("binary")["bytes"], "no publish in the binary message")
+
+
+ROWS: Final[dict[str, Callable[[_Talk], None]]] = {
+    "NaN literal in is taken, out is null": _literal_in,
+    "null in is NaN, out is null": _null_in,
+    "NaN in an array goes out as null": _not_a_number_in_array,
+    "integer for a float is taken": _integer_for_float,
+    "octets go out as base64, a list is taken": _octets,
+    "value out of range has a status with id and field": _out_of_range,
+    "stamps are taken in both spellings": _both_stamps,
+    "type names are taken in two and three parts": _both_names,
+    "malformed JSON does not spoil the next message": _survives_garbage,
+    "malformed JSON has a status": _garbage_has_status,
+    "unknown operation has a status with id": _unknown_has_status,
+    "set_level is obeyed": _set_level,
+    "fragments have integer totals and unique ids": _fragments,
+    "two subscriptions of one client are one delivery": _once,
+    "failed call is answered with result false": _failed_call,
+    "cbor comes in binary messages": _cbor,
+}
+
+
+def check(url: str, token: str | None = None) -> list[Row]:
+    """Try every row on the server at `url`.
+
+    Raises:
+        BridgeError: nobody answers there.
+    """
+    return [_try(url, token, name, probe) for name, probe in ROWS.items()]
+
+
+def _try(url: str, token: str | None, name: str, probe: Callable[[_Talk], None]) -> Row:
+    headers = None if token is None else {"Authorization": f"Bearer {token}"}
+    try:
+        with connect(url, open_timeout=_OPEN_S, close_timeout=1.0, additional_headers=headers) as peer:
+            return _probe(peer, name, probe)
+    except (OSError, ValueError, WebSocketException) as error:
+        raise BridgeError(f"{url}: {error}") from None
+
+
+def _probe(peer: ClientConnection, name: str, probe: Callable[[_Talk], None]) -> Row:
+    try:
+        probe(_Talk(peer))
+    except DeviationError as deviation:
+        return Row(name, False, str(deviation))
+    except WebSocketException as error:
+        return Row(name, False, f"connection lost: {error}")
+    except (KeyError, IndexError, TypeError, AttributeError, ValueError) as error:
+        return Row(name, False, f"answered in another form: {error!r}")
+    return Row(name, True, "")

@@ -1,0 +1,58 @@
+"""Our server comes out clean; a server with rosbridge_suite's quirks does not."""
+
+import json
+import socket
+import threading
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.server import ServerConnection
+from websockets.sync.server import serve as serve_websockets
+
+from simconsole.bridge.conformance import ROWS, check
+from simconsole.errors import BridgeError
+
+
+def test_our_server_deviates_nowhere(serving: Callable[..., Any]) -> None:
+    assert [row for row in check(serving().url) if not row.passed] == []
+
+
+def quirky(peer: ServerConnection) -> None:
+    """Echoes what is published, with bare NaN, twice, and never a status."""
+    try:
+        for text in peer:
+            try:
+                operation = json.loads(text)
+            except ValueError:
+                continue
+            if operation["op"] == "publish":
+                for _ in range(2):
+                    peer.send(json.dumps({**operation, "msg": {"data": float("nan")}}))
+    except ConnectionClosed:
+        pass
+
+
+def test_deviations_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("simconsole.bridge.conformance._PATIENCE_S", 0.05)
+    monkeypatch.setattr("simconsole.bridge.conformance._QUIET_S", 0.05)
+    with serve_websockets(quirky, "127.0.0.1", 0) as server:
+        thread = threading.Thread(target=server.serve_forever)
+        thread.start()
+        rows = check(f"ws://127.0.0.1:{server.socket.getsockname()[1]}")
+        server.shutdown()
+        thread.join()
+    found = {row.name: row.found for row in rows if not row.passed}
+    assert [row.name for row in rows] == list(ROWS)
+    assert found["null in is NaN, out is null"] == "sent invalid JSON: the literal NaN"
+    assert found["unknown operation has a status with id"] == "no status came"
+    assert "set_level is obeyed" not in found
+
+
+@pytest.mark.parametrize("scheme", ["ws", "http"])
+def test_nobody_there(scheme: str) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as closed:
+        port = closed.getsockname()[1]
+    with pytest.raises(BridgeError, match="127"):
+        check(f"{scheme}://127.0.0.1:{port}")
