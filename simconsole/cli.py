@@ -128,8 +128,8 @@ def _tools(commands: Any) -> None:
     devices.add_argument("--out", metavar="FILE", default="trace.csv", help="what `record` writes")
 
     bridge = _command(commands, "bridge", "rosbridge:bridge", "rosbridge: serve it alone, check any server")
-    bridge.add_argument("action", choices=("serve", "check", "cert"))
-    bridge.add_argument("url", nargs="?", metavar="URL", help="the server to `check`, any rosbridge server")
+    bridge.add_argument("action", choices=("serve", "check", "bench", "cert"))
+    bridge.add_argument("url", nargs="?", metavar="URL", help="the server to `check` or `bench`, any rosbridge server")
     bridge.add_argument("--token", metavar="T", help="shown to the server to `check`")
     bridge.add_argument("--host", default="127.0.0.1", metavar="H")
     bridge.add_argument("--port", type=int, default=9090, metavar="P")

@@ -10,7 +10,7 @@ from simconsole.commands.outcome import INTERRUPTED, Outcome, table
 
 def bridge(words: Namespace) -> Outcome:
     """Do what `words.action` names."""
-    return {"serve": serve, "check": check, "cert": cert}[words.action](words)
+    return {"serve": serve, "check": check, "bench": bench, "cert": cert}[words.action](words)
 
 
 def serve(words: Namespace) -> Outcome:
@@ -54,6 +54,26 @@ def check(words: Namespace) -> Outcome:
     ]
     results = {"url": url, "passed": passed, "rows": [row._asdict() for row in rows]}
     return Outcome(0 if passed == len(rows) else 1, results, f"{table(lines)}\n{passed} of {len(rows)} pass")
+
+
+def bench(words: Namespace) -> Outcome:
+    """Measure what our server carries, beside a bare broker and the server at `words.url` if one is given."""
+    from simconsole.bridge import bench
+
+    found = bench.bench(url=words.url, seconds=words.duration_s or 1.0)
+    bare = {case[1:]: figures.rate_hz for case, figures in found.items() if case.server == "bare"}
+    rows, lines = [], []
+    for case, figures in sorted(found.items(), key=lambda pair: pair[0][1:]):
+        share = figures.rate_hz / bare[case[1:]]
+        rows.append({**case._asdict(), **figures._asdict(), "share_of_bare": share})
+        lines.append(
+            (
+                f"{case.message} to {case.subscribers}: {case.server}",
+                f"{figures.rate_hz:7.0f}/s each ({share:.2f} of bare), "
+                f"at 100 Hz p50 {figures.p50_ms:.2f} ms, p99 {figures.p99_ms:.2f} ms",
+            )
+        )
+    return Outcome(0, {"rows": rows}, table(lines))
 
 
 def cert(words: Namespace) -> Outcome:
