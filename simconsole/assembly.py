@@ -4,6 +4,7 @@ from msgspec import Struct
 
 from simconsole.control.settings import settings as control_settings
 from simconsole.devices.calibration import settings as cockpit_settings
+from simconsole.devices.force_settings import force_settings
 from simconsole.pipeline import Console, ConsoleState, Execution, build_console, initial_state
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.session import SessionProfile
@@ -44,5 +45,6 @@ def assemble(resolved: ResolvedSession, execution: Execution) -> tuple[Console, 
         platform,
         tick_hz,
         execution,
+        force_settings(resolved.cockpit, platform.steering_ratio, platform.max_road_wheel_rad, tick_hz),
     )
     return console, initial_state(console)

@@ -62,7 +62,7 @@ def open_headless(
         commands = Commander(can, commands) if by_can else Commander(commands, can)
         stations, can_summary = (*stations, can), can.summary
     seating = open_seating(resolved, console, stack)
-    cast = Cast(seating.devices, commands, recorder, stations, pace, seating.seat)
+    cast = Cast(seating.devices, commands, recorder, (*seating.stations, *stations), pace, seating.seat)
     return Opened(cast, seating.finished, lambda: {**pace.summary(), **counters(), **can_summary()})
 
 
@@ -109,7 +109,7 @@ def open_realtime(
     seating = open_seating(resolved, console, stack, None if session.outputs.hud is None else keys)
     missing = stack.enter_context(realtime_hints())
     pace = Pacer(console.tick_hz)
-    cast = Cast(seating.devices, commands, recorder, (ring, supervisor), pace, seating.seat)
+    cast = Cast(seating.devices, commands, recorder, (*seating.stations, ring, supervisor), pace, seating.seat)
 
     def summary() -> dict[str, Any]:
         stations = {"station_restarts": supervisor.counters(), **can_summary(folder)}

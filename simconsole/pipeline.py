@@ -9,11 +9,13 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from simconsole.control.arbitration import arbitrate
+from simconsole.control.arbitration import arbitrate, watched
 from simconsole.control.gate import gate
 from simconsole.control.settings import ControlSettings
 from simconsole.devices.calibration import calibrate
 from simconsole.devices.cockpit import CockpitSettings
+from simconsole.devices.force_settings import NO_FORCE, ForceSettings
+from simconsole.devices.torque import wheel_torque
 from simconsole.kernels import Row, kernel, put, take
 from simconsole.rows import (
     ARBITRATION_AT,
@@ -27,11 +29,15 @@ from simconsole.rows import (
     INPUT_WIDTH,
     MEMORY_AT,
     MEMORY_WIDTH,
+    MOTOR_AT,
+    MOTOR_WIDTH,
     PLATFORM_AT,
     REMOTE_AT,
     REMOTE_WIDTH,
     SAMPLE_AT,
     SAMPLE_WIDTH,
+    TORQUE_AT,
+    TORQUE_WIDTH,
     VEHICLE_AT,
     VEHICLE_WIDTH,
     Snapshot,
@@ -49,6 +55,8 @@ from simconsole.signals import (
     RemoteCommand,
     VehicleCommand,
     VehicleState,
+    WheelMemory,
+    WheelTorque,
 )
 from simconsole.vehicle.platform import Platform
 
@@ -59,6 +67,8 @@ COCKPIT_AT: Final = 0
 COCKPIT_WIDTH: Final = len(CockpitSettings._fields)
 CONTROL_AT: Final = COCKPIT_WIDTH
 CONTROL_WIDTH: Final = len(ControlSettings._fields)
+FORCE_AT: Final = CONTROL_AT + CONTROL_WIDTH
+FORCE_WIDTH: Final = len(ForceSettings._fields)
 PHYSICS_HZ: Final = 1000
 """The vehicle integrates at a fixed 1 ms whatever the tick."""
 
@@ -70,10 +80,11 @@ class Console(NamedTuple):
     tick_s: float
     substeps: int
     width: int
-    settings: Row  # CockpitSettings, then ControlSettings
+    settings: Row  # CockpitSettings, ControlSettings, ForceSettings
     platform: Platform
     decide: Callable[[Row, Row, Row, float], None]
     step: Callable[[Row, Row, Row, int], None]
+    feel: Callable[[Row, Row, Row, float], None] | None  # None: the wheel has no motor
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -89,7 +100,12 @@ class ConsoleState(NamedTuple):
 
 
 def build_console(
-    cockpit: CockpitSettings, control: ControlSettings, platform: Platform, tick_hz: int, execution: Execution
+    cockpit: CockpitSettings,
+    control: ControlSettings,
+    platform: Platform,
+    tick_hz: int,
+    execution: Execution,
+    force: ForceSettings = NO_FORCE,
 ) -> Console:
     """Put a console together. `execution` is `compiling.compiled` or `compiling.plain`; both give equal bits.
 
@@ -103,10 +119,11 @@ def build_console(
         tick_s=1.0 / tick_hz,
         substeps=PHYSICS_HZ // tick_hz,
         width=PLATFORM_AT + len(platform.initial_state),
-        settings=np.array((*cockpit, *control), dtype=np.float64),
+        settings=np.array((*cockpit, *control, *force), dtype=np.float64),
         platform=platform,
         decide=execution(decide),
         step=execution(platform.step),
+        feel=execution(feel) if force.max_torque_nm > 0.0 else None,
     )
 
 
@@ -133,6 +150,10 @@ def advance_row(previous: Row, inputs: Row | tuple[float, ...], console: Console
     row[:INPUT_WIDTH] = inputs
     console.decide(previous, row, console.settings, console.tick_s)
     console.step(previous, row, console.platform.parameters, console.substeps)
+    if console.feel is None:
+        row[TORQUE_AT:PLATFORM_AT] = 0.0
+    else:
+        console.feel(previous, row, console.settings, console.tick_s)
     return row
 
 
@@ -143,6 +164,7 @@ def decide(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
     control = ControlSettings(*take(settings, CONTROL_AT, CONTROL_WIDTH))
     vehicle = VehicleState(*take(previous, VEHICLE_AT, VEHICLE_WIDTH))
     command_before = VehicleCommand(*take(previous, COMMAND_AT, COMMAND_WIDTH))
+    motor = WheelMemory(*take(previous, MOTOR_AT, MOTOR_WIDTH))
     driver = calibrate(
         DeviceSample(*take(row, SAMPLE_AT, SAMPLE_WIDTH)),
         DeviceSample(*take(previous, SAMPLE_AT, SAMPLE_WIDTH)),
@@ -160,9 +182,34 @@ def decide(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
         command_before,
         control,
         tick_s,
+        motor.explained_rad,
+        motor.explained_radps,
     )
     command = gate(request, remote, arbitration, command_before, vehicle, control, tick_s)
     put(row, DRIVER_AT, driver)
     put(row, MEMORY_AT, memory)
     put(row, ARBITRATION_AT, arbitration)
     put(row, COMMAND_AT, command)
+
+
+@kernel
+def feel(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
+    """Turn what the vehicle does into the torque of the wheel's motor, for the coming tick."""
+    sample = DeviceSample(*take(row, SAMPLE_AT, SAMPLE_WIDTH))
+    arbitration = Arbitration(*take(row, ARBITRATION_AT, ARBITRATION_WIDTH))
+    cockpit = CockpitSettings(*take(settings, COCKPIT_AT, COCKPIT_WIDTH))
+    torque, memory = wheel_torque(
+        DriverInput(*take(row, DRIVER_AT, DRIVER_WIDTH)),
+        sample.wheel_motor,
+        arbitration.mode,
+        watched(arbitration.mode),
+        EventInput(*take(row, EVENTS_AT, EVENTS_WIDTH)).events,
+        VehicleState(*take(row, VEHICLE_AT, VEHICLE_WIDTH)),
+        WheelTorque(*take(previous, TORQUE_AT, TORQUE_WIDTH)),
+        WheelMemory(*take(previous, MOTOR_AT, MOTOR_WIDTH)),
+        ForceSettings(*take(settings, FORCE_AT, FORCE_WIDTH)),
+        cockpit.wheel_rate_filter_s,
+        tick_s,
+    )
+    put(row, TORQUE_AT, torque)
+    put(row, MOTOR_AT, memory)

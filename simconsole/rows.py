@@ -18,6 +18,8 @@ from simconsole.signals import (
     RemoteCommand,
     VehicleCommand,
     VehicleState,
+    WheelMemory,
+    WheelTorque,
 )
 from simconsole.units import tick_time_ns
 
@@ -29,6 +31,8 @@ MEMORY_WIDTH: Final = len(ArbiterMemory._fields)
 ARBITRATION_WIDTH: Final = len(Arbitration._fields)
 COMMAND_WIDTH: Final = len(VehicleCommand._fields)
 VEHICLE_WIDTH: Final = len(VehicleState._fields)
+TORQUE_WIDTH: Final = len(WheelTorque._fields)
+MOTOR_WIDTH: Final = len(WheelMemory._fields)
 
 SAMPLE_AT: Final = 0
 REMOTE_AT: Final = SAMPLE_AT + SAMPLE_WIDTH
@@ -39,7 +43,9 @@ MEMORY_AT: Final = DRIVER_AT + DRIVER_WIDTH
 ARBITRATION_AT: Final = MEMORY_AT + MEMORY_WIDTH
 COMMAND_AT: Final = ARBITRATION_AT + ARBITRATION_WIDTH
 VEHICLE_AT: Final = COMMAND_AT + COMMAND_WIDTH
-PLATFORM_AT: Final = VEHICLE_AT + VEHICLE_WIDTH
+TORQUE_AT: Final = VEHICLE_AT + VEHICLE_WIDTH
+MOTOR_AT: Final = TORQUE_AT + TORQUE_WIDTH
+PLATFORM_AT: Final = MOTOR_AT + MOTOR_WIDTH
 
 STAGES: Final[tuple[tuple[str, type[tuple[float, ...]]], ...]] = (
     ("sample", DeviceSample),
@@ -50,6 +56,8 @@ STAGES: Final[tuple[tuple[str, type[tuple[float, ...]]], ...]] = (
     ("arbitration", Arbitration),
     ("command", VehicleCommand),
     ("vehicle", VehicleState),
+    ("torque", WheelTorque),
+    ("motor", WheelMemory),
 )
 
 
@@ -122,4 +130,9 @@ class Snapshot(NamedTuple):
     @property
     def vehicle(self) -> VehicleState:
         """The vehicle after the tick."""
-        return VehicleState(*self.row[VEHICLE_AT:PLATFORM_AT].tolist())
+        return VehicleState(*self.row[VEHICLE_AT:TORQUE_AT].tolist())
+
+    @property
+    def torque(self) -> WheelTorque:
+        """What the wheel's motor is asked for."""
+        return WheelTorque(*self.row[TORQUE_AT:MOTOR_AT].tolist())

@@ -1,21 +1,28 @@
 """Who sits in the cockpit: the device source of a session, and the simulated person where one drives."""
 
+import sys
+import time
 from collections.abc import Callable
 from contextlib import ExitStack
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from simconsole.assembly import ResolvedSession
+from simconsole.compiling import compiled
 from simconsole.errors import ProfileError
 from simconsole.pipeline import Console
-from simconsole.ports import DeviceSource, NobodySeated, Seat
+from simconsole.ports import DeviceSource, NobodySeated, Seat, Station
+from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.rows import Snapshot
 
+if TYPE_CHECKING:
+    from simconsole.devices.motor import HapticPort
 
 class Seating(NamedTuple):
     """An opened cockpit."""
 
     devices: DeviceSource
     seat: Seat | None = None
+    stations: tuple[Station, ...] = ()
     finished: Callable[[Snapshot], bool] = lambda snapshot: False
 
 
@@ -45,13 +52,44 @@ def open_seating(
 
     devices = open_source(driver, resolved.cockpit, tick_hz=console.tick_hz, keys=keys)
     stack.callback(devices.close)
+    if driver == "sdl" and resolved.cockpit.force_feedback is not None:
+        return _with_motor(devices, resolved.cockpit.force_feedback, stack)
     return Seating(devices)
 
 
+def _with_motor(devices: DeviceSource, force: ForceFeedback, stack: ExitStack) -> Seating:
+    """Add the wheel's motor; without one everything else works, and the person is told."""
+    from simconsole.devices.haptics import open_haptics
+    from simconsole.devices.motor import MotorisedSource, NoHaptics, WheelMotor
+    from simconsole.devices.sdl import SdlSource
+
+    assert isinstance(devices, SdlSource)
+    wheel = {"id": devices.instance_id("wheel")}
+
+    def opened() -> "HapticPort":
+        number = wheel["id"]
+        return NoHaptics() if number is None else open_haptics(number, force)
+
+    def replugged() -> "HapticPort | None":
+        now = devices.instance_id("wheel")
+        if now == wheel["id"]:
+            return None
+        wheel["id"] = now
+        return opened()
+
+    motor = WheelMotor(opened(), force, lambda snapshot: time.monotonic())
+    stack.callback(motor.close)
+    if not motor.obeys:
+        print(f"simconsole: no force feedback: {motor.reason}", file=sys.stderr)
+    return Seating(MotorisedSource(devices, motor, replugged), stations=(motor,))
+
+
 def _open_person(resolved: ResolvedSession, console: Console, stack: ExitStack) -> Seating:
+    from simconsole.devices.motor import MotorisedSource, SimulatedWheelPort, WheelMotor
     from simconsole.devices.person import SimulatedPerson
     from simconsole.devices.sdl import SdlSource
     from simconsole.devices.settings import settings
+    from simconsole.devices.simulated_wheel import SimulatedWheel, step_wheel
     from simconsole.devices.virtual_cockpit import VirtualCockpit
 
     plan = resolved.session.devices.person
@@ -61,5 +99,15 @@ def _open_person(resolved: ResolvedSession, console: Console, stack: ExitStack) 
     stack.callback(cockpit.close)
     devices = SdlSource(resolved.cockpit)
     stack.callback(devices.close)
-    person = SimulatedPerson(plan, cockpit, settings(resolved.cockpit, console.tick_hz), tick_hz=console.tick_hz)
-    return Seating(devices, person, lambda snapshot: person.finished)
+    cockpit_settings, tick_hz = settings(resolved.cockpit, console.tick_hz), console.tick_hz
+    force = resolved.cockpit.force_feedback
+    if force is None:
+        person = SimulatedPerson(plan, cockpit, cockpit_settings, tick_hz=tick_hz)
+        return Seating(devices, person, finished=lambda snapshot: person.finished)
+    wheel = SimulatedWheel(force, resolved.cockpit.wheel.lock_to_lock_deg, tick_hz=tick_hz, step=compiled(step_wheel))
+    person = SimulatedPerson(plan, cockpit, cockpit_settings, tick_hz=tick_hz, wheel=wheel)
+    motor = WheelMotor(SimulatedWheelPort(wheel), force, lambda snapshot: snapshot.t_s)
+    stack.callback(motor.close)
+    return Seating(
+        MotorisedSource(devices, motor, lambda: None), person, (motor,), finished=lambda snapshot: person.finished
+    )

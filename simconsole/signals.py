@@ -137,6 +137,7 @@ class DeviceSample(NamedTuple):
     wheel_age_ticks: float
     pedals_age_ticks: float
     shifter_age_ticks: float
+    wheel_motor: float = 0.0  # 1 while the wheel's motor obeys: then the wheel also moves by itself
 
 
 class RemoteCommand(NamedTuple):
@@ -277,6 +278,35 @@ class VehicleState(NamedTuple):
     coast_accel_mps2: float  # what released pedals would give now
     full_throttle_accel_mps2: float  # what full throttle would give now
     full_brake_accel_mps2: float  # what full brake would give now (negative)
+
+
+class WheelTorque(NamedTuple):
+    """What the wheel's motor is asked for, at the rim, left-positive; all 0 where the cockpit has no motor."""
+
+    torque_nm: float
+    car_nm: float  # the car's part of it, before the limits
+    servo_nm: float  # the part that follows the road wheels
+    ramp: float  # 0 (let go) to 1: torque comes in slowly
+    clipped: float  # 1: more is wished for than the motor has
+    enabled: float
+    human_nm: float  # the person's torque, estimated
+    hands_on: float  # 1: somebody holds the wheel
+
+
+class WheelMemory(NamedTuple):
+    """What force feedback must remember from one tick to the next."""
+
+    live: float  # 1: the wheel was there, with its motor
+    wheel_rad: float  # as estimated
+    wheel_radps: float
+    motor_nm: float  # delivered by now
+    hands_nm: float
+    target_rad: float
+    model_rad: float  # where the motor alone would have the wheel
+    model_radps: float
+    model_nm: float
+    explained_rad: float  # how far the motor alone has moved it since a take-over has been possible
+    explained_radps: float
 
 
 class TickTiming(NamedTuple):

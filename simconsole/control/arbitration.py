@@ -44,6 +44,8 @@ def arbitrate(
     command_before: VehicleCommand,
     settings: ControlSettings,
     tick_s: float,
+    explained_rad: float = 0.0,
+    explained_radps: float = 0.0,
 ) -> tuple[ArbiterMemory, Arbitration, Request]:
     """Decide who drives, and what is asked of the vehicle.
 
@@ -57,6 +59,8 @@ def arbitrate(
         command_before: What left the gate in the tick before: hand-overs start from it.
         settings: Of this drive.
         tick_s: Length of a tick in s.
+        explained_rad: How far the wheel's motor alone has moved it since engagement; 0 without a motor.
+        explained_radps: How fast.
 
     Returns:
         What to remember, who had which authority, and the request for the gate (which may still be out of limits).
@@ -67,8 +71,8 @@ def arbitrate(
     watch = watch_wheel(
         WheelWatch(memory.engage_hand_wheel_rad, memory.steering_ticks),
         driver.hand_wheel_rad,
-        driver.hand_wheel_radps,
-        0.0,
+        driver.hand_wheel_radps - explained_radps,
+        explained_rad,
         watched(before.mode),
         person.wheel_trusted > 0.0,
         settings,

@@ -36,7 +36,7 @@ def watch_wheel(
     Args:
         before: The watch after the tick before.
         hand_wheel_rad: Angle now, left-positive.
-        hand_wheel_radps: Its rate.
+        hand_wheel_radps: Its rate, less what the wheel's motor explains of it.
         explained_rad: How far the wheel's motor alone has moved it since engagement; 0 without a motor.
         watching: Whether the mode is one that a person can take over from; if not, the reference follows the wheel.
         trusted: Whether the wheel is there; after a gap the reference is taken anew, wherever it comes back.

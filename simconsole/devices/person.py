@@ -3,6 +3,7 @@
 from simconsole.devices.cockpit import CockpitSettings
 from simconsole.devices.person_mind import Person
 from simconsole.devices.person_skills import look
+from simconsole.devices.simulated_wheel import RELAXED, STEERING, SimulatedWheel
 from simconsole.devices.uncalibrate import Intent, uncalibrate
 from simconsole.devices.virtual_cockpit import VirtualCockpit
 from simconsole.profiles.person import PersonPlan
@@ -12,7 +13,15 @@ from simconsole.rows import Snapshot
 class SimulatedPerson:
     """A `Seat`: `act` once per tick, before the devices are polled."""
 
-    def __init__(self, plan: PersonPlan, cockpit: VirtualCockpit, settings: CockpitSettings, *, tick_hz: int) -> None:
+    def __init__(
+        self,
+        plan: PersonPlan,
+        cockpit: VirtualCockpit,
+        settings: CockpitSettings,
+        *,
+        tick_hz: int,
+        wheel: SimulatedWheel | None = None,
+    ) -> None:
         """Sit down.
 
         Args:
@@ -20,7 +29,9 @@ class SimulatedPerson:
             cockpit: The virtual devices to work.
             settings: The cockpit's, as `calibrate` gets them: a person knows their pedals.
             tick_hz: The session's tick rate.
+            wheel: The wheel between the hands and the axis, with its motor; None: the axis is where the hands are.
         """
+        self._wheel = wheel
         self.person = Person(plan, tick_hz)
         self._cockpit = cockpit
         self._settings = settings
@@ -37,7 +48,18 @@ class SimulatedPerson:
         Raises:
             DeviceError: SDL refuses.
         """
-        now = (self.person.decide(look(snapshot)), self._cockpit.plugged)
+        intent = self.person.decide(look(snapshot))
+        if self._wheel is not None:
+            intent = intent._replace(hand_wheel_rad=self._turn(self._wheel, intent.hand_wheel_rad))
+        now = (intent, self._cockpit.plugged)
         if now != self._written:
             self._cockpit.write(uncalibrate(now[0], self._settings))
             self._written = now
+
+    def _turn(self, wheel: SimulatedWheel, hands_rad: float) -> float:
+        """Let a tick pass at the wheel: hands that rest go along with it, hands that steer pull it to their place."""
+        if not self.person.rests_hands:
+            return wheel.turn(STEERING, hands_rad)
+        angle_rad = wheel.turn(RELAXED)
+        self.person.carry_hands(angle_rad)
+        return angle_rad

@@ -104,6 +104,15 @@ class Person:
         """Where hands and feet are now."""
         return self._intent
 
+    @property
+    def rests_hands(self) -> bool:
+        """Whether the hands only lie on the wheel: somebody else steers, or nobody has to."""
+        return self.phase in (Phase.SIT, Phase.WATCH, Phase.DONE)
+
+    def carry_hands(self, hand_wheel_rad: float) -> None:
+        """Let the hands be where the wheel has taken them."""
+        self._intent = self._intent._replace(hand_wheel_rad=hand_wheel_rad)
+
     def decide(self, view: View) -> Intent:
         """Look at one tick and move hands and feet towards what the phase wants, at a person's speed."""
         if self._line is None:

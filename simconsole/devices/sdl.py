@@ -134,6 +134,11 @@ class SdlSource:
             NEVER_TICKS if shifter is None else 0.0,
         )
 
+    def instance_id(self, role: RoleName) -> int | None:
+        """Return SDL's number of the device that plays this role now; None while it is not there."""
+        bound = self._bound.get(self._keys[role])
+        return None if bound is None else bound.instance_id
+
     def close(self) -> None:
         """Let the devices go. Twice is harmless."""
         if self._open:

@@ -110,6 +110,10 @@ def _hat_good(value: float) -> bool:
     return value in (-1.0, 0.0, 1.0)
 
 
+def _flag_good(value: float) -> bool:
+    return value in (0.0, 1.0)
+
+
 def _age_good(value: float) -> bool:
     return is_finite(value) and value >= 0.0
 
@@ -119,6 +123,7 @@ _RULES: Final[tuple[tuple[Callable[[float], bool], str], ...]] = (
     *((mask_good, "a whole number below 2**24"),) * 2,
     *((_hat_good, "-1, 0 or 1"),) * 2,
     *((_age_good, "a number of ticks, 0 or more"),) * 3,
+    (_flag_good, "0 or 1"),
 )
 
 

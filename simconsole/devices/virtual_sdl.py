@@ -1,4 +1,4 @@
-"""Virtual joysticks inside SDL: the real ids, names, axes and polarity, with no hardware. All ctypes is here.
+"""Virtual joysticks inside SDL: the real ids, names, axes and polarity, with no hardware. All ctypes for them is here.
 
 SDL's virtual joysticks appear to pygame as any other. They live in the one copy of SDL that pygame has mapped, which
 is found in /proc/self/maps: loading a library by name would give a second, separate SDL.
@@ -175,7 +175,7 @@ class VirtualDevice:
 
 @cache
 def _library() -> Any:
-    path = _mapped_sdl()
+    path = mapped_sdl()
     library = ctypes.CDLL(path)
     joystick, integer, text = ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p
     for name, result, arguments in (
@@ -200,7 +200,12 @@ def _library() -> Any:
     return library
 
 
-def _mapped_sdl() -> str:
+def mapped_sdl() -> str:
+    """Return the path of the one SDL that this process has mapped: pygame's own.
+
+    Raises:
+        DeviceError: none is mapped, or this is no Linux.
+    """
     maps = Path("/proc/self/maps")
     if not maps.exists():
         raise DeviceError("virtual devices: /proc/self/maps: value missing: Linux")

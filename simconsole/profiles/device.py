@@ -4,6 +4,8 @@ from typing import Annotated, Literal, TypeAlias
 
 from msgspec import Meta, Struct
 
+from simconsole.profiles.force_feedback import ForceFeedback
+
 RoleName: TypeAlias = Literal["wheel", "pedals", "shifter"]
 UsbId: TypeAlias = Annotated[int, Meta(ge=0, le=0xFFFF)]
 AxisIndex: TypeAlias = Annotated[int, Meta(ge=0, le=31)]
@@ -134,6 +136,7 @@ class CockpitProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     shifter: Shifter
     buttons: Buttons = Buttons()
     limits: Limits = Limits()
+    force_feedback: ForceFeedback | None = None
     provenance: dict[str, Provenance] = {}  # by dotted key, the longest prefix counts
 
     def __post_init__(self) -> None:

@@ -8,7 +8,7 @@ from simconsole.autonomy.tracker import Sighting, Tracker
 from simconsole.compiling import compiled
 from simconsole.profile_files import load
 from simconsole.profiles.vehicle import VehicleProfile
-from simconsole.rows import COMMAND_AT, PLATFORM_AT, VEHICLE_AT
+from simconsole.rows import COMMAND_AT, PLATFORM_AT, TORQUE_AT, VEHICLE_AT
 from simconsole.signals import VehicleCommand, VehicleState
 from simconsole.vehicle.platform import Ground, Pose
 from simconsole.vehicle.registry import build
@@ -29,12 +29,12 @@ def test_a_lap_in_the_hatchback_keeps_the_bars(course: Course) -> None:
     car = build(load("vehicles", "hatchback", VehicleProfile), Pose(0.0, 0.0, 0.0), Ground(1.0, 0.0, 0.0))  # type: ignore[arg-type]
     step, tracker = compiled(car.step), Tracker(course)
     row = np.zeros(PLATFORM_AT + len(car.initial_state))
-    row[VEHICLE_AT:PLATFORM_AT], row[PLATFORM_AT:] = car.initial_vehicle, car.initial_state
+    row[VEHICLE_AT:TORQUE_AT], row[PLATFORM_AT:] = car.initial_vehicle, car.initial_state
     wheel = accel = 0.0
     lateral: list[float] = []
     tick = 0
     while (tracker.s_m or 0.0) < course.length_m:
-        vehicle = VehicleState(*row[VEHICLE_AT:PLATFORM_AT].tolist())
+        vehicle = VehicleState(*row[VEHICLE_AT:TORQUE_AT].tolist())
         if tick % TICKS_PER_COMMAND == 0:
             motion = (vehicle.vx_mps, vehicle.vy_mps, vehicle.yaw_rate_radps)
             answer = tracker.step(Sighting(vehicle.x_m, vehicle.y_m, vehicle.yaw_rad, *motion))

@@ -26,6 +26,7 @@ def samples(count: int) -> list[DeviceSample]:
             float(dice.randint(-1, 1)),
             float(dice.randint(-1, 1)),
             *(dice.choice([0.0, 3.0, NEVER_TICKS]) for _ in range(3)),
+            float(dice.getrandbits(1)),
         )
         for _ in range(count)
     ]

@@ -9,7 +9,7 @@ from simconsole.compiling import compiled
 from simconsole.kernels import Row, put
 from simconsole.profile_files import load
 from simconsole.profiles.vehicle import VehicleProfile
-from simconsole.rows import COMMAND_AT, PLATFORM_AT, VEHICLE_AT
+from simconsole.rows import COMMAND_AT, PLATFORM_AT, TORQUE_AT, VEHICLE_AT
 from simconsole.signals import VehicleCommand, VehicleState
 from simconsole.vehicle.platform import Ground, Platform, Pose
 from simconsole.vehicle.registry import build
@@ -39,7 +39,7 @@ class Drive:
 
     @property
     def seen(self) -> VehicleState:
-        return VehicleState(*self.row[VEHICLE_AT:PLATFORM_AT].tolist())
+        return VehicleState(*self.row[VEHICLE_AT:TORQUE_AT].tolist())
 
     @property
     def state(self) -> Any:

@@ -16,7 +16,7 @@ import pytest
 
 from simconsole.compiling import _twin, compiled
 from simconsole.kernels import Row, put
-from simconsole.rows import COMMAND_AT, PLATFORM_AT, VEHICLE_AT
+from simconsole.rows import COMMAND_AT, PLATFORM_AT, TORQUE_AT, VEHICLE_AT
 from simconsole.signals import VehicleCommand, VehicleState
 from simconsole.vehicle.car.state import CarState
 from simconsole.vehicle.platform import Ground, Platform
@@ -142,7 +142,7 @@ def test_any_drive_stays_finite_and_inside_physical_bounds(bad: bool) -> None:
         step = compiled(vehicle.step)
         for row in rows(vehicle, step, commands(seed, 15_000, bad), 4):
             assert np.isfinite(row[VEHICLE_AT:]).all()
-            seen = VehicleState(*row[VEHICLE_AT:PLATFORM_AT])
+            seen = VehicleState(*row[VEHICLE_AT:TORQUE_AT])
             assert math.hypot(seen.vx_mps, seen.vy_mps) < 100.0
             assert abs(seen.yaw_rate_radps) < 8.0
             assert math.hypot(seen.ax_mps2, seen.ay_mps2) < 20.0

@@ -1,0 +1,71 @@
+"""What the person's hands do to the wheel, estimated: no wheel of this class measures torque. Pure kernels.
+
+A model of the rim turns under the motor's torque and the estimate; where the real wheel goes elsewhere, the person is
+the reason, and the estimate follows (a tracking filter of three states: angle, rate, torque).
+"""
+
+from typing import Final, NamedTuple
+
+from simconsole.devices.force_settings import ForceSettings
+from simconsole.devices.rim import Rim, turn
+from simconsole.kernels import clip, kernel
+
+HUMAN_LIMIT_NM: Final = 30.0
+"""More than two arms do; keeps the estimate finite whatever the wheel reports."""
+STUCK_S: Final = 0.3
+"""While the wheel sticks, friction may hold up what the estimate says: it goes to the smallest that explains rest."""
+HANDS_S: Final = 0.12
+HANDS_OFF_SHARE: Final = 0.6
+
+
+class Felt(NamedTuple):
+    """The wheel as estimated after this tick."""
+
+    rad: float
+    radps: float
+    human_nm: float
+    hands_nm: float  # size of the person's torque, smoothed
+    hands_on: float
+
+
+@kernel
+def at_rest(hand_wheel_rad: float) -> Felt:
+    """Return the estimate to start with, where nothing is known but the angle."""
+    return Felt(hand_wheel_rad, 0.0, 0.0, 0.0, 0.0)
+
+
+@kernel
+def observe(before: Felt, hand_wheel_rad: float, motor_nm: float, force: ForceSettings, tick_s: float) -> Felt:
+    """Return the estimate after a tick.
+
+    Args:
+        before: The estimate of the tick before.
+        hand_wheel_rad: The angle read now.
+        motor_nm: The motor's torque over the tick that has passed.
+        force: Inertia, friction and the filter's gains; `max_torque_nm` > 0.
+        tick_s: Length of a tick.
+    """
+    rim = turn(
+        Rim(before.rad, before.radps),
+        motor_nm + before.human_nm,
+        force.inertia_kgm2,
+        force.motor_damping_nms,
+        force.motor_friction_nm,
+        tick_s,
+    )
+    miss_rad = hand_wheel_rad - rim.rad
+    human_nm = before.human_nm
+    if rim.radps == 0.0:
+        human_nm -= human_nm * (tick_s / (tick_s + STUCK_S))
+    human_nm = clip(
+        human_nm + force.inertia_kgm2 * force.observer_accel_per_s2 * miss_rad, -HUMAN_LIMIT_NM, HUMAN_LIMIT_NM
+    )
+    hands_nm = before.hands_nm + (abs(human_nm) - before.hands_nm) * (tick_s / (tick_s + HANDS_S))
+    limit_nm = force.hands_on_nm * HANDS_OFF_SHARE if before.hands_on > 0.0 else force.hands_on_nm
+    return Felt(
+        rim.rad + force.observer_angle * miss_rad,
+        rim.radps + force.observer_rate_per_s * miss_rad,
+        human_nm,
+        hands_nm,
+        1.0 if hands_nm > limit_nm else 0.0,
+    )

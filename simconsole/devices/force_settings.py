@@ -1,0 +1,81 @@
+"""A profile's force feedback as plain numbers for the kernels. Pure."""
+
+import math
+from typing import Final, NamedTuple
+
+from simconsole.profiles.device import CockpitProfile
+from simconsole.units import MPS_PER_KMH, RAD_PER_DEG
+
+OBSERVER_RADPS: Final = 50.0
+"""Bandwidth of the torque estimate: settles in about 3 / 50 s, well above what arms do (5 Hz)."""
+
+
+class ForceSettings(NamedTuple):
+    """What the wheel's motor works under; `max_torque_nm` 0: there is none."""
+
+    max_torque_nm: float
+    inertia_kgm2: float
+    motor_damping_nms: float
+    motor_friction_nm: float
+    motor_lag_share: float  # of the way to the commanded torque that the motor comes in one tick
+    car_share: float
+    damping_nms: float
+    friction_nm: float
+    standstill_friction_nm: float
+    fade_mps: float
+    texture_nm: float
+    end_stop_rad: float
+    end_stop_nm_per_rad: float
+    servo_nm_per_rad: float
+    servo_damping_nms: float
+    hand_wheel_per_road_wheel: float
+    ramp_per_tick: float
+    slew_nm: float  # per tick
+    soft_clip_from: float
+    observer_angle: float
+    observer_rate_per_s: float
+    observer_accel_per_s2: float
+    hands_on_nm: float
+
+
+NO_FORCE: Final = ForceSettings(*(0.0,) * len(ForceSettings._fields))
+"""A wheel without a motor."""
+
+
+def force_settings(
+    profile: CockpitProfile, steering_ratio: float, max_road_wheel_rad: float, tick_hz: int
+) -> ForceSettings:
+    """Return the force feedback of a cockpit on a vehicle; `NO_FORCE` where the profile has none."""
+    force = profile.force_feedback
+    if force is None:
+        return NO_FORCE
+    tick_s = 1.0 / tick_hz
+    own_lock_rad = (0.5 * profile.wheel.lock_to_lock_deg - force.end_stop_margin_deg) * RAD_PER_DEG
+    # Critically damped tracking filter of three states (fading memory, three equal poles): Zarchan, Musoff,
+    # Fundamentals of Kalman Filtering, chapter 3.
+    pole = math.exp(-OBSERVER_RADPS * tick_s)
+    return ForceSettings(
+        max_torque_nm=force.max_torque_nm,
+        inertia_kgm2=force.motor.inertia_kgm2,
+        motor_damping_nms=force.motor.damping_nms,
+        motor_friction_nm=force.motor.friction_nm,
+        motor_lag_share=tick_s / (tick_s + force.motor.delay_s),
+        car_share=force.car_share,
+        damping_nms=force.damping_nms,
+        friction_nm=force.friction_nm,
+        standstill_friction_nm=force.standstill_friction_nm,
+        fade_mps=force.fade_kmh * MPS_PER_KMH,
+        texture_nm=force.road_texture_nm,
+        end_stop_rad=min(own_lock_rad, max_road_wheel_rad * steering_ratio),
+        end_stop_nm_per_rad=force.end_stop_nm_per_rad,
+        servo_nm_per_rad=force.servo_nm_per_rad,
+        servo_damping_nms=force.servo_damping_nms,
+        hand_wheel_per_road_wheel=steering_ratio,
+        ramp_per_tick=tick_s / force.ramp_s,
+        slew_nm=force.slew_nmps * tick_s,
+        soft_clip_from=force.soft_clip_from,
+        observer_angle=1.0 - pole * pole * pole,
+        observer_rate_per_s=1.5 * (1.0 - pole) * (1.0 - pole) * (1.0 + pole) / tick_s,
+        observer_accel_per_s2=(1.0 - pole) * (1.0 - pole) * (1.0 - pole) / (tick_s * tick_s),
+        hands_on_nm=force.hands_on_nm,
+    )

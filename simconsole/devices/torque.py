@@ -1,0 +1,228 @@
+"""What the wheel's motor does: the car's torque and the wheel's own feel, or the servo that follows the road wheels.
+
+Pure kernels. The motor lets go at once, and comes back slowly, when the wheel is not trusted, the mode is one in
+which nobody is driven, the loop has stood still, or any part is not a number.
+"""
+
+from typing import Final, NamedTuple
+
+from simconsole.devices.estimator import Felt, at_rest, observe
+from simconsole.devices.force_settings import ForceSettings
+from simconsole.devices.rim import Rim, turn
+from simconsole.devices.validity import trusted
+from simconsole.kernels import approach, clip, is_finite, kernel
+from simconsole.signals import DriverInput, Event, Mode, VehicleState, WheelMemory, WheelTorque
+from simconsole.trigonometry import sin
+
+_MANUAL: Final = float(Mode.MANUAL)
+_SHARED: Final = float(Mode.SHARED)
+_AUTONOMOUS: Final = float(Mode.AUTONOMOUS)
+_TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)
+_LOOP_STALL: Final = int(Event.LOOP_STALL)
+
+FRICTION_RADPS: Final = 1.0
+"""Rate over which simulated friction gets its sign: steeper, it would chatter through the motor's delay."""
+END_STOP_NMS: Final = 1.0
+LONG_WAVE_RADPM: Final = 3.7
+SHORT_WAVE_RADPM: Final = 9.97
+"""Two waves of rough road, 1.7 m and 0.63 m long: 6 to 32 Hz between 36 and 72 km/h, incommensurable."""
+
+
+class Parts(NamedTuple):
+    """What the torque is made of."""
+
+    car_nm: float
+    servo_nm: float
+    feel_nm: float  # damping, friction, end stop, road
+
+
+class Alone(NamedTuple):
+    """The wheel as the motor alone would have it."""
+
+    rad: float
+    radps: float
+    motor_nm: float
+    explained_rad: float  # moved since the person may take over
+    explained_radps: float
+
+
+@kernel
+def servo(target: Rim, rim: Rim, force: ForceSettings) -> float:
+    """Return the torque in N m that brings the rim to a target that moves itself (PD on the angle)."""
+    return force.servo_nm_per_rad * (target.rad - rim.rad) + force.servo_damping_nms * (target.radps - rim.radps)
+
+
+@kernel
+def soft_clip(torque_nm: float, force: ForceSettings) -> float:
+    """Return the torque below the motor's limit: as it is up to the knee, then bent, so that detail is not cut off.
+
+    Beyond the knee k, with room r above it: k + r x / (r + x) for an excess x; continuous in value and slope.
+    """
+    knee = force.soft_clip_from * force.max_torque_nm
+    size = abs(torque_nm)
+    if size <= knee:
+        return torque_nm
+    room = force.max_torque_nm - knee
+    bent = knee + room * (size - knee) / (room + size - knee)
+    return bent if torque_nm > 0.0 else -bent
+
+
+@kernel
+def end_stop(rim: Rim, force: ForceSettings) -> float:
+    """Return the spring at the lock: nothing inside it, and no pull back out of it when the rim already returns."""
+    beyond = abs(rim.rad) - force.end_stop_rad
+    if beyond <= 0.0:
+        return 0.0
+    side = 1.0 if rim.rad > 0.0 else -1.0
+    outwards = side * rim.radps
+    push = force.end_stop_nm_per_rad * beyond + (END_STOP_NMS * outwards if outwards > 0.0 else 0.0)
+    return -side * push
+
+
+@kernel
+def road(vehicle: VehicleState, rolling: float, force: ForceSettings) -> float:
+    """Return the road's texture: of the distance alone, so that it stands still with the car and replays."""
+    waves = sin(LONG_WAVE_RADPM * vehicle.distance_m) + sin(SHORT_WAVE_RADPM * vehicle.distance_m)
+    return 0.5 * force.texture_nm * rolling * waves
+
+
+@kernel
+def compose(follows: bool, target: Rim, rim: Rim, vehicle: VehicleState, force: ForceSettings) -> Parts:
+    """Return the parts of the torque, unlimited.
+
+    Args:
+        follows: The wheel is to follow the road wheels; else it is the car's.
+        target: Where the road wheels have it.
+        rim: The wheel as estimated.
+        vehicle: The vehicle after this tick.
+        force: Of this drive.
+    """
+    speed = abs(vehicle.vx_mps)
+    rolling = speed / (speed + force.fade_mps)
+    texture = road(vehicle, rolling, force)
+    if follows:
+        return Parts(0.0, servo(target, rim, force), texture)
+    friction = force.friction_nm + (1.0 - rolling) * force.standstill_friction_nm
+    drag = -force.damping_nms * rim.radps - friction * rim.radps / (abs(rim.radps) + FRICTION_RADPS)
+    car = force.car_share * rolling * vehicle.hand_wheel_torque_nm
+    return Parts(car, 0.0, drag + end_stop(rim, force) + texture)
+
+
+@kernel
+def motion_alone(
+    hand_wheel_rad: float,
+    radps: float,
+    target: Rim,
+    share: float,
+    watching: bool,
+    live: bool,
+    before: WheelMemory,
+    force: ForceSettings,
+    rate_filter_s: float,
+    tick_s: float,
+) -> Alone:
+    """Return where the motor alone would have the wheel: the rim under a servo of its own, with nobody at it.
+
+    Args:
+        hand_wheel_rad: Angle read now: the model starts there.
+        radps: Rate estimated now.
+        target: Where the servo goes.
+        share: How far the servo is in force, 0 (let go) to 1.
+        watching: Whether it matters; if not, the model follows the wheel and explains nothing.
+        live: Whether there is a wheel with a motor; without one the motor alone moves nothing.
+        before: From the tick before.
+        force: Of this drive.
+        rate_filter_s: First-order filter of the rate.
+        tick_s: Length of a tick.
+    """
+    if not watching:
+        return Alone(hand_wheel_rad, radps, 0.0, 0.0, 0.0)
+    if not live:
+        return Alone(hand_wheel_rad, 0.0, 0.0, before.explained_rad, 0.0)
+    start = Rim(before.model_rad, before.model_radps) if before.live > 0.0 else Rim(hand_wheel_rad, 0.0)
+    asked_nm = share * soft_clip(servo(target, start, force), force)
+    motor_nm = before.model_nm + force.motor_lag_share * (asked_nm - before.model_nm)
+    rim = turn(start, motor_nm, force.inertia_kgm2, force.motor_damping_nms, force.motor_friction_nm, tick_s)
+    smooth = tick_s / (tick_s + rate_filter_s)
+    return Alone(
+        rim.rad,
+        rim.radps,
+        motor_nm,
+        before.explained_rad + (rim.rad - start.rad),
+        before.explained_radps + smooth * (rim.radps - before.explained_radps),
+    )
+
+
+@kernel
+def wheel_torque(
+    driver: DriverInput,
+    wheel_motor: float,
+    mode: float,
+    watching: bool,
+    events: float,
+    vehicle: VehicleState,
+    before: WheelTorque,
+    memory: WheelMemory,
+    force: ForceSettings,
+    rate_filter_s: float,
+    tick_s: float,
+) -> tuple[WheelTorque, WheelMemory]:
+    """Return the motor's torque for the coming tick, and what must be remembered.
+
+    Args:
+        driver: The person, calibrated.
+        wheel_motor: 1 while the wheel's motor obeys.
+        mode: Who drives.
+        watching: Whether the person may take over by moving the wheel: then the motor's own motion is followed.
+        events: Edges of this tick.
+        vehicle: The vehicle after this tick.
+        before: Torque of the tick before.
+        memory: From the tick before.
+        force: Of this drive, with a motor.
+        rate_filter_s: Of the rate in `driver`: the explained rate is filtered alike.
+        tick_s: Length of a tick.
+    """
+    live = wheel_motor > 0.0 and trusted(driver.wheel_validity)
+    motor_nm = memory.motor_nm + force.motor_lag_share * (before.torque_nm - memory.motor_nm)
+    felt = at_rest(driver.hand_wheel_rad)
+    if live and memory.live > 0.0:
+        known = Felt(memory.wheel_rad, memory.wheel_radps, before.human_nm, memory.hands_nm, before.hands_on)
+        felt = observe(known, driver.hand_wheel_rad, motor_nm, force, tick_s)
+    rim = Rim(felt.rad, felt.radps)
+    follows = mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED)
+    lock = force.end_stop_rad
+    wanted_rad = vehicle.road_wheel_rad * force.hand_wheel_per_road_wheel
+    finite = is_finite(wanted_rad) and is_finite(vehicle.hand_wheel_torque_nm) and is_finite(vehicle.vx_mps)
+    finite = finite and is_finite(vehicle.distance_m) and is_finite(felt.rad) and is_finite(felt.radps)
+    target = Rim(memory.target_rad, 0.0)
+    if finite:
+        target_rad = clip(wanted_rad, -lock, lock)
+        target = Rim(target_rad, (target_rad - memory.target_rad) / tick_s if memory.live > 0.0 else 0.0)
+    driven = follows or mode in (_MANUAL, _SHARED)
+    enabled = live and finite and driven and int(events) & _LOOP_STALL == 0
+    ramp = approach(before.ramp, 1.0, force.ramp_per_tick) if enabled else 0.0
+    torque = WheelTorque(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, felt.human_nm, felt.hands_on)
+    if enabled:
+        parts = compose(follows, target, rim, vehicle, force)
+        raw_nm = parts.car_nm + parts.servo_nm + parts.feel_nm
+        wished_nm = ramp * soft_clip(raw_nm, force)
+        torque_nm = approach(before.torque_nm, wished_nm, force.slew_nm)
+        clipped = 1.0 if abs(raw_nm) > force.max_torque_nm else 0.0
+        torque = WheelTorque(torque_nm, parts.car_nm, parts.servo_nm, ramp, clipped, 1.0, felt.human_nm, felt.hands_on)
+    share = ramp if follows else 0.0
+    alone = motion_alone(
+        driver.hand_wheel_rad, felt.radps, target, share, watching, live, memory, force, rate_filter_s, tick_s
+    )
+    return torque, WheelMemory(
+        1.0 if live else 0.0,
+        felt.rad,
+        felt.radps,
+        motor_nm,
+        felt.hands_nm,
+        target.rad,
+        alone.rad,
+        alone.radps,
+        alone.motor_nm,
+        alone.explained_rad,
+        alone.explained_radps,
+    )
