@@ -60,9 +60,21 @@ def test_the_person_asks_by_a_button_and_takes_back_by_the_wheel(demo: Demo) -> 
     assert pressed[-1] <= engaged < pressed[-1] + 250
     wheel = demo.table.column("driver.hand_wheel_rad")
     brake = demo.table.column("driver.brake")
-    assert np.abs(wheel[engaged:taken] - wheel[engaged]).max() < 8.0 * RAD_PER_DEG + 0.2
-    assert np.abs(wheel[taken - 25 : taken + 1] - wheel[engaged]).max() > 8.0 * RAD_PER_DEG
+    own = wheel - demo.table.column("motor.explained_rad") - demo.table.column("memory.engage_hand_wheel_rad")
+    assert np.abs(own[engaged + 1 : taken - 100]).max() < 8.0 * RAD_PER_DEG, "what the motor does is not the person's"
+    assert np.abs(own[taken - 25 : taken]).max() > 4.0 * RAD_PER_DEG
     assert brake[engaged : taken + 1].max() == 0.0, "the steering alone took over"
+
+
+def test_the_motor_turns_the_wheel_with_the_road_wheels_while_the_hands_rest(demo: Demo) -> None:
+    _, engaged, taken = (change["tick"] - 1 for change in demo.results["mode_changes"])
+    part = slice(engaged, taken - 100)
+    wheel = demo.table.column("driver.hand_wheel_rad")[part]
+    follows = 15.5 * demo.table.column("vehicle.road_wheel_rad")[part]
+    assert np.ptp(wheel) > 180.0 * RAD_PER_DEG
+    assert np.sqrt(np.mean((wheel - follows) ** 2)) < 3.0 * RAD_PER_DEG
+    assert demo.table.column("torque.enabled")[part].all()
+    assert np.abs(demo.table.column("torque.torque_nm")).max() <= 4.0
 
 
 def test_the_car_drives_off_from_standstill_and_stands_at_the_end(demo: Demo) -> None:

@@ -1,0 +1,195 @@
+"""The motor's torque: what it is made of, its limits, and when it lets go."""
+
+import math
+import random
+from typing import Any
+
+import pytest
+
+from simconsole.compiling import compiled
+from simconsole.devices.force_settings import NO_FORCE, ForceSettings, force_settings
+from simconsole.devices.rim import Rim, turn
+from simconsole.devices.torque import compose, end_stop, servo, soft_clip, wheel_torque
+from simconsole.pipeline import DriverInput
+from simconsole.profile_files import load
+from simconsole.profiles.device import CockpitProfile
+from simconsole.signals import Event, Mode, Validity, VehicleState, WheelMemory, WheelTorque
+
+RATIO, LOCK_RAD, HZ, TICK_S = 15.5, math.radians(36.0), 250, 0.004
+PERSON = DriverInput(*(0.0,) * len(DriverInput._fields))._replace(wheel_validity=float(Validity.LIVE))
+CAR = VehicleState(*(0.0,) * len(VehicleState._fields))._replace(vx_mps=15.0, hand_wheel_torque_nm=-2.0)
+STRAIGHT = Rim(0.0, 0.0)
+
+
+@pytest.fixture(scope="module")
+def force() -> ForceSettings:
+    return force_settings(load("devices", "t500rs_th8rs", CockpitProfile), RATIO, LOCK_RAD, HZ)
+
+
+class Motor:
+    """Feeds ticks through `wheel_torque` and remembers what it must."""
+
+    def __init__(self, force: ForceSettings, kernel: Any = wheel_torque) -> None:
+        self.force, self.kernel = force, kernel
+        self.torque = WheelTorque(*(0.0,) * len(WheelTorque._fields))
+        self.memory = WheelMemory(*(0.0,) * len(WheelMemory._fields))
+
+    def tick(
+        self,
+        driver: DriverInput = PERSON,
+        vehicle: VehicleState = CAR,
+        mode: float = float(Mode.MANUAL),
+        motor: float = 1.0,
+        events: float = 0.0,
+        ticks: int = 1,
+    ) -> WheelTorque:
+        watching = mode in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED, Mode.MINIMAL_RISK)
+        for _ in range(ticks):
+            self.torque, self.memory = self.kernel(
+                driver,
+                motor,
+                mode,
+                watching,
+                events,
+                vehicle,
+                self.torque,
+                self.memory,
+                self.force,
+                0.02,
+                TICK_S,
+            )
+        return self.torque
+
+
+@pytest.fixture
+def motor(force: ForceSettings) -> Motor:
+    return Motor(force)
+
+
+def test_cockpit_without_the_section_has_no_motor() -> None:
+    keyboard = load("devices", "keyboard", CockpitProfile)
+    assert keyboard.force_feedback is None
+    assert force_settings(keyboard, RATIO, LOCK_RAD, HZ) == NO_FORCE
+
+
+def test_torque_comes_in_over_the_ramp_and_is_the_cars(motor: Motor, force: ForceSettings) -> None:
+    ramp_ticks = round(0.7 * HZ)
+    torques = [motor.tick().torque_nm for _ in range(ramp_ticks + 100)]
+    assert abs(torques[0]) < 0.02
+    assert all(
+        later <= sooner + 1e-12 for sooner, later in zip(torques[:ramp_ticks], torques[1:ramp_ticks], strict=False)
+    )
+    rolling = 15.0 / (15.0 + force.fade_mps)
+    assert torques[-1] == pytest.approx(-2.0 * rolling, rel=1e-4)
+    assert torques[ramp_ticks // 2] == pytest.approx(torques[-1] / 2.0, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    "why",
+    [
+        {"mode": float(Mode.STOPPED)},
+        {"mode": float(Mode.EMERGENCY_STOP)},
+        {"mode": float(Mode.PARKED)},
+        {"mode": float(Mode.MINIMAL_RISK)},
+        {"motor": 0.0},
+        {"events": float(Event.LOOP_STALL)},
+        {"driver": PERSON._replace(wheel_validity=float(Validity.STALE))},
+        {"driver": PERSON._replace(wheel_validity=float(Validity.LOST))},
+        {"driver": PERSON._replace(wheel_validity=float(Validity.UNKNOWN))},
+    ],
+    ids=str,
+)
+def test_motor_lets_go_at_once_and_comes_back_slowly(why: dict[str, Any], motor: Motor) -> None:
+    assert abs(motor.tick(ticks=300).torque_nm) > 1.0
+    gone = motor.tick(**why)
+    assert (gone.torque_nm, gone.enabled, gone.ramp) == (0.0, 0.0, 0.0)
+    assert abs(motor.tick().torque_nm) < 0.02
+
+
+@pytest.mark.parametrize("field", ["hand_wheel_torque_nm", "road_wheel_rad", "vx_mps", "distance_m"])
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+def test_part_that_is_no_number_lets_go_and_leaves_nothing_behind(field: str, value: float, motor: Motor) -> None:
+    for mode in (Mode.MANUAL, Mode.AUTONOMOUS):
+        motor.tick(mode=float(mode), ticks=300)
+        assert motor.tick(vehicle=CAR._replace(**{field: value}), mode=float(mode)).torque_nm == 0.0
+        motor.tick(mode=float(mode))
+        assert all(map(math.isfinite, (*motor.torque, *motor.memory)))
+
+
+def test_car_torque_fades_and_friction_grows_towards_standstill(force: ForceSettings) -> None:
+    at = [compose(False, STRAIGHT, STRAIGHT, CAR._replace(vx_mps=v), force).car_nm for v in (0.0, 0.5, 5.0, 30.0)]
+    assert at[0] == 0.0
+    assert at == sorted(at, reverse=True)
+    turning = Rim(0.0, 1.0)
+    drags = [compose(False, STRAIGHT, turning, CAR._replace(vx_mps=v), force).feel_nm for v in (0.0, 1.0, 20.0)]
+    assert drags[0] < drags[1] < drags[2] < 0.0
+
+
+def test_road_is_felt_over_distance_alone(force: ForceSettings) -> None:
+    felt = [compose(False, STRAIGHT, STRAIGHT, CAR._replace(distance_m=0.1 * k), force).feel_nm for k in range(400)]
+    assert 0.02 < max(felt) <= force.texture_nm
+    assert abs(sum(felt) / len(felt)) < 0.005
+    standing = CAR._replace(vx_mps=0.0, distance_m=3.3)
+    assert compose(False, STRAIGHT, STRAIGHT, standing, force).feel_nm == 0.0
+
+
+def test_end_stop_pushes_back_only_beyond_the_lock(force: ForceSettings) -> None:
+    lock = force.end_stop_rad
+    assert lock < math.radians(540.0)
+    assert end_stop(Rim(lock, 3.0), force) == 0.0
+    assert end_stop(Rim(lock + 0.1, 0.0), force) == pytest.approx(-2.5)
+    assert end_stop(Rim(-lock - 0.1, 0.0), force) == pytest.approx(2.5)
+    assert end_stop(Rim(lock + 0.1, 2.0), force) < end_stop(Rim(lock + 0.1, -2.0), force) < 0.0
+
+
+def test_soft_clip_is_monotone_bounded_odd_and_smooth(force: ForceSettings) -> None:
+    top = force.max_torque_nm
+    values = [soft_clip(0.01 * k, force) for k in range(5000)]
+    assert all(before < after < top for before, after in zip(values, values[1:], strict=False))
+    assert max(after - before for before, after in zip(values, values[1:], strict=False)) < 0.01 + 1e-9
+    assert values[200] == 2.0
+    assert soft_clip(-7.0, force) == -soft_clip(7.0, force)
+
+
+def test_servo_pulls_towards_the_target(force: ForceSettings) -> None:
+    assert servo(Rim(0.1, 0.0), STRAIGHT, force) == pytest.approx(1.8)
+    assert servo(Rim(0.0, 1.0), Rim(0.0, 1.0), force) == 0.0
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_no_drive_leaves_the_limits_and_both_executions_agree(seed: int, force: ForceSettings) -> None:
+    """D13 in the kernel: bounded, slew-limited and equal in bits over wild inputs."""
+    dice = random.Random(seed)
+    print(f"seed {seed}")
+    slow, fast = Motor(force), Motor(force, compiled(wheel_torque))
+    odd = [0.0, 1.0, -3.0, 9.0, -60.0, 1e6, math.nan, math.inf]
+    driver, vehicle, mode = PERSON, CAR, float(Mode.MANUAL)
+    for _ in range(2000):
+        if dice.random() < 0.2:
+            mode = float(dice.choice(list(Mode)))
+        vehicle = CAR._replace(
+            hand_wheel_torque_nm=dice.choice(odd), road_wheel_rad=dice.choice(odd), vx_mps=dice.choice(odd)
+        )
+        driver = driver._replace(
+            hand_wheel_rad=dice.uniform(-10.0, 10.0),
+            wheel_validity=float(dice.choice([Validity.LIVE] * 9 + [Validity.STALE])),
+        )
+        before = slow.torque.torque_nm
+        arguments = {"driver": driver, "vehicle": vehicle, "mode": mode, "motor": float(dice.random() < 0.97)}
+        torque = slow.tick(**arguments)
+        assert tuple(map(float.hex, torque)) == tuple(map(float.hex, fast.tick(**arguments)))
+        assert tuple(map(float.hex, slow.memory)) == tuple(map(float.hex, fast.memory))
+        assert all(map(math.isfinite, (*torque, *slow.memory)))
+        assert abs(torque.torque_nm) <= force.max_torque_nm
+        assert torque.torque_nm == 0.0 or abs(torque.torque_nm - before) <= force.slew_nm * (1.0 + 1e-9)
+
+
+def test_rim_sticks_until_more_than_friction_pulls() -> None:
+    rim = Rim(1.0, 0.0)
+    assert turn(rim, 0.19, 0.05, 0.0, 0.2, 0.001) == rim
+    assert turn(rim, 0.21, 0.05, 0.0, 0.2, 0.001).radps > 0.0
+    coasting = Rim(0.0, 2.0)
+    for _ in range(1000):
+        coasting = turn(coasting, 0.0, 0.05, 0.0, 0.2, 0.001)
+    assert coasting.radps == 0.0
+    assert coasting.rad == pytest.approx(0.5 * 0.05 * 4.0 / 0.2, rel=0.01), "the energy went into friction"
