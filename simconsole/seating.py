@@ -17,6 +17,7 @@ from simconsole.rows import Snapshot
 if TYPE_CHECKING:
     from simconsole.devices.motor import HapticPort
 
+
 class Seating(NamedTuple):
     """An opened cockpit."""
 

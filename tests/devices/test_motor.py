@@ -17,10 +17,9 @@ from simconsole.devices.motor import (
 )
 from simconsole.devices.simulated_wheel import HANDS_OFF, SimulatedWheel
 from simconsole.errors import DeviceError
-from simconsole.pipeline import NO_SAMPLE
 from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.rows import MOTOR_AT, PLATFORM_AT, TORQUE_AT, Snapshot
-from simconsole.signals import DeviceSample, WheelTorque
+from simconsole.signals import NO_SAMPLE, DeviceSample, WheelTorque
 
 FORCE = ForceFeedback(max_torque_nm=4.0)
 HZ = 250

@@ -1,5 +1,6 @@
 """The motor's torque: what it is made of, its limits, and when it lets go."""
 
+import itertools
 import math
 import random
 from typing import Any
@@ -76,9 +77,7 @@ def test_torque_comes_in_over_the_ramp_and_is_the_cars(motor: Motor, force: Forc
     ramp_ticks = round(0.7 * HZ)
     torques = [motor.tick().torque_nm for _ in range(ramp_ticks + 100)]
     assert abs(torques[0]) < 0.02
-    assert all(
-        later <= sooner + 1e-12 for sooner, later in zip(torques[:ramp_ticks], torques[1:ramp_ticks], strict=False)
-    )
+    assert all(later <= sooner + 1e-12 for sooner, later in itertools.pairwise(torques))
     rolling = 15.0 / (15.0 + force.fade_mps)
     assert torques[-1] == pytest.approx(-2.0 * rolling, rel=1e-4)
     assert torques[ramp_ticks // 2] == pytest.approx(torques[-1] / 2.0, rel=0.05)
@@ -145,8 +144,8 @@ def test_end_stop_pushes_back_only_beyond_the_lock(force: ForceSettings) -> None
 def test_soft_clip_is_monotone_bounded_odd_and_smooth(force: ForceSettings) -> None:
     top = force.max_torque_nm
     values = [soft_clip(0.01 * k, force) for k in range(5000)]
-    assert all(before < after < top for before, after in zip(values, values[1:], strict=False))
-    assert max(after - before for before, after in zip(values, values[1:], strict=False)) < 0.01 + 1e-9
+    assert all(before < after < top for before, after in itertools.pairwise(values))
+    assert max(after - before for before, after in itertools.pairwise(values)) < 0.01 + 1e-9
     assert values[200] == 2.0
     assert soft_clip(-7.0, force) == -soft_clip(7.0, force)
 
