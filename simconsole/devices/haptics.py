@@ -21,7 +21,7 @@ _DAMPER: Final = 1 << 8
 _GAIN: Final = 1 << 12
 _AUTOCENTRE: Final = 1 << 13
 _STEERING_AXIS: Final = 3
-_INFINITE: Final = 0xFFFFFFFF
+_LENGTH_MS: Final = round(EFFECT_S * 1000.0)
 _FULL: Final = 0x7FFF
 
 
@@ -101,7 +101,8 @@ class SdlHaptics:
         """
         self._force = force
         self._open = False
-        self._constant = self._damper = -1
+        self._constant = -1
+        self._effects: list[int] = []
         sdl_runtime.acquire()
         try:
             self._sdl = _library()
@@ -126,22 +127,24 @@ class SdlHaptics:
         self._done(self._sdl.SDL_HapticUpdateEffect(self._haptic, self._constant, ctypes.byref(self._effect)))
 
     def start(self) -> None:
-        """Start the effect, or start it again.
+        """Start the effect and the damper, or start them again.
 
         Raises:
             DeviceError: the device has gone.
         """
         self._need_open()
-        self._done(self._sdl.SDL_HapticRunEffect(self._haptic, self._constant, 1))
+        for effect in self._effects:
+            self._done(self._sdl.SDL_HapticRunEffect(self._haptic, effect, 1))
 
     def stop(self) -> None:
-        """End the constant effect at once; the damper only ever resists.
+        """End everything at once.
 
         Raises:
             DeviceError: the device has gone.
         """
         if self._open:
-            self._done(self._sdl.SDL_HapticStopEffect(self._haptic, self._constant))
+            for effect in self._effects:
+                self._done(self._sdl.SDL_HapticStopEffect(self._haptic, effect))
 
     def close(self) -> None:
         """Stop everything, take the effects away, leave gain and autocentre as the profile says."""
@@ -150,9 +153,8 @@ class SdlHaptics:
         self._open = False
         sdl, haptic = self._sdl, self._haptic
         sdl.SDL_HapticStopAll(haptic)
-        for effect in (self._constant, self._damper):
-            if effect >= 0:
-                sdl.SDL_HapticDestroyEffect(haptic, effect)
+        for effect in self._effects:
+            sdl.SDL_HapticDestroyEffect(haptic, effect)
         self._set(self._force.gain_after_percent, self._force.autocentre_after_percent)
         sdl.SDL_HapticClose(haptic)
         sdl.SDL_QuitSubSystem(_INIT_HAPTIC)
@@ -187,28 +189,28 @@ class SdlHaptics:
             self._effect = _Effect()
             self._effect.constant.type = _CONSTANT
             self._effect.constant.direction.type = _STEERING_AXIS
-            self._effect.constant.length = round(EFFECT_S * 1000.0)
+            self._effect.constant.length = _LENGTH_MS
             self._constant = sdl.SDL_HapticNewEffect(haptic, ctypes.byref(self._effect))
             if self._constant < 0:
                 raise self._refused()
+            self._effects.append(self._constant)
             if self._capability.damper and self._force.device_damper > 0.0:
-                self._damper = self._add_damper(round(self._force.device_damper * _FULL))
+                self._add_damper(round(self._force.device_damper * _FULL))
         except BaseException:
             sdl.SDL_HapticClose(haptic)
             raise
         self._open = True
 
-    def _add_damper(self, strength: int) -> int:
-        """Return a running damper's number, -1 where the device refuses it after all: it is only comfort."""
+    def _add_damper(self, strength: int) -> None:
+        """Add a damper; a device that refuses it after all goes without: it is only comfort."""
         effect = _Effect()
         damper = effect.condition
-        damper.type, damper.length, damper.direction.type = _DAMPER, _INFINITE, _STEERING_AXIS
+        damper.type, damper.length, damper.direction.type = _DAMPER, _LENGTH_MS, _STEERING_AXIS
         damper.right_sat[0] = damper.left_sat[0] = 2 * _FULL
         damper.right_coeff[0] = damper.left_coeff[0] = strength
         number = int(self._sdl.SDL_HapticNewEffect(self._haptic, ctypes.byref(effect)))
         if number >= 0:
-            self._sdl.SDL_HapticRunEffect(self._haptic, number, 1)
-        return number
+            self._effects.append(number)
 
     def _set(self, gain_percent: int, autocentre_percent: int) -> None:
         if self._capability.gain:

@@ -10,10 +10,10 @@ from simconsole.devices.motor import SimulatedWheelPort, WheelMotor
 from simconsole.devices.settings import settings
 from simconsole.devices.simulated_wheel import RELAXED, Arm, SimulatedWheel, step_wheel
 from simconsole.devices.uncalibrate import Intent, uncalibrate, wheel_raw
-from simconsole.pipeline import NO_COMMAND, NO_EVENTS, advance
+from simconsole.pipeline import advance
 from simconsole.rows import Snapshot, TickInputs
 from simconsole.session_files import load_session, resolve
-from simconsole.signals import Event, EventInput, Mode, RemoteCommand, RemoteKind
+from simconsole.signals import NO_COMMAND, NO_EVENTS, Event, EventInput, Mode, RemoteCommand, RemoteKind
 from simconsole.world.course import Course
 
 SPEED_MPS = 10.0

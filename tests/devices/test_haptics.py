@@ -1,0 +1,105 @@
+"""Force through SDL: against the kernel's own interface, mocked; and joysticks that have none."""
+
+import ctypes
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from simconsole.devices.haptics import _Condition, _Constant, _Effect, open_haptics
+from simconsole.devices.sdl import SdlSource
+from simconsole.devices.virtual_cockpit import VirtualCockpit
+from simconsole.profiles.force_feedback import ForceFeedback
+from tests.devices.mocked import calls, start
+
+FF_CONSTANT, FF_DAMPER = 0x52, 0x55
+STEERING = 0x4000
+FORCE = ForceFeedback(max_torque_nm=4.0)
+
+
+@pytest.fixture(scope="module")
+def driven(tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, Any]]:
+    """The calls of one drive: levels 0, 0.5, 1, -1, -0.25, 9, -9, 0, then closed twice."""
+    log = tmp_path_factory.mktemp("mock") / "calls.jsonl"
+    done = start(log, "drive")
+    out, err = done.communicate(timeout=60.0)
+    assert done.returncode == 0, out + err
+    assert "vendor_id=1103, product_id=46686, name='Thrustmaster TRS Racing wheel'" in out
+    assert "constant=True, gain=True, autocentre=True, damper=True" in out
+    return calls(log)
+
+
+def uploads(driven: list[dict[str, Any]], kind: int) -> list[dict[str, Any]]:
+    return [call for call in driven if call["what"] == "upload" and call["type"] == kind]
+
+
+def test_kernel_gets_one_constant_effect_its_levels_and_its_end(driven: list[dict[str, Any]]) -> None:
+    constant = uploads(driven, FF_CONSTANT)
+    assert [call["new"] for call in constant] == [True] + [False] * (len(constant) - 1)
+    assert {call["direction"] for call in constant} == {STEERING}
+    steps = [0, 64, 127, -127, -32, 127, -127, 0]
+    assert [call["level"] for call in constant] == [round(step / 127 * 32767) for step in steps]
+    (slot,) = {call["id"] for call in constant}
+    assert [call for call in driven if call["what"] == "remove" and call["id"] == slot]
+
+
+def test_every_effect_is_finite_and_started_again_while_ticks_come(driven: list[dict[str, Any]]) -> None:
+    assert {call["length_ms"] for call in driven if call["what"] == "upload"} == {200}
+    (slot,) = {call["id"] for call in uploads(driven, FF_CONSTANT)}
+    starts = [call["t_ns"] for call in driven if call["what"] == "play" and call["id"] == slot and call["value"] == 1]
+    assert len(starts) >= 3
+    gaps = [(after - before) / 1e6 for before, after in zip(starts, starts[1:], strict=False)]
+    assert min(gaps) >= 45.0, gaps
+
+
+def test_gain_and_autocentre_are_set_first_and_left_as_the_profile_says(driven: list[dict[str, Any]]) -> None:
+    assert [call["what"] for call in driven[:3]] == ["gain", "autocentre", "upload"]
+    assert [call["value"] for call in driven[:2]] == [65535, 0]
+    end = [call for call in driven if call["what"] in ("gain", "autocentre")][-2:]
+    assert [call["value"] for call in end] == [65535, round(0.2 * 65535)]
+
+
+def test_device_damper_runs_beside_it(driven: list[dict[str, Any]]) -> None:
+    (damper,) = uploads(driven, FF_DAMPER)
+    assert damper["new"]
+    assert [call for call in driven if call["what"] == "play" and call["id"] == damper["id"] and call["value"] == 1]
+
+
+def test_after_closing_nothing_plays(driven: list[dict[str, Any]]) -> None:
+    playing: dict[int, int] = {}
+    for call in driven:
+        if call["what"] == "play":
+            playing[call["id"]] = call["value"]
+        if call["what"] == "remove":
+            playing.pop(call["id"], None)
+    assert playing == {}
+    assert driven[-1] == {**driven[-1], "what": "end", "code": 0}
+
+
+def test_structures_have_the_sizes_of_sdls() -> None:
+    assert (ctypes.sizeof(_Constant), ctypes.sizeof(_Condition), ctypes.sizeof(_Effect)) == (40, 68, 72)
+
+
+def test_joystick_without_a_motor_says_so_and_works(plugged: VirtualCockpit, source: SdlSource) -> None:
+    number = source.instance_id("wheel")
+    assert number is not None
+    port = open_haptics(number, FORCE)
+    assert not port.capability.constant
+    assert "value none: a driver with force feedback" in port.capability.name
+    port.write(1.0)
+    port.start()
+    port.stop()
+    port.close()
+    plugged.unplug("wheel")
+    source.poll(1)
+    assert source.instance_id("wheel") is None
+
+
+def test_joystick_that_is_not_there_has_no_motor(sdl: None) -> None:
+    from simconsole.devices import sdl_runtime
+
+    sdl_runtime.acquire()
+    try:
+        assert not open_haptics(4711, FORCE).capability.constant
+    finally:
+        sdl_runtime.release()

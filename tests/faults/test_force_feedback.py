@@ -1,0 +1,161 @@
+"""Force feedback under faults: killed, hung, and given nonsense (cases D11 to D13), on the kernel's interface and in
+the whole console. What is left on the wheel is told by a kernel that erases a process's effects with its file
+(`input_ff_flush`) and plays an effect no longer than it is."""
+
+import math
+import os
+import signal
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from simconsole.devices.simulated_wheel import HANDS_OFF, RELAXED
+from simconsole.rows import TORQUE_AT, VEHICLE_AT
+from simconsole.signals import Event, EventInput, Mode, VehicleState
+from tests.devices.closed_loop import Loop
+from tests.devices.mocked import calls, start
+
+LET_GO_S = 0.25
+
+
+def last_force(log: list[dict[str, Any]]) -> tuple[float, float]:
+    """Return (when the last constant effect ends by itself at the latest, when its process was last heard), in s."""
+    lengths = {call["id"]: call["length_ms"] for call in log if call["what"] == "upload"}
+    assert all(0 < length <= 200 for length in lengths.values())
+    plays = [call for call in log if call["what"] == "play" and call["value"] == 1]
+    ends = max(call["t_ns"] / 1e9 + lengths[call["id"]] / 1e3 for call in plays)
+    heard = max(call["t_ns"] for call in log if call["what"] in ("play", "upload")) / 1e9
+    return ends, heard
+
+
+def test_d11_killed_process_leaves_no_force(tmp_path: Path) -> None:
+    """D11: kill -9 at full torque. No effect outlives 200 ms even if the kernel did not erase them at close."""
+    log = tmp_path / "calls.jsonl"
+    killed = start(log, "kill")
+    killed.communicate(timeout=60.0)
+    noted = calls(log)
+    assert noted[-1]["what"] == "end"
+    assert noted[-1]["code"] == -signal.SIGKILL
+    assert any(call.get("level") == 32767 for call in noted)
+    ends_s, heard_s = last_force(noted)
+    assert ends_s - heard_s <= LET_GO_S
+    again = tmp_path / "again.jsonl"
+    restarted = start(again, "drive")
+    out, err = restarted.communicate(timeout=60.0)
+    assert restarted.returncode == 0, out + err
+    upload = next(call for call in calls(again) if call["what"] == "upload")
+    assert upload["level"] == 0, "the first thing a new process loads pushes nothing"
+
+
+def test_d12_hung_process_lets_go(tmp_path: Path) -> None:
+    """D12: SIGSTOP at full torque: nothing starts the effect again, and it ends within 250 ms of the stall."""
+    log = tmp_path / "calls.jsonl"
+    mock = start(log, "hang")
+    try:
+        child = stopped_child(mock.pid)
+        stalled_s = time.monotonic()
+        before = len(calls(log))
+        ends_s, heard_s = last_force(calls(log))
+        time.sleep(LET_GO_S)
+        assert len(calls(log)) == before, "a stopped process tells the kernel nothing"
+        assert heard_s <= stalled_s
+        assert ends_s <= stalled_s + LET_GO_S
+        assert ends_s - heard_s <= LET_GO_S
+        os.kill(child, signal.SIGKILL)
+        mock.communicate(timeout=60.0)
+    finally:
+        mock.kill()
+        mock.communicate()
+
+
+def stopped_child(parent: int) -> int:
+    """Wait for the program to have stopped itself."""
+    deadline_s = time.monotonic() + 60.0
+    while time.monotonic() < deadline_s:
+        for stat in Path("/proc").glob("[0-9]*/stat"):
+            try:
+                fields = stat.read_text().rpartition(")")[2].split()
+            except OSError:
+                continue
+            if fields[1] == str(parent) and fields[0] == "T":
+                return int(stat.parent.name)
+        time.sleep(0.01)
+    raise AssertionError("the program did not stop itself")
+
+
+def test_d12_simulated_wheel_feels_no_force_after_a_stall() -> None:
+    """The same in simulated time: the loop stands still, the wheel's own clock goes on."""
+    loop = Loop()
+    loop.engage()
+    loop.wheel.state = loop.wheel.state._replace(rad=0.5)
+    for _ in range(20):
+        loop.tick(HANDS_OFF)
+    assert abs(loop.wheel.state.motor_nm) > 0.3
+    for _ in loop.seconds(LET_GO_S):
+        loop.wheel.turn(HANDS_OFF)
+    assert abs(loop.wheel.state.motor_nm) < 0.01
+
+
+def test_d12_reported_stall_lets_go_in_the_same_tick() -> None:
+    loop = Loop()
+    loop.engage()
+    for _ in loop.seconds(12.0):
+        loop.tick(RELAXED)
+    shot = loop.tick(RELAXED, events=EventInput(float(Event.LOOP_STALL)))
+    assert (shot.torque.torque_nm, shot.torque.enabled) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 1e300], ids=str)
+@pytest.mark.parametrize("field", ["hand_wheel_torque_nm", "road_wheel_rad"])
+def test_d13_nonsense_from_the_vehicle_never_reaches_the_motor(field: str, value: float) -> None:
+    """D13: not finite or beyond the maximum, in the row that the torque is made of."""
+    loop = Loop()
+    loop.engage()
+    before = 0.0
+    for tick in range(250):
+        row = loop.state.row.copy()
+        loop.tick(RELAXED)
+        if tick % 3 == 0:
+            loop.snapshot.row[VEHICLE_AT + VehicleState._fields.index(field)] = value
+            loop.console.feel(row, loop.snapshot.row, loop.console.settings, loop.console.tick_s)  # type: ignore[misc]
+            loop.snapshot.row[VEHICLE_AT + VehicleState._fields.index(field)] = 0.0
+        torque = loop.snapshot.torque
+        assert math.isfinite(torque.torque_nm)
+        assert abs(torque.torque_nm) <= 4.0
+        assert torque.enabled == 0.0 or abs(torque.torque_nm - before) <= 150.0 / 250.0 + 1e-9
+        assert np.isfinite(loop.snapshot.row[TORQUE_AT:]).all()
+        before = torque.torque_nm
+
+
+def test_d13_sign_that_flips_every_tick_stays_within_the_slew_limit() -> None:
+    loop = Loop()
+    loop.engage()
+    field = VEHICLE_AT + VehicleState._fields.index("road_wheel_rad")
+    torques = []
+    for tick in range(250):
+        row = loop.state.row.copy()
+        loop.tick(RELAXED)
+        loop.snapshot.row[field] = 0.5 if tick % 2 else -0.5
+        loop.console.feel(row, loop.snapshot.row, loop.console.settings, loop.console.tick_s)  # type: ignore[misc]
+        torques.append(loop.snapshot.torque.torque_nm)
+    assert np.abs(np.diff(torques)).max() <= 150.0 / 250.0 + 1e-9
+    assert np.abs(torques).max() <= 4.0
+
+
+@pytest.mark.parametrize("mode", [Mode.STOPPED, Mode.EMERGENCY_STOP])
+def test_stopped_console_holds_nothing(mode: Mode) -> None:
+    loop = Loop()
+    loop.engage()
+    for _ in loop.seconds(4.0):
+        loop.tick(RELAXED)
+    if mode == Mode.EMERGENCY_STOP:
+        loop.tick(RELAXED, events=EventInput(float(Event.EMERGENCY_STOP)))
+    else:
+        loop.tick(RELAXED, events=EventInput(float(Event.COMMANDER_LOST)))
+    for _ in loop.seconds(20.0):
+        shot = loop.tick(RELAXED)
+        assert shot.torque.torque_nm == 0.0
+    assert shot.arbitration.mode == mode
