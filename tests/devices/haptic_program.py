@@ -1,6 +1,6 @@
 """Runs behind the mocked kernel: the console's own motor on SDL's own driver, 250 ticks a second.
 
-    python haptic_program.py HOW      HOW: drive, hang (SIGSTOP to itself) or kill (SIGKILL to itself)
+python haptic_program.py HOW      HOW: drive, hang (SIGSTOP to itself) or kill (SIGKILL to itself)
 """
 
 import os

@@ -1,10 +1,11 @@
 """Torque out, angle in: the console, a controller on the urban course, and a simulated wheel with arms at it."""
 
 import math
+from collections.abc import Callable
 
 import pytest
 
-from simconsole.devices.simulated_wheel import FIRM, HANDS_OFF, RELAXED, STEERING
+from simconsole.devices.simulated_wheel import FIRM, HANDS_OFF, RELAXED, STEERING, Arm
 from simconsole.signals import Mode, Reason
 from tests.devices.closed_loop import Loop
 
@@ -39,7 +40,9 @@ def test_with_nobody_at_it_the_wheel_follows_the_road_wheels() -> None:
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
 @pytest.mark.parametrize("start_s", [5.0, 24.0, 37.3])
-def test_a_person_who_turns_the_wheel_takes_over(side: float, start_s: float) -> None:
+def test_a_person_who_turns_the_wheel_takes_over(
+    side: float, start_s: float, record_property: Callable[[str, object], None]
+) -> None:
     """Pulled 20 deg aside at 120 deg/s by steering hands: taken within 0.25 s, whatever the motor does meanwhile.
 
     The hands need 0.1 s for 12 deg, the arms yield to the motor by a few deg, the detection holds for 50 ms.
@@ -55,7 +58,8 @@ def test_a_person_who_turns_the_wheel_takes_over(side: float, start_s: float) ->
     assert loop.snapshot.arbitration.mode == Mode.MANUAL
     assert loop.snapshot.arbitration.reason == Reason.STEERING_OVERRIDE
     assert loop.snapshot.t_s - began_s <= 0.25
-    print(f"taken after {1000.0 * (loop.snapshot.t_s - began_s):.0f} ms")
+    taken_ms = 1000.0 * (loop.snapshot.t_s - began_s)
+    record_property("take-over against the motor", f"{taken_ms:.0f} ms after the hands began to turn")
 
 
 def test_a_wheel_held_fast_is_taken_over_when_the_road_turns() -> None:
@@ -79,7 +83,9 @@ def test_a_motor_that_fails_in_autonomy_is_no_takeover() -> None:
     assert shot.arbitration.mode == Mode.AUTONOMOUS
 
 
-def test_hands_on_and_off_are_told_apart_within_half_a_second() -> None:
+def test_hands_on_and_off_are_told_apart_within_half_a_second(
+    record_property: Callable[[str, object], None],
+) -> None:
     """Hands that hold the wheel against the road's turning, and hands that are taken off again."""
     loop = Loop()
     loop.engage()
@@ -93,11 +99,13 @@ def test_hands_on_and_off_are_told_apart_within_half_a_second() -> None:
     said_off = next(t for t in loop.seconds(2.0) if not loop.tick(HANDS_OFF).torque.hands_on)
     assert said_on / loop.tick_hz <= 0.5
     assert said_off / loop.tick_hz <= 0.5
-    print(f"on after {said_on / loop.tick_hz:.3f} s, off after {said_off / loop.tick_hz:.3f} s")
+    record_property("hands", f"on after {said_on / loop.tick_hz:.3f} s, off after {said_off / loop.tick_hz:.3f} s")
 
 
 @pytest.mark.parametrize("arm", [HANDS_OFF, RELAXED, FIRM], ids=["off", "relaxed", "firm"])
-def test_the_persons_torque_is_estimated_within_a_third_of_a_newton_metre(arm: object) -> None:
+def test_the_persons_torque_is_estimated_within_a_third_of_a_newton_metre(
+    arm: Arm, record_property: Callable[[str, object], None]
+) -> None:
     """While the motor drives the wheel round the course; `FIRM` hands lead it a few degrees aside, left and right."""
     loop = Loop()
     loop.engage()
@@ -105,12 +113,12 @@ def test_the_persons_torque_is_estimated_within_a_third_of_a_newton_metre(arm: o
     for _ in loop.seconds(60.0):
         aside = math.radians(4.0) * math.sin(3.0 * loop.snapshot.t_s)
         target = RATIO * loop.snapshot.vehicle.road_wheel_rad + aside if arm is FIRM else None
-        shot = loop.tick(arm, target)  # type: ignore[arg-type]
+        shot = loop.tick(arm, target)
         squares += (shot.torque.human_nm - loop.wheel.state.human_nm) ** 2
         count += 1
     assert shot.arbitration.mode == Mode.AUTONOMOUS
     rms_nm = math.sqrt(squares / count)
-    print(f"RMS {rms_nm:.3f} N m")
+    record_property("human torque estimate", f"{rms_nm:.3f} N m RMS")
     assert rms_nm <= 0.3
 
 

@@ -1,7 +1,6 @@
 """Force through SDL: against the kernel's own interface, mocked; and joysticks that have none."""
 
 import ctypes
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -48,8 +47,7 @@ def test_every_effect_is_finite_and_started_again_while_ticks_come(driven: list[
     (slot,) = {call["id"] for call in uploads(driven, FF_CONSTANT)}
     starts = [call["t_ns"] for call in driven if call["what"] == "play" and call["id"] == slot and call["value"] == 1]
     assert len(starts) >= 3
-    gaps = [(after - before) / 1e6 for before, after in zip(starts, starts[1:], strict=False)]
-    assert min(gaps) >= 45.0, gaps
+    assert len(starts) <= (starts[-1] - starts[0]) / 50e6 + 2, "not at every tick"
 
 
 def test_gain_and_autocentre_are_set_first_and_left_as_the_profile_says(driven: list[dict[str, Any]]) -> None:
