@@ -11,6 +11,7 @@ from simconsole.devices.settings import settings
 from simconsole.devices.simulated_wheel import RELAXED, Arm, SimulatedWheel, step_wheel
 from simconsole.devices.uncalibrate import Intent, uncalibrate, wheel_raw
 from simconsole.pipeline import advance
+from simconsole.profiles.force_feedback import Motor
 from simconsole.rows import Snapshot, TickInputs
 from simconsole.session_files import load_session, resolve
 from simconsole.signals import NO_COMMAND, NO_EVENTS, Event, EventInput, Mode, RemoteCommand, RemoteKind
@@ -58,7 +59,8 @@ class Controller:
 class Loop:
     """One drive, tick by tick."""
 
-    def __init__(self, tick_hz: int = 250) -> None:
+    def __init__(self, tick_hz: int = 250, motor: Motor | None = None) -> None:
+        """`motor`: what the wheel really is, where the profile is mistaken about it."""
         self.session = resolved(tick_hz)
         self.tick_hz = tick_hz
         self.console, self.state = assemble(self.session, compiled)
@@ -66,9 +68,8 @@ class Loop:
         assert cockpit.force_feedback is not None
         self.force = cockpit.force_feedback
         self.settings = settings(cockpit, tick_hz)
-        self.wheel = SimulatedWheel(
-            self.force, cockpit.wheel.lock_to_lock_deg, tick_hz=tick_hz, step=compiled(step_wheel)
-        )
+        true = self.force if motor is None else msgspec.structs.replace(self.force, motor=motor)
+        self.wheel = SimulatedWheel(true, cockpit.wheel.lock_to_lock_deg, tick_hz=tick_hz, step=compiled(step_wheel))
         self.motor = WheelMotor(SimulatedWheelPort(self.wheel), self.force, lambda shot: shot.t_s)
         self.rest = uncalibrate(Intent(), self.settings)._replace(wheel_motor=1.0)
         self.snapshot = Snapshot(0, tick_hz, self.state.row)

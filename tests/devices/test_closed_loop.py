@@ -6,6 +6,7 @@ from collections.abc import Callable
 import pytest
 
 from simconsole.devices.simulated_wheel import FIRM, HANDS_OFF, RELAXED, STEERING, Arm
+from simconsole.profiles.force_feedback import Motor
 from simconsole.signals import Mode, Reason
 from tests.devices.closed_loop import Loop
 
@@ -25,6 +26,24 @@ def test_an_hour_of_autonomy_with_resting_hands_is_no_takeover() -> None:
     assert shot.arbitration.mode == Mode.AUTONOMOUS, f"lost after {shot.t_s} s"
     assert shot.vehicle.distance_m > 30_000.0
     assert turned_rad > math.radians(150.0), "the wheel was moved far beyond the take-over threshold"
+
+
+@pytest.mark.parametrize(
+    "motor",
+    [
+        Motor(inertia_kgm2=0.065, damping_nms=0.06, friction_nm=0.35, delay_s=0.02),
+        Motor(inertia_kgm2=0.035, damping_nms=0.01, friction_nm=0.1, delay_s=0.004),
+    ],
+    ids=["heavy and late", "light and quick"],
+)
+def test_wheel_that_is_not_as_its_profile_says_is_no_takeover(motor: Motor) -> None:
+    loop = Loop(motor=motor)
+    loop.engage()
+    for _ in loop.seconds(300.0):
+        if loop.tick(RELAXED).arbitration.mode != Mode.AUTONOMOUS:
+            break
+    assert loop.snapshot.arbitration.mode == Mode.AUTONOMOUS, f"lost after {loop.snapshot.t_s} s"
+    assert loop.snapshot.vehicle.distance_m > 2600.0
 
 
 def test_with_nobody_at_it_the_wheel_follows_the_road_wheels() -> None:
