@@ -35,6 +35,7 @@ class ForceSettings(NamedTuple):
     observer_angle: float
     observer_rate_per_s: float
     observer_accel_per_s2: float
+    resting_hands_nm: float
     hands_on_nm: float
 
 
@@ -77,5 +78,6 @@ def force_settings(
         observer_angle=1.0 - pole * pole * pole,
         observer_rate_per_s=1.5 * (1.0 - pole) * (1.0 - pole) * (1.0 + pole) / tick_s,
         observer_accel_per_s2=(1.0 - pole) * (1.0 - pole) * (1.0 - pole) / (tick_s * tick_s),
+        resting_hands_nm=force.resting_hands_nm,
         hands_on_nm=force.hands_on_nm,
     )

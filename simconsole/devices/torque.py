@@ -23,6 +23,8 @@ _LOOP_STALL: Final = int(Event.LOOP_STALL)
 FRICTION_RADPS: Final = 1.0
 """Rate over which simulated friction gets its sign: steeper, it would chatter through the motor's delay."""
 END_STOP_NMS: Final = 1.0
+RESTING_S: Final = 0.05
+"""How fast what resting hands do is forgiven: as fast as the estimate tells resting hands from others."""
 LONG_WAVE_RADPM: Final = 3.7
 SHORT_WAVE_RADPM: Final = 9.97
 """Two waves of rough road, 1.7 m and 0.63 m long: 6 to 32 Hz between 36 and 72 km/h, incommensurable."""
@@ -110,8 +112,8 @@ def compose(follows: bool, target: Rim, rim: Rim, vehicle: VehicleState, force: 
 
 @kernel
 def motion_alone(
-    hand_wheel_rad: float,
-    radps: float,
+    driver: DriverInput,
+    felt: Felt,
     target: Rim,
     share: float,
     watching: bool,
@@ -123,9 +125,12 @@ def motion_alone(
 ) -> Alone:
     """Return where the motor alone would have the wheel: the rim under a servo of its own, with nobody at it.
 
+    Hands that only rest on the rim drag and add inertia: while they do no more than that against the servo, the model
+    goes to where the wheel is. So a take-over needs both, the angle and a person's torque.
+
     Args:
-        hand_wheel_rad: Angle read now: the model starts there.
-        radps: Rate estimated now.
+        driver: Angle and rate read now.
+        felt: Rate and the person's torque, estimated.
         target: Where the servo goes.
         share: How far the servo is in force, 0 (let go) to 1.
         watching: Whether it matters; if not, the model follows the wheel and explains nothing.
@@ -136,21 +141,20 @@ def motion_alone(
         tick_s: Length of a tick.
     """
     if not watching:
-        return Alone(hand_wheel_rad, radps, 0.0, 0.0, 0.0)
+        return Alone(driver.hand_wheel_rad, felt.radps, 0.0, 0.0, 0.0)
     if not live:
-        return Alone(hand_wheel_rad, 0.0, 0.0, before.explained_rad, 0.0)
-    start = Rim(before.model_rad, before.model_radps) if before.live > 0.0 else Rim(hand_wheel_rad, 0.0)
+        return Alone(driver.hand_wheel_rad, 0.0, 0.0, before.explained_rad, 0.0)
+    start = Rim(before.model_rad, before.model_radps) if before.live > 0.0 else Rim(driver.hand_wheel_rad, 0.0)
     asked_nm = share * soft_clip(servo(target, start, force), force)
     motor_nm = before.model_nm + force.motor_lag_share * (asked_nm - before.model_nm)
     rim = turn(start, motor_nm, force.inertia_kgm2, force.motor_damping_nms, force.motor_friction_nm, tick_s)
     smooth = tick_s / (tick_s + rate_filter_s)
-    return Alone(
-        rim.rad,
-        rim.radps,
-        motor_nm,
-        before.explained_rad + (rim.rad - start.rad),
-        before.explained_radps + smooth * (rim.radps - before.explained_radps),
-    )
+    explained_radps = before.explained_radps + smooth * (rim.radps - before.explained_radps)
+    if abs(felt.human_nm) < share * force.resting_hands_nm:
+        go = tick_s / (tick_s + RESTING_S)
+        rim = Rim(rim.rad + go * (felt.rad - rim.rad), rim.radps + go * (felt.radps - rim.radps))
+        explained_radps = driver.hand_wheel_radps
+    return Alone(rim.rad, rim.radps, motor_nm, before.explained_rad + (rim.rad - start.rad), explained_radps)
 
 
 @kernel
@@ -210,9 +214,7 @@ def wheel_torque(
         clipped = 1.0 if abs(raw_nm) > force.max_torque_nm else 0.0
         torque = WheelTorque(torque_nm, parts.car_nm, parts.servo_nm, ramp, clipped, 1.0, felt.human_nm, felt.hands_on)
     share = ramp if follows else 0.0
-    alone = motion_alone(
-        driver.hand_wheel_rad, felt.radps, target, share, watching, live, memory, force, rate_filter_s, tick_s
-    )
+    alone = motion_alone(driver, felt, target, share, watching, live, memory, force, rate_filter_s, tick_s)
     return torque, WheelMemory(
         1.0 if live else 0.0,
         felt.rad,

@@ -10,17 +10,29 @@ from simconsole.devices.motor import SimulatedWheelPort, WheelMotor
 from simconsole.devices.settings import settings
 from simconsole.devices.simulated_wheel import RELAXED, Arm, SimulatedWheel, step_wheel
 from simconsole.devices.uncalibrate import Intent, uncalibrate, wheel_raw
-from simconsole.pipeline import advance
+from simconsole.pipeline import advance_row
 from simconsole.profiles.force_feedback import Motor
-from simconsole.rows import Snapshot, TickInputs
+from simconsole.rows import ARBITRATION_AT, VEHICLE_AT, Snapshot
 from simconsole.session_files import load_session, resolve
-from simconsole.signals import NO_COMMAND, NO_EVENTS, Event, EventInput, Mode, RemoteCommand, RemoteKind
+from simconsole.signals import (
+    NO_COMMAND,
+    NO_EVENTS,
+    Arbitration,
+    Event,
+    EventInput,
+    Mode,
+    RemoteCommand,
+    RemoteKind,
+    VehicleState,
+)
 from simconsole.world.course import Course
 
 SPEED_MPS = 10.0
 LATERAL_MPS2 = 2.0
 WHEELBASE_M = 2.6
 CONTROL_HZ = 50
+DISTANCE_AT = VEHICLE_AT + VehicleState._fields.index("distance_m")
+MODE_AT = ARBITRATION_AT + Arbitration._fields.index("mode")
 
 
 def resolved(tick_hz: int) -> ResolvedSession:
@@ -32,10 +44,15 @@ def resolved(tick_hz: int) -> ResolvedSession:
 class Controller:
     """Steers by the course's curvature at the distance driven, lap after lap: the wheel's work, not a tracker's."""
 
-    def __init__(self, session: ResolvedSession, tick_hz: int) -> None:
+    def __init__(self, session: ResolvedSession, tick_hz: int, grid_m: float) -> None:
         assert session.world is not None
-        self.course = Course(session.world)
-        self.length_m = session.world.length_m
+        course, self.grid_m = Course(session.world), grid_m
+        self.cells = round(session.world.length_m / grid_m)
+        bends = [course.curvature_at(cell * grid_m) for cell in range(self.cells)]
+        window = range(0, round(20.0 / grid_m), max(1, round(1.0 / grid_m)))
+        ahead = [max(abs(bends[(cell + far) % self.cells]) for far in window) for cell in range(self.cells)]
+        self.steers = [math.atan(WHEELBASE_M * bend) for bend in bends]
+        self.speeds = [min(SPEED_MPS, math.sqrt(LATERAL_MPS2 / max(bend, 1e-4))) for bend in ahead]
         self.period = tick_hz // CONTROL_HZ
         self.command = NO_COMMAND
         self.age = 1e9
@@ -43,15 +60,14 @@ class Controller:
     def take(self, tick: int, distance_m: float) -> RemoteCommand:
         self.age += 1.0
         if tick % self.period == 0:
-            s_m = distance_m % self.length_m
-            bend = max(abs(self.course.curvature_at((s_m + ahead) % self.length_m)) for ahead in (0.0, 5.0, 10.0, 20.0))
+            cell = int(distance_m / self.grid_m) % self.cells
             self.age = 0.0
             self.command = NO_COMMAND._replace(
                 kind=float(RemoteKind.SPEED),
                 sequence=self.command.sequence + 1.0,
                 direction=1.0,
-                speed_mps=min(SPEED_MPS, math.sqrt(LATERAL_MPS2 / max(bend, 1e-4))),
-                road_wheel_rad=math.atan(WHEELBASE_M * self.course.curvature_at(s_m)),
+                speed_mps=self.speeds[cell],
+                road_wheel_rad=self.steers[cell],
             )
         return self.command._replace(age_ticks=self.age)
 
@@ -59,11 +75,17 @@ class Controller:
 class Loop:
     """One drive, tick by tick."""
 
-    def __init__(self, tick_hz: int = 250, motor: Motor | None = None) -> None:
-        """`motor`: what the wheel really is, where the profile is mistaken about it."""
+    def __init__(self, tick_hz: int = 250, motor: Motor | None = None, grid_m: float = 0.2) -> None:
+        """Start.
+
+        Args:
+            tick_hz: Of the session.
+            motor: What the wheel really is, where the profile is mistaken about it.
+            grid_m: How often the controller looks at the curvature: a coarse one steers in jerks.
+        """
         self.session = resolved(tick_hz)
         self.tick_hz = tick_hz
-        self.console, self.state = assemble(self.session, compiled)
+        self.console, state = assemble(self.session, compiled)
         cockpit = self.session.cockpit
         assert cockpit.force_feedback is not None
         self.force = cockpit.force_feedback
@@ -72,8 +94,8 @@ class Loop:
         self.wheel = SimulatedWheel(true, cockpit.wheel.lock_to_lock_deg, tick_hz=tick_hz, step=compiled(step_wheel))
         self.motor = WheelMotor(SimulatedWheelPort(self.wheel), self.force, lambda shot: shot.t_s)
         self.rest = uncalibrate(Intent(), self.settings)._replace(wheel_motor=1.0)
-        self.snapshot = Snapshot(0, tick_hz, self.state.row)
-        self.controller = Controller(self.session, tick_hz)
+        self.snapshot = Snapshot(0, tick_hz, state.row)
+        self.controller = Controller(self.session, tick_hz, grid_m)
 
     def tick(
         self, arm: Arm = RELAXED, hands_rad: float | None = None, events: EventInput = NO_EVENTS, **raw: float
@@ -83,8 +105,10 @@ class Loop:
         sample = self.rest._replace(wheel_axis=round(axis * 32767.0) / 32768.0)
         if raw:
             sample = sample._replace(**raw)
-        remote = self.controller.take(self.state.tick + 1, self.snapshot.vehicle.distance_m)
-        self.state, self.snapshot = advance(self.state, TickInputs(sample, remote, events), self.console)
+        tick, before = self.snapshot.tick + 1, self.snapshot.row
+        remote = self.controller.take(tick, before[DISTANCE_AT])
+        row = advance_row(before, (*sample, *remote, *events), self.console)
+        self.snapshot = Snapshot(tick, self.tick_hz, row)
         self.motor.publish(self.snapshot)
         return self.snapshot
 

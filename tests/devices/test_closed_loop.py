@@ -8,7 +8,7 @@ import pytest
 from simconsole.devices.simulated_wheel import FIRM, HANDS_OFF, RELAXED, STEERING, Arm
 from simconsole.profiles.force_feedback import Motor
 from simconsole.signals import Mode, Reason
-from tests.devices.closed_loop import Loop
+from tests.devices.closed_loop import MODE_AT, Loop
 
 RATIO = 15.5
 
@@ -21,7 +21,7 @@ def test_an_hour_of_autonomy_with_resting_hands_is_no_takeover() -> None:
     for _ in loop.seconds(3600.0):
         shot = loop.tick(RELAXED)
         turned_rad = max(turned_rad, abs(loop.wheel.state.rad))
-        if shot.arbitration.mode != Mode.AUTONOMOUS:
+        if shot.row[MODE_AT] != Mode.AUTONOMOUS:
             break
     assert shot.arbitration.mode == Mode.AUTONOMOUS, f"lost after {shot.t_s} s"
     assert shot.vehicle.distance_m > 30_000.0
@@ -46,6 +46,16 @@ def test_wheel_that_is_not_as_its_profile_says_is_no_takeover(motor: Motor) -> N
     assert loop.snapshot.vehicle.distance_m > 2600.0
 
 
+def test_controller_that_steers_in_jerks_is_no_takeover() -> None:
+    """Steps of up to 20 deg at the hand wheel, at the gate's rate limit; the hands are only dragged along."""
+    loop = Loop(grid_m=1.0)
+    loop.engage()
+    for _ in loop.seconds(300.0):
+        if loop.tick(RELAXED).row[MODE_AT] != Mode.AUTONOMOUS:
+            break
+    assert loop.snapshot.arbitration.mode == Mode.AUTONOMOUS, f"lost after {loop.snapshot.t_s} s"
+
+
 def test_with_nobody_at_it_the_wheel_follows_the_road_wheels() -> None:
     loop = Loop()
     loop.engage()
@@ -62,7 +72,7 @@ def test_with_nobody_at_it_the_wheel_follows_the_road_wheels() -> None:
 def test_a_person_who_turns_the_wheel_takes_over(
     side: float, start_s: float, record_property: Callable[[str, object], None]
 ) -> None:
-    """Pulled 20 deg aside at 120 deg/s by steering hands: taken within 0.25 s, whatever the motor does meanwhile.
+    """Pulled 20 deg aside of where the motor has it, at 120 deg/s, by steering hands: taken within 0.25 s, whatever the motor does meanwhile.
 
     The hands need 0.1 s for 12 deg, the arms yield to the motor by a few deg, the detection holds for 50 ms.
     """
@@ -70,10 +80,10 @@ def test_a_person_who_turns_the_wheel_takes_over(
     loop.engage()
     for _ in loop.seconds(start_s):
         loop.tick(RELAXED)
-    began_s, hands_rad = loop.snapshot.t_s, loop.wheel.state.rad
+    began_s = loop.snapshot.t_s
     while loop.snapshot.arbitration.mode == Mode.AUTONOMOUS and loop.snapshot.t_s < began_s + 1.0:
         pulled = min(math.radians(20.0), math.radians(120.0) * (loop.snapshot.t_s - began_s))
-        loop.tick(STEERING, hands_rad + side * pulled)
+        loop.tick(STEERING, RATIO * loop.snapshot.vehicle.road_wheel_rad + side * pulled)
     assert loop.snapshot.arbitration.mode == Mode.MANUAL
     assert loop.snapshot.arbitration.reason == Reason.STEERING_OVERRIDE
     assert loop.snapshot.t_s - began_s <= 0.25

@@ -91,7 +91,7 @@ class TestEverySource:
             sample = opened.source.poll(tick)
             assert all(axis_good(raw) for raw in sample[:5])
             assert all(mask_good(mask) for mask in sample[5:7])
-            assert sample[9:] == (0.0, 0.0, 0.0)
+            assert sample[9:12] == (0.0, 0.0, 0.0)
             driver = seat.feel(sample)
             if tick <= 100:
                 assert (driver.throttle, driver.gear) == (0.0, 0.0)

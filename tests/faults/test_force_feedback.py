@@ -116,7 +116,7 @@ def test_d13_nonsense_from_the_vehicle_never_reaches_the_motor(field: str, value
     loop.engage()
     before = 0.0
     for tick in range(250):
-        row = loop.state.row.copy()
+        row = loop.snapshot.row.copy()
         loop.tick(RELAXED)
         if tick % 3 == 0:
             loop.snapshot.row[VEHICLE_AT + VehicleState._fields.index(field)] = value
@@ -136,7 +136,7 @@ def test_d13_sign_that_flips_every_tick_stays_within_the_slew_limit() -> None:
     field = VEHICLE_AT + VehicleState._fields.index("road_wheel_rad")
     torques = []
     for tick in range(250):
-        row = loop.state.row.copy()
+        row = loop.snapshot.row.copy()
         loop.tick(RELAXED)
         loop.snapshot.row[field] = 0.5 if tick % 2 else -0.5
         loop.console.feel(row, loop.snapshot.row, loop.console.settings, loop.console.tick_s)  # type: ignore[misc]
