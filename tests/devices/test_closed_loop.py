@@ -72,7 +72,7 @@ def test_with_nobody_at_it_the_wheel_follows_the_road_wheels() -> None:
 def test_a_person_who_turns_the_wheel_takes_over(
     side: float, start_s: float, record_property: Callable[[str, object], None]
 ) -> None:
-    """Pulled 20 deg aside of where the motor has it, at 120 deg/s, by steering hands: taken within 0.25 s, whatever the motor does meanwhile.
+    """Pulled 20 deg aside of where the motor has it, at 120 deg/s, by steering hands: taken within 0.25 s.
 
     The hands need 0.1 s for 12 deg, the arms yield to the motor by a few deg, the detection holds for 50 ms.
     """
