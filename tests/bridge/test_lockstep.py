@@ -3,7 +3,7 @@ import logging
 import socket
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
 import pytest
@@ -273,8 +273,9 @@ def test_who_does_not_finish_the_handshake_is_swept_out_by_the_next(
         idle.sendall(b"GET / HT")
         with connect(lockstep.url) as peer:
             peer.ping().wait(10.0)
-        with pytest.raises(ConnectionResetError):
-            idle.recv(10)
+        # Reset if the server never read what was sent, closed in order if it did: gone either way.
+        with suppress(ConnectionResetError):
+            assert idle.recv(10) == b""
 
 
 def test_slow_subscriber_costs_bounded_memory_and_the_loop_nothing(snapshot: Callable[..., Any]) -> None:
