@@ -166,9 +166,9 @@ class BridgeServer:
             sender.cancel()
             del self._clients[session]
             commanded = self.console.disconnect(session, self._clock_ns())
-            if commanded:
+            if commanded and self._server is not None:
                 _logger.warning("%s was commanding and is gone", session.peer)
-            else:
+            else:  # also when it was this side that closed
                 _logger.info("%s is gone", session.peer)
 
     async def _send(self, session: Session, client: _Client) -> None:

@@ -1,5 +1,7 @@
-"""The effect on the device: written on change and at its rate, started again only while ticks come. And every port
-behind the same contract."""
+"""The effect on the device: written on change and at its rate, started again only while ticks come.
+
+No wheel and the simulated one stand behind one contract here; SDL's port is tested in test_haptics.py.
+"""
 
 from collections.abc import Callable
 
