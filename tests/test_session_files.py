@@ -4,6 +4,7 @@ import pytest
 
 from simconsole import profile_files
 from simconsole.errors import ProfileError
+from simconsole.profile_files import names
 from simconsole.profiles.session import SessionProfile
 from simconsole.session_files import load_scenario, load_session, override, resolve
 
@@ -78,6 +79,6 @@ def test_a_link_does_not_lead_a_session_out_of_its_folder(tmp_path: Path) -> Non
 
 def test_a_profile_that_is_named_but_missing_is_one_line(tmp_path: Path) -> None:
     path = write(tmp_path / "session.yaml", "schema: 1\nscenario: {vehicle: spaceship}\n")
-    with pytest.raises(ProfileError, match=r"'spaceship': one of ball, hatchback") as caught:
+    with pytest.raises(ProfileError, match=f"'spaceship': one of {', '.join(names('vehicles'))}") as caught:
         resolve(load_session(path))
     assert "\n" not in str(caught.value)
