@@ -70,7 +70,7 @@ def canbus(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) ->
         msgspec.convert(arguments["profile"], CanProfile),
         int(arguments["tick_hz"]),
         commanding=bool(arguments["commanding"]),
-        wheels=None if wheels is None else (int(wheels[0]), int(wheels[1])),
+        wheels=None if wheels is None else tuple(wheels),
         folder=Path(arguments["bundle"]),
     )
 

@@ -17,8 +17,9 @@ REQUESTS: Final[dict[int, Event]] = {
     7: Event.MARK,
 }
 """ECU_COMMAND.REQUEST; 0 asks for nothing."""
-WHEEL_COLUMNS: Final = ("platform.front_wheel_radps", "platform.rear_wheel_radps")
+WHEEL_COLUMNS: Final = ("platform.fl_radps", "platform.fr_radps", "platform.rl_radps", "platform.rr_radps")
 """Columns of a row that SC_WHEELS needs; vehicles without them do not send it."""
+_WHEELS: Final = ("FRONT_LEFT_SPEED", "FRONT_RIGHT_SPEED", "REAR_LEFT_SPEED", "REAR_RIGHT_SPEED")
 _MOST_MS: Final = 1023.0
 
 
@@ -36,7 +37,7 @@ class Moment(NamedTuple):
     vehicle: VehicleState
     driver: DriverInput
     link: Link
-    wheels: tuple[int, int] | None
+    wheels: tuple[int, ...] | None
 
 
 Builder = Callable[[Moment], Mapping[str, float]]
@@ -90,11 +91,7 @@ def motion(now: Moment) -> Mapping[str, float]:
 def wheels(now: Moment) -> Mapping[str, float]:
     """Return SC_WHEELS."""
     assert now.wheels is not None
-    front, rear = now.wheels
-    return {
-        "FRONT_AXLE_SPEED": float(now.snapshot.row[front]),
-        "REAR_AXLE_SPEED": float(now.snapshot.row[rear]),
-    }
+    return {name: float(now.snapshot.row[at]) for name, at in zip(_WHEELS, now.wheels, strict=True)}
 
 
 def powertrain(now: Moment) -> Mapping[str, float]:
@@ -136,11 +133,11 @@ BUILDERS: Final[dict[str, Builder]] = {
 }
 
 
-def wheel_columns(columns: tuple[str, ...]) -> tuple[int, int] | None:
+def wheel_columns(columns: tuple[str, ...]) -> tuple[int, ...] | None:
     """Return where a row holds the wheels' speeds, None where the vehicle has none."""
     if not all(name in columns for name in WHEEL_COLUMNS):
         return None
-    return columns.index(WHEEL_COLUMNS[0]), columns.index(WHEEL_COLUMNS[1])
+    return tuple(columns.index(name) for name in WHEEL_COLUMNS)
 
 
 COMMAND_KIND: Final = float(RemoteKind.ACCELERATION)

@@ -45,7 +45,7 @@ class CanNode:
         tick_hz: int,
         *,
         commanding: bool,
-        wheels: tuple[int, int] | None = None,
+        wheels: tuple[int, ...] | None = None,
     ) -> None:
         """Build the node.
 
@@ -54,7 +54,7 @@ class CanNode:
             profile: time-out, counter step, bad frames in a row.
             tick_hz: control ticks per second.
             commanding: whether the ECU's commands and requests drive; without, only its emergency stop counts.
-            wheels: where a row holds the axles' wheel speeds (messages.wheel_columns).
+            wheels: where a row holds the four wheels' speeds (messages.wheel_columns).
         """
         self._codec = codec
         self._commanding = commanding

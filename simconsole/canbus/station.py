@@ -165,7 +165,7 @@ def put_on_bus(
     tick_hz: int,
     *,
     commanding: bool,
-    wheels: tuple[int, int] | None,
+    wheels: tuple[int, ...] | None,
     folder: Path,
 ) -> OnBus:
     """Open the bus with the console on it; logs go into `folder`. The caller closes `port`.

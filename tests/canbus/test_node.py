@@ -37,7 +37,9 @@ class Sender:
 
 @pytest.fixture
 def node(codec: Codec) -> CanNode:
-    return CanNode(codec, CanProfile(), 250, commanding=True, wheels=(PLATFORM_AT, PLATFORM_AT + 1))
+    return CanNode(
+        codec, CanProfile(), 250, commanding=True, wheels=(PLATFORM_AT, PLATFORM_AT + 1, PLATFORM_AT, PLATFORM_AT + 1)
+    )
 
 
 @pytest.fixture
@@ -87,8 +89,10 @@ _EXPECTED = {
     "SC_MOTION.YAW_RATE": -0.4,
     "SC_MOTION.ACCEL_X": 1.25,
     "SC_MOTION.ACCEL_Y": -6.0,
-    "SC_WHEELS.FRONT_AXLE_SPEED": 48.0,
-    "SC_WHEELS.REAR_AXLE_SPEED": 50.0,
+    "SC_WHEELS.FRONT_LEFT_SPEED": 48.0,
+    "SC_WHEELS.FRONT_RIGHT_SPEED": 50.0,
+    "SC_WHEELS.REAR_LEFT_SPEED": 48.0,
+    "SC_WHEELS.REAR_RIGHT_SPEED": 50.0,
     "SC_POWERTRAIN.GEAR": 3.0,
     "SC_POWERTRAIN.LEVER": -1.0,
     "SC_POWERTRAIN.ENGINE_RUNNING": 1.0,
@@ -116,7 +120,7 @@ def test_vehicle_without_wheel_speeds_does_not_send_them(codec: Codec, snapshot:
 
 
 def test_columns_of_the_wheels() -> None:
-    assert wheel_columns(("a", *WHEEL_COLUMNS)) == (1, 2)
+    assert wheel_columns(("a", *WHEEL_COLUMNS)) == (1, 2, 3, 4)
     assert wheel_columns(("a", WHEEL_COLUMNS[0])) is None
 
 
