@@ -1,5 +1,6 @@
 """Who takes part in a session: opens the cast that the profile names, for headless and for paced drives."""
 
+import time
 from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
@@ -21,6 +22,9 @@ from simconsole.seating import open_seating
 from simconsole.shared_memory import make_run_folder, remove_run_folder
 from simconsole.stations import Supervisor
 
+LOOK_S = 0.2
+"""How often a wait for somebody else asks whether it shall go on."""
+
 if TYPE_CHECKING:
     from simconsole.bridge.lockstep import LockstepBridge
     from simconsole.canbus.station import InlineCan
@@ -35,9 +39,14 @@ class Opened(NamedTuple):
 
 
 def open_headless(
-    resolved: ResolvedSession, console: Console, recorder: Recorder, bundle: Path, stack: ExitStack
+    resolved: ResolvedSession,
+    console: Console,
+    recorder: Recorder,
+    bundle: Path,
+    check: Callable[[], None],
+    stack: ExitStack,
 ) -> Opened:
-    """Open a drive that runs as fast as it goes, everything inline.
+    """Open a drive that runs as fast as it goes, everything inline. `check` is called while waiting; it may raise.
 
     Raises:
         ProfileError: the session needs lockstep for what it asks.
@@ -52,7 +61,7 @@ def open_headless(
     counters: Callable[[], dict[str, Any]] = dict
     can_summary: Callable[[], dict[str, Any]] = dict
     if resolved.session.mode.pacing == "lockstep":
-        link = _open_lockstep(resolved, console, stack)
+        link = _open_lockstep(resolved, console, check, stack)
         commands, stations, counters = link, (link,), link.counters
     elif resolved.session.features.autopilot is not None:
         raise ProfileError("mode.pacing: value free: lockstep or realtime, where features.autopilot drives")
@@ -67,9 +76,16 @@ def open_headless(
 
 
 def open_realtime(
-    resolved: ResolvedSession, console: Console, recorder: Recorder, bundle: Path, stack: ExitStack
+    resolved: ResolvedSession,
+    console: Console,
+    recorder: Recorder,
+    bundle: Path,
+    check: Callable[[], None],
+    stack: ExitStack,
 ) -> Opened:
     """Open a paced drive: every output in a process of its own, their inputs through shared memory.
+
+    `check` is called while waiting; it may raise.
 
     Raises:
         StationError: shared memory or the stations cannot be had.
@@ -99,13 +115,18 @@ def open_realtime(
     stack.callback(_end_programs, programs)
     stack.callback(supervisor.stop)
     supervisor.start()
+
+    def alive() -> bool:
+        check()
+        return supervisor.alive()
+
     session = resolved.session
     if session.outputs.bridge is not None:
-        address = bridge_address(folder, supervisor.alive)
+        address = bridge_address(folder, alive)
         if session.features.autopilot is not None:
             programs.append(start_autopilot(address, session.features.autopilot))
     if session.outputs.can is not None:
-        wait_for_can(folder, lambda: supervisor.alive() and not supervisor.counters().get("canbus"))
+        wait_for_can(folder, lambda: alive() and not supervisor.counters().get("canbus"))
     seating = open_seating(resolved, console, stack, None if session.outputs.hud is None else keys)
     missing = stack.enter_context(realtime_hints())
     pace = Pacer(console.tick_hz)
@@ -130,7 +151,9 @@ def _end_programs(programs: list[Popen[bytes]]) -> None:
         end_program(program)
 
 
-def _open_lockstep(resolved: ResolvedSession, console: Console, stack: ExitStack) -> LockstepLink:
+def _open_lockstep(
+    resolved: ResolvedSession, console: Console, check: Callable[[], None], stack: ExitStack
+) -> LockstepLink:
     from simconsole.bridge.lockstep import LockstepBridge
 
     session = resolved.session
@@ -144,13 +167,18 @@ def _open_lockstep(resolved: ResolvedSession, console: Console, stack: ExitStack
         program = start_autopilot(bridge.url, course)
         stack.callback(end_program, program)
     stack.callback(bridge.close)  # before the program's end is waited for: it is what ends it
-    _wait_for_controller(bridge, program, session.mode.wait_for_controller_s)
+    _wait_for_controller(bridge, program, session.mode.wait_for_controller_s, check)
     return LockstepLink(bridge, period_ticks, session.mode.answer_timeout_s)
 
 
-def _wait_for_controller(bridge: "LockstepBridge", program: Popen[bytes] | None, patience_s: float) -> None:
-    if bridge.wait_for_client(patience_s):
-        return
+def _wait_for_controller(
+    bridge: "LockstepBridge", program: Popen[bytes] | None, patience_s: float, check: Callable[[], None]
+) -> None:
+    deadline_s = time.monotonic() + patience_s
+    while (left_s := deadline_s - time.monotonic()) > 0.0:
+        if bridge.wait_for_client(min(left_s, LOOK_S)):
+            return
+        check()
     if program is not None and program.poll() is not None:
         raise BridgeError(f"the autopilot ended with exit code {program.returncode} before it connected")
     raise BridgeError(f"no controller subscribed to odometry at {bridge.url} within {patience_s:g} s")

@@ -55,8 +55,8 @@ def drive(
     ticks = ENDLESS_TICKS if duration_s is None else round(duration_s * console.tick_hz)
     with ExitStack() as stack:
         bundle = stack.enter_context(_bundle(resolved, console, folder))
-        opened = _open(resolved, console, bundle, stack)
         interrupt = stack.enter_context(Interrupt())
+        opened = _open(resolved, console, bundle, interrupt.check, stack)
         began_s = time.monotonic()
         state = run(
             console,
@@ -112,15 +112,25 @@ class Interrupt:
         for number, handler in self._before.items():
             signal.signal(number, handler)
 
+    def check(self) -> None:
+        """Raise KeyboardInterrupt if a signal has come: for places where ending is safe, while things are opened."""
+        if self.raised:
+            raise KeyboardInterrupt
+
     def _note(self, number: int, frame: FrameType | None) -> None:
         self.raised = True
 
 
-def _open(resolved: ResolvedSession, console: Console, bundle: BundleWriter, stack: ExitStack) -> Opened:
+def _open(
+    resolved: ResolvedSession, console: Console, bundle: BundleWriter, check: Callable[[], None], stack: ExitStack
+) -> Opened:
     recorder = LogRecorder(bundle.log)
     if resolved.session.mode.pacing == "realtime":
-        return open_realtime(resolved, console, recorder, bundle.folder, stack)
-    return open_headless(resolved, console, recorder, bundle.folder, stack)
+        opened = open_realtime(resolved, console, recorder, bundle.folder, check, stack)
+    else:
+        opened = open_headless(resolved, console, recorder, bundle.folder, check, stack)
+    check()
+    return opened
 
 
 def _bundle(resolved: ResolvedSession, console: Console, folder: Path) -> BundleWriter:
