@@ -4,12 +4,17 @@ A test that measures something keeps it with `record_property(NAME, TEXT)`; the 
 """
 
 import os
+import signal
 
 import pytest
 
 from tests.drives.fixtures import script, short
 
 __all__ = ["script", "short"]
+
+# A shell starts background jobs with SIGINT ignored, and every program a test starts would inherit that: a Ctrl-C sent
+# to it would be lost, however the tests themselves were started.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
