@@ -218,8 +218,9 @@ def test_too_many_fragments_end_the_connection(snapshot: Callable[..., Any]) -> 
         served(bridge, snapshot),
         connect(bridge.url) as peer,
     ):
+        with suppress(ConnectionClosed):  # it may be closed before its last fragment is out
+            peer.send(["x"] * 10 + [""])
         with pytest.raises(ConnectionClosed) as caught:
-            peer.send(["x"] * 10 + [""])  # may find the connection closed before its last fragment
             [refusal(peer) for _ in range(2)]
         assert caught.value.rcvd is not None
         assert caught.value.rcvd.code == 1008
