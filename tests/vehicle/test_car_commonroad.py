@@ -13,7 +13,9 @@ from simconsole.kernels import put
 from simconsole.profile_files import load
 from simconsole.profiles.vehicle import CarProfile
 from simconsole.rows import COMMAND_AT, PLATFORM_AT
-from simconsole.vehicle.car.state import CarState
+from simconsole.vehicle.car.parameters import CarParameters
+from simconsole.vehicle.car.state import CAR_WIDTH, CarState
+from simconsole.vehicle.car.step import load_parameters
 from simconsole.vehicle.platform import Platform
 from simconsole.vehicle.registry import build
 
@@ -22,7 +24,7 @@ from .driving import LEVEL, ORIGIN
 
 CASES = 200
 WHEELBASE_M = BMW.a + BMW.b
-STATE = [PLATFORM_AT + CarState._fields.index(name) for name in ("x_m", "y_m", "yaw_rad", "yaw_rate_radps", "roll_rad")]
+STATE = slice(PLATFORM_AT, PLATFORM_AT + CAR_WIDTH)
 STEER_AT = COMMAND_AT  # VehicleCommand begins with road_wheel_rad
 
 
@@ -50,9 +52,18 @@ def drive_ours(vehicle: Platform, given: Input) -> Path:
         step(row, other, vehicle.parameters, 1)
         row, other = other, row
         if (tick + 1) % every == 0:
-            samples.append(row[STATE])
-    x, y, yaw, yaw_rate, roll = np.array(samples).T
-    return Path(x + BMW.b * (np.cos(yaw) - 1.0), y + BMW.b * np.sin(yaw), yaw_rate, roll)
+            samples.append(CarState(*row[STATE]))
+    return of_centre(CarState(*np.array(samples).T), load_parameters(vehicle.parameters))
+
+
+def of_centre(run: Any, p: CarParameters) -> Path:
+    """Return the path of the centre of gravity, as theirs: ahead of base_link and above the ground it rocks over."""
+    axle_roll = (run.rl_lift_m - run.rr_lift_m) / (2.0 * p.rear.half_track_m)
+    ahead = BMW.b + p.body.cg_height_m * run.pitch_rad
+    aside = -(p.rear.roll_arm_m * run.roll_rad + p.rear.link_arm_m * axle_roll)
+    c, s = np.cos(run.yaw_rad), np.sin(run.yaw_rad)
+    x_m, y_m = run.x_m + ahead * c - aside * s, run.y_m + ahead * s + aside * c
+    return Path(x_m - BMW.b, y_m, run.yaw_rate_radps, run.roll_rad)
 
 
 def apart(one: Path, other: Path) -> float:

@@ -1,5 +1,6 @@
 """The car at rest: the tyre law must hold it with no clamp of speed and no switch to kinematics."""
 
+import math
 import random
 
 import pytest
@@ -62,6 +63,30 @@ def test_stops_uphill_and_holds_in_gear_with_the_engine_off() -> None:
 def test_level_ground_needs_no_brake() -> None:
     drive = Drive(platform())
     assert creep(drive) == 0.0
+
+
+def test_a_body_that_still_rocks_over_standing_wheels_has_no_speed_of_its_own() -> None:
+    drive = rolling(14.0)
+    rocking = told = 0.0
+    drive.hold(2.5, brake=0.6, clutch=1.0)
+    for _ in range(250):
+        seen = drive.hold(0.004, brake=0.6, clutch=1.0)
+        rocking, told = max(rocking, abs(drive.state.vx_mps)), max(told, abs(seen.vx_mps))
+    print(f"centre of gravity {rocking:.3f} m/s, base_link {told:.3f} m/s: the tyres give a little")
+    assert rocking > 0.05, "nothing rocked: nothing shown"
+    assert told < 0.5 * rocking
+
+
+def test_the_pose_moves_with_the_speed_that_is_told() -> None:
+    drive = rolling(15.0)
+    before = drive.seen
+    x, y = before.x_m, before.y_m
+    for tick in range(750):
+        seen = drive.hold(0.004, road_wheel_rad=0.05 if tick < 250 else -0.05, brake=0.2 if tick > 500 else 0.0)
+        c, s = math.cos(seen.yaw_rad), math.sin(seen.yaw_rad)
+        x += 0.004 * (seen.vx_mps * c - seen.vy_mps * s)
+        y += 0.004 * (seen.vx_mps * s + seen.vy_mps * c)
+    assert math.hypot(seen.x_m - x, seen.y_m - y) < 0.02
 
 
 def test_ice_does_not_hold_what_asphalt_holds() -> None:

@@ -83,6 +83,12 @@ def side_speed(axle: AxleParameters, body: BodyState, left: Wheel, right: Wheel)
 
 
 @kernel
+def along_speed(body: BodyState, cg_height_m: float) -> float:
+    """Return the velocity of the car's middle on the ground along the body: pitching moves it against the body."""
+    return body.vx_mps - cg_height_m * body.pitch_radps
+
+
+@kernel
 def camber(axle: AxleParameters, body: BodyState, left: Wheel, right: Wheel) -> float:
     """Return the lean of an axle's wheels."""
     return body.roll_rad + axle.camber_gain * (body.roll_rad - axle_roll(axle, left.lift_m, right.lift_m))
@@ -94,7 +100,7 @@ def push(car: Car, p: CarParameters, points: Heading, turned_rad: float, step_s:
     body = car.body
     front = p.front
     rear = p.rear
-    vx = body.vx_mps - p.body.cg_height_m * body.pitch_radps
+    vx = along_speed(body, p.body.cg_height_m)
     vy = side_speed(front, body, car.fl, car.fr)
     side = front.half_track_m * body.yaw_rate_radps
     lean = camber(front, body, car.fl, car.fr)

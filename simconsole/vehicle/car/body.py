@@ -8,7 +8,7 @@ from simconsole.trigonometry import cos, sin, wrap_angle
 from simconsole.vehicle.car.axles import Axles, Contact
 from simconsole.vehicle.car.parameters import AxleParameters, CarParameters
 from simconsole.vehicle.car.state import BodyState, Car, Wheel
-from simconsole.vehicle.car.suspension import Travel, strut, travel
+from simconsole.vehicle.car.suspension import Travel, axle_roll, strut, travel
 
 MOST_LEAN_RAD = 0.5
 """Where small angles and springs are no model any more: the body leans and the wheels lift no further."""
@@ -84,10 +84,13 @@ def move(car: Car, p: CarParameters, axles: Axles, step_s: float) -> Motion:
     pitching = p.front.ahead_m * (front.force_n + front_lift) + p.rear.ahead_m * (rear.force_n + rear_lift)
     pitching += body.cg_height_m * axles.force_x_n
     pitch_radps = before.pitch_radps - step_s * pitching / body.pitch_inertia_kgm2
-    rear_vy = vy - body.cg_to_rear_m * yaw_rate
+    # base_link lies on the ground: it does not go along when the body rocks above standing tyres.
+    on_ground_x = vx - body.cg_height_m * pitch_radps
+    rocking = p.rear.roll_arm_m * roll_radps + p.rear.link_arm_m * axle_roll(p.rear, rear.left_mps, rear.right_mps)
+    on_ground_y = vy - body.cg_to_rear_m * yaw_rate + rocking
     moved = BodyState(
-        before.x_m + step_s * (vx * c - rear_vy * s),
-        before.y_m + step_s * (vx * s + rear_vy * c),
+        before.x_m + step_s * (on_ground_x * c - on_ground_y * s),
+        before.y_m + step_s * (on_ground_x * s + on_ground_y * c),
         wrap_angle(before.yaw_rad + step_s * yaw_rate),
         vx,
         vy,
@@ -100,6 +103,6 @@ def move(car: Car, p: CarParameters, axles: Axles, step_s: float) -> Motion:
         roll_radps,
         clip(before.pitch_rad + step_s * pitch_radps, -MOST_LEAN_RAD, MOST_LEAN_RAD),
         pitch_radps,
-        before.distance_m + step_s * sqrt(vx * vx + rear_vy * rear_vy),
+        before.distance_m + step_s * sqrt(on_ground_x * on_ground_x + on_ground_y * on_ground_y),
     )
     return Motion(moved, front, rear)

@@ -5,6 +5,7 @@ from typing import Final, NamedTuple
 from simconsole.kernels import clip, kernel
 from simconsole.signals import VehicleState
 from simconsole.trigonometry import atan, cos, sin
+from simconsole.vehicle.car.axles import along_speed, side_speed
 from simconsole.vehicle.car.engine import above_idle, engine_friction, full_torque
 from simconsole.vehicle.car.gearbox import bite, gear_ratio
 from simconsole.vehicle.car.parameters import CarParameters
@@ -36,7 +37,7 @@ def pedals(car: Car, p: CarParameters, automatic: float) -> Pedals:
     gear = car.box.wanted_gear if automatic != 0.0 else car.box.gear
     way = -1.0 if gear < 0.0 else 1.0
     radius = axle.radius_m
-    speed = way * car.body.vx_mps
+    speed = way * along_speed(car.body, body.cg_height_m)
     ratio = way * gear_ratio(p.gears, gear)
     grip = 1.0 if automatic != 0.0 else bite(p.gears, car.box.clutch)
     held = grip * p.gears.clutch_nm
@@ -65,7 +66,10 @@ def pedals(car: Car, p: CarParameters, automatic: float) -> Pedals:
 
 @kernel
 def vehicle_state(car: Car, p: CarParameters, automatic: float) -> VehicleState:
-    """Return the car as others see it: base_link on the plane of the ground, with the body's own roll and pitch."""
+    """Return the car as others see it: base_link on the plane of the ground, with the body's own roll and pitch.
+
+    base_link moves with the rear tyres, not with the body above them: a car at rest has no speed while its body rocks.
+    """
     body = p.body
     now = car.body
     c = cos(now.yaw_rad)
@@ -79,8 +83,8 @@ def vehicle_state(car: Car, p: CarParameters, automatic: float) -> VehicleState:
         # ISO 8855: pitch is positive nose down, roll is positive left side up.
         -atan(body.slope_x * c + body.slope_y * d) + now.pitch_rad,
         atan(body.slope_y * c - body.slope_x * d) + now.roll_rad,
-        now.vx_mps,
-        now.vy_mps - body.cg_to_rear_m * now.yaw_rate_radps,
+        along_speed(now, body.cg_height_m),
+        side_speed(p.rear, now, car.rl, car.rr),
         now.yaw_rate_radps,
         now.ax_mps2,
         now.ay_mps2,
