@@ -49,9 +49,20 @@ def travel(raw: float, rest_raw: float, full_raw: float) -> float:
 
 
 @kernel
-def pressed_share(raw: float, rest_raw: float, full_raw: float, dead: float) -> float:
-    """Return a pedal from 0 to 1, continuous at the end of its dead zone (dead < 1)."""
-    return clip((travel(raw, rest_raw, full_raw) - dead) / (1.0 - dead), 0.0, 1.0)
+def curved(share: float, curve: float) -> float:
+    """Return a share of travel, 0 to 1, through a curve c: s / (s + c (1 - s)).
+
+    Monotone from 0 to 1 for every c > 0, with slope 1 / c at 0 and c at 1; the curve 1 / c is its inverse.
+    """
+    if curve == 1.0:
+        return share
+    return share / (share + curve * (1.0 - share))
+
+
+@kernel
+def pressed_share(raw: float, rest_raw: float, full_raw: float, dead: float, curve: float) -> float:
+    """Return a pedal from 0 to 1, continuous at the end of its dead zone (dead < 1, curve > 0)."""
+    return curved(clip((travel(raw, rest_raw, full_raw) - dead) / (1.0 - dead), 0.0, 1.0), curve)
 
 
 @kernel
@@ -63,6 +74,7 @@ def pedal(
     rest_raw: float,
     full_raw: float,
     dead: float,
+    curve: float,
     settings: CockpitSettings,
 ) -> Pedal:
     """Return one pedal: 0 while it is not trusted, the last good value while a bad reading is held."""
@@ -73,7 +85,7 @@ def pedal(
         return Pedal(0.0, validity)
     if not good:
         return Pedal(before.pressed, validity)
-    return Pedal(pressed_share(raw, rest_raw, full_raw, dead), validity)
+    return Pedal(pressed_share(raw, rest_raw, full_raw, dead, curve), validity)
 
 
 @kernel
@@ -90,7 +102,8 @@ def wheel(
         return Wheel(before.rad, 0.0, validity)
     if not good:
         return Wheel(before.rad, before.radps, validity)
-    rad = (_beyond(raw - settings.wheel_centre_raw, settings.wheel_dead_raw)) * settings.wheel_rad_per_raw
+    offset = _beyond(raw - settings.wheel_centre_raw, settings.wheel_dead_raw)
+    rad = _bent(offset, settings.wheel_curve) * settings.wheel_rad_per_raw
     if not trusted(before.validity) or tick_s <= 0.0:
         return Wheel(rad, 0.0, validity)
     share = tick_s / (tick_s + settings.wheel_rate_filter_s)
@@ -104,6 +117,13 @@ def _beyond(value: float, dead: float) -> float:
     if value < -dead:
         return value + dead
     return 0.0
+
+
+@kernel
+def _bent(offset: float, curve: float) -> float:
+    if offset >= 1.0 or offset <= -1.0:
+        return offset
+    return curved(offset, curve) if offset >= 0.0 else -curved(-offset, curve)
 
 
 @kernel
@@ -169,6 +189,7 @@ def calibrate(
         settings.throttle_rest_raw,
         settings.throttle_full_raw,
         settings.throttle_dead,
+        settings.throttle_curve,
         settings,
     )
     brake = pedal(
@@ -179,6 +200,7 @@ def calibrate(
         settings.brake_rest_raw,
         settings.brake_full_raw,
         settings.brake_dead,
+        settings.brake_curve,
         settings,
     )
     clutch = pedal(
@@ -189,6 +211,7 @@ def calibrate(
         settings.clutch_rest_raw,
         settings.clutch_full_raw,
         settings.clutch_dead,
+        settings.clutch_curve,
         settings,
     )
     handbrake = pedal(
@@ -199,6 +222,7 @@ def calibrate(
         settings.handbrake_rest_raw,
         settings.handbrake_full_raw,
         settings.handbrake_dead,
+        settings.handbrake_curve,
         settings,
     )
     held = 0

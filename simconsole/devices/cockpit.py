@@ -10,20 +10,25 @@ class CockpitSettings(NamedTuple):
 
     wheel_centre_raw: float
     wheel_dead_raw: float
+    wheel_curve: float  # 1: straight (calibration.curved)
     wheel_rad_per_raw: float  # negative where the axis grows to the right
     wheel_rate_filter_s: float
     throttle_rest_raw: float
     throttle_full_raw: float
     throttle_dead: float  # share of the travel that still reads 0
+    throttle_curve: float
     brake_rest_raw: float
     brake_full_raw: float
     brake_dead: float
+    brake_curve: float
     clutch_rest_raw: float
     clutch_full_raw: float
     clutch_dead: float
+    clutch_curve: float
     handbrake_rest_raw: float  # rest = full: the cockpit has no such axis, it reads 0
     handbrake_full_raw: float
     handbrake_dead: float
+    handbrake_curve: float
     arming_limit: float  # share of the travel below which a pedal counts as at rest
     stale_ticks: float
     neutral_dwell_ticks: float

@@ -21,6 +21,7 @@ def settings(profile: CockpitProfile, tick_hz: int) -> CockpitSettings:
     return CockpitSettings(
         wheel.centre_raw,
         wheel.dead_zone,
+        wheel.curve,
         sign * 0.5 * wheel.lock_to_lock_deg * RAD_PER_DEG,
         wheel.rate_filter_s,
         *_ends(pedals.throttle),
@@ -38,8 +39,8 @@ def settings(profile: CockpitProfile, tick_hz: int) -> CockpitSettings:
     )
 
 
-def _ends(pedal: PedalAxis | None) -> tuple[float, float, float]:
-    return (0.0, 0.0, 0.0) if pedal is None else (pedal.rest_raw, pedal.full_raw, pedal.dead_zone)
+def _ends(pedal: PedalAxis | None) -> tuple[float, float, float, float]:
+    return (0.0, 0.0, 0.0, 1.0) if pedal is None else (pedal.rest_raw, pedal.full_raw, pedal.dead_zone, pedal.curve)
 
 
 def _role_mask(binding: ButtonBinding | None) -> float:

@@ -2,6 +2,7 @@
 
 from typing import Final, NamedTuple
 
+from simconsole.devices.calibration import curved
 from simconsole.devices.cockpit import CockpitSettings
 from simconsole.devices.lever import SHIFTER_SHIFT
 from simconsole.signals import DeviceSample
@@ -23,15 +24,17 @@ class Intent(NamedTuple):
     pressed: int = 0
 
 
-def pedal_raw(pressed: float, rest_raw: float, full_raw: float, dead: float) -> float:
+def pedal_raw(pressed: float, rest_raw: float, full_raw: float, dead: float, curve: float) -> float:
     """Return the raw axis of a pedal pressed by this share; 0 is the rest position itself, not the dead zone's end."""
-    share = min(1.0, max(0.0, pressed))
+    share = curved(min(1.0, max(0.0, pressed)), 1.0 / curve)
     return rest_raw if share == 0.0 else rest_raw + (dead + share * (1.0 - dead)) * (full_raw - rest_raw)
 
 
 def wheel_raw(hand_wheel_rad: float, settings: CockpitSettings) -> float:
     """Return the raw axis of the hand wheel, stopped at the ends of the axis as the real one is."""
     offset = hand_wheel_rad / settings.wheel_rad_per_raw
+    if abs(offset) < 1.0:
+        offset = curved(abs(offset), 1.0 / settings.wheel_curve) * (1.0 if offset > 0.0 else -1.0)
     dead = settings.wheel_dead_raw if offset > 0.0 else -settings.wheel_dead_raw if offset < 0.0 else 0.0
     return min(1.0, max(-1.0, settings.wheel_centre_raw + offset + dead))
 
@@ -54,10 +57,10 @@ def uncalibrate(intent: Intent, settings: CockpitSettings) -> DeviceSample:
     s = settings
     return DeviceSample(
         wheel_raw(intent.hand_wheel_rad, s),
-        pedal_raw(intent.throttle, s.throttle_rest_raw, s.throttle_full_raw, s.throttle_dead),
-        pedal_raw(intent.brake, s.brake_rest_raw, s.brake_full_raw, s.brake_dead),
-        pedal_raw(intent.clutch, s.clutch_rest_raw, s.clutch_full_raw, s.clutch_dead),
-        pedal_raw(intent.handbrake, s.handbrake_rest_raw, s.handbrake_full_raw, s.handbrake_dead),
+        pedal_raw(intent.throttle, s.throttle_rest_raw, s.throttle_full_raw, s.throttle_dead, s.throttle_curve),
+        pedal_raw(intent.brake, s.brake_rest_raw, s.brake_full_raw, s.brake_dead, s.brake_curve),
+        pedal_raw(intent.clutch, s.clutch_rest_raw, s.clutch_full_raw, s.clutch_dead, s.clutch_curve),
+        pedal_raw(intent.handbrake, s.handbrake_rest_raw, s.handbrake_full_raw, s.handbrake_dead, s.handbrake_curve),
         float(wheel_buttons),
         float(shifter_buttons),
         0.0,

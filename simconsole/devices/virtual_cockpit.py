@@ -45,6 +45,9 @@ class VirtualCockpit:
             self._set_axis("pedals", pedals.clutch.axis, sample.clutch_axis)
         if pedals.handbrake is not None:
             self._set_axis("pedals", pedals.handbrake.axis, sample.handbrake_axis)
+        if self._keys["wheel"] == self._keys["shifter"]:  # one device plays both: its buttons are those of both
+            self._set_buttons("wheel", float(int(sample.wheel_buttons) | int(sample.shifter_buttons)))
+            return
         self._set_buttons("wheel", sample.wheel_buttons)
         self._set_buttons("shifter", sample.shifter_buttons)
 

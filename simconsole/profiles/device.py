@@ -12,6 +12,8 @@ AxisIndex: TypeAlias = Annotated[int, Meta(ge=0, le=31)]
 ButtonIndex: TypeAlias = Annotated[int, Meta(ge=0, le=23)]
 Raw: TypeAlias = Annotated[float, Meta(ge=-1.0, le=1.0)]
 Share: TypeAlias = Annotated[float, Meta(ge=0.0, le=1.0)]
+Curve: TypeAlias = Annotated[float, Meta(ge=0.2, le=5.0)]
+"""1: straight. Above: gentle at first, by so much less than straight; below: the other way round."""
 Title: TypeAlias = Annotated[str, Meta(max_length=200)]
 
 MIN_TRAVEL_RAW = 0.2
@@ -46,6 +48,7 @@ class WheelAxis(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     grows_to: Literal["left", "right"] = "right"
     centre_raw: Annotated[float, Meta(ge=-0.5, le=0.5)] = 0.0
     dead_zone: Annotated[float, Meta(ge=0.0, le=0.1)] = 0.0
+    curve: Curve = 1.0  # for sticks: the angle of a wheel is an angle
     rate_filter_s: Annotated[float, Meta(ge=0.0, le=0.5)] = 0.02
 
 
@@ -56,6 +59,7 @@ class PedalAxis(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     rest_raw: Raw
     full_raw: Raw
     dead_zone: Annotated[float, Meta(ge=0.0, le=0.3)] = 0.02
+    curve: Curve = 1.0
 
     def __post_init__(self) -> None:
         """Refuse a pedal without travel.

@@ -8,11 +8,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from simconsole.compiling import compiled
-from simconsole.devices.calibration import NOBODY, CockpitSettings, calibrate, settings
-from simconsole.devices.uncalibrate import Intent, uncalibrate
+from simconsole.devices.calibration import NOBODY, CockpitSettings, calibrate, curved, pressed_share, settings
+from simconsole.devices.uncalibrate import Intent, pedal_raw, uncalibrate, wheel_raw
 from simconsole.devices.validity import ARMED, LIVE, LOST, STALE, UNKNOWN
 from simconsole.profile_files import load
-from simconsole.profiles.device import CockpitProfile
+from simconsole.profiles.device import MIN_TRAVEL_RAW, CockpitProfile
 from simconsole.signals import NEVER_TICKS, NO_SAMPLE, Button, DeviceSample
 
 from .people import TICK_S, Seat
@@ -190,6 +190,54 @@ def test_pedal_is_monotone_bounded_and_the_inverse_of_uncalibrate(shares: list[f
     assert pressed == pytest.approx(shares, abs=1e-12)
 
 
+RAW = st.floats(-1.0, 1.0)
+CURVES = st.floats(0.2, 5.0)
+ENDS = st.tuples(RAW, RAW).filter(lambda ends: abs(ends[1] - ends[0]) >= MIN_TRAVEL_RAW)
+
+
+@given(ENDS, st.floats(0.0, 0.3), CURVES, st.lists(RAW, min_size=2, max_size=30), st.floats(0.0, 1.0))
+def test_any_pedal_is_monotone_bounded_and_invertible(
+    ends: tuple[float, float], dead: float, curve: float, raws: list[float], share: float
+) -> None:
+    rest, full = ends
+    raws.sort(reverse=full < rest)
+    pressed = [pressed_share(raw, rest, full, dead, curve) for raw in raws]
+    assert pressed == sorted(pressed)
+    assert all(0.0 <= value <= 1.0 for value in pressed)
+    raw = pedal_raw(share, rest, full, dead, curve)
+    assert -1.0 - 1e-12 <= raw <= 1.0 + 1e-12
+    assert pressed_share(raw, rest, full, dead, curve) == pytest.approx(share, abs=1e-9)
+    assert pressed_share(rest, rest, full, dead, curve) == 0.0
+    assert pressed_share(full, rest, full, dead, curve) == pytest.approx(1.0, abs=1e-9)
+
+
+@given(
+    st.floats(-0.5, 0.5), st.floats(0.0, 0.1), CURVES, st.sampled_from([-1.0, 1.0]), RAW, RAW, st.floats(-0.35, 0.35)
+)
+def test_any_wheel_is_monotone_bounded_and_invertible(
+    centre: float, dead: float, curve: float, side: float, one: float, other: float, share: float
+) -> None:
+    reach = side * math.radians(540.0)
+    wheel = SETTINGS._replace(wheel_centre_raw=centre, wheel_dead_raw=dead, wheel_curve=curve, wheel_rad_per_raw=reach)
+    low, high = sorted((one, other))
+    angles = [Seat(wheel).do(wheel_axis=raw).hand_wheel_rad * side for raw in (low, centre, high)]
+    assert angles[0] <= angles[2]
+    assert angles[1] == 0.0
+    assert max(map(abs, angles)) <= abs(reach) * (1.0 + abs(centre)) + 1e-9
+    raw = wheel_raw(share * reach, wheel)
+    if abs(raw) < 1.0:
+        assert Seat(wheel).do(wheel_axis=raw).hand_wheel_rad == pytest.approx(share * reach, abs=1e-9)
+
+
+def test_straight_curve_changes_no_bit() -> None:
+    assert [curved(share / 97.0, 1.0) for share in range(98)] == [share / 97.0 for share in range(98)]
+
+
+def test_curve_above_one_is_gentle_first_and_below_one_quick() -> None:
+    assert curved(0.1, 3.0) < 0.1 < curved(0.1, 0.4)
+    assert curved(0.9, 3.0) < 0.9 < curved(0.9, 0.4)
+
+
 @given(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
 def test_wheel_is_monotone(one: float, other: float) -> None:
     low, high = sorted((one, other))
@@ -231,7 +279,7 @@ def random_samples(seed: int, count: int, cockpit: CockpitSettings) -> list[Devi
     return samples
 
 
-@pytest.mark.parametrize("name", ["t500rs_th8rs", "keyboard"])
+@pytest.mark.parametrize("name", ["t500rs_th8rs", "gamepad"])
 def test_compiled_twin_gives_equal_bits(name: str) -> None:
     seed = 20261120
     print("seed", seed)

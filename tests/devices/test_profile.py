@@ -8,11 +8,20 @@ import pytest
 
 from simconsole.devices.settings import settings
 from simconsole.errors import ProfileError
-from simconsole.profile_files import load, parse, to_text
+from simconsole.profile_files import load, parse, profiles_folder, to_text
 from simconsole.profiles.device import CockpitProfile, ScriptProfile
+
+COCKPITS = ["t500rs_th8rs", "t300rs_th8a", "g29", "gamepad", "keyboard"]
+
+
+def test_every_shipped_cockpit_is_tested() -> None:
+    shipped = {path.stem for path in (profiles_folder() / "devices").glob("*.yaml")}
+    assert set(COCKPITS) == shipped
 
 
 def leaves(value: Any, path: str = "") -> list[str]:
+    if isinstance(value, list) and value and isinstance(value[0], dict):
+        value = {str(index): inner for index, inner in enumerate(value)}
     if isinstance(value, dict):
         return [leaf for key, inner in value.items() for leaf in leaves(inner, f"{path}.{key}" if path else key)]
     return [] if value is None else [path]
@@ -31,7 +40,7 @@ def changed(profile: CockpitProfile, path: str, value: Any) -> str:
     return to_text(plain)
 
 
-@pytest.mark.parametrize("name", ["t500rs_th8rs", "keyboard"])
+@pytest.mark.parametrize("name", COCKPITS)
 def test_every_value_that_describes_hardware_has_a_provenance(name: str) -> None:
     profile = load("devices", name, CockpitProfile)
     plain = msgspec.to_builtins(profile)
@@ -40,8 +49,15 @@ def test_every_value_that_describes_hardware_has_a_provenance(name: str) -> None
         steps = leaf.split(".")
         prefixes = {".".join(steps[:count]) for count in range(1, len(steps) + 1)}
         assert prefixes & profile.provenance.keys(), leaf
-    known = {prefix for leaf in leaves(plain) for prefix in (leaf, leaf.rpartition(".")[0], leaf.partition(".")[0])}
+    steps = [leaf.split(".") for leaf in leaves(plain)]
+    known = {".".join(leaf[:count]) for leaf in steps for count in range(1, len(leaf) + 1)}
     assert profile.provenance.keys() <= known
+
+
+@pytest.mark.parametrize("name", COCKPITS)
+def test_every_source_says_where_it_comes_from(name: str) -> None:
+    for key, origin in load("devices", name, CockpitProfile).provenance.items():
+        assert len(origin.source) >= 8, key
 
 
 def test_what_nobody_has_measured_is_marked_unverified() -> None:

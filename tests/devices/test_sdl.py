@@ -5,13 +5,14 @@ from collections.abc import Callable
 import pytest
 
 from simconsole.devices import sdl_runtime
-from simconsole.devices.calibration import CockpitSettings
+from simconsole.devices.calibration import CockpitSettings, settings
 from simconsole.devices.sdl import SdlSource, identity
 from simconsole.devices.uncalibrate import Intent, uncalibrate
 from simconsole.devices.validity import LIVE, LOST, UNKNOWN
 from simconsole.devices.virtual_cockpit import VirtualCockpit
 from simconsole.devices.virtual_sdl import VirtualDevice, VirtualSpec
 from simconsole.errors import DeviceError, DeviceModeError, DeviceNotFound
+from simconsole.profile_files import load
 from simconsole.profiles.device import CockpitProfile
 from simconsole.signals import NEVER_TICKS, Button, DriverInput
 
@@ -63,6 +64,29 @@ def test_every_role_reaches_the_person_in_any_enumeration_order(drive: Drive) ->
     assert (driver.throttle, driver.brake, driver.clutch) == pytest.approx((0.2, 0.4, 0.6), abs=1e-4)
     assert driver.gear == 5.0
     assert drive.do(Intent(gear=-1)).gear == -1.0
+
+
+@pytest.mark.parametrize("name", ["t300rs_th8a", "g29", "gamepad"])
+def test_every_shipped_cockpit_works_as_virtual_devices(name: str, sdl: None) -> None:
+    cockpit = load("devices", name, CockpitProfile)
+    plugged = VirtualCockpit(cockpit)
+    opened = SdlSource(cockpit)
+    try:
+        drive = Drive(plugged, opened, settings(cockpit, 250))
+        drive.do(ticks=2)
+        driver = drive.do(Intent(hand_wheel_rad=1.5, throttle=0.2, brake=0.4, clutch=0.6), ticks=2)
+        assert driver.hand_wheel_rad == pytest.approx(1.5, abs=1e-3)
+        assert (driver.throttle, driver.brake, driver.clutch) == pytest.approx((0.2, 0.4, 0.6), abs=1e-3)
+        if cockpit.shifter.pattern == "h":
+            assert [drive.do(Intent(gear=gear)).gear for gear in (1, 6, -1)] == [1.0, 6.0, -1.0]
+        else:
+            assert [drive.do(Intent(pressed=held)).gear for held in (16, 0, 16)] == [1, 1, 2]
+        for button in Button:
+            drive.do()
+            assert drive.do(Intent(pressed=int(button))).edges == float(button)
+    finally:
+        opened.close()
+        plugged.close()
 
 
 @pytest.mark.parametrize("button", list(Button))
