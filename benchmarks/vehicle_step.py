@@ -1,0 +1,157 @@
+"""How long one vehicle step of 1 ms takes, alone and in a fleet, beside the models of CommonRoad in the same run.
+
+Run: python benchmarks/vehicle_step.py [--rounds N] [--cars N]
+
+All on one core, interleaved, medians of the rounds. CommonRoad's models (commonroad-vehicle-models 3.0.2, their
+"BMW 320i") are integrated by Runge-Kutta 4 at 1 ms as their examples do in Python, and once with their own source
+compiled by numba. They have 5 to 29 states, no engine, gears, aids or standstill; ours has all of its own switched on.
+"""
+
+import argparse
+import os
+import statistics
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from vehiclemodels.init_ks import init_ks
+from vehiclemodels.init_mb import init_mb
+from vehiclemodels.init_st import init_st
+from vehiclemodels.init_std import init_std
+from vehiclemodels.parameters_vehicle2 import parameters_vehicle2
+from vehiclemodels.vehicle_dynamics_ks import vehicle_dynamics_ks
+from vehiclemodels.vehicle_dynamics_mb import vehicle_dynamics_mb
+from vehiclemodels.vehicle_dynamics_st import vehicle_dynamics_st
+from vehiclemodels.vehicle_dynamics_std import vehicle_dynamics_std
+
+from simconsole.compiling import compiled
+from simconsole.fleet import Fleet
+from simconsole.kernels import put
+from simconsole.profile_files import load
+from simconsole.profiles.vehicle import CarProfile
+from simconsole.rows import COMMAND_AT, PLATFORM_AT
+from simconsole.vehicle.platform import Ground, Platform, Pose
+from simconsole.vehicle.registry import build
+
+SPEED_MPS = 20.0
+ROAD_WHEEL_RAD = 0.02
+STEP_S = 0.001
+
+Steps = Callable[[int], None]
+
+
+def peer(start: list[float], model: Callable[..., Any]) -> Steps:
+    """Return what integrates one of their models in Python."""
+    parameters = parameters_vehicle2()
+
+    def steps(count: int) -> None:
+        x, u = list(start), [0.0, 0.0]
+        for _ in range(count):
+            k1 = model(x, u, parameters)
+            k2 = model([a + 0.5 * STEP_S * b for a, b in zip(x, k1, strict=True)], u, parameters)
+            k3 = model([a + 0.5 * STEP_S * b for a, b in zip(x, k2, strict=True)], u, parameters)
+            k4 = model([a + STEP_S * b for a, b in zip(x, k3, strict=True)], u, parameters)
+            x = [
+                a + STEP_S / 6.0 * (b + 2.0 * c + 2.0 * d + e) for a, b, c, d, e in zip(x, k1, k2, k3, k4, strict=True)
+            ]
+
+    return steps
+
+
+def peers() -> dict[str, Steps]:
+    parameters = parameters_vehicle2()
+    core = [0.0, 0.0, ROAD_WHEEL_RAD, SPEED_MPS, 0.0, 0.0, 0.0]
+    return {
+        "CommonRoad KS, Python": peer(init_ks(core), vehicle_dynamics_ks),
+        "CommonRoad ST, Python": peer(init_st(core), vehicle_dynamics_st),
+        "CommonRoad STD, Python": peer(init_std(core, parameters), vehicle_dynamics_std),
+        "CommonRoad MB, Python": peer(init_mb(core, parameters), vehicle_dynamics_mb),
+    }
+
+
+def command() -> list[float]:
+    return [ROAD_WHEEL_RAD, 0.3, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+
+
+def rolling(vehicle: Platform) -> list[float]:
+    """Return the state of a car that rolls at SPEED_MPS."""
+    profile = load("vehicles", "hatchback", CarProfile)
+    state = vehicle.state(*vehicle.initial_state)
+    spin = SPEED_MPS / profile.front.wheel_radius_m
+    return list(state._replace(vx_mps=SPEED_MPS, fl_radps=spin, fr_radps=spin, rl_radps=spin, rr_radps=spin))
+
+
+def alone(vehicle: Platform) -> Steps:
+    step = compiled(vehicle.step)
+    row = np.zeros(PLATFORM_AT + len(vehicle.initial_state))
+
+    def steps(count: int) -> None:
+        put(row, PLATFORM_AT, rolling(vehicle))
+        put(row, COMMAND_AT, command())
+        step(row, row, vehicle.parameters, count)
+
+    return steps
+
+
+def together(vehicle: Platform, cars: int, substeps: int) -> Steps:
+    fleet = Fleet([vehicle] * cars)
+    states = np.array([rolling(vehicle)] * cars)
+    states[:, 3] += np.linspace(-5.0, 5.0, cars)
+    fleet.command([command()] * cars)
+
+    def steps(count: int) -> None:
+        fleet.restore(states)
+        for _ in range(count // (cars * substeps)):
+            fleet.step(substeps)
+
+    return steps
+
+
+def main() -> None:
+    words = argparse.ArgumentParser()
+    words.add_argument("--rounds", type=int, default=7)
+    words.add_argument("--cars", type=int, default=1000)
+    given = words.parse_args()
+    os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+    vehicle = build(load("vehicles", "hatchback", CarProfile), Pose(0.0, 0.0, 0.0), Ground(1.0, 0.0, 0.0))
+    runs: dict[str, tuple[Steps, int]] = {name: (steps, 200) for name, steps in peers().items()}
+    runs["ours, one car"] = alone(vehicle), 100_000
+    runs[f"ours, {given.cars} cars, ticks of 1 ms"] = together(vehicle, given.cars, 1), 200 * given.cars
+    runs[f"ours, {given.cars} cars, ticks of 4 ms"] = together(vehicle, given.cars, 4), 200 * given.cars
+    runs["CommonRoad MB, compiled by numba"] = compiled_peer(), 3_000
+    costs: dict[str, list[float]] = {name: [] for name in runs}
+    for _ in range(given.rounds + 1):  # the first compiles and warms up
+        for name, (steps, count) in runs.items():
+            began = time.perf_counter()
+            steps(count)
+            costs[name].append((time.perf_counter() - began) / count)
+    medians = {name: statistics.median(cost[1:]) for name, cost in costs.items()}
+    base, single = medians["CommonRoad MB, Python"], medians["ours, one car"]
+    print(f"one step of 1 ms of one car, medians of {given.rounds} interleaved rounds, one core")
+    for name, cost in medians.items():
+        print(
+            f"  {name:34}  {cost * 1e9:12.1f} ns   {1e-6 / cost:8.3f} M steps/s   MB Python x {base / cost:8.1f}"
+            f"   one car x {single / cost:6.2f}"
+        )
+    each = [(mb / one) for mb, one in zip(costs["CommonRoad MB, Python"][1:], costs["ours, one car"][1:], strict=True)]
+    print(
+        f"one car against CommonRoad MB with RK4 at 1 ms, per round: {', '.join(f'{x:.0f}' for x in each)} (hold 350)"
+    )
+
+
+def compiled_peer() -> Steps:
+    """Return their multi-body model compiled from its own source, as the tests use it: 3000 steps a drive."""
+    sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+    from tests.vehicle import commonroad
+
+    def steps(_: int) -> None:
+        commonroad.drive_multi_body(commonroad.Input(SPEED_MPS, ROAD_WHEEL_RAD), STEP_S)
+
+    return steps
+
+
+if __name__ == "__main__":
+    main()

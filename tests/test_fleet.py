@@ -1,0 +1,117 @@
+"""A fleet: each vehicle bit for bit as alone, in any number, with any command, on any processor."""
+
+import random
+import re
+
+import numpy as np
+import pytest
+
+from simconsole.compiling import compiled
+from simconsole.fleet import Fleet
+from simconsole.kernels import put
+from simconsole.lane_values import LANES
+from simconsole.rows import COMMAND_AT, PLATFORM_AT, VEHICLE_AT, VEHICLE_WIDTH
+from simconsole.vehicle.platform import Ground, Platform, Pose
+from tests.vehicle.driving import LEVEL, platform
+from tests.vehicle.test_car_twin import FUSED, commands
+
+TICKS = 400
+
+
+def mixed(
+    count: int, rng: random.Random, names: tuple[str, ...] = ("hatchback", "commonroad_bmw320i")
+) -> list[Platform]:
+    """Return vehicles that differ in profile, place and ground."""
+    return [
+        platform(
+            rng.choice(names),
+            Ground(rng.uniform(0.05, 1.2), rng.uniform(-0.2, 0.2), rng.uniform(-0.2, 0.2), rng.choice([1.0, 0.3])),
+            Pose(rng.uniform(-9.0, 9.0), 0.0, rng.uniform(-3.0, 3.0)),
+        )
+        for _ in range(count)
+    ]
+
+
+def shaken(state: tuple[float, ...], rng: random.Random) -> list[float]:
+    """Return a state in which everything moves."""
+    return [value + rng.choice([0.0, rng.gauss(0.0, 0.02), rng.gauss(0.0, 10.0)]) for value in state]
+
+
+def differing(vehicles: list[Platform], seed: int, processor: str = "", substeps: int = 3) -> list[tuple[int, int]]:
+    """Drive a fleet and every vehicle alone; return (tick, vehicle) wherever a bit differs."""
+    rng = random.Random(seed)
+    fleet = Fleet(vehicles, processor)
+    states = [shaken(vehicle.initial_state, rng) for vehicle in vehicles]
+    fleet.restore(states)
+    rows = np.zeros((len(vehicles), PLATFORM_AT + len(states[0])))
+    for row, state in zip(rows, states, strict=True):
+        put(row, PLATFORM_AT, state)
+    step = compiled(vehicles[0].step)
+    found = []
+    given = zip(*(commands(seed + index, TICKS, bad=True) for index in range(len(vehicles))), strict=True)
+    for tick, asked in enumerate(given):
+        fleet.command(asked)
+        fleet.step(substeps)
+        vehicles_now, states_now = fleet.vehicles, fleet.states
+        for index, (vehicle, command) in enumerate(zip(vehicles, asked, strict=True)):
+            previous = rows[index].copy()
+            put(rows[index], COMMAND_AT, command)
+            step(previous, rows[index], vehicle.parameters, substeps)
+            alone = rows[index]
+            seen = alone[VEHICLE_AT : VEHICLE_AT + VEHICLE_WIDTH].tobytes() == vehicles_now[index].tobytes()
+            if not seen or alone[PLATFORM_AT:].tobytes() != states_now[index].tobytes():
+                found.append((tick, index))
+    moving = np.abs(fleet.states - states).max(axis=1)
+    assert np.isfinite(fleet.states).all()
+    assert (moving > 0.1).all(), "nothing was driven"
+    return found
+
+
+@pytest.mark.parametrize("count", [1, LANES, 2 * LANES + 5])
+def test_every_car_of_a_fleet_is_the_car_alone_to_the_last_bit(count: int) -> None:
+    seed = random.SystemRandom().randrange(2**32)
+    print(f"seed {seed}")
+    assert differing(mixed(count, random.Random(seed)), seed) == []
+
+
+def test_cars_that_share_their_parameters_are_the_car_alone_too() -> None:
+    seed = random.SystemRandom().randrange(2**32)
+    print(f"seed {seed}")
+    assert differing([platform(ground=Ground(0.8, 0.05, -0.03))] * (LANES + 3), seed) == []
+
+
+def test_another_platform_needs_nothing_of_its_own() -> None:
+    assert differing([platform("ball", pose=Pose(float(index), 2.0, 0.5)) for index in range(11)], 5) == []
+
+
+def test_a_generic_processor_gives_the_same_bits() -> None:
+    assert differing(mixed(LANES + 1, random.Random(3)), 3, processor="generic") == []
+
+
+def test_vectors_and_no_fused_operation_are_in_the_machine_code() -> None:
+    assembly = Fleet([platform()]).assembly
+    assert len(re.findall(r"\bv?mulpd\b|\bfmul\s+v", assembly)) > 300
+    assert not FUSED.findall(assembly)
+
+
+def test_a_fleet_can_be_put_back_to_try_again() -> None:
+    fleet = Fleet([platform()] * 9)
+    before = fleet.states
+    command = np.zeros((9, 12))
+    command[:, 1], command[:, 5], command[:, 6] = np.linspace(0.0, 1.0, 9), 1.0, 1.0
+    fleet.command(command)
+    fleet.step(1500)
+    after = fleet.states
+    assert (np.diff(after[2:, 3]) >= 0.0).all(), "more throttle, more speed"
+    fleet.restore(before)
+    fleet.step(1500)
+    assert after.tobytes() == fleet.states.tobytes()
+
+
+def test_what_is_no_fleet_is_refused() -> None:
+    with pytest.raises(ValueError, match="all of one kind"):
+        Fleet([platform(), platform("ball")])
+    with pytest.raises(ValueError, match="at least one"):
+        Fleet([])
+    with pytest.raises(ValueError, match=r"shape \(3,\), must be \(2, 12\)"):
+        Fleet([platform(ground=LEVEL)] * 2).command(np.zeros(3))
