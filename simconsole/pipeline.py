@@ -11,6 +11,7 @@ import numpy as np
 
 from simconsole.control.arbitration import arbitrate, watched
 from simconsole.control.gate import gate
+from simconsole.control.moment import Moment
 from simconsole.control.settings import ControlSettings
 from simconsole.devices.calibration import calibrate
 from simconsole.devices.cockpit import CockpitSettings
@@ -172,7 +173,7 @@ def decide(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
         CockpitSettings(*take(settings, COCKPIT_AT, COCKPIT_WIDTH)),
         tick_s,
     )
-    memory, arbitration, request = arbitrate(
+    now = Moment(
         driver,
         remote,
         EventInput(*take(row, EVENTS_AT, EVENTS_WIDTH)),
@@ -180,11 +181,12 @@ def decide(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
         ArbiterMemory(*take(previous, MEMORY_AT, MEMORY_WIDTH)),
         Arbitration(*take(previous, ARBITRATION_AT, ARBITRATION_WIDTH)),
         command_before,
-        control,
-        tick_s,
         motor.explained_rad,
         motor.explained_radps,
+        control,
+        tick_s,
     )
+    memory, arbitration, request = arbitrate(now)
     command = gate(request, remote, arbitration, command_before, vehicle, control, tick_s)
     put(row, DRIVER_AT, driver)
     put(row, MEMORY_AT, memory)

@@ -5,20 +5,13 @@ from typing import Final, NamedTuple
 from simconsole.control.angles import gentle_angle
 from simconsole.control.decision import Decision
 from simconsole.control.link import Link
+from simconsole.control.moment import Moment
 from simconsole.control.person import Person
 from simconsole.control.remote import RemoteRequest
 from simconsole.control.settings import ControlSettings
 from simconsole.control.stops import safe_stop, stop_start
 from simconsole.kernels import approach, clip, kernel
-from simconsole.signals import (
-    ArbiterMemory,
-    Arbitration,
-    DriverInput,
-    Mode,
-    Request,
-    VehicleCommand,
-    VehicleState,
-)
+from simconsole.signals import Arbitration, DriverInput, Mode, Request, VehicleCommand
 
 _PARKED: Final = float(Mode.PARKED)
 _MANUAL: Final = float(Mode.MANUAL)
@@ -79,52 +72,37 @@ def shares_of(mode: float, throttle_override: float, before: Arbitration, settin
 
 @kernel
 def remote_side(
-    decision: Decision,
-    shares: Shares,
-    offered: RemoteRequest,
-    link: Link,
-    person: Person,
-    memory: ArbiterMemory,
-    before: Arbitration,
-    command_before: VehicleCommand,
-    vehicle: VehicleState,
-    settings: ControlSettings,
-    tick_s: float,
+    now: Moment, decision: Decision, shares: Shares, offered: RemoteRequest, link: Link, person: Person
 ) -> RemoteSide:
     """Return what the remote side asks for: the controller or, where it does not drive, the console's own stop.
 
     While its authority fades out in MANUAL, what it asked for last is held; with none left it is shown for information.
 
     Args:
+        now: This tick.
         decision: The mode, and whether it was entered in this tick.
         shares: Authority of this tick.
         offered: What the controller's command means.
         link: Whether that command counts.
         person: The person's side.
-        memory: From the tick before.
-        before: The requests of the tick before.
-        command_before: What left the gate in the tick before: stops start from it.
-        vehicle: State after the tick before.
-        settings: Of this drive.
-        tick_s: Length of a tick in s.
     """
     mode = decision.mode
     entered = decision.changed > 0.0
-    hold = command_before.road_wheel_rad if entered else memory.hold_road_wheel_rad
+    hold = now.command_before.road_wheel_rad if entered else now.memory.hold_road_wheel_rad
     if mode == _MANUAL and (shares.lateral > 0.0 or shares.longitudinal > 0.0):
-        return _fading_side(entered, hold, person, before, command_before)
+        return _fading_side(entered, hold, person, now.before, now.command_before)
     if mode in (_MANUAL, _SHARED, _AUTONOMOUS, _TAKEOVER_REQUESTED):
         if link.fresh == 0.0:
-            return RemoteSide(command_before.road_wheel_rad, 0.0, 0.0, 0.0, 0.0, 0.0, hold)
+            return RemoteSide(now.command_before.road_wheel_rad, 0.0, 0.0, 0.0, 0.0, 0.0, hold)
         integral = offered.speed_integral_mps2 if mode != _MANUAL and shares.longitudinal >= 1.0 else 0.0
         if mode == _SHARED:
-            offered = _held_back(offered, before, vehicle, settings, tick_s)
+            offered = _held_back(now, offered)
         return RemoteSide(
             offered.road_wheel_rad, offered.throttle, offered.brake, offered.direction, integral, 0.0, hold
         )
     if mode == _MINIMAL_RISK:
-        return _safe_side(entered, hold, memory, vehicle, settings, tick_s)
-    brake = settings.emergency_brake if mode == _EMERGENCY_STOP else settings.hold_brake
+        return _safe_side(now, entered, hold)
+    brake = now.settings.emergency_brake if mode == _EMERGENCY_STOP else now.settings.hold_brake
     return RemoteSide(hold, 0.0, brake, 0.0, 0.0, 0.0, hold)
 
 
@@ -163,13 +141,12 @@ def _contribution(asked: float, in_force: float, person: float, share: float) ->
 
 
 @kernel
-def _held_back(
-    offered: RemoteRequest, before: Arbitration, vehicle: VehicleState, settings: ControlSettings, tick_s: float
-) -> RemoteRequest:
+def _held_back(now: Moment, offered: RemoteRequest) -> RemoteRequest:
     """Limit the controller's part of a shared command as in AUTONOMOUS: the gate must leave the person's hands free."""
+    before, settings, tick_s = now.before, now.settings, now.tick_s
     most = settings.automatic_road_wheel_rad
     gentle = gentle_angle(
-        clip(offered.road_wheel_rad, -most, most), settings.automatic_lateral_accel_mps2, vehicle, settings
+        clip(offered.road_wheel_rad, -most, most), settings.automatic_lateral_accel_mps2, now.vehicle, settings
     )
     return RemoteRequest(
         approach(before.remote_road_wheel_rad, gentle, settings.automatic_road_wheel_radps * tick_s),
@@ -181,18 +158,11 @@ def _held_back(
 
 
 @kernel
-def _safe_side(
-    entered: bool,
-    hold_rad: float,
-    memory: ArbiterMemory,
-    vehicle: VehicleState,
-    settings: ControlSettings,
-    tick_s: float,
-) -> RemoteSide:
-    accel = stop_start(vehicle, settings) if entered else memory.stop_accel_mps2
-    integral = 0.0 if entered else memory.speed_integral_mps2
-    stop = safe_stop(accel, integral, vehicle, settings, tick_s)
-    road_wheel_rad = approach(hold_rad, 0.0, settings.stop_road_wheel_decay_radps * tick_s)
+def _safe_side(now: Moment, entered: bool, hold_rad: float) -> RemoteSide:
+    accel = stop_start(now.vehicle, now.settings) if entered else now.memory.stop_accel_mps2
+    integral = 0.0 if entered else now.memory.speed_integral_mps2
+    stop = safe_stop(accel, integral, now.vehicle, now.settings, now.tick_s)
+    road_wheel_rad = approach(hold_rad, 0.0, now.settings.stop_road_wheel_decay_radps * now.tick_s)
     return RemoteSide(
         road_wheel_rad,
         0.0,
@@ -205,18 +175,12 @@ def _safe_side(
 
 
 @kernel
-def transmission_of(
-    mode: float,
-    direction: float,
-    driver: DriverInput,
-    command_before: VehicleCommand,
-    vehicle: VehicleState,
-    settings: ControlSettings,
-) -> Transmission:
-    """Return who works clutch and gears.
+def transmission_of(now: Moment, mode: float, direction: float) -> Transmission:
+    """Return who works clutch and gears; `direction` is what the remote side asks for.
 
     After autonomy the car goes on doing it until the person's clutch takes them back: the lever stands in any gear.
     """
+    driver, command_before, settings = now.driver, now.command_before, now.settings
     if mode == _PARKED:
         return Transmission(0.0, 0.0, 0.0)
     if mode == _STOPPED:
@@ -224,7 +188,7 @@ def transmission_of(
     if mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED):
         return Transmission(0.0, direction, 1.0)
     if mode in (_MINIMAL_RISK, _EMERGENCY_STOP):
-        gear = command_before.gear if command_before.automatic > 0.0 else _sign(vehicle.gear)
+        gear = command_before.gear if command_before.automatic > 0.0 else _sign(now.vehicle.gear)
         return Transmission(0.0, gear, 1.0)
     if mode == _SHARED and settings.shared_longitudinal > 0.0:
         return Transmission(0.0, direction, 1.0)

@@ -5,7 +5,8 @@ from typing import Final, NamedTuple
 from simconsole.control.engage import GRANTED, engage_refusal
 from simconsole.control.link import Link
 from simconsole.control.modes import deciding_trigger, next_mode, reason_of
-from simconsole.control.person import Person
+from simconsole.control.moment import Moment
+from simconsole.control.person import Person, mask
 from simconsole.control.remote import RemoteRequest
 from simconsole.control.settings import ControlSettings
 from simconsole.control.triggers import (
@@ -19,16 +20,7 @@ from simconsole.control.triggers import (
     reset_refusal,
 )
 from simconsole.kernels import kernel
-from simconsole.signals import (
-    ArbiterMemory,
-    Arbitration,
-    DriverInput,
-    Mode,
-    Reason,
-    RemoteCommand,
-    VehicleCommand,
-    VehicleState,
-)
+from simconsole.signals import Mode, Reason
 
 _TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)
 _PERSON_ASKED: Final = float(Reason.PERSON_ASKED)
@@ -46,47 +38,35 @@ class Decision(NamedTuple):
 
 
 @kernel
-def decide(
-    driver: DriverInput,
-    remote: RemoteCommand,
-    events: int,
-    vehicle: VehicleState,
-    memory: ArbiterMemory,
-    before: Arbitration,
-    command_before: VehicleCommand,
-    settings: ControlSettings,
-    person: Person,
-    link: Link,
-    offered: RemoteRequest,
-    steering: bool,
-    standing: bool,
-) -> Decision:
+def decide(now: Moment, person: Person, link: Link, offered: RemoteRequest, steering: bool, standing: bool) -> Decision:
     """Decide the mode of this tick.
 
     Args:
-        driver: For the wheel's buttons.
-        remote: For the speed that it commands.
-        events: Mask of `Event`.
-        vehicle: State after the tick before.
-        memory: From the tick before.
-        before: Mode and refusal of the tick before.
-        command_before: What left the gate in the tick before.
-        settings: Of this drive.
-        person: The person's side of this tick.
-        link: The controller's side of this tick.
+        now: This tick.
+        person: The person's side of it.
+        link: The controller's side of it.
         offered: What its command would mean.
         steering: Whether the person has taken the wheel.
         standing: Whether the vehicle has stood for long enough.
     """
-    mode = before.mode
-    asked = asked_of(driver, events)
+    mode = now.before.mode
+    settings = now.settings
+    events = mask(now.events.events)
+    asked = asked_of(now.driver, events)
     manual = manual_refusal(mode, person, settings)
     reset = reset_refusal(asked, standing)
     engage = engage_refusal(
-        mode, person, link, remote, offered.road_wheel_rad, command_before.road_wheel_rad, vehicle, settings
+        mode,
+        person,
+        link,
+        now.remote,
+        offered.road_wheel_rad,
+        now.command_before.road_wheel_rad,
+        now.vehicle,
+        settings,
     )
     shared = engage if engage != GRANTED else manual
-    no_reaction = mode == _TAKEOVER_REQUESTED and memory.mode_ticks + 1.0 >= settings.minimal_risk_ticks
+    no_reaction = mode == _TAKEOVER_REQUESTED and now.memory.mode_ticks + 1.0 >= settings.minimal_risk_ticks
     present = person_triggers(mode, person, steering, settings)
     present |= fault_triggers(link, events, no_reaction, standing)
     present |= asked_triggers(asked, manual, reset, engage, shared)
@@ -95,11 +75,11 @@ def decide(
         return Decision(next_mode(mode, trigger), _reason(trigger, asked), 1.0, GRANTED, 0.0)
     refusal = refusal_of(mode, asked, manual, reset, engage, shared)
     if refusal != GRANTED:
-        return Decision(mode, before.reason, 0.0, refusal, 0.0)
-    shown = memory.refusal_ticks + 1.0 < settings.refusal_ticks
-    if before.refusal != GRANTED and shown:
-        return Decision(mode, before.reason, 0.0, before.refusal, memory.refusal_ticks + 1.0)
-    return Decision(mode, before.reason, 0.0, GRANTED, 0.0)
+        return Decision(mode, now.before.reason, 0.0, refusal, 0.0)
+    shown = now.memory.refusal_ticks + 1.0 < settings.refusal_ticks
+    if now.before.refusal != GRANTED and shown:
+        return Decision(mode, now.before.reason, 0.0, now.before.refusal, now.memory.refusal_ticks + 1.0)
+    return Decision(mode, now.before.reason, 0.0, GRANTED, 0.0)
 
 
 @kernel

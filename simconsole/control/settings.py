@@ -89,67 +89,36 @@ def settings(
         wheelbase_m: The vehicle's (> 0), between curvature and road-wheel angle.
         tick_hz: Control ticks per second.
     """
+    lock_rad = max_road_wheel_rad
+    release_deg = max(0.0, profile.steering_override_deg - profile.steering_override_hysteresis_deg)
     return ControlSettings(
-        person_required=float(profile.person_required),
-        manual_automatic=float(profile.manual_automatic),
+        **_of_the_same_name(profile),
         wheelbase_m=wheelbase_m,
         road_wheel_per_hand_wheel=1.0 / steering_ratio,
-        max_road_wheel_rad=max_road_wheel_rad,
+        max_road_wheel_rad=lock_rad,
         steering_override_rad=profile.steering_override_deg * RAD_PER_DEG,
-        steering_release_rad=max(0.0, profile.steering_override_deg - profile.steering_override_hysteresis_deg)
-        * RAD_PER_DEG,
+        steering_release_rad=release_deg * RAD_PER_DEG,
         steering_override_radps=profile.steering_override_rate_degps * RAD_PER_DEG,
         steering_override_ticks=_at_least(profile.steering_override_hold_s, tick_hz),
-        brake_override=profile.brake_override,
-        throttle_override=profile.throttle_override,
         throttle_release=max(0.0, profile.throttle_override - profile.throttle_override_hysteresis),
-        clutch_pressed=profile.clutch_pressed,
         fade_per_tick=1.0 / _at_least(profile.fade_s, tick_hz),
         stale_ticks=_at_most(profile.command_stale_s, tick_hz),
-        invalid_commands_max=float(profile.invalid_commands_max),
         escalation_ticks=_at_least(profile.escalation_s, tick_hz),
         minimal_risk_ticks=_at_least(profile.minimal_risk_after_s, tick_hz),
         refusal_ticks=_at_least(profile.refusal_shown_s, tick_hz),
-        stop_decel_mps2=profile.stop_decel_mps2,
-        stop_jerk_mps3=profile.stop_jerk_mps3,
-        stop_decel_max_mps2=profile.stop_decel_max_mps2,
-        stop_road_wheel_decay_radps=profile.stop_road_wheel_decay_radps,
-        emergency_brake=profile.emergency_brake,
-        hold_brake=profile.hold_brake,
-        standstill_speed_mps=profile.standstill_speed_mps,
         standstill_ticks=_at_least(profile.standstill_s, tick_hz),
         engage_stable_ticks=_at_least(profile.engage_stable_s, tick_hz),
         reengage_stable_ticks=_at_least(profile.reengage_stable_s, tick_hz),
-        engage_speed_max_mps=profile.engage_speed_max_mps,
-        engage_speed_deviation_mps=profile.engage_speed_deviation_mps,
-        engage_lateral_accel_mps2=profile.engage_lateral_accel_mps2,
-        engage_road_wheel_deviation_rad=profile.engage_road_wheel_deviation_rad,
-        engage_deviation_speed_mps=profile.engage_deviation_speed_mps,
-        shared_lateral=profile.shared_lateral,
-        shared_longitudinal=profile.shared_longitudinal,
-        accel_max_mps2=profile.accel_max_mps2,
-        decel_max_mps2=profile.decel_max_mps2,
-        speed_gain_per_s=profile.speed_gain_per_s,
-        integral_gain_per_s=profile.integral_gain_per_s,
-        integral_max_mps2=profile.integral_max_mps2,
-        coast_band_mps2=profile.coast_band_mps2,
-        nominal_throttle_accel_mps2=profile.nominal_throttle_accel_mps2,
-        nominal_brake_accel_mps2=profile.nominal_brake_accel_mps2,
         manual_road_wheel_radps=profile.manual_hand_wheel_rate_degps * RAD_PER_DEG / steering_ratio,
-        manual_pedal_slew_per_s=profile.manual_pedal_slew_per_s,
-        automatic_road_wheel_rad=min(profile.automatic_road_wheel_max_rad, max_road_wheel_rad),
+        automatic_road_wheel_rad=min(profile.automatic_road_wheel_max_rad, lock_rad),
         automatic_road_wheel_radps=profile.automatic_road_wheel_rate_radps,
-        automatic_lateral_accel_mps2=profile.automatic_lateral_accel_mps2,
-        automatic_throttle_slew_per_s=profile.automatic_throttle_slew_per_s,
-        automatic_brake_slew_per_s=profile.automatic_brake_slew_per_s,
         stop_road_wheel_radps=profile.stop_road_wheel_rate_radps,
-        emergency_brake_slew_per_s=profile.emergency_brake_slew_per_s,
-        reverse_speed_max_mps=profile.reverse_speed_max_mps,
-        gear_max=float(profile.gear_max),
-        target_speed_max_mps=profile.target_speed_max_mps,
-        target_accel_mps2=profile.target_accel_mps2,
-        target_position_max_m=profile.target_position_max_m,
     )
+
+
+def _of_the_same_name(profile: ControlProfile) -> dict[str, float]:
+    """Return the settings that the profile has in the same unit: names carry units, so equal names mean equal units."""
+    return {name: float(getattr(profile, name)) for name in ControlSettings._fields if hasattr(profile, name)}
 
 
 def _at_least(seconds: float, tick_hz: int) -> float:

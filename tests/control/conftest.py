@@ -6,6 +6,7 @@ import pytest
 
 from simconsole.control.arbitration import arbitrate
 from simconsole.control.gate import gate
+from simconsole.control.moment import Moment
 from simconsole.control.settings import ControlSettings, settings
 from simconsole.profiles.control import ControlProfile
 from simconsole.signals import (
@@ -85,15 +86,19 @@ class Rig:
             self.remote = self.remote._replace(age_ticks=self.remote.age_ticks + 1.0)
         driver = self.driver._replace(edges=float(edge), pressed=float(int(self.driver.pressed) | int(edge)))
         self.memory, self.arbitration, self.request = arbitrate(
-            driver,
-            self.remote,
-            EventInput(float(event)),
-            self.vehicle,
-            self.memory,
-            self.arbitration,
-            self.command,
-            self.settings,
-            self.tick_s,
+            Moment(
+                driver,
+                self.remote,
+                EventInput(float(event)),
+                self.vehicle,
+                self.memory,
+                self.arbitration,
+                self.command,
+                0.0,
+                0.0,
+                self.settings,
+                self.tick_s,
+            )
         )
         self.command = gate(
             self.request, self.remote, self.arbitration, self.command, self.vehicle, self.settings, self.tick_s

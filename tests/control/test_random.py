@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from simconsole.compiling import compiled, plain
 from simconsole.control.arbitration import arbitrate
 from simconsole.control.gate import gate, limits_of
+from simconsole.control.moment import Moment
 from simconsole.control.settings import ControlSettings, settings
 from simconsole.kernels import Row, kernel, put, take
 from simconsole.profiles.control import ControlProfile
@@ -75,7 +76,7 @@ def drive(inputs: Row, outputs: Row, row: Row, tick_s: float) -> None:
         vehicle = VehicleState(*take(vehicle_row, 0, VEHICLE_WIDTH))
         remote = RemoteCommand(*take(given, REMOTE_AT, REMOTE_WIDTH))
         command = VehicleCommand(*take(before, COMMAND_AT, COMMAND_WIDTH))
-        memory, arbitration, request = arbitrate(
+        now = Moment(
             DriverInput(*take(given, 0, DRIVER_WIDTH)),
             remote,
             EventInput(given[EVENT_AT]),
@@ -83,9 +84,12 @@ def drive(inputs: Row, outputs: Row, row: Row, tick_s: float) -> None:
             ArbiterMemory(*take(before, 0, MEMORY_WIDTH)),
             Arbitration(*take(before, ARBITRATION_AT, ARBITRATION_WIDTH)),
             command,
+            0.0,
+            0.0,
             s,
             tick_s,
         )
+        memory, arbitration, request = arbitrate(now)
         command = gate(request, remote, arbitration, command, vehicle, s, tick_s)
         put(before, 0, memory)
         put(before, ARBITRATION_AT, arbitration)
@@ -315,17 +319,11 @@ def test_from_every_mode_a_person_gets_back_to_manual(long_drive: Drive) -> None
             )
             for tick in range(int(2.0 / long_drive.tick_s)):
                 event = Event.REQUEST_MANUAL if tick % 2 else Event.RESET
-                memory, arbitration, request = arbitrate(
-                    driver,
-                    remote,
-                    EventInput(float(event)),
-                    vehicle,
-                    memory,
-                    arbitration,
-                    command,
-                    s,
-                    long_drive.tick_s,
+                happened = EventInput(float(event))
+                now = Moment(
+                    driver, remote, happened, vehicle, memory, arbitration, command, 0.0, 0.0, s, long_drive.tick_s
                 )
+                memory, arbitration, request = arbitrate(now)
                 command = gate(request, remote, arbitration, command, vehicle, s, long_drive.tick_s)
                 if arbitration.mode == Mode.MANUAL:
                     break

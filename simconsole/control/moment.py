@@ -1,0 +1,30 @@
+"""Everything that arbitration decides one tick from, in one value."""
+
+from typing import NamedTuple
+
+from simconsole.control.settings import ControlSettings
+from simconsole.signals import (
+    ArbiterMemory,
+    Arbitration,
+    DriverInput,
+    EventInput,
+    RemoteCommand,
+    VehicleCommand,
+    VehicleState,
+)
+
+
+class Moment(NamedTuple):
+    """One tick as arbitration finds it: what comes in, and what the tick before has left."""
+
+    driver: DriverInput  # the person, calibrated, in this tick
+    remote: RemoteCommand  # the newest accepted command
+    events: EventInput  # edges since the last tick
+    vehicle: VehicleState  # after the tick before; its fields may be anything
+    memory: ArbiterMemory
+    before: Arbitration
+    command_before: VehicleCommand  # what left the gate in the tick before: hand-overs and stops start from it
+    explained_rad: float  # how far the wheel's motor alone has moved it since engagement; 0 without a motor
+    explained_radps: float  # how fast
+    settings: ControlSettings
+    tick_s: float
