@@ -16,8 +16,8 @@ import pytest
 
 from simconsole.compiling import _twin, compiled
 from simconsole.kernels import Row, put
-from simconsole.rows import COMMAND_AT, PLATFORM_AT, TORQUE_AT, VEHICLE_AT
-from simconsole.signals import VehicleCommand, VehicleState
+from simconsole.rows import COMMAND_AT, PLATFORM_AT, VEHICLE_AT
+from simconsole.signals import VehicleCommand
 from simconsole.vehicle.car.state import CarState
 from simconsole.vehicle.platform import Ground, Platform
 
@@ -82,8 +82,8 @@ def test_plain_and_compiled_are_equal_to_the_last_bit(fresh: Any) -> None:
     for seed, speed in enumerate((0.0, 35.0, -8.0, 0.0), SEED):
         print(f"seed {seed}")
         pairs = zip(
-            rows(vehicle, vehicle.step, commands(seed, 5500), 2, speed),
-            rows(vehicle, fresh, commands(seed, 5500), 2, speed),
+            rows(vehicle, vehicle.step, commands(seed, 12_500), 2, speed),  # four drives of 25,000 steps
+            rows(vehicle, fresh, commands(seed, 12_500), 2, speed),
             strict=True,
         )
         for tick, (slow, fast) in enumerate(pairs):
@@ -130,25 +130,6 @@ def test_a_generic_processor_gives_the_same_bits() -> None:
         [sys.executable, "-c", code, folder], capture_output=True, text=True, check=True, env=environment
     )
     assert done.stdout.strip() == fingerprint()
-
-
-@pytest.mark.parametrize("bad", [False, True], ids=["any command", "also nonsense"])
-def test_any_drive_stays_finite_and_inside_physical_bounds(bad: bool) -> None:
-    for seed in range(SEED, SEED + 6):
-        print(f"seed {seed}")
-        rng = random.Random(seed)
-        ground = Ground(rng.uniform(0.2, 1.2), rng.uniform(-0.15, 0.15), rng.uniform(-0.15, 0.15))
-        vehicle = platform(ground=ground)
-        step = compiled(vehicle.step)
-        for row in rows(vehicle, step, commands(seed, 15_000, bad), 4):
-            assert np.isfinite(row[VEHICLE_AT:]).all()
-            seen = VehicleState(*row[VEHICLE_AT:TORQUE_AT])
-            assert math.hypot(seen.vx_mps, seen.vy_mps) < 100.0
-            assert abs(seen.yaw_rate_radps) < 8.0
-            assert math.hypot(seen.ax_mps2, seen.ay_mps2) < 20.0
-            assert abs(seen.engine_radps) < 1500.0
-            assert abs(seen.road_wheel_rad) < 0.63
-            assert abs(seen.hand_wheel_torque_nm) < 40.0
 
 
 def test_after_anything_it_comes_to_rest() -> None:

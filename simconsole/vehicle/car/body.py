@@ -35,6 +35,16 @@ class Motion(NamedTuple):
 
 
 @kernel
+def stopped(rate: float, place: float, most: float) -> float:
+    """Return the rate of what is at `place`: at the end of its way it goes no further and stores no speed."""
+    if place >= most and rate > 0.0:
+        return 0.0
+    if place <= -most and rate < 0.0:
+        return 0.0
+    return rate
+
+
+@kernel
 def move_axle(
     axle: AxleParameters, struts: Travel, left: Wheel, right: Wheel, on_left: Contact, on_right: Contact, step_s: float
 ) -> AxleMotion:
@@ -45,11 +55,13 @@ def move_axle(
     share = step_s / axle.wheel_mass_kg
     left_mps = left.lift_mps + share * (on_left.load_n - axle.static_n - left_n + lifted)
     right_mps = right.lift_mps + share * (on_right.load_n - axle.static_n - right_n - lifted)
+    left_m = clip(left.lift_m + step_s * left_mps, -MOST_LIFT_M, MOST_LIFT_M)
+    right_m = clip(right.lift_m + step_s * right_mps, -MOST_LIFT_M, MOST_LIFT_M)
     return AxleMotion(
-        clip(left.lift_m + step_s * left_mps, -MOST_LIFT_M, MOST_LIFT_M),
-        left_mps,
-        clip(right.lift_m + step_s * right_mps, -MOST_LIFT_M, MOST_LIFT_M),
-        right_mps,
+        left_m,
+        stopped(left_mps, left_m, MOST_LIFT_M),
+        right_m,
+        stopped(right_mps, right_m, MOST_LIFT_M),
         left_n + right_n,
         axle.half_track_m * (left_n - right_n),
     )
@@ -88,6 +100,9 @@ def move(car: Car, p: CarParameters, axles: Axles, step_s: float) -> Motion:
     on_ground_x = vx - body.cg_height_m * pitch_radps
     rocking = p.rear.roll_arm_m * roll_radps + p.rear.link_arm_m * axle_roll(p.rear, rear.left_mps, rear.right_mps)
     on_ground_y = vy - body.cg_to_rear_m * yaw_rate + rocking
+    heave = clip(before.heave_m + step_s * heave_mps, -MOST_LIFT_M, MOST_LIFT_M)
+    roll = clip(before.roll_rad + step_s * roll_radps, -MOST_LEAN_RAD, MOST_LEAN_RAD)
+    pitch = clip(before.pitch_rad + step_s * pitch_radps, -MOST_LEAN_RAD, MOST_LEAN_RAD)
     moved = BodyState(
         before.x_m + step_s * (on_ground_x * c - on_ground_y * s),
         before.y_m + step_s * (on_ground_x * s + on_ground_y * c),
@@ -97,12 +112,12 @@ def move(car: Car, p: CarParameters, axles: Axles, step_s: float) -> Motion:
         yaw_rate,
         ax,
         ay,
-        clip(before.heave_m + step_s * heave_mps, -MOST_LIFT_M, MOST_LIFT_M),
-        heave_mps,
-        clip(before.roll_rad + step_s * roll_radps, -MOST_LEAN_RAD, MOST_LEAN_RAD),
-        roll_radps,
-        clip(before.pitch_rad + step_s * pitch_radps, -MOST_LEAN_RAD, MOST_LEAN_RAD),
-        pitch_radps,
+        heave,
+        stopped(heave_mps, heave, MOST_LIFT_M),
+        roll,
+        stopped(roll_radps, roll, MOST_LEAN_RAD),
+        pitch,
+        stopped(pitch_radps, pitch, MOST_LEAN_RAD),
         before.distance_m + step_s * sqrt(on_ground_x * on_ground_x + on_ground_y * on_ground_y),
     )
     return Motion(moved, front, rear)

@@ -5,6 +5,7 @@ from typing import Final
 from simconsole.kernels import Row, clip, is_finite, kernel, put, take
 from simconsole.rows import COMMAND_AT, COMMAND_WIDTH, PLATFORM_AT, VEHICLE_AT
 from simconsole.signals import Request, VehicleCommand
+from simconsole.trigonometry import nearest
 from simconsole.vehicle.car.axles import Contact, push
 from simconsole.vehicle.car.body import move
 from simconsole.vehicle.car.driveline import turn
@@ -50,6 +51,8 @@ from simconsole.vehicle.car.steering import hand_wheel_torque, heading, steer
 
 STEP_S: Final = 0.001
 """The car integrates at 1 ms whatever the tick; its stiffest mode (a wheel on its tyre) has a period of 30 ms."""
+
+MOST_GEARS: Final = 7.0
 
 RACK_AT: Final = PLATFORM_AT + BODY_STATE_WIDTH
 FL_AT: Final = RACK_AT + STEERING_STATE_WIDTH
@@ -117,7 +120,7 @@ def step(previous: Row, row: Row, parameters: Row, substeps: int) -> None:
         pedal(command.brake),
         pedal(command.clutch),
         pedal(command.handbrake),
-        command.gear if is_finite(command.gear) else 0.0,
+        lever(command.gear),
         command.automatic,
     )
     for _ in range(substeps):
@@ -130,6 +133,14 @@ def step(previous: Row, row: Row, parameters: Row, substeps: int) -> None:
 def pedal(value: float) -> float:
     """Return a pedal position 0..1. The gate passes only finite values; anything else counts as released."""
     return clip(value, 0.0, 1.0) if is_finite(value) else 0.0
+
+
+@kernel
+def lever(gear: float) -> float:
+    """Return where the lever is: -1, 0 or 1 to 7. Anything else, and anything between two gears, counts as neutral."""
+    if is_finite(gear) and -1.0 <= gear <= MOST_GEARS and nearest(gear) == gear:
+        return gear
+    return 0.0
 
 
 @kernel

@@ -1,0 +1,194 @@
+"""Millions of steps of cars that anything happens to: `python -m tests.vehicle.fuzzing [--steps N] [--seed N]`.
+
+A fleet of cars with random ground and commands (all axes, gears and both modes, nonsense and NaN among them) that are
+hit now and then: velocities of up to 60 m/s out of nothing, spins, leans. After every tick each state is compared with
+its bound; at the end all cars are put on level asphalt with the brake pressed and must come to rest.
+"""
+
+import argparse
+import math
+import random
+import sys
+import time
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simconsole.fleet import Fleet
+from simconsole.signals import VehicleCommand
+from simconsole.vehicle.car.state import CarState
+from simconsole.vehicle.platform import Ground
+
+from .driving import platform
+
+CARS: Final = 1024
+SUBSTEPS: Final = 4
+HIT_MPS: Final = 60.0
+NONSENSE: Final = (math.nan, math.inf, -math.inf, 1e300, -1e300, -5.0, 0.5, 99.0)
+REST_S: Final = 40.0
+REST_MPS: Final = 1e-6
+WHEELS: Final = ("fl", "fr", "rl", "rr")
+AT: Final = {name: index for index, name in enumerate(CarState._fields)}
+COMMAND: Final = {name: index for index, name in enumerate(VehicleCommand._fields)}
+
+Table = NDArray[np.float64]
+
+
+BOUNDS: Final[dict[str, tuple[float, float]]] = {
+    **dict.fromkeys(("x_m", "y_m"), (-1e5, 1e5)),  # some 100 s at 100 m/s, ten times over
+    "yaw_rad": (-math.pi, math.pi),
+    **dict.fromkeys(
+        ("vx_mps", "vy_mps"), (-100.0, 100.0)
+    ),  # both hits at once are 85 m/s; a hill of 42 % adds the rest
+    "yaw_rate_radps": (-20.0, 20.0),  # grip of 1.2 turns the car by 12 rad/s2, hits by 6 rad/s
+    **dict.fromkeys(("ax_mps2", "ay_mps2"), (-100.0, 100.0)),  # 1.2 times four times the weight, and landings
+    **dict.fromkeys(("heave_m", "fl_lift_m", "fr_lift_m", "rl_lift_m", "rr_lift_m"), (-0.5, 0.5)),  # end of the model
+    "heave_mps": (-10.0, 10.0),  # hits of 3 m/s, springs of 1.5 Hz over 0.5 m
+    **dict.fromkeys(("roll_rad", "pitch_rad"), (-0.5, 0.5)),  # end of the model
+    **dict.fromkeys(("roll_radps", "pitch_radps"), (-10.0, 10.0)),
+    "distance_m": (0.0, 1e5),
+    "road_wheel_rad": (-0.6284, 0.6284),  # max_road_wheel_deg: 36
+    "road_wheel_radps": (-1.2218, 1.2218),  # max_road_wheel_degps: 70
+    "hand_wheel_torque_nm": (-14.7, 14.7),  # most_nm: 14, rim friction and damping of the fastest rack
+    **dict.fromkeys(("fl_radps", "fr_radps", "rl_radps", "rr_radps"), (-330.0, 330.0)),  # 100 m/s over 0.306 m
+    # slide_demand * grip / stiffness at four static loads, where they are longest (vehicle/car/tyre.py)
+    **dict.fromkeys([f"{wheel}_deflection_x_m" for wheel in WHEELS], (-0.0712, 0.0712)),
+    **dict.fromkeys([f"{wheel}_deflection_y_m" for wheel in WHEELS], (-0.1281, 0.1281)),
+    **dict.fromkeys([f"{wheel}_lift_mps" for wheel in WHEELS], (-50.0, 50.0)),  # 37 kg thrown by a stop over 0.5 m
+    **dict.fromkeys([f"{wheel}_brake_share" for wheel in WHEELS], (0.0, 1.0)),
+    "engine_radps": (-4750.0, 4750.0),  # 330 rad/s at a wheel in first gear, clutch closed
+    "engine_running": (0.0, 1.0),
+    "engine_impulse_nms": (-0.27, 0.27),  # friction at that speed, in 1 ms
+    "clutch_impulse_nms": (-0.28, 0.28),  # clutch_nm: 280
+    **dict.fromkeys(("left_impulse_nms", "right_impulse_nms"), (-3.7, 3.7)),  # pedal 1650 N m, ESC 1900, rolling
+    "lock_impulse_nms": (0.0, 0.0),  # an open differential
+    **dict.fromkeys(("gear", "wanted_gear"), (-1.0, 6.0)),
+    **dict.fromkeys(("clutch", "lever_adopted", "throttle_share", "hold_brake"), (0.0, 1.0)),
+    "shift_left_s": (0.0, 0.25),
+    "since_shift_s": (0.0, 10.0),
+    "stability_nm": (-1900.0, 1900.0),
+    "hold_left_s": (0.0, 2.0),
+}
+"""What each state of the hatchback may be, and why."""
+
+
+class Report(NamedTuple):
+    """What a run found."""
+
+    steps: int
+    lowest: dict[str, float]
+    highest: dict[str, float]
+    beyond: list[str]  # states that left their bounds or are no number
+    rest_mps: float  # of the fastest car at the end, its yaw rate counted as metres
+    seconds: float
+
+
+def commands(rng: np.random.Generator, count: int) -> Table:
+    """Return what persons and automatics may ask for; one in ten asks for nonsense."""
+    table = np.zeros((count, len(COMMAND)))
+    resting = rng.random((count, 5)) < 0.4
+    table[:, COMMAND["road_wheel_rad"]] = rng.uniform(-0.8, 0.8, count)
+    for name in ("throttle", "brake", "clutch", "handbrake"):
+        table[:, COMMAND[name]] = np.clip(rng.uniform(-0.2, 1.3, count), 0.0, 1.0)
+    table[:, :5][resting] = 0.0
+    table[:, COMMAND["automatic"]] = rng.integers(0, 2, count)
+    table[:, COMMAND["gear"]] = np.where(
+        table[:, COMMAND["automatic"]] == 1.0, rng.integers(-1, 2, count), rng.integers(-1, 8, count)
+    )
+    mad = rng.random(count) < 0.1
+    table[mad, rng.integers(0, 7, mad.sum())] = rng.choice(NONSENSE, mad.sum())
+    return table
+
+
+def hit(rng: np.random.Generator, states: Table) -> Table:
+    """Return these states after something has changed all their motion at once."""
+    most = {"vx_mps": HIT_MPS, "vy_mps": HIT_MPS, "yaw_rate_radps": 6.0}
+    most |= {"roll_radps": 3.0, "pitch_radps": 3.0, "heave_mps": 3.0, "roll_rad": 0.3, "pitch_rad": 0.2, "heave_m": 0.2}
+    for wheel in WHEELS:
+        most |= {f"{wheel}_radps": 200.0, f"{wheel}_lift_m": 0.1, f"{wheel}_lift_mps": 5.0}
+    struck = states.copy()
+    for name, size in most.items():
+        struck[:, AT[name]] = rng.uniform(-size, size, len(states))
+    struck[:, AT["engine_radps"]] = rng.uniform(0.0, 690.0, len(states))
+    return struck
+
+
+def fuzz(steps: int, seed: int) -> Report:
+    """Drive CARS hatchbacks for `steps` steps of 1 ms in all, then let them come to rest."""
+    assert BOUNDS.keys() == AT.keys(), f"every state needs a bound: {BOUNDS.keys() ^ AT.keys()}"
+    began = time.perf_counter()
+    rng = np.random.default_rng(seed)
+    spread = random.Random(seed)
+    fleet = Fleet([platform(ground=ground(spread)) for _ in range(CARS)])
+    asked = commands(rng, CARS)
+    seen = True
+    lowest, highest = np.full((2, len(AT)), [[np.inf], [-np.inf]])
+    ticks = -(-steps // (CARS * SUBSTEPS))
+    for _ in range(ticks):
+        new = rng.random(CARS) < 0.01
+        asked[new] = commands(rng, int(new.sum()))
+        fleet.command(asked)
+        struck = rng.random(CARS) < 0.0005
+        if struck.any():
+            states = fleet.states
+            states[struck] = hit(rng, states[struck])
+            fleet.restore(states)
+        fleet.step(SUBSTEPS)
+        states = fleet.states
+        seen = seen and bool(np.isfinite(fleet.vehicles).all())
+        lowest = np.minimum(lowest, states.min(axis=0))  # a NaN stays one
+        highest = np.maximum(highest, states.max(axis=0))
+    beyond = [
+        f"{name}: {lowest[at]:.6g} to {highest[at]:.6g}, allowed {BOUNDS[name][0]:g} to {BOUNDS[name][1]:g}"
+        for name, at in AT.items()
+        if not BOUNDS[name][0] <= lowest[at] <= highest[at] <= BOUNDS[name][1]
+    ]
+    if not seen:
+        beyond.append("what others see of the car (VehicleState) is no number somewhere")
+    return Report(
+        ticks * CARS * SUBSTEPS,
+        dict(zip(AT, lowest.tolist(), strict=True)),
+        dict(zip(AT, highest.tolist(), strict=True)),
+        beyond,
+        rest(fleet.states),
+        time.perf_counter() - began,
+    )
+
+
+def ground(spread: random.Random) -> Ground:
+    return Ground(
+        spread.uniform(0.05, 1.2), spread.uniform(-0.3, 0.3), spread.uniform(-0.3, 0.3), spread.choice([1.0, 0.3])
+    )
+
+
+def rest(states: Table) -> float:
+    """Return how fast the fastest car still is when all have braked on level asphalt."""
+    fleet = Fleet([platform()] * len(states))
+    fleet.restore(states)
+    stop = np.zeros((len(states), len(COMMAND)))
+    stop[:, [COMMAND["brake"], COMMAND["clutch"]]] = 1.0
+    fleet.command(stop)
+    fleet.step(round(REST_S * 1000))
+    moving = np.abs(fleet.states[:, [AT["vx_mps"], AT["vy_mps"], AT["yaw_rate_radps"]]]).sum(axis=1)
+    return float(moving.max())
+
+
+def main() -> int:
+    words = argparse.ArgumentParser(description=__doc__)
+    words.add_argument("--steps", type=int, default=100_000_000)
+    words.add_argument("--seed", type=int, default=random.SystemRandom().randrange(2**32))
+    given = words.parse_args()
+    print(f"seed {given.seed}")
+    found = fuzz(given.steps, given.seed)
+    for name in AT:
+        low, high = BOUNDS[name]
+        print(f"  {name:22} {found.lowest[name]:12.5g} to {found.highest[name]:12.5g}   allowed {low:g} to {high:g}")
+    print(f"{found.steps} steps in {found.seconds:.0f} s; at rest within {REST_S:g} s to {found.rest_mps:.2g} m/s")
+    for line in found.beyond:
+        print(f"BEYOND {line}")
+    return 1 if found.beyond or not found.rest_mps < REST_MPS else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
