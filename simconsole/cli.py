@@ -71,6 +71,7 @@ def _driving(commands: Any) -> None:
     drive.add_argument("session", nargs="?", default="seated", metavar="SESSION", help="a session profile")
     drive.add_argument("--headless", action="store_true", help="no window, as fast as it goes")
     drive.add_argument("--driver", metavar="D", help="sdl | virtual | trace:F | script:F | keyboard | none")
+    drive.add_argument("--cockpit", metavar="PROFILE", help="a cockpit by name, or the file that `calibrate` wrote")
     drive.add_argument("--for", dest="duration_s", type=float, metavar="S", help="end after S simulated seconds")
     drive.add_argument("--out", metavar="DIR", help="where the bundle goes (default: out/drive-TIME)")
 
@@ -120,12 +121,13 @@ def _can(commands: Any) -> None:
 
 
 def _tools(commands: Any) -> None:
-    devices = _command(commands, "devices", "cockpit:devices", "the cockpit: list, check or record its devices")
-    devices.add_argument("action", choices=("list", "check", "record"))
-    devices.add_argument("--cockpit", default="t500rs_th8rs", metavar="PROFILE")
-    devices.add_argument("--virtual", action="store_true", help="attach a virtual T500 RS and TH8 RS first")
-    devices.add_argument("--for", dest="duration_s", type=float, default=10.0, metavar="S")
-    devices.add_argument("--out", metavar="FILE", default="trace.csv", help="what `record` writes")
+    devices = _command(commands, "devices", "cockpit:devices", "the cockpit: list, check, calibrate, feel, record")
+    devices.add_argument("action", choices=("list", "check", "calibrate", "feel", "record"))
+    devices.add_argument("--cockpit", default="t500rs_th8rs", metavar="PROFILE", help="a name, or a .yaml file")
+    devices.add_argument("--virtual", action="store_true", help="attach the cockpit's devices as virtual ones first")
+    devices.add_argument("--for", dest="duration_s", type=float, default=10.0, metavar="S", help="check, record")
+    devices.add_argument("--strength", type=int, default=25, metavar="PERCENT", help="feel: of the motor's torque")
+    devices.add_argument("--out", metavar="FILE", help="record: trace.csv; calibrate: the new profile, cockpit.yaml")
 
     bridge = _command(commands, "bridge", "rosbridge:bridge", "rosbridge: serve it alone, check any server")
     bridge.add_argument("action", choices=("serve", "check", "bench", "cert"))

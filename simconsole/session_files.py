@@ -15,8 +15,8 @@ from simconsole.profiles.vehicle import VehicleProfile
 from simconsole.profiles.world import WorldProfile
 
 
-def resolve(session: SessionProfile) -> ResolvedSession:
-    """Return the session with the profiles it names.
+def resolve(session: SessionProfile, cockpit: str | None = None) -> ResolvedSession:
+    """Return the session with the profiles it names; `cockpit` (a name or a file) takes the place of its own.
 
     Raises:
         ProfileError: one of them is missing or wrong; names its file, key, value and range.
@@ -24,7 +24,7 @@ def resolve(session: SessionProfile) -> ResolvedSession:
     world = session.environment.world
     return ResolvedSession(
         session=session,
-        cockpit=load("devices", session.devices.cockpit, CockpitProfile),
+        cockpit=load("devices", cockpit or session.devices.cockpit, CockpitProfile),
         vehicle=load("vehicles", session.scenario.vehicle, VehicleProfile),  # type: ignore[arg-type]  # a union
         world=None if world is None else load("worlds", world, WorldProfile, max_bytes=MAX_DATA_BYTES),
     )

@@ -1,5 +1,6 @@
-"""`simconsole devices list | check | record`: the cockpit before a drive."""
+"""`simconsole devices list | check | calibrate | feel | record`: the cockpit before a drive."""
 
+import sys
 from argparse import Namespace
 from pathlib import Path
 
@@ -10,10 +11,10 @@ from simconsole.profiles.device import CockpitProfile
 
 
 def devices(words: Namespace) -> Outcome:
-    """Do one of the three; `check` has code 1 when the cockpit could not drive.
+    """Do one of them; `check` and `feel` have code 1 when the cockpit could not drive as it is.
 
     Raises:
-        DeviceError: a device is missing or in a mode that cannot drive.
+        DeviceError: a device is missing or in a mode that cannot drive, or a step of a calibration failed.
         ProfileError: the cockpit's profile cannot be used.
     """
     cockpit = load("devices", words.cockpit, CockpitProfile)
@@ -21,9 +22,43 @@ def devices(words: Namespace) -> Outcome:
         results = list_devices(cockpit, say=print, virtual=words.virtual)
         return Outcome(1 if results["missing_roles"] else 0, results)
     if words.action == "check":
-        results = check_devices(cockpit, say=print, duration_s=words.duration_s, virtual=words.virtual)
+        show = _Redrawn().show if sys.stderr.isatty() else None
+        results = check_devices(cockpit, say=print, duration_s=words.duration_s, virtual=words.virtual, show=show)
+        return Outcome(0 if results["ok"] else 1, results)
+    if words.action == "calibrate":
+        from simconsole.devices.calibrate import calibrate_devices
+
+        path = Path(words.out or "cockpit.yaml")
+        return Outcome(0, calibrate_devices(cockpit, path, say=_say, virtual=cockpit if words.virtual else None))
+    if words.action == "feel":
+        from simconsole.devices.feel import feel_devices
+
+        results = feel_devices(cockpit, say=_say, strength=words.strength / 100.0, virtual=words.virtual)
         return Outcome(0 if results["ok"] else 1, results)
     results = record_devices(
-        cockpit, Path(words.out), say=print, duration_s=words.duration_s, name=words.cockpit, virtual=words.virtual
+        cockpit,
+        Path(words.out or "trace.csv"),
+        say=print,
+        duration_s=words.duration_s,
+        name=words.cockpit,
+        virtual=words.virtual,
     )
     return Outcome(0, results)
+
+
+def _say(line: str) -> None:
+    print(line, flush=True)
+
+
+class _Redrawn:
+    """Lines that are drawn over themselves on a terminal."""
+
+    def __init__(self) -> None:
+        self._above = 0
+
+    def show(self, lines: list[str]) -> None:
+        """Draw them over the last ones."""
+        up = f"\x1b[{self._above}A" if self._above else ""
+        sys.stderr.write(up + "".join(f"\x1b[2K{line}\n" for line in lines))
+        sys.stderr.flush()
+        self._above = len(lines)

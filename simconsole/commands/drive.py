@@ -17,7 +17,7 @@ from simconsole.session_files import load_session, override, resolve
 def drive(words: Namespace) -> Outcome:
     """Drive the named session with the options of the command line laid over it."""
     session = _with_options(load_session(words.session), words)
-    resolved = resolve(session)
+    resolved = resolve(session, words.cockpit)
     folder = Path(words.out) if words.out else Path("out") / time.strftime("drive-%Y%m%d-%H%M%S")
     with Progress("driving", resolved.world.length_m if resolved.world else 0.0) as progress:
         result = drive_session(resolved, folder, progress.watch)

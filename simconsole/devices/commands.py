@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Final, Self
 
 from simconsole.devices import sdl_runtime
+from simconsole.devices.bars import lines
 from simconsole.devices.record import TraceWriter
 from simconsole.devices.script import ScriptSource
 from simconsole.devices.sdl import SdlSource, found
@@ -16,12 +17,14 @@ from simconsole.devices.virtual_cockpit import VirtualCockpit
 from simconsole.devices.watch import Watch
 from simconsole.profiles.device import Buttons, CockpitProfile, ScriptPoint, ScriptProfile
 from simconsole.signals import DeviceSample
+from simconsole.units import RAD_PER_DEG
 
 Say = Callable[[str], None]
 Pace = Callable[[int], None]
 """Waits until the tick of this number is due."""
 
 TICK_HZ: Final = 250
+SHOW_HZ: Final = 10
 
 
 def realtime(tick_hz: int) -> Pace:
@@ -73,8 +76,11 @@ def check_devices(
     virtual: bool = False,
     tick_hz: int = TICK_HZ,
     pace: Pace | None = None,
+    show: Callable[[list[str]], None] | None = None,
 ) -> dict[str, Any]:
     """Watch the cockpit for some seconds and say what moved, what did not and what is wrong.
+
+    `show` takes the live bars, always as many lines, SHOW_HZ times a second.
 
     Returns:
         Plain values; `ok` is False when this cockpit could not drive.
@@ -83,10 +89,18 @@ def check_devices(
         DeviceError: a device is missing or cannot drive.
     """
     watch = Watch(cockpit, tick_hz)
+    lock_rad = 0.5 * cockpit.wheel.lock_to_lock_deg * RAD_PER_DEG
     with _Cockpit(cockpit, virtual, tick_hz) as opened:
         say(f"{cockpit.title}: turn the wheel to both sides, press every pedal, move the lever ({duration_s:g} s)")
         ticks = round(duration_s * tick_hz)
-        opened.poll(ticks, pace or realtime(tick_hz), lambda tick, sample: watch.see(sample))
+        every = max(1, tick_hz // SHOW_HZ)
+
+        def take(tick: int, sample: DeviceSample) -> None:
+            driver = watch.see(sample)
+            if show is not None and tick % every == 0:
+                show(lines(driver, lock_rad))
+
+        opened.poll(ticks, pace or realtime(tick_hz), take)
     results = watch.results()
     for name, ends in results["pedals"].items():
         say(f"{name}: {ends['least']:.0%} to {ends['most']:.0%}")

@@ -14,6 +14,9 @@ PEDALS: Final = ("throttle", "brake", "clutch", "handbrake")
 MOVED: Final = 0.9
 """A pedal that was pressed further than this has been tried over its travel."""
 
+STRAIGHT_DEG: Final = 30.0
+"""A car that starts with its wheel turned further than this drives off to the side."""
+
 
 class Watch:
     """Collects what the samples of some seconds show."""
@@ -58,6 +61,11 @@ class Watch:
                 )
         if not trusted(driver.wheel_validity):
             found.append("wheel: value no reading: a wheel that answers")
+        elif abs(driver.hand_wheel_rad) * DEG_PER_RAD > STRAIGHT_DEG:
+            found.append(
+                f"wheel: value {driver.hand_wheel_rad * DEG_PER_RAD:.0f} deg at the end: within {STRAIGHT_DEG:g} deg "
+                "of straight ahead; centre_raw is wrong, or the wheel was not let go"
+            )
         if not trusted(driver.shifter_validity):
             found.append("shifter: value no neutral seen: the lever in neutral")
         return found

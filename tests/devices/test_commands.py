@@ -4,8 +4,10 @@ from pathlib import Path
 
 import pytest
 
+from simconsole.devices.cockpit import CockpitSettings
 from simconsole.devices.commands import check_devices, list_devices, realtime, record_devices
 from simconsole.devices.record import TraceSource
+from simconsole.devices.uncalibrate import Intent
 from simconsole.devices.watch import Watch
 from simconsole.errors import DeviceNotFound
 from simconsole.profiles.device import CockpitProfile
@@ -117,3 +119,25 @@ def test_real_time_pace_does_not_run_ahead() -> None:
     for tick in range(1, 6):
         wait(tick)
         assert time.monotonic() - start >= tick / 100 - 0.005
+
+
+def test_check_refuses_a_wheel_that_is_not_straight(t500: CockpitProfile, t500_settings: CockpitSettings) -> None:
+    watch = Watch(t500, 250)
+    seat = Seat(t500_settings)
+    for angle_rad in (0.0, 0.2, 0.8):
+        watch.see(seat.raw(Intent(hand_wheel_rad=angle_rad)))
+    assert watch.problems() == [
+        "wheel: value 46 deg at the end: within 30 deg of straight ahead; centre_raw is wrong, "
+        "or the wheel was not let go"
+    ]
+
+
+def test_check_shows_live_bars_ten_times_a_second(t500: CockpitProfile) -> None:
+    shown: list[list[str]] = []
+    check_devices(t500, say=Paper(), duration_s=3.0, virtual=True, pace=at_once, show=shown.append)
+    assert len(shown) == 30
+    assert {len(lines) for lines in shown} == {6}
+    throttle = [lines[1] for lines in shown]
+    assert any("[" + "#" * 20 in line for line in throttle)
+    assert any("  0%" in line and "[" + "." * 30 + "]" in line for line in throttle)
+    assert any("+90.0 deg" in lines[0] for lines in shown)

@@ -1,0 +1,57 @@
+"""Every joystick as it is, whatever it is: what calibration reads before anything is known about a cockpit."""
+
+from typing import Self
+
+from simconsole.devices import sdl_runtime
+from simconsole.devices.learning import DeviceKey, Reading
+from simconsole.devices.sdl import Found, found
+from simconsole.errors import DeviceError
+
+BUTTONS = 24
+
+
+class RawDevices:
+    """All plugged-in joysticks, read together; a context manager."""
+
+    def __init__(self) -> None:
+        """Open them all.
+
+        Raises:
+            DeviceError: there are none, or two of the same kind.
+        """
+        self._pygame = sdl_runtime.acquire()
+        try:
+            self._pygame.event.get()
+            pairs = found(self._pygame)
+            self.entries: dict[DeviceKey, Found] = {}
+            for entry, _ in pairs:
+                key = (entry.vendor_id, entry.product_id)
+                if key in self.entries:
+                    raise DeviceError(f"{entry.name}: value two with one id {key[0]:04x}:{key[1]:04x}: unplug one")
+                self.entries[key] = entry
+            if not pairs:
+                raise DeviceError("devices: value none connected: a wheel or a gamepad")
+            self._joysticks = {(entry.vendor_id, entry.product_id): joystick for entry, joystick in pairs}
+        except BaseException:
+            sdl_runtime.release()
+            raise
+
+    def read(self) -> dict[DeviceKey, Reading]:
+        """Return every device now."""
+        gone = {event.instance_id for event in self._pygame.event.get() if event.type == self._pygame.JOYDEVICEREMOVED}
+        readings = {}
+        for key, joystick in self._joysticks.items():
+            entry = self.entries[key]
+            if entry.instance_id in gone:
+                raise DeviceError(f"{entry.name}: value unplugged: plugged in until the end")
+            axes = tuple(joystick.get_axis(axis) for axis in range(entry.axes))
+            mask = sum(1 << button for button in range(min(entry.buttons, BUTTONS)) if joystick.get_button(button))
+            readings[key] = Reading(axes, mask)
+        return readings
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self._joysticks.clear()
+        sdl_runtime.release()

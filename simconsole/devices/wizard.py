@@ -1,0 +1,258 @@
+"""Calibration step by step: what is asked, in which order, and the profile that comes of it.
+
+The world outside is three functions: ask a question, say a line, look at the devices for a moment.
+"""
+
+from collections.abc import Callable
+from typing import Any, Final, TypeVar
+
+import msgspec
+
+from simconsole.devices.learning import (
+    AxisAt,
+    ButtonAt,
+    DeviceKey,
+    Moment,
+    learnt_pedal,
+    learnt_wheel,
+    moved_axis,
+    pressed_button,
+)
+from simconsole.errors import DeviceError
+from simconsole.profiles.device import (
+    ButtonBinding,
+    Buttons,
+    CockpitProfile,
+    PedalAxis,
+    Pedals,
+    Provenance,
+    RoleBinding,
+    Shifter,
+    WheelAxis,
+)
+
+Ask = Callable[[str, str], str]
+"""Puts a question about a step (`throttle`, `gear 3`, ...) and returns what was typed: nothing means go on."""
+Look = Callable[[], Moment]
+Say = Callable[[str], None]
+Learnt = TypeVar("Learnt")
+
+SKIP: Final = "s"
+QUIT: Final = "q"
+TRIES: Final = 5
+PEDALS: Final = ("throttle", "brake", "clutch", "handbrake")
+NEEDED: Final = ("throttle", "brake")
+_GEARS: Final = 7
+
+
+class Skipped(Exception):  # nothing went wrong
+    """The person has no such thing."""
+
+
+class Entry(msgspec.Struct, frozen=True):
+    """What a device is, for its role."""
+
+    name: str
+    axes: int
+    buttons: int
+    hats: int
+
+
+class Wizard:
+    """Asks for one thing after the other until a profile is whole."""
+
+    def __init__(
+        self, base: CockpitProfile, entries: dict[DeviceKey, Entry], *, ask: Ask, say: Say, look: Look
+    ) -> None:
+        """Begin.
+
+        Args:
+            base: Gives the degrees that are offered, and the force feedback of a wheel that it knows.
+            entries: Every device that is plugged in.
+            ask: Puts a question.
+            say: Prints a line.
+            look: Reads all devices for a moment while they are held still.
+        """
+        self._base = base
+        self._entries = entries
+        self._ask = ask
+        self._say = say
+        self._look = look
+        self._axes: list[tuple[DeviceKey, int]] = []
+        self._pressed: list[ButtonAt] = []
+
+    def run(self, origin: str) -> CockpitProfile:
+        """Ask everything and return the profile; `origin` says in it where the values come from.
+
+        Raises:
+            DeviceError: a step did not succeed, or the devices cannot make one cockpit.
+            KeyboardInterrupt: the person gave up.
+        """
+        self._question("rest", "Hands and feet off everything, lever in neutral.")
+        self._rest = self._look()
+        wheel_key, wheel = self._learn_wheel()
+        pedals_key, pedals = self._learn_pedals()
+        shifter_key, shifter = self._learn_lever(wheel_key)
+        shifter_key, buttons = self._learn_buttons(wheel_key, shifter_key, shifter)
+        keys = {"wheel": wheel_key, "pedals": pedals_key, "shifter": shifter_key}
+        known = [(role.vendor_id, role.product_id) for role in self._base.roles if role.role == "wheel"]
+        force = self._base.force_feedback if known == [wheel_key] else None
+        return CockpitProfile(
+            schema=1,
+            title=f"{self._entries[wheel_key].name}, calibrated",
+            roles=[self._role(role, key) for role, key in keys.items()],
+            boot_modes=self._base.boot_modes if known == [wheel_key] else [],
+            wheel=wheel,
+            pedals=pedals,
+            shifter=shifter,
+            buttons=buttons,
+            force_feedback=force,
+            provenance=self._provenance(origin, force is not None),
+        )
+
+    def _learn_wheel(self) -> tuple[DeviceKey, WheelAxis]:
+        def learn() -> tuple[DeviceKey, WheelAxis]:
+            left = self._moved("left", "Turn the wheel fully to the LEFT and hold it.")
+            right = self._moved("right", "Turn the wheel fully to the RIGHT and hold it.")
+            self._question("centre", "Turn the wheel straight ahead and hold it.")
+            centre = self._look()
+            return left.device, learnt_wheel(left, right, centre, self._degrees())
+
+        key, wheel = self._tried(learn)
+        self._axes.append((key, wheel.axis))
+        return key, wheel
+
+    def _degrees(self) -> float:
+        offered = self._base.wheel.lock_to_lock_deg
+        typed = self._question("degrees", f"How many degrees does it turn from lock to lock? [{offered:g}]")
+        try:
+            degrees = float(typed) if typed else offered
+        except ValueError:
+            degrees = 0.0
+        if not 40.0 <= degrees <= 2520.0:
+            raise DeviceError(f"degrees: value {typed}: 40 to 2520")
+        return degrees
+
+    def _learn_pedals(self) -> tuple[DeviceKey, Pedals]:
+        found: dict[str, PedalAxis] = {}
+        keys: list[DeviceKey] = []
+        for name in PEDALS:
+
+            def learn(name: str = name) -> tuple[AxisAt, PedalAxis]:
+                skip = "" if name in NEEDED else f" ({SKIP}: there is none)"
+                at = self._moved(name, f"Press the {name.upper()} fully and hold it{skip}.", name not in NEEDED)
+                if keys and at.device != keys[0]:
+                    raise DeviceError(f"{name}: value on another device: all pedals on one device")
+                return at, learnt_pedal(self._rest, at)
+
+            try:
+                at, found[name] = self._tried(learn)
+            except Skipped:
+                continue
+            keys.append(at.device)
+            self._axes.append((at.device, at.axis))
+        return keys[0], Pedals(**found)
+
+    def _learn_lever(self, wheel_key: DeviceKey) -> tuple[DeviceKey, Shifter]:
+        kind = self._question("lever", f"H pattern: go on. Sequential lever or paddles: {SKIP}.")
+        if kind == SKIP:
+            return wheel_key, Shifter(pattern="sequential", on="wheel")
+        gears: list[ButtonAt] = []
+        for gear in range(1, _GEARS + 1):
+            at = self._gear(gear, f"gear {gear}", gears)
+            if at is None:
+                break
+            gears.append(at)
+        back = self._gear(-1, "reverse", gears)
+        key = gears[0].device
+        on: Any = "wheel" if key == wheel_key else "shifter"
+        reverse = None if back is None else back.button
+        return key, Shifter(pattern="h", on=on, gears=[at.button for at in gears], reverse=reverse)
+
+    def _gear(self, gear: int, name: str, others: list[ButtonAt]) -> ButtonAt | None:
+        optional = gear != 1
+        skip = f" ({SKIP}: there is none)" if optional else ""
+
+        def learn() -> ButtonAt:
+            at = self._button(f"gear {gear}", f"Lever into {name.upper()}{skip}.", optional)
+            if others and at.device != others[0].device:
+                raise DeviceError(f"{name}: value on another device: all gears on one device")
+            return at
+
+        try:
+            return self._tried(learn)
+        except Skipped:
+            return None
+
+    def _learn_buttons(
+        self, wheel_key: DeviceKey, shifter_key: DeviceKey, shifter: Shifter
+    ) -> tuple[DeviceKey, Buttons]:
+        """Learn the buttons; those of a sequential lever may make its device the shifter."""
+        found: dict[str, ButtonBinding] = {}
+        shifters = [shifter_key]
+        self._question("neutral", "Lever into neutral, hands off the buttons.")
+        for name in Buttons.__struct_fields__:
+            needed = shifter.pattern == "sequential" and name.startswith("shift_")
+
+            def learn(name: str = name, needed: bool = needed) -> ButtonBinding:
+                skip = "" if needed else f" ({SKIP}: none)"
+                at = self._button(name, f"Hold the button for {name.replace('_', ' ').upper()}{skip}.", not needed)
+                if needed and at.device != wheel_key and shifters == [wheel_key]:
+                    shifters[0] = at.device
+                if at.device not in (wheel_key, shifters[0]):
+                    raise DeviceError(f"{name}: value on another device: a button of the wheel or the shifter")
+                return ButtonBinding(on="wheel" if at.device == wheel_key else "shifter", button=at.button)
+
+            try:
+                found[name] = self._tried(learn)
+            except Skipped:
+                continue
+        return shifters[0], Buttons(**found)
+
+    def _moved(self, step: str, text: str, optional: bool = False) -> AxisAt:
+        self._question(step, text, optional)
+        return moved_axis(self._rest, self._look(), self._axes)
+
+    def _button(self, step: str, text: str, optional: bool) -> ButtonAt:
+        self._question(step, text, optional)
+        at = pressed_button(self._rest, self._look(), self._pressed)
+        self._pressed.append(at)
+        return at
+
+    def _question(self, step: str, text: str, optional: bool = False) -> str:
+        typed = self._ask(step, text).strip().lower()
+        if typed == QUIT:
+            raise KeyboardInterrupt
+        if typed == SKIP and optional:
+            raise Skipped
+        return typed
+
+    def _tried(self, learn: Callable[[], Learnt]) -> Learnt:
+        """A step that fails is explained and asked again, a few times."""
+        for _ in range(TRIES - 1):
+            try:
+                return learn()
+            except DeviceError as error:
+                self._say(f"  again, please: {error}")
+        return learn()
+
+    def _role(self, role: Any, key: DeviceKey) -> RoleBinding:
+        entry = self._entries[key]
+        return RoleBinding(
+            role=role,
+            vendor_id=key[0],
+            product_id=key[1],
+            name=entry.name[:200],
+            axes=min(entry.axes, 32),
+            buttons=min(entry.buttons, 24),
+            hats=min(entry.hats, 4),
+        )
+
+    def _provenance(self, origin: str, force: bool) -> dict[str, Provenance]:
+        captured = Provenance(status="captured", source=origin)
+        found = dict.fromkeys(("roles", "wheel", "pedals", "shifter", "buttons"), captured)
+        found["wheel.lock_to_lock_deg"] = Provenance(status="documented", source=f"the person's word, {origin}")
+        if force:
+            kept = ("boot_modes", "force_feedback")
+            found |= {key: of for key, of in self._base.provenance.items() if key.startswith(kept)}
+        return found

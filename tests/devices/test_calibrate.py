@@ -1,0 +1,178 @@
+"""Calibration: virtual devices turned round in every way come out as they are; by functions and through a terminal."""
+
+import os
+import pty
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import msgspec
+import pytest
+
+from simconsole.devices.calibrate import calibrate_devices
+from simconsole.devices.commands import Pace
+from simconsole.errors import DeviceError
+from simconsole.profile_files import load
+from simconsole.profiles.device import CockpitProfile
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def at_once(tick_hz: int) -> Pace:
+    return lambda tick: None
+
+
+def answers(**special: str) -> Callable[[str], str]:
+    """Enter to everything but the steps whose text holds a word."""
+
+    def ask(text: str) -> str:
+        return next((answer for word, answer in special.items() if word in text), "")
+
+    return ask
+
+
+def quiet(line: str) -> None:
+    return
+
+
+def turned_round(cockpit: CockpitProfile) -> CockpitProfile:
+    """The same devices with pedals and wheel the other way round, off centre, pedals on other axes."""
+    replace = msgspec.structs.replace
+    pedals = cockpit.pedals
+    assert pedals.clutch is not None
+    return replace(
+        cockpit,
+        wheel=replace(cockpit.wheel, grows_to="left", centre_raw=0.06, lock_to_lock_deg=720.0),
+        pedals=replace(
+            pedals,
+            throttle=replace(pedals.throttle, axis=3, rest_raw=-0.9, full_raw=0.7),
+            brake=replace(pedals.brake, axis=2, rest_raw=0.4, full_raw=-0.6),
+            clutch=replace(pedals.clutch, axis=1, rest_raw=0.0, full_raw=1.0),
+        ),
+    )
+
+
+@pytest.mark.parametrize("name", ["t500rs_th8rs", "t300rs_th8a", "g29"])
+def test_shipped_cockpit_is_learnt_as_it_is(name: str, sdl: None, tmp_path: Path) -> None:
+    true = load("devices", name, CockpitProfile)
+    path = tmp_path / "mine.yaml"
+    said: list[str] = []
+    special = {"HANDBRAKE": "s", "GEAR 7": "s"} if name == "g29" else {"HANDBRAKE": "s"}
+    calibrate_devices(true, path, say=said.append, ask=answers(**special), virtual=true, pace=at_once)
+    learnt = load("devices", str(path), CockpitProfile)
+    assert [(role.role, role.vendor_id, role.product_id) for role in learnt.roles] == [
+        (role.role, role.vendor_id, role.product_id) for role in true.roles
+    ]
+    assert (learnt.wheel.axis, learnt.wheel.grows_to) == (true.wheel.axis, true.wheel.grows_to)
+    assert learnt.wheel.lock_to_lock_deg == pytest.approx(true.wheel.lock_to_lock_deg, rel=1e-3)
+    for pedal in ("throttle", "brake", "clutch"):
+        assert getattr(learnt.pedals, pedal).axis == getattr(true.pedals, pedal).axis
+        assert getattr(learnt.pedals, pedal).full_raw == pytest.approx(-0.98, abs=1e-3)
+    assert learnt.pedals.handbrake is None
+    assert (learnt.shifter.gears, learnt.shifter.reverse) == (true.shifter.gears, true.shifter.reverse)
+    assert learnt.buttons == true.buttons
+    assert learnt.force_feedback == true.force_feedback
+    assert learnt.provenance["pedals"].status == "captured"
+    assert learnt.provenance["force_feedback.level_pushes"].status == "unverified"
+    assert not [line for line in said if "again" in line]
+
+
+def test_devices_that_are_turned_round_are_learnt(sdl: None, tmp_path: Path, t500: CockpitProfile) -> None:
+    true, path = turned_round(t500), tmp_path / "mine.yaml"
+    ask = answers(HANDBRAKE="s", degrees="720")
+    calibrate_devices(t500, path, say=quiet, ask=ask, virtual=true, pace=at_once)
+    learnt = load("devices", str(path), CockpitProfile)
+    assert learnt.wheel.grows_to == "left"
+    assert learnt.wheel.centre_raw == pytest.approx(0.06, abs=1e-3)
+    assert learnt.pedals.throttle.rest_raw == pytest.approx(-0.9, abs=1e-3)
+    assert learnt.pedals.throttle.full_raw == pytest.approx(0.684, abs=1e-3)
+    assert (learnt.pedals.throttle.axis, learnt.pedals.brake.axis) == (3, 2)
+
+
+def test_gamepad_with_paddles_and_no_lever(sdl: None, tmp_path: Path) -> None:
+    true, path = load("devices", "gamepad", CockpitProfile), tmp_path / "mine.yaml"
+    ask = answers(HANDBRAKE="s", Sequential="s")
+    calibrate_devices(true, path, say=quiet, ask=ask, virtual=true, pace=at_once)
+    learnt = load("devices", str(path), CockpitProfile)
+    assert learnt.shifter.pattern == "sequential"
+    assert learnt.buttons == true.buttons
+    assert learnt.force_feedback is None
+
+
+def test_step_that_fails_is_asked_again_and_then_ends(sdl: None, tmp_path: Path, t500: CockpitProfile) -> None:
+    said: list[str] = []
+    with pytest.raises(DeviceError, match="axes: value none moved"):
+        calibrate_devices(t500, tmp_path / "x.yaml", say=said.append, ask=answers(), virtual=t500, pace=at_once)
+    assert len([line for line in said if "again, please" in line]) == 4
+    assert not (tmp_path / "x.yaml").exists()
+
+
+def test_giving_up_writes_nothing_and_an_old_profile_is_spared(sdl: None, tmp_path: Path, t500: CockpitProfile) -> None:
+    path = tmp_path / "mine.yaml"
+    with pytest.raises(KeyboardInterrupt):
+        calibrate_devices(t500, path, say=quiet, ask=answers(BRAKE="q"), virtual=t500, pace=at_once)
+    assert not path.exists()
+    path.write_text("old")
+    with pytest.raises(DeviceError, match="file: value exists"):
+        calibrate_devices(t500, path, say=quiet, ask=answers(), virtual=t500, pace=at_once)
+    assert path.read_text() == "old"
+
+
+def test_no_devices_is_said(sdl: None, tmp_path: Path, t500: CockpitProfile) -> None:
+    with pytest.raises(DeviceError, match="none connected"):
+        calibrate_devices(t500, tmp_path / "x.yaml", say=quiet, ask=answers(), pace=at_once)
+
+
+def terminal(*words: str, folder: Path, answer: Callable[[str], str | None]) -> tuple[int, str]:
+    """Run a command on a terminal of its own; `answer` sees what was printed since the last answer."""
+    ours, theirs = pty.openpty()
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    command = [sys.executable, "-m", "simconsole", *words]
+    process = subprocess.Popen(command, stdin=theirs, stdout=theirs, stderr=theirs, cwd=folder, env=environment)
+    os.close(theirs)
+    seen, pending = "", ""
+    while True:
+        try:
+            chunk = os.read(ours, 4096).decode()
+        except OSError:  # the other end has closed it
+            break
+        if not chunk:
+            break
+        seen, pending = seen + chunk, pending + chunk
+        typed = answer(pending)
+        if typed is not None:
+            pending = ""
+            os.write(ours, typed.encode())
+    os.close(ours)
+    return process.wait(timeout=60.0), seen
+
+
+def test_whole_calibration_in_a_terminal(tmp_path: Path) -> None:
+    def answer(text: str) -> str | None:
+        line = text.replace("\r", "").rpartition("\n")[2]
+        if not line.endswith((". ", "] ")):
+            return None
+        return "s\n" if "HANDBRAKE" in line else "\n"
+
+    words = ("devices", "calibrate", "--virtual", "--out", "mine.yaml")
+    code, seen = terminal(*words, folder=tmp_path, answer=answer)
+    assert code == 0, seen
+    assert "mine.yaml: written" in seen
+    assert seen.count("Hold the button") == 9
+    learnt = load("devices", str(tmp_path / "mine.yaml"), CockpitProfile)
+    assert learnt.shifter.gears == [0, 1, 2, 3, 4, 5, 6]
+    code, seen = terminal(
+        "devices",
+        "check",
+        "--virtual",
+        "--for",
+        "1",
+        "--cockpit",
+        "mine.yaml",
+        folder=tmp_path,
+        answer=lambda text: None,
+    )
+    assert "throttle  [" in seen, "live bars"
+    assert "\x1b[6A" in seen, "drawn over themselves"
+    assert code == 0, seen

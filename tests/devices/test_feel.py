@@ -1,0 +1,81 @@
+"""Feeling the forces, on a simulated wheel: what it does by itself is measured, what it does not is asked."""
+
+import msgspec
+import pytest
+
+from simconsole.devices.commands import Pace
+from simconsole.devices.feel import FORCES, feel_devices
+from simconsole.devices.motor import SimulatedWheelPort
+from simconsole.errors import DeviceError
+from simconsole.profile_files import load
+from simconsole.profiles.device import CockpitProfile
+
+pytestmark = pytest.mark.usefixtures("sdl")
+
+
+def at_once(tick_hz: int) -> Pace:
+    return lambda tick: None
+
+
+class Person:
+    def __init__(self, answer: str = "y") -> None:
+        self.answer = answer
+        self.asked: list[str] = []
+
+    def __call__(self, question: str) -> str:
+        self.asked.append(question.partition(":")[0])
+        return self.answer
+
+
+def quiet(line: str) -> None:
+    return
+
+
+def test_good_wheel_passes_and_pushes_are_measured_not_asked(t500: CockpitProfile) -> None:
+    person = Person()
+    found = feel_devices(t500, say=quiet, ask=person, virtual=True, pace=at_once)
+    assert found["ok"]
+    assert set(found["forces"]) == {*(force.name for force in FORCES), "let go"}
+    assert person.asked == ["texture", "damping", "friction", "centre"]
+    assert found["forces"]["left"]["turned_deg"] > 3.0
+    assert found["forces"]["right"]["turned_deg"] < -3.0
+
+
+def test_force_that_is_not_felt_fails(t500: CockpitProfile) -> None:
+    found = feel_devices(t500, say=quiet, ask=Person("n"), virtual=True, pace=at_once)
+    assert not found["ok"]
+    assert found["forces"]["sign"]["ok"]
+    assert not found["forces"]["texture"]["ok"]
+
+
+def test_wrong_sign_is_found_first_named_and_nothing_else_is_tried(
+    t500: CockpitProfile, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write = SimulatedWheelPort.write
+    monkeypatch.setattr(SimulatedWheelPort, "write", lambda port, level: write(port, -level))
+    said: list[str] = []
+    found = feel_devices(t500, say=said.append, ask=Person(), virtual=True, pace=at_once)
+    assert not found["ok"]
+    assert list(found["forces"]) == ["sign", "let go"]
+    assert "force_feedback.level_pushes: value left: right; this motor pushes the other way" in said
+
+
+def test_profile_of_a_motor_that_pushes_the_other_way_passes(t500: CockpitProfile) -> None:
+    assert t500.force_feedback is not None
+    force = msgspec.structs.replace(t500.force_feedback, level_pushes="right")
+    cockpit = msgspec.structs.replace(t500, force_feedback=force)
+    assert feel_devices(cockpit, say=quiet, ask=Person(), virtual=True, pace=at_once)["ok"]
+
+
+def test_effect_that_does_not_end_by_itself_is_found(t500: CockpitProfile, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(SimulatedWheelPort, "start", lambda port: port._wheel.run(3600.0))
+    found = feel_devices(t500, say=quiet, ask=Person(), virtual=True, pace=at_once)
+    assert not found["forces"]["let go"]["ok"]
+    assert not found["ok"]
+
+
+def test_wheel_without_a_motor_is_said(t500: CockpitProfile) -> None:
+    with pytest.raises(DeviceError, match="force_feedback: value missing"):
+        feel_devices(load("devices", "gamepad", CockpitProfile), say=quiet, virtual=True)
+    with pytest.raises(DeviceError, match=r"0\.05 to 0\.6"):
+        feel_devices(t500, say=quiet, virtual=True, strength=0.9)
