@@ -11,6 +11,7 @@ from simconsole.assembly import ResolvedSession
 from simconsole.commander import Commander
 from simconsole.drive import Cast, Recorder
 from simconsole.errors import BridgeError, ProfileError
+from simconsole.faulting import with_faults
 from simconsole.inline import LockstepLink, end_program, start_autopilot
 from simconsole.pacing import Pacer, UnpacedPacer, realtime_hints
 from simconsole.pipeline import Console
@@ -72,6 +73,7 @@ def open_headless(
         stations, can_summary = (*stations, can), can.summary
     seating = open_seating(resolved, console, stack)
     cast = Cast(seating.devices, commands, recorder, (*seating.stations, *stations), pace, seating.seat)
+    cast = with_faults(cast, resolved, console.tick_hz)
     return Opened(cast, seating.finished, lambda: {**pace.summary(), **counters(), **can_summary()})
 
 
@@ -131,6 +133,7 @@ def open_realtime(
     missing = stack.enter_context(realtime_hints())
     pace = Pacer(console.tick_hz)
     cast = Cast(seating.devices, commands, recorder, (*seating.stations, ring, supervisor), pace, seating.seat)
+    cast = with_faults(cast, resolved, console.tick_hz)
 
     def summary() -> dict[str, Any]:
         stations = {"station_restarts": supervisor.counters(), **can_summary(folder)}

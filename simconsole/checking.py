@@ -12,6 +12,7 @@ from simconsole.devices.script import ScriptSource
 from simconsole.devices.settings import settings
 from simconsole.drive import Cast, run
 from simconsole.errors import ProfileError
+from simconsole.faulting import with_faults
 from simconsole.kernels import Row
 from simconsole.pacing import UnpacedPacer
 from simconsole.ports import DeviceSource, NobodySeated
@@ -79,7 +80,8 @@ def drive_scenario(scenario: ScenarioProfile) -> tuple[MemoryRecorder, tuple[str
         devices = ScriptSource(scenario.script, settings(resolved.cockpit, tick_hz), tick_hz=tick_hz)
     recorder = MemoryRecorder(ticks, console.width)
     commands = ScriptedCommands(scenario.remote, scenario.events, tick_hz)
-    run(console, state, Cast(devices, commands, recorder, (), UnpacedPacer()), ticks)
+    cast = with_faults(Cast(devices, commands, recorder, (), UnpacedPacer()), resolved, tick_hz)
+    run(console, state, cast, ticks)
     return recorder, console.columns
 
 

@@ -23,6 +23,13 @@ class Pace(Protocol):
         """Sleep until the next tick and return the events (mask) that pacing itself raised."""
 
 
+class Faults(Protocol):
+    """Who puts faults into a drive, for tests."""
+
+    def turn(self, tick: int, before: Snapshot) -> float:
+        """Decide which faults are on in the coming `tick`; return them as a mask."""
+
+
 class Cast(NamedTuple):
     """Everyone who takes part in a drive."""
 
@@ -32,6 +39,7 @@ class Cast(NamedTuple):
     stations: Sequence[Station]
     pace: Pace
     seat: Seat | None = None
+    faults: Faults | None = None
 
 
 def run(
@@ -43,7 +51,7 @@ def run(
 ) -> ConsoleState:
     """Drive until `ticks` have passed or `finished` says so; return the last state.
 
-    The order is fixed: pace, seat, devices, commands, advance, recorder, stations. Everything that enters
+    The order is fixed: pace, seat, faults, devices, commands, advance, recorder, stations. Everything that enters
     `advance` is in the row that the recorder keeps, so that the drive replays.
     """
     snapshot = Snapshot(state.tick, console.tick_hz, state.row)
@@ -53,10 +61,11 @@ def run(
         if cast.seat is not None:
             cast.seat.act(snapshot)
         coming = state.tick + 1
+        faults = 0.0 if cast.faults is None else cast.faults.turn(coming, snapshot)
         sample = cast.devices.poll(coming)
         remote, events = cast.commands.take(coming)
-        if raised:
-            events = EventInput(events=float(int(events.events) | raised))
+        if raised or faults:
+            events = EventInput(events=float(int(events.events) | raised), faults=faults)
         state, snapshot = advance(state, TickInputs(sample, remote, events), console)
         cast.recorder.write(snapshot)
         for station in cast.stations:

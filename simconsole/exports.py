@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from simconsole.assembly import ResolvedSession, assemble
 from simconsole.compiling import plain
 from simconsole.kernels import Row
+from simconsole.profiles.faults import words
 from simconsole.profiles.view import SceneProfile
 from simconsole.recording.bundle import add_export, open_bundle
 from simconsole.recording.log import LogTable
@@ -93,6 +94,7 @@ def _report(
 
     course, title = _course(resolved), resolved.session.title or folder.name
     first_tick = int(table.ticks[0]) if len(table.ticks) else 1
+    faults = [words(fault) for fault in resolved.session.scenario.faults]
     if page:
         return write_page(
             folder / REPORT,
@@ -103,8 +105,9 @@ def _report(
             title,
             _facts(resolved, summary),
             first_tick=first_tick,
+            faults=faults,
         )
-    return metrics(drive_of(table.rows, table.columns, table.tick_hz, first_tick), course)
+    return metrics(drive_of(table.rows, table.columns, table.tick_hz, first_tick), course, None, faults)
 
 
 def _facts(resolved: ResolvedSession, summary: dict[str, Any]) -> dict[str, object]:

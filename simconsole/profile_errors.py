@@ -41,12 +41,12 @@ def _explain(message: str, values: object, struct: type[Any]) -> str:
     assert located is not None, message
     what = located["what"]
     path = _resolve(located["path"] or "", values, struct)
-    types = _types_at(path, struct)
+    types = _types_at(path, struct, values)
     if unknown := _UNKNOWN.fullmatch(what):
         return _unknown_key((*path, unknown["name"]), types, _value_at((*path, unknown["name"]), values))
     if missing := _MISSING.fullmatch(what):
         path = (*path, missing["name"])
-        return f"{_dotted(path)}: value missing: {_allowed(_types_at(path, struct), 'required')}"
+        return f"{_dotted(path)}: value missing: {_allowed(_types_at(path, struct, values), 'required')}"
     if located["key"]:
         return f"{_dotted(path)}: {_plain(what)}"
     return f"{_dotted(path)}: value {_shown(_value_at(path, values))}: {_allowed(types, what)}"
@@ -90,12 +90,30 @@ def _value_at(path: Path, values: Any) -> Any:
     return values
 
 
-def _types_at(path: Path, struct: type[Any]) -> list[Any]:
-    """Return the types that may stand at `path`: several where the profile allows a union."""
+def _types_at(path: Path, struct: type[Any], values: Any) -> list[Any]:
+    """Return the types that may stand at `path`: several where the profile allows a union that no tag decides."""
     types = _members(msgspec.inspect.type_info(struct))
     for step in path:
+        types = _tagged(types, values)
         types = [member for outer in types for inner in _inner(outer, step) for member in _members(inner)]
+        values = _stepped(values, step)
     return types
+
+
+def _tagged(types: list[Any], value: Any) -> list[Any]:
+    """Return the one struct that the value's tag names, all types where it names none."""
+    return [
+        kind
+        for kind in types
+        if getattr(kind, "tag_field", None) and isinstance(value, dict) and value.get(kind.tag_field) == kind.tag
+    ] or types
+
+
+def _stepped(values: Any, step: str | int) -> Any:
+    try:
+        return values[step]
+    except (KeyError, IndexError, TypeError):
+        return None
 
 
 def _members(kind: Any) -> list[Any]:
@@ -106,6 +124,8 @@ def _members(kind: Any) -> list[Any]:
 
 def _inner(kind: Any, step: str | int) -> list[Any]:
     if isinstance(kind, msgspec.inspect.StructType):
+        if kind.tag_field == step:
+            return [msgspec.inspect.LiteralType((kind.tag,))]
         return [field.type for field in kind.fields if field.encode_name == step]
     if isinstance(kind, msgspec.inspect.DictType):
         return [kind.value_type]
@@ -124,6 +144,8 @@ def _unknown_key(path: Path, types: list[Any], value: object) -> str:
 
 def _allowed(types: list[Any], what: str) -> str:
     kinds = [kind for kind in types if not isinstance(kind, msgspec.inspect.NoneType)]
+    if len(kinds) > 1 and all(isinstance(kind, msgspec.inspect.LiteralType) for kind in kinds):
+        kinds = [msgspec.inspect.LiteralType(tuple(value for kind in kinds for value in kind.values))]
     kind = kinds[0] if len(kinds) == 1 else None
     or_null = " or null" if len(kinds) < len(types) else ""
     if isinstance(kind, msgspec.inspect.FloatType | msgspec.inspect.IntType):

@@ -161,9 +161,10 @@ class RemoteCommand(NamedTuple):
 
 
 class EventInput(NamedTuple):
-    """All edges that came in since the last tick, as a mask of `Event`."""
+    """All edges that came in since the last tick, as a mask of `Event`; and what is being done to the drive."""
 
     events: float
+    faults: float = 0.0  # faults that a test has put on, a bit for each place in the scenario's list
 
 
 class DriverInput(NamedTuple):

@@ -7,6 +7,7 @@ from msgspec import Meta, Struct
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.can import CanProfile
 from simconsole.profiles.control import ControlProfile
+from simconsole.profiles.faults import Faults
 from simconsole.profiles.person import PersonPlan
 from simconsole.profiles.view import HudProfile, SceneProfile
 
@@ -36,11 +37,12 @@ class Environment(Section, frozen=True, kw_only=True):
 
 
 class Scenario(Section, frozen=True, kw_only=True):
-    """What is driven: the vehicle, from where, how long."""
+    """What is driven: the vehicle, from where, how long, and what goes wrong on the way."""
 
     vehicle: Name = "hatchback"
     start: Start = Start()
     duration_s: Annotated[float, Meta(gt=0.0, le=86_400.0)] | None = None
+    faults: Faults = ()
 
 
 class Features(Section, frozen=True, kw_only=True):

@@ -1,10 +1,12 @@
 """What a drive was like in numbers. Pure: rows and course in, figures out."""
 
 import math
+from collections.abc import Sequence
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from simconsole.report.faults import plain_spans
 from simconsole.report.table import Array, Drive
 from simconsole.signals import Mode
 from simconsole.units import KMH_PER_MPS
@@ -80,8 +82,13 @@ def mode_changes(drive: Drive, way: Track) -> list[ModeChange]:
     ]
 
 
-def metrics(drive: Drive, course: Course | None, way: Track | None = None) -> dict[str, Any]:
-    """Return the metrics as plain values with the unit in every key; None where the drive has no such part."""
+def metrics(
+    drive: Drive, course: Course | None, way: Track | None = None, faults: Sequence[str] = ()
+) -> dict[str, Any]:
+    """Return the metrics as plain values with the unit in every key; None where the drive has no such part.
+
+    `faults` are the names of the faults of its scenario, in their order.
+    """
     way = track(drive, course) if way is None else way
     duration = len(drive.rows) / drive.tick_hz
     limit = course.speed_limit_mps if course is not None else math.inf
@@ -107,6 +114,7 @@ def metrics(drive: Drive, course: Course | None, way: Track | None = None) -> di
             }
             for change in mode_changes(drive, way)
         ],
+        "faults": plain_spans(drive, faults),
     }
 
 

@@ -54,6 +54,7 @@ def write_report(
     extra: Mapping[str, object] | None = None,
     *,
     first_tick: int = 1,
+    faults: Sequence[str] = (),
 ) -> dict[str, Any]:
     """Write the report of a drive and return its metrics (report/metrics.py).
 
@@ -67,13 +68,14 @@ def write_report(
         extra: further facts for the page, in order. Nothing that differs between equal drives belongs here, if two
             reports of one drive are to be equal.
         first_tick: number of the first row's tick.
+        faults: names of the scenario's faults, in their order.
 
     Raises:
         RecordingError: an empty drive, rows that do not fit the columns, or a file that cannot be written.
     """
     drive = drive_of(rows, columns, tick_hz, first_tick)
     way = track(drive, course)
-    found = metrics(drive, course, way)
+    found = metrics(drive, course, way, faults)
     changes = mode_changes(drive, way)
     svgs = map_svg(drive, way, changes, course), traces_svg(drive, way, changes, course)
     try:
@@ -99,6 +101,7 @@ def page(title: str, found: Mapping[str, Any], svgs: Sequence[str], extra: Mappi
         _metrics_table(found),
         "<h2>Mode changes</h2>",
         _changes_table(found),
+        *(("<h2>Faults</h2>", _faults_table(found)) if found["faults"] else ()),
         *(("<h2>Drive</h2>", _extra_table(extra)) if extra else ()),
         "</body></html>",
         "",
@@ -142,6 +145,16 @@ def _changes_table(found: Mapping[str, Any]) -> str:
             f"<td>{escape(change['reason'])}</td></tr>"
         )
     return "\n".join((*lines, "</table>"))
+
+
+def _faults_table(found: Mapping[str, Any]) -> str:
+    lines = (
+        f"<tr><td>{escape(span['fault'])}</td><td class=n>{span['first_s']:.3f} s</td>"
+        f"<td class=n>{span['last_s']:.3f} s</td></tr>"
+        for span in found["faults"]
+    )
+    head = "<table><tr><th>fault</th><th class=n>from</th><th class=n>to</th></tr>"
+    return "\n".join((head, *lines, "</table>"))
 
 
 def _extra_table(extra: Mapping[str, object]) -> str:

@@ -1,0 +1,111 @@
+"""Faults put into a drive: the clock that says which are on, and the layers that each kind acts through. Pure.
+
+`SERVES` is the one place that knows what a kind does to whom: a layer takes the cast of a drive and its own faults and
+returns the cast with something put around a member. What comes out of a layer is what the recorder keeps, so a replay
+needs no faults; the row tells which were on (`events.faults`, a bit for each place in the list).
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Final, NamedTuple, get_args
+
+from simconsole.assembly import ResolvedSession
+from simconsole.devices.faults import FaultyDevices
+from simconsole.devices.settings import settings
+from simconsole.drive import Cast
+from simconsole.profiles import faults as kinds
+from simconsole.profiles.faults import Fault, Onset
+from simconsole.rows import Snapshot
+from simconsole.signals import Event, Mode
+
+
+class Armed(NamedTuple):
+    """A fault of the list and its switch."""
+
+    fault: Fault
+    switch: "Switch"
+
+
+class Switch:
+    """Whether one fault is on in the coming tick."""
+
+    def __init__(self, onset: Onset, tick_hz: int) -> None:
+        self._onset = onset
+        self._tick_hz = tick_hz
+        self._delay = round(onset.delay_s * tick_hz)
+        self._start = None if onset.at_s is None else round(onset.at_s * tick_hz) + self._delay
+        self.ticks = 0
+        """How many ticks it has been on, the coming one included; 0 while it is off."""
+
+    def turn(self, tick: int, before: Snapshot) -> None:
+        """Decide about `tick` from the tick before it."""
+        if self._start is None and self._reached(before):
+            self._start = tick + self._delay
+        length = None if self._onset.for_s is None else max(1, round(self._onset.for_s * self._tick_hz))
+        on = self._start is not None and tick >= self._start and (length is None or tick < self._start + length)
+        self.ticks = self.ticks + 1 if on else 0
+
+    def _reached(self, before: Snapshot) -> bool:
+        onset = self._onset
+        if onset.at_distance_m is not None:
+            return before.vehicle.distance_m >= onset.at_distance_m
+        if onset.near is not None:
+            x, y = before.vehicle.x_m - onset.near.x_m, before.vehicle.y_m - onset.near.y_m
+            return x * x + y * y <= onset.near.radius_m * onset.near.radius_m
+        if onset.on_mode is not None:
+            return before.arbitration.mode == float(Mode[onset.on_mode.upper()])
+        if onset.on_event is not None:
+            return bool(int(before.events.events) & Event[onset.on_event.upper()])
+        return False
+
+
+class FaultClock:
+    """All faults of a drive; turned once a tick, before anything is read."""
+
+    def __init__(self, faults: Sequence[Fault], tick_hz: int) -> None:
+        self.armed = tuple(Armed(fault, Switch(fault, tick_hz)) for fault in faults)
+
+    def turn(self, tick: int, before: Snapshot) -> float:
+        """Return which faults are on in `tick` as the bits of `EventInput.faults`."""
+        mask = 0
+        for place, (_, switch) in enumerate(self.armed):
+            switch.turn(tick, before)
+            mask |= (switch.ticks > 0) << place
+        return float(mask)
+
+
+class Setting(NamedTuple):
+    """What a layer may know of the drive."""
+
+    resolved: ResolvedSession
+    tick_hz: int
+
+
+Layer = Callable[[Cast, Sequence[Armed], Setting], Cast]
+
+
+def devices(cast: Cast, armed: Sequence[Armed], setting: Setting) -> Cast:
+    """Put device faults between the devices and the console."""
+    cockpit, tick_hz = setting.resolved.cockpit, setting.tick_hz
+    faulty = FaultyDevices(cast.devices, armed, cockpit, settings(cockpit, tick_hz), tick_hz)
+    return cast._replace(devices=faulty)
+
+
+SERVES: Final[dict[type[Onset], Layer]] = dict.fromkeys(get_args(kinds.DeviceFault), devices)
+"""The layer of every kind of fault."""
+
+
+def with_faults(cast: Cast, resolved: ResolvedSession, tick_hz: int) -> Cast:
+    """Return the cast of a drive with the faults of its scenario put in; the cast itself where there are none.
+
+    Raises:
+        ProfileError: a fault cannot happen to this cockpit.
+    """
+    faults = resolved.session.scenario.faults
+    if not faults:
+        return cast
+    clock = FaultClock(faults, tick_hz)
+    for layer in dict.fromkeys(SERVES.values()):
+        armed = [entry for entry in clock.armed if SERVES[type(entry.fault)] is layer]
+        if armed:
+            cast = layer(cast, armed, Setting(resolved, tick_hz))
+    return cast._replace(faults=clock)

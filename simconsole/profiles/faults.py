@@ -1,0 +1,166 @@
+"""Faults of a drive, for tests: which, when, for how long. The closed list of every kind stands at the end.
+
+A kind is a struct with its own parameters on top of `Onset`; whoever adds one adds it to `Fault` and gives it a layer
+in faulting.py, the one place that knows what each kind does to whom.
+"""
+
+from typing import Annotated, Any, Literal, TypeAlias
+
+import msgspec
+from msgspec import Meta, Struct
+
+from simconsole.profiles.device import Raw, RoleName
+
+AxisName: TypeAlias = Literal["wheel", "throttle", "brake", "clutch", "handbrake"]
+Seconds: TypeAlias = Annotated[float, Meta(ge=0.0, le=86_400.0)]
+Seed: TypeAlias = Annotated[int, Meta(ge=0, le=2**32 - 1)]
+ModeName: TypeAlias = Literal[
+    "parked", "manual", "shared", "autonomous", "takeover_requested", "minimal_risk", "stopped", "emergency_stop"
+]
+EdgeName: TypeAlias = Literal[
+    "emergency_stop",
+    "reset",
+    "request_manual",
+    "request_autonomous",
+    "request_takeover",
+    "request_shared",
+    "commander_lost",
+    "mark",
+    "loop_stall",
+    "no_answer",
+]
+
+MAX_FAULTS = 48
+"""The row tells which faults are on as bits of one float64."""
+
+_ONSETS = ("at_s", "at_distance_m", "near", "on_mode", "on_event")
+
+
+class Place(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A circle on the map that base_link comes into."""
+
+    x_m: Annotated[float, Meta(ge=-1e5, le=1e5)]
+    y_m: Annotated[float, Meta(ge=-1e5, le=1e5)]
+    radius_m: Annotated[float, Meta(gt=0.0, le=1000.0)] = 5.0
+
+
+class Onset(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """When a fault begins, once, and how long it lasts. Exactly one of the first five keys is given."""
+
+    at_s: Seconds | None = None
+    at_distance_m: Annotated[float, Meta(ge=0.0, le=1e6)] | None = None  # driven since the start
+    near: Place | None = None
+    on_mode: ModeName | None = None
+    on_event: EdgeName | None = None
+    delay_s: Seconds = 0.0  # after that
+    for_s: Annotated[float, Meta(gt=0.0, le=86_400.0)] | None = None  # None: to the end of the drive
+
+    def __post_init__(self) -> None:
+        """Refuse a fault that never begins, or says twice when.
+
+        Raises:
+            ValueError: names what is given.
+        """
+        given = [name for name in _ONSETS if getattr(self, name) is not None]
+        if len(given) != 1:
+            raise ValueError(f"{' and '.join(given) or 'no onset'} given, must be exactly one of {', '.join(_ONSETS)}")
+
+
+class Unplug(Onset, frozen=True, kw_only=True, tag_field="kind", tag="unplug"):
+    """The device is gone, and with it every role on the same plug; its axes read 0.0, as SDL leaves them."""
+
+    device: RoleName
+
+
+class Freeze(Onset, frozen=True, kw_only=True, tag_field="kind", tag="freeze"):
+    """The device stays open but says nothing new: its last values, growing old."""
+
+    device: RoleName
+
+
+class Stuck(Onset, frozen=True, kw_only=True, tag_field="kind", tag="stuck"):
+    """One axis stays where it is, or jumps to `raw` and stays there; nothing tells its age."""
+
+    axis: AxisName
+    raw: Raw | None = None
+
+
+class Swapped(Onset, frozen=True, kw_only=True, tag_field="kind", tag="swapped"):
+    """Two axes have changed places."""
+
+    axis: AxisName
+    other: AxisName
+
+    def __post_init__(self) -> None:
+        """Refuse an axis swapped with itself.
+
+        Raises:
+            ValueError: it is.
+        """
+        super().__post_init__()
+        if self.axis == self.other:
+            raise ValueError(f"other {self.other} must be another axis than axis {self.axis}")
+
+
+class Noise(Onset, frozen=True, kw_only=True, tag_field="kind", tag="noise"):
+    """Uniform noise of up to `amplitude_raw` on one axis, the same for the same seed."""
+
+    axis: AxisName
+    amplitude_raw: Annotated[float, Meta(gt=0.0, le=2.0)]
+    seed: Seed = 1
+
+
+class Late(Onset, frozen=True, kw_only=True, tag_field="kind", tag="late"):
+    """Everything of one device arrives `by_ms` late. `stamped`: its stamps tell, so the age is known."""
+
+    device: RoleName
+    by_ms: Annotated[float, Meta(gt=0.0, le=5000.0)]
+    stamped: bool = True
+
+
+class Invalid(Onset, frozen=True, kw_only=True, tag_field="kind", tag="invalid"):
+    """One axis reads what no axis can: NaN, an infinity or a number far outside."""
+
+    axis: AxisName
+    reading: Literal["not_a_number", "infinite", "minus_infinite", "huge"] = "not_a_number"
+
+
+class Burst(Onset, frozen=True, kw_only=True, tag_field="kind", tag="burst"):
+    """One device floods: its axes jump about by up to `amplitude_raw`, many times in a tick; the newest counts."""
+
+    device: RoleName
+    events_per_s: Annotated[int, Meta(ge=1, le=1_000_000)] = 100_000
+    amplitude_raw: Annotated[float, Meta(ge=0.0, le=2.0)] = 0.1
+    seed: Seed = 1
+
+
+class TwoGears(Onset, frozen=True, kw_only=True, tag_field="kind", tag="two_gears"):
+    """The lever shows this gear as well as the one it is in (-1: reverse)."""
+
+    gear: Annotated[int, Meta(ge=-1, le=7)]
+
+    def __post_init__(self) -> None:
+        """Refuse neutral, which no button shows.
+
+        Raises:
+            ValueError: it is asked for.
+        """
+        super().__post_init__()
+        if self.gear == 0:
+            raise ValueError("gear 0 must be -1 or 1 to 7: neutral has no button")
+
+
+DeviceFault: TypeAlias = Unplug | Freeze | Stuck | Swapped | Noise | Late | Invalid | Burst | TwoGears
+"""Between the devices and the cockpit (devices/faults.py)."""
+
+Fault: TypeAlias = DeviceFault
+"""Every kind there is."""
+
+Faults: TypeAlias = Annotated[tuple[Fault, ...], Meta(max_length=MAX_FAULTS)]
+
+
+def words(fault: Fault) -> str:
+    """Return a fault for people, without its onset: `stuck axis throttle raw -1.0`."""
+    plain: dict[str, Any] = msgspec.to_builtins(fault)
+    own = {key: value for key, value in plain.items() if key not in Onset.__struct_fields__ and value is not None}
+    return " ".join((str(own.pop("kind")), *(f"{key} {value}" for key, value in own.items())))
