@@ -34,7 +34,7 @@ UNITLESS = {
     *("wheel_axis", "throttle_axis", "brake_axis", "clutch_axis", "handbrake_axis", "hat_x", "hat_y"),
     # counts, flags and masks
     *("sequence", "refused", "refused_seen", "sequence_seen", "invalid_run", "automatic", "engine_running"),
-    *("wheel_buttons", "shifter_buttons", "pressed", "edges", "events", "gate_active", "throttle_override"),
+    *("wheel_buttons", "shifter_buttons", "pressed", "edges", "events", "faults", "gate_active", "throttle_override"),
     *("wheel_motor", "ramp", "clipped", "enabled", "hands_on", "live"),
     # members of an enumeration
     *("kind", "mode", "reason", "refusal", "gear", "direction", "takeover_stage"),

@@ -9,10 +9,10 @@ from typing import Any, Final, Protocol, TypeAlias
 
 from simconsole.devices.cockpit import CockpitSettings
 from simconsole.devices.lever import SHIFTER_SHIFT
+from simconsole.devices.motor import Source
 from simconsole.devices.uncalibrate import WHEEL_MASK, button_masks
 from simconsole.errors import ProfileError
 from simconsole.kernels import clip
-from simconsole.ports import DeviceSource
 from simconsole.profiles.device import CockpitProfile, RoleName
 from simconsole.profiles.faults import (
     Burst,
@@ -69,7 +69,7 @@ class FaultyDevices:
 
     def __init__(
         self,
-        source: DeviceSource,
+        source: Source,
         faults: Sequence[tuple[Fault, Switched]],
         cockpit: CockpitProfile,
         settings: CockpitSettings,
