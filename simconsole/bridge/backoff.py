@@ -33,8 +33,10 @@ class Backoff:
 class Liveness:
     """Silence on a connection: after 1 s a ping is due, once a second; after 3 s it is dead."""
 
-    def __init__(self) -> None:
+    def __init__(self, ping_after_s: float = PING_AFTER_S, dead_after_s: float = DEAD_AFTER_S) -> None:
         """Start at time 0; `begin` sets it."""
+        self._ping_after_s = ping_after_s
+        self._dead_after_s = dead_after_s
         self._heard_s = 0.0
         self._pinged_s = 0.0
 
@@ -48,15 +50,16 @@ class Liveness:
 
     def is_dead(self, now_s: float) -> bool:
         """Return whether the other side is to be taken for gone."""
-        return now_s - self._heard_s >= DEAD_AFTER_S
+        return now_s - self._heard_s >= self._dead_after_s
 
     def ping_due(self, now_s: float) -> bool:
         """Return whether to ping now, and take it as done."""
-        due = now_s - max(self._heard_s, self._pinged_s) >= PING_AFTER_S
+        due = now_s - max(self._heard_s, self._pinged_s) >= self._ping_after_s
         if due:
             self._pinged_s = now_s
         return due
 
     def patience_s(self, now_s: float) -> float:
         """Return how long there is nothing to do about silence."""
-        return max(0.0, min(max(self._heard_s, self._pinged_s) + PING_AFTER_S, self._heard_s + DEAD_AFTER_S) - now_s)
+        ask_s = max(self._heard_s, self._pinged_s) + self._ping_after_s
+        return max(0.0, min(ask_s, self._heard_s + self._dead_after_s) - now_s)

@@ -7,10 +7,13 @@ never waits for another, so that one slow provider holds up nobody else.
 from collections.abc import Callable
 from typing import Any, Final, NamedTuple
 
+import cbor2
 import msgspec
+import orjson
 
 from simconsole.bridge.access import Role
-from simconsole.bridge.forms import Dialect, spell
+from simconsole.bridge.documents import Binary
+from simconsole.bridge.forms import Dialect, png, spell
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.operations import (
     ActionFeedback,
@@ -20,6 +23,7 @@ from simconsole.bridge.operations import (
     CallOperation,
     CallService,
     CancelActionGoal,
+    Compression,
     Id,
     SendActionGoal,
     ServiceResponse,
@@ -49,17 +53,36 @@ class _Provider(NamedTuple):
     type: str
 
 
+class _Caller(NamedTuple):
+    """Who asked, and how the answer is to come."""
+
+    session: Session
+    id: Id
+    called: str  # the service or action in the caller's spelling
+    fragment_size: int | None
+    compression: Compression
+
+    def tell(self, **fields: Any) -> None:
+        """Send an operation to the caller in the form it wanted."""
+        self.session.answer(_encode(self.compression, id=self.id, **fields), self.fragment_size)
+
+    def respond(self, values: Any, result: bool) -> None:
+        """Answer a request."""
+        self.tell(op="service_response", service=self.called, values=values, result=result)
+
+    def end(self, values: Any, status: int, result: bool) -> None:
+        """End a goal."""
+        self.tell(op="action_result", action=self.called, values=values, status=status, result=result)
+
+
 class _Call(NamedTuple):
     """A request or goal that is with its provider."""
 
-    caller: Session
-    caller_id: Id
+    caller: _Caller
     provider: Session
     name: str
-    called: str  # the caller's spelling
     type: str
     deadline_ns: int | None
-    fragment_size: int | None
     feedback: bool
     is_goal: bool
 
@@ -147,7 +170,7 @@ class Calls:
             for name in [name for name, provider in table.items() if provider.session is session]:
                 del table[name]
         for identifier, call in list(self._calls.items()):
-            if call.caller is session:
+            if call.caller.session is session:
                 del self._calls[identifier]
                 if call.is_goal:
                     _send(call.provider, op="cancel_action_goal", action=call.name, id=identifier)
@@ -177,18 +200,11 @@ class Calls:
                 self._fail(call, "it is no longer provided")
 
     def _call(self, session: Session, name: str, operation: CallService, now_ns: int) -> None:
-        size = operation.fragment_size
+        caller = _Caller(session, operation.id, operation.service, operation.fragment_size, operation.compression)
         try:
-            if operation.compression not in ("none", "png"):
-                raise RemoteProtocolError(f"compression {operation.compression} is not there for services")
             builtin = self._builtins.get(name)
             if builtin is not None:
-                if session.role < builtin.role:
-                    raise RemoteProtocolError(f"this needs the role {builtin.role.name.lower()}")
-                args = self._args(builtin.type, "Request", operation.args)
-                args = self._spell("ros2", builtin.type, "Request", args)
-                values = self._spell(session.dialect, builtin.type, "Response", builtin.handler(args, session.dialect))
-                _respond(session, operation.service, operation.id, values, True, size)
+                caller.respond(self._builtin(builtin, caller, operation.args), True)
                 return
             provider = self._services.get(name)
             if session.role < Role.PUBLISH:
@@ -196,14 +212,21 @@ class Calls:
             if provider is None:
                 raise RemoteProtocolError("nobody provides this service")
             deadline_ns = now_ns + int((operation.timeout or self._limits.call_s) * NS_PER_S)
-            identifier = self._open(session, operation.id, provider, name, operation.service, deadline_ns, size)
+            identifier = self._open(caller, provider, name, deadline_ns)
             args = self._arguments(provider, "Request", operation.args, identifier)
         except BridgeError as error:
-            _respond(session, operation.service, operation.id, f"{name}: {error}", False, size)
+            caller.respond(f"{name}: {error}", False)
             return
         if self._next_deadline_ns is None or deadline_ns < self._next_deadline_ns:
             self._next_deadline_ns = deadline_ns
         _send(provider.session, op="call_service", id=identifier, service=name, args=args)
+
+    def _builtin(self, builtin: _Builtin, caller: _Caller, args: Any) -> Any:
+        if caller.session.role < builtin.role:
+            raise RemoteProtocolError(f"this needs the role {builtin.role.name.lower()}")
+        args = self._spell("ros2", builtin.type, "Request", self._args(builtin.type, "Request", args))
+        values = builtin.handler(args, caller.session.dialect)
+        return self._spell(caller.session.dialect, builtin.type, "Response", values, _is_typed(caller))
 
     def _respond(self, session: Session, name: str, operation: ServiceResponse) -> None:
         identifier, call = self._called(session, name, operation.id)
@@ -218,20 +241,18 @@ class Calls:
                 raise
         elif result and values is None:
             values = {}
-        _respond(call.caller, call.called, call.caller_id, values, result, call.fragment_size)
+        call.caller.respond(values, result)
 
     def _goal(self, session: Session, name: str, operation: SendActionGoal) -> None:
+        caller = _Caller(session, operation.id, operation.action, operation.fragment_size, operation.compression)
         try:
             provider = self._actions.get(name)
             if provider is None:
                 raise RemoteProtocolError("nobody provides this action")
-            identifier = self._open(
-                session, operation.id, provider, name, operation.action, None, operation.fragment_size,
-                operation.feedback, True,
-            )  # fmt: skip
+            identifier = self._open(caller, provider, name, None, operation.feedback, True)
             args = self._arguments(provider, "Goal", operation.args, identifier)
         except BridgeError as error:
-            _end(session, operation.action, operation.id, f"{name}: {error}", ABORTED, False, operation.fragment_size)
+            caller.end(f"{name}: {error}", ABORTED, False)
             return
         kind = operation.action_type or provider.type
         _send(
@@ -241,7 +262,8 @@ class Calls:
 
     def _cancel(self, session: Session, name: str, operation: CancelActionGoal) -> None:
         for identifier, call in self._calls.items():
-            if call.is_goal and call.caller is session and (call.name, call.caller_id) == (name, operation.id):
+            is_meant = (call.name, call.caller.id) == (name, operation.id)
+            if call.is_goal and call.caller.session is session and is_meant:
                 _send(call.provider, op="cancel_action_goal", action=name, id=identifier)
                 return
         raise RemoteProtocolError("no such goal is pursued")
@@ -250,8 +272,7 @@ class Calls:
         _, call = self._called(session, name, operation.id)
         values = self._checked(call, "Feedback", operation.values)
         if call.feedback:
-            text = _encode(op="action_feedback", action=call.called, id=call.caller_id, values=values)
-            call.caller.answer(text, call.fragment_size)
+            call.caller.tell(op="action_feedback", action=call.caller.called, values=values)
 
     def _result(self, session: Session, name: str, operation: ActionResult) -> None:
         identifier, call = self._called(session, name, operation.id)
@@ -263,29 +284,22 @@ class Calls:
             except BridgeError as error:
                 self._fail(call, f"the result does not fit: {error}")
                 raise
-        size = call.fragment_size
-        _end(call.caller, call.called, call.caller_id, values, operation.status, operation.result, size)
+        call.caller.end(values, operation.status, operation.result)
 
     def _open(
         self,
-        caller: Session,
-        caller_id: Id,
+        caller: _Caller,
         provider: _Provider,
         name: str,
-        called: str,
         deadline_ns: int | None,
-        fragment_size: int | None,
         feedback: bool = False,
         is_goal: bool = False,
     ) -> str:
-        if sum(call.caller is caller for call in self._calls.values()) >= self._limits.calls:
+        if sum(call.caller.session is caller.session for call in self._calls.values()) >= self._limits.calls:
             raise RemoteProtocolError(f"{self._limits.calls} calls at a time are the most allowed")
         self._numbers += 1
         identifier = f"{'goal' if is_goal else 'call'}:{name}:{self._numbers}"
-        self._calls[identifier] = _Call(
-            caller, caller_id, provider.session, name, called, provider.type, deadline_ns, fragment_size, feedback,
-            is_goal,
-        )  # fmt: skip
+        self._calls[identifier] = _Call(caller, provider.session, name, provider.type, deadline_ns, feedback, is_goal)
         return identifier
 
     def _arguments(self, provider: _Provider, part: str, args: Any, identifier: str) -> Any:
@@ -306,9 +320,9 @@ class Calls:
     def _fail(self, call: _Call, reason: str) -> None:
         reason = f"{call.name}: {reason}"
         if call.is_goal:
-            _end(call.caller, call.called, call.caller_id, reason, ABORTED, False, call.fragment_size)
+            call.caller.end(reason, ABORTED, False)
         else:
-            _respond(call.caller, call.called, call.caller_id, reason, False, call.fragment_size)
+            call.caller.respond(reason, False)
 
     def _args(self, type_name: str, part: str, args: Any) -> Any:
         """Return arguments by name: a list is in the order of the definition."""
@@ -325,36 +339,30 @@ class Calls:
         return args
 
     def _checked(self, call: _Call, part: str, values: Any) -> Any:
-        return self._spell(call.caller.dialect, call.type, part, values)
+        return self._spell(call.caller.session.dialect, call.type, part, values, _is_typed(call.caller))
 
-    def _spell(self, dialect: Dialect, type_name: str, part: str, values: Any) -> Any:
+    def _spell(self, dialect: Dialect, type_name: str, part: str, values: Any, typed: bool = False) -> Any:
         """Return values checked against their type, if it is known here, in the receiver's dialect."""
         full = self._registry.part(type_name, part)
         if full is None:
             return values
-        return spell(self._registry, full, self._registry.from_plain(full, values), dialect)
+        return spell(self._registry, full, self._registry.from_plain(full, values), dialect, typed)
 
 
-def _encode(**fields: Any) -> bytes:
+def _is_typed(caller: _Caller) -> bool:
+    """Return whether numeric arrays are CBOR's own."""
+    return caller.compression in ("cbor", "cbor-raw")
+
+
+def _encode(compression: Compression, **fields: Any) -> bytes:
+    """Return an operation as the receiver wanted it; cbor-raw is for topics, its answers come in plain CBOR."""
     if fields.get("id") is None:
         fields.pop("id", None)
-    try:
-        return msgspec.json.encode(fields)
-    except RecursionError:
-        raise RemoteProtocolError("nested too deep") from None
+    if compression in ("cbor", "cbor-raw"):
+        return Binary(cbor2.dumps(fields))
+    text = msgspec.json.encode(fields)
+    return orjson.dumps({"op": "png", "data": png(text)}) if compression == "png" else text
 
 
 def _send(session: Session, **fields: Any) -> None:
-    session.answer(_encode(**fields))
-
-
-def _respond(session: Session, service: str, identifier: Id, values: Any, result: bool, size: int | None) -> None:
-    text = _encode(op="service_response", service=service, id=identifier, values=values, result=result)
-    session.answer(text, size)
-
-
-def _end(
-    session: Session, action: str, identifier: Id, values: Any, status: int, result: bool, size: int | None
-) -> None:
-    text = _encode(op="action_result", action=action, id=identifier, values=values, status=status, result=result)
-    session.answer(text, size)
+    session.answer(_encode("none", **fields))

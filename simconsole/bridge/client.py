@@ -28,11 +28,10 @@ from websockets.uri import parse_uri
 from simconsole.bridge.client_protocol import Callback, ClientProtocol, Received
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.operations import Status
-from simconsole.bridge.wire import RECEIVE_BYTES, TextAssembler, is_data
-from simconsole.errors import BridgeError, RemoteProtocolError
+from simconsole.bridge.wire import RECEIVE_BYTES, MessageAssembler, is_data
+from simconsole.errors import BridgeError
 
 MAX_MESSAGE_BYTES: Final = 16_777_216
-MAX_FRAGMENTS: Final = 65_536
 
 _logger = logging.getLogger("simconsole.bridge.client")
 
@@ -77,7 +76,7 @@ class BridgeClient:
         self._connect_timeout_s = connect_timeout_s
         self._socket: socket.socket | None = None
         self._web: WebSocketClientProtocol | None = None
-        self._texts = TextAssembler(MAX_FRAGMENTS)
+        self._texts = MessageAssembler()
         self._received: deque[Received] = deque()
         self.heard_s = 0.0
         """When something last arrived, on the monotonic clock."""
@@ -115,7 +114,7 @@ class BridgeClient:
         """
         self.close()
         self._received.clear()
-        self._texts = TextAssembler(MAX_FRAGMENTS)
+        self._texts = MessageAssembler()
         deadline = time.monotonic() + self._connect_timeout_s
         try:
             address = (self._uri.host, self._uri.port)
@@ -256,11 +255,7 @@ class BridgeClient:
         assert self._web is not None
         for event in self._web.events_received():
             if isinstance(event, Frame) and is_data(event):
-                try:
-                    text = self._texts.add(event)
-                except RemoteProtocolError:
-                    self.protocol.refused += 1
-                    continue
+                text = self._texts.add(event)
                 received = self.protocol.receive(text) if text is not None else None
                 if received is not None:
                     self._received.append(received)

@@ -6,8 +6,9 @@ is not newer than the last one's. A stamp of 0 is no stamp: such messages are ta
 
 from typing import Any, Final, NamedTuple
 
+from simconsole.bridge.board import Accept
 from simconsole.bridge.inputs import BridgeInputs
-from simconsole.bridge.protocol import Accept
+from simconsole.bridge.topics import BASE_FRAME, MAP_FRAME
 from simconsole.errors import RemoteProtocolError
 from simconsole.kernels import is_finite
 from simconsole.profiles.bridge import BridgeProfile
@@ -43,6 +44,7 @@ DIRECTIONS: Final[dict[int, float]] = {
     23: 1.0,
     24: 1.0,
 }
+_BODY_FRAMES: Final = ("", BASE_FRAME)
 _FUTURE_NS: Final = 50_000_000
 _UNIT_TOLERANCE: Final = 0.1
 
@@ -67,6 +69,8 @@ class CommandIntake:
         self._max_age_ns = int(profile.max_stamp_age_ms * 1e6)
         self._last_stamps: dict[str, int] = {}
         self._ball_speed_mps = 0.0
+        # The console's odometry begins at the map's origin and does not drift: both frames are the same.
+        self._world_frames = ("", MAP_FRAME, profile.odometry_frame)
         self.ros_time_ns = 0
         """What /clock says now; only compared with stamps where senders follow it."""
 
@@ -104,6 +108,7 @@ class CommandIntake:
 
     def _ackermann(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
         _require(plain, "drive.steering_angle", "drive.speed")
+        _in_frame(message.header, _BODY_FRAMES)
         drive, limits = message.drive, self._limits
         speed_mps = _within("drive.speed", drive.speed, limits.speed_mps)
         command = NO_COMMAND._replace(
@@ -124,6 +129,7 @@ class CommandIntake:
 
     def _twist_stamped(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
         _require(plain, "twist.linear.x", "twist.angular.z")
+        _in_frame(message.header, _BODY_FRAMES)
         self._move(message.twist, "twist.", (TWIST_STAMPED, message.header.stamp), now_ns)
 
     def _move(self, twist: Any, path: str, stamp: tuple[str, Any] | None, now_ns: int) -> None:
@@ -138,6 +144,7 @@ class CommandIntake:
 
     def _ball_pose(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
         _require(plain, "pose.position.x", "pose.position.y")
+        _in_frame(message.header, self._world_frames)
         position, turn = message.pose.position, message.pose.orientation
         square = turn.x * turn.x + turn.y * turn.y + turn.z * turn.z + turn.w * turn.w
         if not abs(square - 1.0) <= _UNIT_TOLERANCE:
@@ -199,6 +206,13 @@ def _require(plain: dict[str, Any], *paths: str) -> None:
             value = value.get(key) if isinstance(value, dict) else None
         if value is None:
             raise RemoteProtocolError(f"required in a command - at `$.{path}`")
+
+
+def _in_frame(header: Any, frames: tuple[str, ...]) -> None:
+    """Refuse what is said in a frame that the console does not take commands in; no name is the right one."""
+    if header.frame_id.removeprefix("/") not in frames:
+        named = " or ".join(filter(None, frames))
+        raise RemoteProtocolError(f"{header.frame_id[:64]!r} is not {named} - at `$.header.frame_id`")
 
 
 def _within(path: str, value: float, limit: float) -> float:

@@ -2,6 +2,7 @@
 
 import logging
 import socket
+import time
 from typing import Any, Final, Protocol, cast
 
 from websockets.datastructures import MultipleValuesError
@@ -11,10 +12,12 @@ from websockets.protocol import SEND_EOF, State
 from websockets.server import ServerProtocol
 
 from simconsole.bridge.access import Role
-from simconsole.bridge.forms import Binary, Dialect
+from simconsole.bridge.backoff import Liveness
+from simconsole.bridge.documents import Binary
+from simconsole.bridge.forms import Dialect
 from simconsole.bridge.handshake import FORBIDDEN, FULL, UNKNOWN, dialect_of, is_host_allowed, origins
 from simconsole.bridge.session import Session
-from simconsole.bridge.wire import RECEIVE_BYTES, TextAssembler, is_data
+from simconsole.bridge.wire import RECEIVE_BYTES, FragmentLimit, MessageAssembler, is_data, is_unacknowledged
 from simconsole.errors import RemoteProtocolError
 from simconsole.profiles.bridge import BridgeProfile
 
@@ -34,10 +37,7 @@ class Owner(Protocol):
         """Take in a client whose handshake is done."""
 
     def received(self, session: Session, text: bytes) -> None:
-        """Apply a text of a client."""
-
-    def refused(self, session: Session, reason: str) -> None:
-        """Answer something that was not text."""
+        """Apply a message of a client, `Binary` if it was not text."""
 
 
 class Connection:
@@ -58,7 +58,10 @@ class Connection:
         self._web = ServerProtocol(
             origins=cast("Any", origins(profile)), max_size=profile.limits.message_bytes, logger=_logger
         )
-        self._texts = TextAssembler(profile.limits.message_fragments)
+        self._limit = FragmentLimit(profile.limits.message_fragments)
+        self._messages = MessageAssembler()
+        self._liveness = Liveness(profile.ping_interval_s, profile.dead_after_s)
+        self._liveness.begin(time.monotonic())
         self._unsent = bytearray()
         self._ending = False
 
@@ -82,9 +85,14 @@ class Connection:
             self.close()
             return
         if data:
+            self._liveness.heard(time.monotonic())
             self._web.receive_data(data)
         else:
             self._web.receive_eof()
+        self._collect()
+        if len(self._unsent) > UNSENT_BYTES + 2 * self._profile.limits.queued_bytes:
+            self.close()  # it sends pings without end and reads no answer
+            return
         for event in self._web.events_received():
             if isinstance(event, Request):
                 self._answer(event)
@@ -110,6 +118,14 @@ class Connection:
                 self._collect()
         self._collect()
         self._send()
+
+    def look(self) -> None:
+        """Ask a quiet client for a sign of life; close one whose machine is gone."""
+        now_s = time.monotonic()
+        if self._liveness.is_dead(now_s) and is_unacknowledged(self.socket):
+            self.close()
+        elif self.is_open and self._liveness.ping_due(now_s):
+            self._web.send_ping(b"")
 
     def say_good_bye(self) -> None:
         """Begin to close in the WebSocket's own way; a connection that is none is closed at once."""
@@ -150,15 +166,13 @@ class Connection:
             return None
 
     def _take(self, frame: Frame, session: Session) -> None:
-        try:
-            text = self._texts.add(frame)
-        except RemoteProtocolError as error:
-            self._owner.refused(session, str(error))
-            if not frame.fin:
-                self._web.fail(CloseCode.POLICY_VIOLATION, str(error))
+        reason = self._limit.add(frame, time.monotonic_ns())
+        if reason is not None:
+            self._web.fail(CloseCode.POLICY_VIOLATION, reason)
             return
-        if text is not None:
-            self._owner.received(session, text)
+        message = self._messages.add(frame)
+        if message is not None:
+            self._owner.received(session, message)
 
     def _collect(self) -> None:
         for data in self._web.data_to_send():

@@ -13,6 +13,7 @@ import cbor2
 import msgspec
 import orjson
 
+from simconsole.bridge.documents import Binary
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.messages.cdr import serialize
 from simconsole.bridge.messages.definition import DURATION, HEADER, TIME, FieldType
@@ -34,10 +35,6 @@ _TYPED: Final[dict[str, tuple[int, str]]] = {
     "float64": (86, "d"),
 }
 _PNG: Final = b"\x89PNG\r\n\x1a\n"
-
-
-class Binary(bytes):
-    """What goes out in a binary WebSocket message; plain bytes go out as text."""
 
 
 class Form(NamedTuple):

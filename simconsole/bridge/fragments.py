@@ -11,8 +11,8 @@ from simconsole.errors import RemoteProtocolError
 from simconsole.units import NS_PER_S
 
 MAX_OPEN: Final = 8
-TIMEOUT_NS: Final = 600 * NS_PER_S
-"""rosbridge_suite's fragment_timeout."""
+TIMEOUT_NS: Final = 5 * NS_PER_S
+"""Of silence, not in all: a message whose pieces keep coming is waited for, however slow its sender (N14)."""
 
 
 def split(text: bytes, size: int, identifier: str) -> Iterator[bytes]:
@@ -27,7 +27,7 @@ def split(text: bytes, size: int, identifier: str) -> Iterator[bytes]:
 class _Message:
     def __init__(self, total: int, now_ns: int) -> None:
         self.total = total
-        self.since_ns = now_ns
+        self.heard_ns = now_ns
         self.pieces: dict[int, str] = {}
 
 
@@ -53,7 +53,7 @@ class Assembler:
             RemoteProtocolError: the piece does not belong, or there is too much; what was kept of it is forgotten.
         """
         for identifier, message in list(self._messages.items()):
-            if now_ns - message.since_ns > TIMEOUT_NS:
+            if now_ns - message.heard_ns > TIMEOUT_NS:
                 self._forget(identifier)
         total, number = math.ceil(fragment.total), int(fragment.num)
         message = self._messages.get(fragment.id) or self._begin(fragment.id, total, now_ns)
@@ -69,6 +69,7 @@ class Assembler:
         except RemoteProtocolError:
             self._forget(fragment.id)
             raise
+        message.heard_ns = now_ns
         message.pieces[number] = fragment.data
         self._held += len(fragment.data)
         if len(message.pieces) < total:
@@ -85,6 +86,5 @@ class Assembler:
         return message
 
     def _forget(self, identifier: Id) -> None:
-        message = self._messages.pop(identifier, None)
-        if message is not None:
-            self._held -= sum(map(len, message.pieces.values()))
+        message = self._messages.pop(identifier)
+        self._held -= sum(map(len, message.pieces.values()))

@@ -27,7 +27,10 @@ from simconsole.rows import Snapshot
 from simconsole.signals import EventInput, RemoteCommand
 
 _HANDSHAKE_S: Final = 5.0
+_ANSWERS: Final = 4.0
+"""Commands a controller may send for each odometry, at least: it must never be too fast to be answered to."""
 _GOOD_BYE_S: Final = 0.5
+_LOOK_S: Final = 0.25
 _logger = logging.getLogger("simconsole.bridge.lockstep")
 
 
@@ -49,7 +52,10 @@ class LockstepBridge:
             ProfileError: as `ConsoleBridge`.
         """
         if odometry_hz is not None:
-            profile = msgspec.structs.replace(profile, rates_hz={**profile.rates_hz, ODOMETRY: odometry_hz})
+            commands_hz = max(profile.limits.commands_hz, _ANSWERS * odometry_hz)
+            limits = msgspec.structs.replace(profile.limits, commands_hz=commands_hz)
+            rates_hz = {**profile.rates_hz, ODOMETRY: odometry_hz}
+            profile = msgspec.structs.replace(profile, rates_hz=rates_hz, limits=limits)
         if profile.certificate is not None:
             raise ProfileError(
                 "outputs.bridge.certificate: a headless drive's bridge speaks no TLS; drive in real time"
@@ -61,6 +67,7 @@ class LockstepBridge:
         self._lost_at: float | None = None
         """The command's sequence number when the commander vanished."""
         self._closing = False
+        self._next_look_s = 0.0
         self._connections: dict[Connection, float] = {}
         """Each with when it was accepted, in s."""
         self._listener = listen(profile.host, profile.port)
@@ -170,10 +177,6 @@ class LockstepBridge:
         """Apply a text of a client (Connection's owner)."""
         log_outcome(_logger, session, self.console.receive(session, text, self._now_ns))
 
-    def refused(self, session: Session, reason: str) -> None:
-        """Answer something that was not text (Connection's owner)."""
-        log_outcome(_logger, session, self.console.router.refuse(session, reason, self._now_ns))
-
     def _serve(self, timeout_s: float) -> None:
         """Wait at most `timeout_s` for sockets and serve each that is ready once."""
         for key, mask in self._selector.select(timeout_s):
@@ -209,7 +212,13 @@ class LockstepBridge:
                 self._forget(connection)
 
     def _flush(self) -> None:
+        now_s = time.monotonic()
+        looking = now_s >= self._next_look_s
+        if looking:
+            self._next_look_s = now_s + _LOOK_S
         for connection in list(self._connections):
+            if looking:
+                connection.look()
             self._settle(connection)
 
     def _forget(self, connection: Connection) -> None:

@@ -1,7 +1,6 @@
 """The operations of the rosbridge v2 protocol that this bridge speaks: their fields, read and written.
 
-Source: ROSBRIDGE_PROTOCOL.md of rosbridge_suite. Fields a peer adds to an operation (latch, qos, ...) are ignored
-unless named here.
+Source: ROSBRIDGE_PROTOCOL.md of rosbridge_suite. Fields a peer adds to an operation are ignored unless named here.
 """
 
 from typing import Annotated, Any, Final, Literal
@@ -11,6 +10,7 @@ import orjson
 from msgspec import Meta, Struct
 
 from simconsole.errors import RemoteProtocolError
+from simconsole.units import NS_PER_S
 
 Id = str | int | None
 Level = Literal["none", "error", "warning", "info"]
@@ -23,6 +23,37 @@ FragmentSize = Annotated[int, Meta(ge=16)] | None
 """The most characters of a message in one piece; smaller ones would cost more in frames than in content."""
 
 
+class Span(Struct):
+    """A builtin_interfaces/Duration."""
+
+    sec: Annotated[int, Meta(ge=0, le=1_000_000_000)] = 0
+    nanosec: Annotated[int, Meta(ge=0, le=999_999_999)] = 0
+
+
+class Qos(Struct):
+    """ROS 2's quality of service, as rosbridge_suite has it since its pull request 1150; what is absent is ours to say.
+
+    Applied: `depth` and `history` as the queue's length, `durability` as the latch, `lifespan` (s, or a Duration) as
+    the latch's end. Every queue here is reliable until it is full: `reliability` means nothing more.
+    """
+
+    depth: Annotated[int, Meta(ge=0, le=1_000_000)] | None = None
+    reliability: Literal["system_default", "best_available", "reliable", "best_effort"] | None = None
+    durability: Literal["system_default", "best_available", "volatile", "transient_local"] | None = None
+    history: Literal["system_default", "keep_last", "keep_all"] | None = None
+    lifespan: Annotated[float, Meta(ge=0.0, le=1e9)] | Span | None = None
+
+    @property
+    def lifespan_ns(self) -> int | None:
+        """How long a latched message lasts, None for ever."""
+        if isinstance(self.lifespan, Span):
+            return self.lifespan.sec * NS_PER_S + self.lifespan.nanosec
+        return None if self.lifespan is None else int(self.lifespan * NS_PER_S)
+
+
+NO_QOS: Final = Qos()
+
+
 class Advertise(Struct):
     """A client will publish."""
 
@@ -30,6 +61,7 @@ class Advertise(Struct):
     type: str
     id: Id = None
     latch: bool = False
+    qos: Qos | None = None
 
 
 class Unadvertise(Struct):
@@ -46,6 +78,7 @@ class Publish(Struct):
     msg: Any
     id: Id = None
     latch: bool = False
+    qos: Qos | None = None
 
 
 class Subscribe(Struct):
@@ -58,6 +91,7 @@ class Subscribe(Struct):
     queue_length: Annotated[int, Meta(ge=0)] = 0
     compression: Compression = "none"
     fragment_size: FragmentSize = None
+    qos: Qos | None = None
 
 
 class Unsubscribe(Struct):
@@ -241,7 +275,7 @@ def read_operation(fields: dict[str, Any]) -> Operation:
     name = fields.get("op")
     if not isinstance(name, str):
         raise RemoteProtocolError("message has no op")
-    if name == "publish" and "msg" in fields and type(fields.get("topic")) is str:
+    if name == "publish" and "msg" in fields and "qos" not in fields and type(fields.get("topic")) is str:
         # The one that comes a hundred times a second is spared the conversion of its untyped payload.
         return Publish(fields["topic"], fields["msg"], id_of(fields), fields.get("latch") is True)
     operation = OPERATIONS.get(name)

@@ -7,7 +7,8 @@ from collections import deque
 from collections.abc import Iterator
 from typing import Final, NamedTuple
 
-from simconsole.bridge.forms import PLAIN, Binary, Form
+from simconsole.bridge.documents import Binary
+from simconsole.bridge.forms import PLAIN, Form
 from simconsole.bridge.fragments import split
 from simconsole.bridge.operations import Id
 from simconsole.units import NS_PER_S

@@ -5,15 +5,17 @@ nothing a client sends raises: it is answered with a status and counted.
 """
 
 from collections.abc import Callable
-from typing import Any, Final, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from simconsole.bridge.access import OPEN, Role
+from simconsole.bridge.board import RELAY_DEPTH, Accept, Board, Command, Topic
 from simconsole.bridge.calls import Calls
-from simconsole.bridge.documents import Document, has_duplicate_keys, read
-from simconsole.bridge.forms import Dialect, Encoder, Form
+from simconsole.bridge.documents import Binary, Document, has_duplicate_keys, read
+from simconsole.bridge.forms import Dialect
 from simconsole.bridge.fragments import Assembler
 from simconsole.bridge.lease import Lease
 from simconsole.bridge.messages import Registry, is_stamped
+from simconsole.bridge.meter import Meter
 from simconsole.bridge.operations import (
     Advertise,
     Auth,
@@ -25,60 +27,23 @@ from simconsole.bridge.operations import (
     SetLevel,
     Status,
     Subscribe,
-    Unadvertise,
     Unsubscribe,
     id_of,
-    publish_head,
     read_operation,
 )
-from simconsole.bridge.outgoing import Outlet
-from simconsole.bridge.session import Session, resolve_topic
-from simconsole.errors import BridgeError, LocalProtocolError, RemoteProtocolError
+from simconsole.bridge.session import Counts, Session, resolve_topic
+from simconsole.errors import BridgeError, RemoteProtocolError
+from simconsole.kernels import is_finite
 from simconsole.profiles.bridge import BridgeLimits
 from simconsole.units import NS_PER_S
-
-RELAY_DEPTH: Final = 100
-"""Messages kept of a topic between clients for a slow subscriber that did not say how many it wants."""
-
-_UINT32: Final = 0xFFFFFFFF
-
-Accept = Callable[[dict[str, Any], Any, int], None]
-"""Takes a command as decoded, typed, and the time; raises RemoteProtocolError to refuse it."""
-
-
-class Command(NamedTuple):
-    """A topic by which clients command the console."""
-
-    accept: Accept
-    leased: bool  # only for the holder of the lease; a request such as an emergency stop is open to everyone
 
 
 class Outcome(NamedTuple):
     """What became of one text, for the log of whoever owns the connection."""
 
-    kind: Literal["done", "command", "refused", "remark"]
+    kind: Literal["done", "command", "refused", "remark", "throttled"]
     topic: str
     text: str  # why refused, or what the client remarked
-
-
-class Topic:
-    """One topic: who listens, what it carries, and whose it is."""
-
-    def __init__(
-        self, name: str, type_name: str, depth: int, owned: bool, command: Command | None, latch: bool
-    ) -> None:
-        """Create a topic; `owned` topics belong to the console and stay."""
-        self.name = name
-        self.type = type_name
-        self.depth = depth
-        self.owned = owned
-        self.command = command
-        self.latch = latch
-        self.latched: Encoder | None = None
-        self.sequence = 0
-        self.head = publish_head(name)
-        self.publishers: set[int] = set()
-        self.subscribers: dict[int, tuple[Session, Outlet]] = {}
 
 
 class Router:
@@ -89,16 +54,15 @@ class Router:
     ) -> None:
         """Start without topics. `on_refused` is called for each refused command of whoever may command."""
         self.registry = registry
+        self.board = Board(registry, limits)
         self.lease = Lease(lease_ns)
-        self.ros_time_ns = 0
-        """What a message that comes without a stamp is stamped with."""
         self.on_new_commander: Callable[[], None] = lambda: None
         """Called when a command comes while nobody holds the lease, before it is checked."""
         self._limits = limits
         self._on_refused = on_refused
-        self._topics: dict[str, Topic] = {}
         self._sessions: dict[int, Session] = {}
         self._numbers = 0
+        self._gone = Counts()
         self.calls = Calls(registry, limits)
         self.access = OPEN
 
@@ -108,22 +72,38 @@ class Router:
         return tuple(self._sessions.values())
 
     @property
+    def ros_time_ns(self) -> int:
+        """What a message that comes without a stamp is stamped with."""
+        return self.board.ros_time_ns
+
+    @ros_time_ns.setter
+    def ros_time_ns(self, now_ns: int) -> None:
+        self.board.ros_time_ns = now_ns
+
+    @property
     def topics(self) -> dict[str, Topic]:
         """Every topic by name."""
-        return dict(sorted(self._topics.items()))
+        return self.board.all()
+
+    @property
+    def connections(self) -> int:
+        """How many clients there have been."""
+        return self._numbers
+
+    def counts(self) -> Counts:
+        """Return what all clients together, also those that are gone, have sent and been sent."""
+        counts = self._gone
+        for session in self._sessions.values():
+            counts = counts.plus(session.counts())
+        return counts
 
     def add_output(self, name: str, type_name: str, depth: int = 1, latch: bool = False) -> None:
         """Add a topic that only the console publishes, keeping the `depth` newest messages for a slow client."""
-        self._add(Topic(name, self.registry.resolve(type_name), depth, True, None, latch))
+        self.board.add(Topic(name, self.registry.resolve(type_name), depth, True, None, latch))
 
     def add_command(self, name: str, type_name: str, accept: Accept, leased: bool = True) -> None:
         """Add a topic by which clients command the console."""
-        self._add(Topic(name, self.registry.resolve(type_name), RELAY_DEPTH, True, Command(accept, leased), False))
-
-    def _add(self, topic: Topic) -> None:
-        if topic.name in self._topics:
-            raise LocalProtocolError(f"{topic.name}: two of the console's topics have this name")
-        self._topics[topic.name] = topic
+        self.board.add(Topic(name, self.registry.resolve(type_name), RELAY_DEPTH, True, Command(accept, leased), False))
 
     def connect(
         self,
@@ -137,7 +117,8 @@ class Router:
         self._numbers += 1
         limits = self._limits
         assembler = Assembler(limits.message_bytes, limits.message_fragments)
-        session = Session(self._numbers, peer, limits.queued_bytes, wake, dialect, assembler, role)
+        meter = Meter(limits.commands_hz)
+        session = Session(self._numbers, peer, limits.queued_bytes, wake, dialect, assembler, role, meter)
         self._sessions[session.number] = session
         return session
 
@@ -145,28 +126,24 @@ class Router:
         """Remove a client and everything of it; return whether it was commanding the console."""
         if self._sessions.pop(session.number, None) is None:
             return False
-        for name in (*session.outlets, *session.advertised):
-            topic = self._topics.get(name)
-            if topic is not None:
-                topic.subscribers.pop(session.number, None)
-                topic.publishers.discard(session.number)
-                self._clear(topic)
-        session.outlets.clear()
-        session.advertised.clear()
+        self._gone = self._gone.plus(session.counts())
+        self.board.leave(session)
         self.calls.disconnect(session)
         return self.lease.release(session.number, now_ns)
 
     def wanted(self, name: str) -> bool:
         """Return whether publishing on an output would reach anyone, now or by a latch."""
-        topic = self._topics[name]
-        return bool(topic.subscribers) or topic.latch
+        topic = self.board.find(name)
+        return topic is not None and (bool(topic.subscribers) or topic.latch)
 
     def publish(self, name: str, message: Any, now_ns: int) -> None:
         """Send a typed message of the console to all subscribers: encoded once, queued for each."""
-        self._distribute(self._topics[name], message, now_ns)
+        topic = self.board.find(name)
+        assert topic is not None
+        self.board.distribute(topic, message, now_ns)
 
     def receive(self, session: Session, text: bytes, now_ns: int) -> Outcome:
-        """Apply one text of a client. Never raises for what is in it."""
+        """Apply one message of a client, text or `Binary`. Never raises for what is in it."""
         session.received += 1
         self.calls.expire(now_ns)
         return self._receive(session, text, now_ns, False)
@@ -185,16 +162,11 @@ class Router:
             return self._refuse(session, document.fields, str(error), now_ns)
         return Outcome("done", "", "") if whole is None else self._receive(session, whole, now_ns, True)
 
-    def refuse(self, session: Session, reason: str, now_ns: int) -> Outcome:
-        """Answer something that was not even text, such as a binary message."""
-        session.received += 1
-        return self._refuse(session, {}, reason, now_ns)
-
     def _refuse(self, session: Session, fields: dict[str, Any], reason: str, now_ns: int) -> Outcome:
         session.refused += 1
         name = next((fields[key] for key in ("topic", "service", "action") if key in fields), "")
         name = name[:256] if isinstance(name, str) else ""
-        topic = self._topics.get(name if name.startswith("/") else f"/{name}")
+        topic = self.board.find(name if name.startswith("/") else f"/{name}")
         # A stranger's mistakes must not count against the commander who drives.
         if session.role < Role.CONTROL:
             pass
@@ -226,13 +198,13 @@ class Router:
         if isinstance(operation, Publish):
             return self._publish(session, name, operation, document, text, now_ns)
         if isinstance(operation, Subscribe):
-            self._subscribe(session, name, operation, now_ns)
+            self.board.subscribe(session, name, operation, now_ns)
         elif isinstance(operation, Unsubscribe):
-            self._unsubscribe(session, name, operation)
+            self.board.unsubscribe(session, name, operation.id)
         elif isinstance(operation, Advertise):
-            self._advertise(session, name, operation)
+            self.board.advertise(session, name, operation)
         else:
-            self._unadvertise(session, name, operation)
+            self.board.unadvertise(session, name, operation.id)
         return Outcome("done", name, "")
 
     def _require(self, session: Session, role: Role) -> None:
@@ -243,7 +215,7 @@ class Router:
     def _publish(
         self, session: Session, name: str, operation: Publish, document: Document, text: bytes, now_ns: int
     ) -> Outcome:
-        topic = self._topics.get(name)
+        topic = self.board.find(name)
         if topic is None:
             raise RemoteProtocolError("advertise the topic first: nobody has said its type")
         if not isinstance(operation.msg, dict):
@@ -254,8 +226,9 @@ class Router:
             raise RemoteProtocolError("only the console publishes this topic")
         message = self.registry.from_plain(topic.type, operation.msg, now_ns=self.ros_time_ns)
         self._stamp(topic.type, operation.msg, message)
-        topic.latch = topic.latch or operation.latch
-        self._distribute(topic, message, now_ns)
+        if operation.latch or operation.qos is not None:
+            self.board.settle(topic, operation)
+        self.board.distribute(topic, message, now_ns)
         return Outcome("done", name, "")
 
     def _command(
@@ -269,7 +242,9 @@ class Router:
         now_ns: int,
     ) -> Outcome:
         self._require(session, Role.CONTROL)
-        if document.literals:
+        if command.leased and not session.meter.allows(now_ns):
+            return self._throttle(session, topic.name, now_ns)
+        if document.literals or (isinstance(text, Binary) and not _is_finite(operation.msg)):
             raise RemoteProtocolError("NaN and Infinity are not JSON and no command")
         if has_duplicate_keys(text, document.fields):
             raise RemoteProtocolError("a key is given twice")
@@ -281,8 +256,14 @@ class Router:
         command.accept(operation.msg, message, now_ns)
         if command.leased:
             self.lease.renew(session.number, now_ns)
-        self._distribute(topic, message, now_ns)
+        self.board.distribute(topic, message, now_ns)
         return Outcome("command", topic.name, "")
+
+    def _throttle(self, session: Session, name: str, now_ns: int) -> Outcome:
+        """Pass over a command of a client that sends too many: a newer one is on its way, and none of them is wrong."""
+        reason = f"more than {self._limits.commands_hz:g} commands a second: only so many are taken"
+        session.pass_over(f"{name}: {reason}", now_ns)
+        return Outcome("throttled", name, reason)
 
     def _stamp(self, type_name: str, plain: dict[str, Any], message: Any) -> None:
         """Give a message that came without a stamp the present, as the protocol promises."""
@@ -291,83 +272,11 @@ class Router:
             if not isinstance(header, dict) or "stamp" not in header:
                 message.header.stamp.sec, message.header.stamp.nanosec = divmod(self.ros_time_ns, NS_PER_S)
 
-    def _distribute(self, topic: Topic, message: Any, now_ns: int) -> None:
-        if not topic.subscribers and not topic.latch:
-            return
-        topic.sequence = (topic.sequence + 1) & _UINT32
-        encoder = Encoder(self.registry, topic.type, message, topic.sequence, self.ros_time_ns)
-        if topic.latch:
-            topic.latched = encoder
-        for session, outlet in topic.subscribers.values():
-            session.deliver(outlet, encoder.text(outlet.form, outlet.head, outlet.topic), now_ns)
 
-    def _topic(self, name: str, type_name: str | None) -> Topic:
-        """Return the topic, created if a client names its type."""
-        topic = self._topics.get(name)
-        full = self.registry.resolve(type_name) if type_name else None
-        if topic is None:
-            if full is None:
-                raise RemoteProtocolError("the topic is not known here: give its type")
-            if len(self._topics) >= self._limits.topics:
-                raise RemoteProtocolError(f"there are {self._limits.topics} topics already, the most allowed")
-            topic = self._topics[name] = Topic(name, full, RELAY_DEPTH, False, None, False)
-        elif full is not None and full != topic.type:
-            raise RemoteProtocolError(f"the topic is {topic.type}, not {full}")
-        return topic
-
-    def _subscribe(self, session: Session, name: str, operation: Subscribe, now_ns: int) -> None:
-        form = Form(session.dialect, operation.compression)
-        outlet = session.outlets.get(name)
-        if outlet is None:
-            if len(session.outlets) >= self._limits.subscriptions:
-                raise RemoteProtocolError(f"{self._limits.subscriptions} subscriptions are the most allowed")
-            topic = self._topic(name, operation.type)
-            # The client is answered with the name it used, which is what it looks up.
-            head = topic.head if operation.topic == name else publish_head(operation.topic)
-            outlet = session.outlets[name] = Outlet(head, topic.depth, operation.topic)
-            topic.subscribers[session.number] = (session, outlet)
-            if topic.latched is not None:
-                session.deliver(outlet, topic.latched.text(form, head, operation.topic), now_ns)
-        else:
-            self._topic(name, operation.type)
-        if operation.id not in outlet.wishes and len(outlet.wishes) >= self._limits.subscriptions:
-            raise RemoteProtocolError(f"{self._limits.subscriptions} subscriptions are the most allowed")
-        depth = min(operation.queue_length, self._limits.queue_length)
-        outlet.wish(operation.id, operation.throttle_rate, depth, form, operation.fragment_size)
-
-    def _unsubscribe(self, session: Session, name: str, operation: Unsubscribe) -> None:
-        outlet = session.outlets.get(name)
-        if outlet is None or not outlet.withdraw(operation.id):
-            raise RemoteProtocolError("not subscribed")
-        if not outlet.wishes:
-            session.outgoing.forget(outlet)
-            del session.outlets[name]
-            topic = self._topics[name]
-            del topic.subscribers[session.number]
-            self._clear(topic)
-
-    def _advertise(self, session: Session, name: str, operation: Advertise) -> None:
-        topic = self._topic(name, operation.type)
-        if topic.owned and topic.command is None:
-            raise RemoteProtocolError("only the console publishes this topic")
-        topic.publishers.add(session.number)
-        topic.latch = topic.latch or (operation.latch and not topic.owned)
-        identifiers = session.advertised.setdefault(name, set())
-        if len(identifiers) < self._limits.topics:
-            identifiers.add(operation.id)
-
-    def _unadvertise(self, session: Session, name: str, operation: Unadvertise) -> None:
-        identifiers = session.advertised.get(name)
-        if identifiers is None or (operation.id is not None and operation.id not in identifiers):
-            raise RemoteProtocolError("not advertised")
-        identifiers.discard(operation.id)
-        if operation.id is None or not identifiers:
-            del session.advertised[name]
-            topic = self._topics[name]
-            topic.publishers.discard(session.number)
-            self._clear(topic)
-
-    def _clear(self, topic: Topic) -> None:
-        """Forget a topic of clients that nobody publishes or hears any more."""
-        if not topic.owned and not topic.publishers and not topic.subscribers:
-            self._topics.pop(topic.name, None)
+def _is_finite(value: Any) -> bool:
+    """Return whether no number in decoded CBOR is NaN or infinite; JSON has no way to say one."""
+    if isinstance(value, dict):
+        return all(map(_is_finite, value.values()))
+    if isinstance(value, list):
+        return all(map(_is_finite, value))
+    return not isinstance(value, float) or is_finite(value)

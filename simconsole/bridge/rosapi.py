@@ -9,9 +9,10 @@ from typing import Any, Final
 import orjson
 
 from simconsole.bridge.access import Role
+from simconsole.bridge.board import Topic
 from simconsole.bridge.forms import Dialect
 from simconsole.bridge.messages.definition import Definition, FieldType
-from simconsole.bridge.protocol import Router, Topic
+from simconsole.bridge.protocol import Router
 from simconsole.bridge.session import resolve_topic
 from simconsole.errors import BridgeError, RemoteProtocolError
 from simconsole.units import NS_PER_S

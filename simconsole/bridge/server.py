@@ -15,16 +15,27 @@ from typing import Any, Final, cast
 from websockets.asyncio.server import Server, ServerConnection
 from websockets.asyncio.server import serve as serve_websockets
 from websockets.exceptions import ConnectionClosed
+from websockets.frames import CloseCode, Frame
 from websockets.http11 import Request, Response
+from websockets.protocol import State
 
 from simconsole.bridge.access import Role
+from simconsole.bridge.backoff import Liveness
 from simconsole.bridge.console import ConsoleBridge
-from simconsole.bridge.forms import Binary
+from simconsole.bridge.documents import Binary
 from simconsole.bridge.handshake import FORBIDDEN, FULL, UNKNOWN, dialect_of, is_host_allowed, origins, role_at
 from simconsole.bridge.inputs import OnCommand, OnEvents
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.session import Session
-from simconsole.bridge.wire import address_url, listen, load_access, load_tls, log_outcome
+from simconsole.bridge.wire import (
+    FragmentLimit,
+    address_url,
+    is_unacknowledged,
+    listen,
+    load_access,
+    load_tls,
+    log_outcome,
+)
 from simconsole.errors import RemoteProtocolError
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.rows import Snapshot
@@ -32,16 +43,46 @@ from simconsole.units import NS_PER_S
 
 _HANDSHAKE_S: Final = 5.0
 _CLOSE_S: Final = 1.0
-_WATCH_S: Final = 1.0
+_WATCH_S: Final = 0.25
 _POLL_S: Final = 0.001
 
 _logger = logging.getLogger("simconsole.bridge.server")
 
 
+class _Peer(ServerConnection):
+    """A connection that knows when it last heard something and counts the frames a message is in."""
+
+    def __init__(self, profile: BridgeProfile, clock_ns: Callable[[], int], *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        self.limit = FragmentLimit(profile.limits.message_fragments)
+        self.liveness = Liveness(profile.ping_interval_s, profile.dead_after_s)
+        self.liveness.begin(clock_ns() / NS_PER_S)
+        self._clock_ns = clock_ns
+        # More than the sender, which waits for the socket between two messages, can have put there.
+        self._max_unsent_bytes = 2 * profile.limits.queued_bytes
+
+    def data_received(self, data: bytes) -> None:
+        """Note the time of whatever comes, pongs too."""
+        self.liveness.heard(self._clock_ns() / NS_PER_S)
+        super().data_received(data)
+        if self.transport.get_write_buffer_size() > self._max_unsent_bytes:
+            self.transport.abort()  # it sends pings without end and reads no answer
+
+    def process_event(self, event: Any) -> None:
+        """Pass a frame on, unless its message is in too many, or too long on its way (N13)."""
+        if isinstance(event, Frame):
+            reason = self.limit.add(event, self._clock_ns())
+            if reason is not None:
+                self.protocol.fail(CloseCode.POLICY_VIOLATION, reason)
+                self.send_data()
+                return
+        super().process_event(event)
+
+
 class _Client:
     """One connection and what its sender is doing."""
 
-    def __init__(self, connection: ServerConnection) -> None:
+    def __init__(self, connection: _Peer) -> None:
         self.connection = connection
         self.ready = asyncio.Event()
         self.sending_since_ns: int | None = None
@@ -99,10 +140,10 @@ class BridgeServer:
             ssl=self._tls,
             origins=cast("Any", origins(self._profile)),  # a NewType of str there
             process_request=self._admit,
+            create_connection=cast("Any", self._peer),  # any function will do; its type says a class
             compression=None,
             max_size=self._profile.limits.message_bytes,
-            ping_interval=self._profile.ping_interval_s,
-            ping_timeout=self._profile.ping_timeout_s,
+            ping_interval=None,  # `_watch` asks, and cuts nobody who is merely slow
             open_timeout=_HANDSHAKE_S,
             close_timeout=_CLOSE_S,
             server_header=None,
@@ -140,7 +181,11 @@ class BridgeServer:
         given = request.headers.get_all("Authorization")
         return role_at(request.path, given[0] if given else None, self._access)
 
+    def _peer(self, *arguments: Any, **options: Any) -> _Peer:
+        return _Peer(self._profile, self._clock_ns, *arguments, **options)
+
     async def _serve_client(self, connection: ServerConnection) -> None:
+        assert isinstance(connection, _Peer)
         sock: socket.socket = connection.transport.get_extra_info("socket")
         sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         client = _Client(connection)
@@ -154,12 +199,8 @@ class BridgeServer:
         sender = asyncio.create_task(self._send(session, client))
         try:
             async for message in connection:
-                if isinstance(message, str):
-                    outcome = self.console.receive(session, message.encode(), self._clock_ns())
-                else:
-                    reason = "binary messages are not supported here"
-                    outcome = self.console.router.refuse(session, reason, self._clock_ns())
-                log_outcome(_logger, session, outcome)
+                data = message.encode() if isinstance(message, str) else Binary(message)
+                log_outcome(_logger, session, self.console.receive(session, data, self._clock_ns()))
         except ConnectionClosed:
             pass
         finally:
@@ -190,16 +231,36 @@ class BridgeServer:
                 asyncio.get_running_loop().call_later(wait_s, client.ready.set)
 
     async def _watch(self) -> None:
-        """Cut clients that have taken nothing for too long."""
-        limit_ns = int(self._profile.stall_close_s * NS_PER_S)
+        """Ask quiet clients for a sign of life, cut those that are gone and those that take nothing."""
         while True:
             await asyncio.sleep(_WATCH_S)
-            now_ns = self._clock_ns()
-            self.console.router.calls.expire(now_ns)
-            for session, client in list(self._clients.items()):
-                if client.sending_since_ns is not None and now_ns - client.sending_since_ns > limit_ns:
-                    _logger.warning("%s took nothing for %g s and is cut", session.peer, self._profile.stall_close_s)
-                    client.connection.transport.abort()
+            self.look()
+
+    def look(self) -> None:
+        """Do what is due of it now."""
+        now_ns = self._clock_ns()
+        self.console.router.calls.expire(now_ns)
+        for session, client in list(self._clients.items()):
+            reason = self._why_cut(client, now_ns)
+            if reason is not None:
+                _logger.warning("%s %s and is cut", session.peer, reason)
+                client.connection.transport.abort()
+
+    def _why_cut(self, client: _Client, now_ns: int) -> str | None:
+        peer, profile = client.connection, self._profile
+        overdue = peer.limit.overdue(now_ns)
+        if overdue is not None:
+            return f"sends too slowly: {overdue}"
+        since_ns, now_s = client.sending_since_ns, now_ns / NS_PER_S
+        if since_ns is not None and now_ns - since_ns > profile.stall_close_s * NS_PER_S:
+            return f"took nothing for {profile.stall_close_s:g} s"
+        # A program that is slow to answer is not a machine that is gone, which acknowledges nothing either.
+        if peer.liveness.is_dead(now_s) and is_unacknowledged(peer.transport.get_extra_info("socket")):
+            return f"has been gone for {profile.dead_after_s:g} s"
+        if peer.liveness.ping_due(now_s) and peer.state is State.OPEN:
+            peer.protocol.send_ping(b"")
+            peer.send_data()
+        return None
 
 
 def serve(

@@ -2,11 +2,12 @@
 
 import re
 from collections.abc import Callable
-from typing import Final
+from typing import Final, NamedTuple
 
 from simconsole.bridge.access import Role
 from simconsole.bridge.forms import Dialect
 from simconsole.bridge.fragments import Assembler
+from simconsole.bridge.meter import Meter
 from simconsole.bridge.operations import DEFAULT_LEVEL, SEVERITY, Id, write_status
 from simconsole.bridge.outgoing import Outgoing, Outlet
 from simconsole.errors import RemoteProtocolError
@@ -14,6 +15,20 @@ from simconsole.units import NS_PER_S
 
 MAX_NAME: Final = 256
 _NAME: Final = re.compile(r"/?[A-Za-z_][A-Za-z0-9_]*(?:/[A-Za-z_][A-Za-z0-9_]*)*")
+
+
+class Counts(NamedTuple):
+    """What went between the server and its clients, in messages."""
+
+    received: int = 0
+    refused: int = 0
+    throttled: int = 0
+    sent: int = 0
+    dropped: int = 0
+
+    def plus(self, other: "Counts") -> "Counts":
+        """Return the sums."""
+        return Counts(*map(sum, zip(self, other, strict=True)))
 
 
 class Session:
@@ -28,11 +43,13 @@ class Session:
         dialect: Dialect = "ros2",
         assembler: Assembler | None = None,
         role: Role = Role.CONTROL,
+        meter: Meter | None = None,
     ) -> None:
         """Start with nothing; `wake` is called whenever there may be something to send."""
         self.dialect: Dialect = dialect
         self.role = role
         self.assembler = assembler or Assembler(max_bytes, 256)
+        self.meter = meter or Meter(None)
         self.number = number
         self.peer = peer
         self.outgoing = Outgoing(max_bytes)
@@ -40,6 +57,7 @@ class Session:
         self.advertised: dict[str, set[Id]] = {}
         self.received = 0
         self.refused = 0
+        self.throttled = 0
         self.sent = 0
         self._level = SEVERITY[DEFAULT_LEVEL]
         self._warned_ns: int | None = None
@@ -66,6 +84,15 @@ class Session:
             self.outgoing.reply(write_status(level, text, identifier))
             self._wake()
 
+    def pass_over(self, text: str, now_ns: int) -> None:
+        """Count a message that was not wanted any more; tell the client at most once a second."""
+        self.throttled += 1
+        self._remark_once("error", text, now_ns)
+
+    def counts(self) -> Counts:
+        """Return what went to and from this client."""
+        return Counts(self.received, self.refused, self.throttled, self.sent, self.outgoing.dropped)
+
     def answer(self, text: bytes, fragment_size: int | None = None) -> None:
         """Send something that is meant for this client alone."""
         self.outgoing.reply(text, fragment_size)
@@ -75,9 +102,14 @@ class Session:
         """Queue a message of a subscribed topic; tell the client, at most once a second, when some were dropped."""
         dropped = self.outgoing.put(outlet, text)
         self._wake()
-        if dropped and (self._warned_ns is None or now_ns - self._warned_ns >= NS_PER_S):
+        if dropped:
+            self._remark_once("warning", f"too slow: {self.outgoing.dropped} messages dropped so far", now_ns)
+
+    def _remark_once(self, level: str, text: str, now_ns: int) -> None:
+        """Remark at most once a second."""
+        if self._warned_ns is None or now_ns - self._warned_ns >= NS_PER_S:
             self._warned_ns = now_ns
-            self.remark("warning", f"too slow: {self.outgoing.dropped} messages dropped so far")
+            self.remark(level, text)
 
 
 def resolve_topic(name: str) -> str:

@@ -1,62 +1,101 @@
-"""What servers and client share: whole texts out of WebSocket frames, listening, and lines in the log."""
+"""What servers and client share: whole messages out of WebSocket frames, listening, and lines in the log."""
 
 import logging
 import socket
 import ssl
+import struct
 from pathlib import Path
 from typing import Final
 
 from websockets.frames import Frame, Opcode
 
 from simconsole.bridge.access import OPEN, Access, Role, read_tokens
+from simconsole.bridge.documents import Binary
 from simconsole.bridge.handshake import check_exposure
 from simconsole.bridge.protocol import Outcome
 from simconsole.bridge.session import Session
-from simconsole.errors import BridgeError, ProfileError, RemoteProtocolError
+from simconsole.errors import BridgeError, ProfileError
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.units import NS_PER_S
 
 RECEIVE_BYTES: Final = 65_536
+ASSEMBLY_NS: Final = 2 * NS_PER_S
+"""The longest that one message may be on its way once its first frame is here."""
 _BACKLOG: Final = 64
+_UNACKNOWLEDGED_AT: Final = 24
+"""Offset of tcpi_unacked in Linux' struct tcp_info."""
 _LOGGED_REFUSALS: Final = 10
 _LOGGED_EVERY: Final = 1000
 
 
-class TextAssembler:
-    """Joins the fragments of text messages. The protocol object has checked their order and total size."""
+class FragmentLimit:
+    """Counts the frames of one message, and how long it has been coming (N13). Time is given, in ns."""
 
     def __init__(self, max_fragments: int) -> None:
         """Allow messages of at most `max_fragments` frames."""
         self._max_fragments = max_fragments
+        self._count = 0
+        self._since_ns = 0
+
+    def add(self, frame: Frame, now_ns: int) -> str | None:
+        """Take a frame; return why its message is refused, None while it is not."""
+        if not is_data(frame):
+            return None
+        if frame.opcode is not Opcode.CONT:
+            self._count, self._since_ns = 0, now_ns
+        self._count = 0 if frame.fin else self._count + 1
+        if self._count >= self._max_fragments:
+            return f"message is in more than {self._max_fragments} fragments"
+        return self.overdue(now_ns)
+
+    def overdue(self, now_ns: int) -> str | None:
+        """Return why a message that is not complete is no longer waited for, None while it is or there is none."""
+        if self._count and now_ns - self._since_ns > ASSEMBLY_NS:
+            return f"message has been coming for more than {ASSEMBLY_NS // NS_PER_S} s"
+        return None
+
+
+class MessageAssembler:
+    """Joins the frames of messages. The protocol object has checked their order and total size."""
+
+    def __init__(self) -> None:
+        """Start between two messages."""
         self._parts: list[bytes] = []
         self._binary = False
 
     def add(self, frame: Frame) -> bytes | None:
-        """Take one data frame; return the message when it is complete.
-
-        Raises:
-            RemoteProtocolError: a binary message, or more fragments than allowed (N13).
-        """
-        if frame.opcode is Opcode.CONT:
-            self._parts.append(bytes(frame.data))
-        elif frame.fin and frame.opcode is Opcode.TEXT:
-            return bytes(frame.data)
-        else:
+        """Take one data frame; return the message when it is complete, `Binary` if it is no text."""
+        if frame.opcode is not Opcode.CONT:
             self._binary = frame.opcode is Opcode.BINARY
-            self._parts = [bytes(frame.data)]
+            self._parts.clear()
+        self._parts.append(bytes(frame.data))
         if not frame.fin:
-            if len(self._parts) >= self._max_fragments:
-                raise RemoteProtocolError(f"message is in more than {self._max_fragments} fragments")
             return None
-        parts, self._parts = self._parts, []
-        if self._binary:
-            self._binary = False
-            raise RemoteProtocolError("binary messages are not supported here")
-        return b"".join(parts)
+        whole = self._parts[0] if len(self._parts) == 1 else b"".join(self._parts)
+        self._parts = []
+        return Binary(whole) if self._binary else whole
 
 
 def is_data(frame: Frame) -> bool:
     """Return whether a frame carries part of a message, and is not ping, pong or close."""
     return frame.opcode is Opcode.TEXT or frame.opcode is Opcode.CONT or frame.opcode is Opcode.BINARY
+
+
+def is_unacknowledged(sock: socket.socket) -> bool:
+    """Return whether segments are on their way that the other machine has not acknowledged.
+
+    That tells a machine that is gone from a program that is slow, whose system still acknowledges. Where the system
+    does not say (Linux does), nobody who is silent is trusted.
+    """
+    option = getattr(socket, "TCP_INFO", None)
+    if option is None:
+        return True
+    try:
+        state = sock.getsockopt(socket.IPPROTO_TCP, option, _UNACKNOWLEDGED_AT + 4)
+    except OSError:
+        return True
+    (count,) = struct.unpack_from("=I", state, _UNACKNOWLEDGED_AT)
+    return bool(count)
 
 
 def listen(host: str, port: int) -> socket.socket:

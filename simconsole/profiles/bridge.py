@@ -33,6 +33,8 @@ class BridgeLimits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     topics: Annotated[int, Meta(ge=16, le=4096)] = 256
     calls: Annotated[int, Meta(ge=1, le=4096)] = 64
     call_s: Annotated[float, Meta(gt=0.0, le=3600.0)] = 30.0
+    commands_hz: Annotated[float, Meta(ge=1.0, le=100_000.0)] = 500.0
+    """Of one client, held over a second; what comes above it is passed over, not queued."""
     queue_length: Annotated[int, Meta(ge=1, le=100_000)] = 1000
     queued_bytes: Annotated[int, Meta(ge=65_536, le=67_108_864)] = 1_048_576
 
@@ -70,8 +72,11 @@ class BridgeProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """console: senders stamp with /clock, so that stamps from the future and stale ones are refused too."""
     max_stamp_age_ms: Annotated[float, Meta(gt=0.0, le=10_000.0)] = 200.0
     lease_ms: Annotated[float, Meta(ge=50.0, le=10_000.0)] = 500.0
-    ping_interval_s: Annotated[float, Meta(gt=0.0, le=60.0)] = 2.0
-    ping_timeout_s: Annotated[float, Meta(gt=0.0, le=60.0)] = 10.0
+    ping_interval_s: Annotated[float, Meta(gt=0.0, le=60.0)] = 1.0
+    """A client that says nothing for so long is asked for a sign of life."""
+    dead_after_s: Annotated[float, Meta(gt=0.0, le=600.0)] = 3.0
+    """A client is taken for gone when for so long nothing came from it and its machine acknowledged nothing."""
     stall_close_s: Annotated[float, Meta(gt=0.0, le=600.0)] = 10.0
+    """A client that is there but takes nothing for so long is cut."""
     limits: BridgeLimits = BridgeLimits()
     commands: CommandLimits = CommandLimits()

@@ -1,6 +1,10 @@
+import itertools
+import struct
+
+import cbor2
 import pytest
 
-from simconsole.bridge.documents import LENIENT_BYTES, has_duplicate_keys, read
+from simconsole.bridge.documents import LENIENT_BYTES, TYPED_ARRAYS, Binary, has_duplicate_keys, read
 from simconsole.errors import RemoteProtocolError
 
 
@@ -79,6 +83,73 @@ def test_keys_given_twice(text: bytes, twice: bool) -> None:
 
 
 def test_depth_beyond_any_message_is_refused() -> None:
-    text = b'{"a":' + b"[" * 1000 + b"]" * 1000 + b"}"
-    with pytest.raises(RemoteProtocolError, match="too deep"):
-        has_duplicate_keys(text, read(text).fields)
+    for depth, escape in itertools.product((31, 32, 1000), (b"", b"\\u0062")):
+        text = b'{"a":' + b"[" * depth + b"]" * depth + b',"' + escape + b'":[{},[],[]]}'
+        if depth == 31:
+            assert not has_duplicate_keys(text, read(text).fields)
+        else:
+            with pytest.raises(RemoteProtocolError, match="nested deeper than 32"):
+                read(text)
+    assert read(b'{"a":[' + b"[]," * 100 + b"1]}").fields["a"][100] == 1
+
+
+def test_cbor_is_read() -> None:
+    message = {"op": "x", "n": [1, None, 1.5, "t", b"o", True, 2**64 - 1], "d": {"ä": -1}}
+    assert read(Binary(cbor2.dumps(message))) == (message, False)
+    assert not has_duplicate_keys(Binary(cbor2.dumps(message)), message)
+
+
+@pytest.mark.parametrize(
+    ("tag", "letter"),
+    [(64, "B"), (69, "H"), (70, "I"), (71, "Q"), (72, "b"), (77, "h"), (78, "i"), (79, "q"), (85, "f"), (86, "d")],
+)
+def test_typed_arrays_are_lists_and_octets_stay(tag: int, letter: str) -> None:
+    octets = struct.pack(f"<3{letter}", 1, 2, 3)
+    value = read(Binary(cbor2.dumps({"a": cbor2.CBORTag(tag, octets)}))).fields["a"]
+    assert value == (octets if letter == "B" else [1, 2, 3])
+    if letter != "B":
+        for wrong in (
+            cbor2.CBORTag(tag, octets[1:]) if letter != "b" else cbor2.CBORTag(tag, 1),
+            cbor2.CBORTag(tag, "x"),
+        ):
+            with pytest.raises(RemoteProtocolError, match="a tag other than"):
+                read(Binary(cbor2.dumps({"a": wrong})))
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"",
+        b"\xff",
+        b"\xa1\x61a\x01\x01",
+        b"\xa1\x01\x01",
+        b"\xa1\x41a\x01",
+        b"\xa1\x61a\xf7",
+        b"\xa1\x61a\xf8\x20",
+        b"\xa1\x61a\x62\xff\xff",
+        b"\xa1\x61a\x3b" + b"\xff" * 8,
+        b"\xa2\x61a\x01\x61a\x02",
+        b"\xbf\x61a\x01\xff",
+        b"\x9b\x7f" + b"\xff" * 7,
+        b"\x5b\x7f" + b"\xff" * 7,
+        b"\xbb\x7f" + b"\xff" * 7,
+        b"\x81" * 100_000,
+        b"\xa1\x61a\xc2\x5a\x00\x03\xff\x00" + b"\xff" * 0x3FF00,
+    ],
+    ids=range(16),
+)
+def test_what_is_no_cbor_document(data: bytes) -> None:
+    with pytest.raises(RemoteProtocolError, match="not one CBOR document"):
+        read(Binary(data))
+
+
+def test_no_other_tag_is_read_whatever_the_library_makes_of_it() -> None:
+    allowed = set()
+    for number in range(70_000):
+        head = bytes([0xC0 | number]) if number < 24 else b"\xda" + number.to_bytes(4, "big")
+        try:
+            read(Binary(b"\xa1\x61a" + head + b"\x48" + bytes(8)))
+        except RemoteProtocolError:
+            continue
+        allowed.add(number)
+    assert allowed == set(TYPED_ARRAYS)

@@ -1,8 +1,6 @@
-import base64
 import json
 import math
 import struct
-import zlib
 from typing import Any
 
 import cbor2
@@ -10,6 +8,7 @@ import pytest
 
 from simconsole.bridge.forms import PLAIN, Binary, Encoder, Form, png, spell
 from simconsole.bridge.messages import standard_registry
+from tests.bridge.reading import unpacked
 
 HEAD = b'{"op":"publish","topic":"/a","msg":'
 
@@ -18,24 +17,6 @@ def encoder(type_name: str, plain: dict[str, Any]) -> Encoder:
     registry = standard_registry()
     full = registry.resolve(type_name)
     return Encoder(registry, full, registry.from_plain(full, plain), 7, 3_000_000_004)
-
-
-def unpacked(text: bytes) -> bytes:
-    """The text inside of a PNG, as rosbridge_suite's clients read it."""
-    data = base64.b64decode(json.loads(text)["data"])
-    assert data[:8] == b"\x89PNG\r\n\x1a\n"
-    at, lines, width = 8, b"", 0
-    while at < len(data):
-        (length,) = struct.unpack_from(">I", data, at)
-        name, content = data[at + 4 : at + 8], data[at + 8 : at + 8 + length]
-        assert struct.unpack_from(">I", data, at + 8 + length)[0] == zlib.crc32(name + content)
-        if name == b"IHDR":
-            width = struct.unpack_from(">I", content)[0]
-        if name == b"IDAT":
-            lines = zlib.decompress(content)
-        at += 12 + length
-    row = 3 * width + 1
-    return b"".join(lines[start + 1 : start + row] for start in range(0, len(lines), row))
 
 
 def test_json_of_both_dialects() -> None:

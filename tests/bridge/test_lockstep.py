@@ -200,7 +200,7 @@ def test_malformed_frames_are_answered_and_the_next_command_applied(
         peer.send("garbage")
         assert "not one JSON document" in refusal(peer)
         peer.send(b"binary")
-        assert "binary" in refusal(peer)
+        assert "not one CBOR document" in refusal(peer)
         peer.send(json.dumps({"op": "publish", "topic": CONTROL, "msg": BODY}).replace("0.1", "NaN"))
         assert "NaN" in refusal(peer)
         peer.send(['{"op":"publish","topic":"%s","msg":' % CONTROL, json.dumps(BODY) + "}"])  # noqa: UP031  (braces)

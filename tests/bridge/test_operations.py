@@ -8,6 +8,7 @@ from simconsole.bridge.messages import standard_registry
 from simconsole.bridge.operations import (
     Advertise,
     Publish,
+    Qos,
     SetLevel,
     Status,
     Subscribe,
@@ -33,7 +34,7 @@ from simconsole.errors import RemoteProtocolError
         ({"op": "subscribe", "topic": "/a"}, Subscribe("/a")),
         (
             {"op": "subscribe", "topic": "/a", "throttle_rate": 20, "queue_length": 5, "qos": {}},
-            Subscribe("/a", None, None, 20.0, 5),
+            Subscribe("/a", None, None, 20.0, 5, qos=Qos()),
         ),
         ({"op": "unsubscribe", "topic": "/a"}, Unsubscribe("/a")),
         ({"op": "status", "level": "warning", "msg": "m"}, Status("warning", "m")),
@@ -56,6 +57,8 @@ def test_operations_are_read(fields: dict[str, Any], operation: object) -> None:
         ({"op": "publish", "topic": 5, "msg": {}}, r"\$.topic"),
         ({"op": "advertise", "topic": "/a"}, "missing required field `type`"),
         ({"op": "subscribe", "topic": "/a", "throttle_rate": -1}, r"\$.throttle_rate"),
+        ({"op": "subscribe", "topic": "/a", "qos": {"depth": -1}}, r"\$.qos.depth"),
+        ({"op": "publish", "topic": "/a", "msg": {}, "qos": {"durability": "eternal"}}, r"\$.qos.durability"),
         ({"op": "subscribe", "topic": "/a", "queue_length": 1.5}, r"\$.queue_length"),
         ({"op": "subscribe", "topic": "/a", "compression": "zip"}, r"\$.compression"),
         ({"op": "subscribe", "topic": "/a", "id": {}}, r"\$.id"),

@@ -5,6 +5,7 @@ from typing import Any
 import pytest
 
 from simconsole.bridge.console import ConsoleBridge
+from simconsole.bridge.documents import Binary
 from simconsole.bridge.messages import standard_registry
 from simconsole.bridge.protocol import Router
 from simconsole.errors import LocalProtocolError, RemoteProtocolError
@@ -295,7 +296,7 @@ def test_mistakes_of_a_stranger_do_not_count_against_the_commander() -> None:
     for data in ("null", "NaN", "11", '"x"'):
         console.send(first, data)
     console.router.receive(first, b"garbage", 0)
-    console.router.refuse(first, "binary", 0)
+    console.router.receive(first, Binary(b"garbage"), 0)
     assert console.refused == 6
     assert (first.refused, second.refused) == (6, 5)
 

@@ -1,0 +1,203 @@
+"""All topics of one server: what each carries, whose it is, who hears it. A message is encoded once for everybody."""
+
+from collections.abc import Callable
+from typing import Any, Final, NamedTuple
+
+from simconsole.bridge.forms import Encoder, Form
+from simconsole.bridge.messages import Registry
+from simconsole.bridge.operations import NO_QOS, Advertise, Publish, Qos, Subscribe, publish_head
+from simconsole.bridge.outgoing import Outlet
+from simconsole.bridge.session import Session
+from simconsole.errors import LocalProtocolError, RemoteProtocolError
+from simconsole.profiles.bridge import BridgeLimits
+
+RELAY_DEPTH: Final = 100
+"""Messages kept of a topic between clients for a slow subscriber that did not say how many it wants."""
+
+_UINT32: Final = 0xFFFFFFFF
+
+Accept = Callable[[dict[str, Any], Any, int], None]
+"""Takes a command as decoded, typed, and the time; raises RemoteProtocolError to refuse it."""
+
+
+class Command(NamedTuple):
+    """A topic by which clients command the console."""
+
+    accept: Accept
+    leased: bool  # only for the holder of the lease; a request such as an emergency stop is open to everyone
+
+
+class Topic:
+    """One topic: who listens, what it carries, and whose it is."""
+
+    def __init__(
+        self, name: str, type_name: str, depth: int, owned: bool, command: Command | None, latch: bool
+    ) -> None:
+        """Create a topic; `owned` topics belong to the console and stay."""
+        self.name = name
+        self.type = type_name
+        self.depth = depth
+        self.owned = owned
+        self.command = command
+        self.latch = latch
+        self.latched: Encoder | None = None
+        self.latched_ns = 0
+        self.lifespan_ns: int | None = None
+        self.sequence = 0
+        self.head = publish_head(name)
+        self.publishers: set[int] = set()
+        self.subscribers: dict[int, tuple[Session, Outlet]] = {}
+
+    def kept(self, now_ns: int) -> Encoder | None:
+        """Return the latched message that a new subscriber gets, None without one or when its lifespan is over."""
+        if self.lifespan_ns is not None and now_ns - self.latched_ns > self.lifespan_ns:
+            self.latched = None
+        return self.latched
+
+
+class Board:
+    """Topics by name, with the operations that change them."""
+
+    def __init__(self, registry: Registry, limits: BridgeLimits) -> None:
+        """Start without topics."""
+        self.registry = registry
+        self.ros_time_ns = 0
+        self._limits = limits
+        self._topics: dict[str, Topic] = {}
+
+    def add(self, topic: Topic) -> None:
+        """Add a topic of the console.
+
+        Raises:
+            LocalProtocolError: there is one of that name.
+        """
+        if topic.name in self._topics:
+            raise LocalProtocolError(f"{topic.name}: two of the console's topics have this name")
+        self._topics[topic.name] = topic
+
+    def find(self, name: str) -> Topic | None:
+        """Return a topic, None if there is none of that name."""
+        return self._topics.get(name)
+
+    def all(self) -> dict[str, Topic]:
+        """Return every topic by name."""
+        return dict(sorted(self._topics.items()))
+
+    def distribute(self, topic: Topic, message: Any, now_ns: int) -> None:
+        """Send a typed message to all subscribers of a topic."""
+        if not topic.subscribers and not topic.latch:
+            return
+        topic.sequence = (topic.sequence + 1) & _UINT32
+        encoder = Encoder(self.registry, topic.type, message, topic.sequence, self.ros_time_ns)
+        if topic.latch:
+            topic.latched, topic.latched_ns = encoder, now_ns
+        for session, outlet in topic.subscribers.values():
+            session.deliver(outlet, encoder.text(outlet.form, outlet.head, outlet.topic), now_ns)
+
+    def subscribe(self, session: Session, name: str, operation: Subscribe, now_ns: int) -> None:
+        """Add or change a subscription. Raises RemoteProtocolError with the reason why not."""
+        form = Form(session.dialect, operation.compression)
+        qos = operation.qos or NO_QOS
+        outlet = session.outlets.get(name)
+        if outlet is None:
+            if len(session.outlets) >= self._limits.subscriptions:
+                raise RemoteProtocolError(f"{self._limits.subscriptions} subscriptions are the most allowed")
+            topic = self._topic(name, operation.type)
+            # The client is answered with the name it used, which is what it looks up.
+            head = topic.head if operation.topic == name else publish_head(operation.topic)
+            outlet = session.outlets[name] = Outlet(head, topic.depth, operation.topic)
+            topic.subscribers[session.number] = (session, outlet)
+            kept = topic.kept(now_ns)
+            if kept is not None and qos.durability != "volatile":
+                session.deliver(outlet, kept.text(form, head, operation.topic), now_ns)
+        else:
+            self._topic(name, operation.type)
+        if operation.id not in outlet.wishes and len(outlet.wishes) >= self._limits.subscriptions:
+            raise RemoteProtocolError(f"{self._limits.subscriptions} subscriptions are the most allowed")
+        depth = operation.queue_length or self._depth(qos)
+        outlet.wish(
+            operation.id,
+            operation.throttle_rate,
+            min(depth, self._limits.queue_length),
+            form,
+            operation.fragment_size,
+        )
+
+    def unsubscribe(self, session: Session, name: str, identifier: Any) -> None:
+        """End the subscription of an id, or all of a client's for None. Raises RemoteProtocolError: there is none."""
+        outlet = session.outlets.get(name)
+        if outlet is None or not outlet.withdraw(identifier):
+            raise RemoteProtocolError("not subscribed")
+        if not outlet.wishes:
+            session.outgoing.forget(outlet)
+            del session.outlets[name]
+            topic = self._topics[name]
+            del topic.subscribers[session.number]
+            self._clear(topic)
+
+    def advertise(self, session: Session, name: str, operation: Advertise) -> None:
+        """Note that a client will publish. Raises RemoteProtocolError with the reason why it must not."""
+        topic = self._topic(name, operation.type)
+        if topic.owned and topic.command is None:
+            raise RemoteProtocolError("only the console publishes this topic")
+        topic.publishers.add(session.number)
+        self.settle(topic, operation)
+        identifiers = session.advertised.setdefault(name, set())
+        if len(identifiers) < self._limits.topics:
+            identifiers.add(operation.id)
+
+    def settle(self, topic: Topic, operation: Advertise | Publish) -> None:
+        """Let a publisher say how its topic is kept: latched, how many for a slow client, for how long."""
+        if topic.owned:
+            return
+        qos = operation.qos or NO_QOS
+        topic.latch = topic.latch or operation.latch or qos.durability == "transient_local"
+        topic.depth = min(self._depth(qos) or topic.depth, self._limits.queue_length)
+        if qos.lifespan is not None:
+            topic.lifespan_ns = qos.lifespan_ns
+
+    def unadvertise(self, session: Session, name: str, identifier: Any) -> None:
+        """Take an announcement back, all of a client's for None. Raises RemoteProtocolError: there is none."""
+        identifiers = session.advertised.get(name)
+        if identifiers is None or (identifier is not None and identifier not in identifiers):
+            raise RemoteProtocolError("not advertised")
+        identifiers.discard(identifier)
+        if identifier is None or not identifiers:
+            del session.advertised[name]
+            topic = self._topics[name]
+            topic.publishers.discard(session.number)
+            self._clear(topic)
+
+    def leave(self, session: Session) -> None:
+        """Remove everything of a client."""
+        for name in (*session.outlets, *session.advertised):
+            topic = self._topics.get(name)
+            if topic is not None:
+                topic.subscribers.pop(session.number, None)
+                topic.publishers.discard(session.number)
+                self._clear(topic)
+        session.outlets.clear()
+        session.advertised.clear()
+
+    def _topic(self, name: str, type_name: str | None) -> Topic:
+        """Return the topic, created if a client names its type."""
+        topic = self._topics.get(name)
+        full = self.registry.resolve(type_name) if type_name else None
+        if topic is None:
+            if full is None:
+                raise RemoteProtocolError("the topic is not known here: give its type")
+            if len(self._topics) >= self._limits.topics:
+                raise RemoteProtocolError(f"there are {self._limits.topics} topics already, the most allowed")
+            topic = self._topics[name] = Topic(name, full, RELAY_DEPTH, False, None, False)
+        elif full is not None and full != topic.type:
+            raise RemoteProtocolError(f"the topic is {topic.type}, not {full}")
+        return topic
+
+    def _depth(self, qos: Qos) -> int:
+        """Return how many messages a quality of service asks to keep, 0 if it does not say."""
+        return self._limits.queue_length if qos.history == "keep_all" else qos.depth or 0
+
+    def _clear(self, topic: Topic) -> None:
+        """Forget a topic of clients that nobody publishes or hears any more."""
+        if not topic.owned and not topic.publishers and not topic.subscribers:
+            self._topics.pop(topic.name, None)

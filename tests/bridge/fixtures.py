@@ -1,0 +1,148 @@
+import json
+import queue
+import threading
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+from simconsole.bridge.console import ConsoleBridge
+from simconsole.bridge.protocol import Outcome
+from simconsole.bridge.server import serve
+from simconsole.bridge.session import Session
+from simconsole.profiles.bridge import BridgeProfile
+from simconsole.rows import ARBITRATION_AT, PLATFORM_AT, REMOTE_AT, SAMPLE_AT, VEHICLE_AT, Snapshot
+from simconsole.signals import Arbitration, DeviceSample, RemoteCommand, VehicleState
+
+STAGES: dict[type[Any], int] = {
+    DeviceSample: SAMPLE_AT,
+    RemoteCommand: REMOTE_AT,
+    Arbitration: ARBITRATION_AT,
+    VehicleState: VEHICLE_AT,
+}
+
+
+def make_snapshot(tick: int, tick_hz: int = 250, **fields: float) -> Snapshot:
+    """A snapshot of zeros but for the named fields of whichever stage has them first."""
+    row = np.zeros(PLATFORM_AT)
+    for name, value in fields.items():
+        stage = next(stage for stage in reversed(STAGES) if name in stage._fields)
+        row[STAGES[stage] + stage._fields.index(name)] = value
+    return Snapshot(tick, tick_hz, row)
+
+
+class Peer:
+    """A client of a console bridge, without a socket."""
+
+    def __init__(self, bridge: ConsoleBridge, name: str = "peer") -> None:
+        self.bridge = bridge
+        self.now_ns = 0
+        self.session: Session = bridge.router.connect(name)
+
+    def send(self, text: bytes | str | None = None, **operation: Any) -> Outcome:
+        if text is None:
+            text = json.dumps(operation)
+        data = text.encode() if isinstance(text, str) else text
+        return self.bridge.receive(self.session, data, self.now_ns)
+
+    def publish(self, topic: str, msg: Any, **more: Any) -> Outcome:
+        return self.send(op="publish", topic=topic, msg=msg, **more)
+
+    def heard(self, now_ns: int | None = None) -> list[dict[str, Any]]:
+        """Everything that may be sent to the client now, decoded strictly."""
+        texts = []
+        while (text := self.session.next_text(self.now_ns if now_ns is None else now_ns)) is not None:
+            texts.append(json.loads(text, parse_constant=pytest.fail))
+        return texts
+
+    def statuses(self) -> list[str]:
+        return [message["msg"] for message in self.heard() if message["op"] == "status"]
+
+
+@pytest.fixture
+def snapshot() -> Callable[..., Snapshot]:
+    return make_snapshot
+
+
+@pytest.fixture
+def bridge() -> ConsoleBridge:
+    return ConsoleBridge(BridgeProfile(port=0))
+
+
+@pytest.fixture
+def peer(bridge: ConsoleBridge) -> Peer:
+    return Peer(bridge)
+
+
+@pytest.fixture
+def join() -> Callable[[ConsoleBridge], Peer]:
+    return Peer
+
+
+@pytest.fixture
+def control() -> Callable[..., dict[str, Any]]:
+    """An autoware_control_msgs/Control as plain values."""
+
+    def make(road_wheel_rad: float = 0.1, accel_mps2: float = 1.0, stamp_ns: int = 0) -> dict[str, Any]:
+        return {
+            "stamp": {"sec": stamp_ns // 10**9, "nanosec": stamp_ns % 10**9},
+            "lateral": {"steering_tire_angle": road_wheel_rad},
+            "longitudinal": {"acceleration": accel_mps2},
+        }
+
+    return make
+
+
+class Served:
+    """A bridge server on a thread of its own, as its process would run it."""
+
+    def __init__(self, profile: BridgeProfile) -> None:
+        self.commands: queue.SimpleQueue[tuple[RemoteCommand, int | None]] = queue.SimpleQueue()
+        self.events: queue.SimpleQueue[int] = queue.SimpleQueue()
+        self.snapshots: queue.SimpleQueue[Snapshot] = queue.SimpleQueue()
+        self._port: queue.SimpleQueue[int] = queue.SimpleQueue()
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._run, args=(profile,))
+        self._thread.start()
+        self.port = self._port.get(timeout=10.0)
+        self.url = f"ws://127.0.0.1:{self.port}"
+
+    def _run(self, profile: BridgeProfile) -> None:
+        serve(
+            profile,
+            self._newest,
+            lambda command, receipt_ns: self.commands.put((command, receipt_ns)),
+            self.events.put,
+            self._stop.is_set,
+            on_ready=self._port.put,
+        )
+
+    def _newest(self) -> Snapshot | None:
+        try:
+            return self.snapshots.get_nowait()
+        except queue.Empty:
+            return None
+
+    def command(self) -> RemoteCommand:
+        """The next change of the command."""
+        return self.commands.get(timeout=10.0)[0]
+
+    def stop(self) -> None:
+        self._stop.set()
+        self._thread.join(timeout=10.0)
+        assert not self._thread.is_alive()
+
+
+@pytest.fixture
+def serving() -> Iterator[Callable[..., Served]]:
+    """Start a server with a profile on a free port; it is stopped at the end."""
+    started: list[Served] = []
+
+    def start(**profile: Any) -> Served:
+        started.append(Served(BridgeProfile(**{"port": 0, **profile})))
+        return started[-1]
+
+    yield start
+    for server in started:
+        server.stop()

@@ -1,0 +1,121 @@
+"""Bad networks and bad clients, without privileges: the kernel drops what arrives at one of our own sockets."""
+
+import ctypes
+import json
+import socket
+import struct
+from typing import Any, Self
+
+_SO_ATTACH_FILTER = 26
+_LOAD_RANDOM = (0x20, 0, 0, 0xFFFFF038)  # ld [SKF_AD_OFF + SKF_AD_RANDOM]
+_DROP = (0x06, 0, 0, 0)
+_TAKE = (0x06, 0, 0, 0xFFFFFFFF)
+
+
+def _attach(sock: socket.socket, program: list[tuple[int, int, int, int]]) -> None:
+    """Give a socket a classic BPF program that says of each packet how much of it is kept (Linux: filter.txt)."""
+    code = ctypes.create_string_buffer(b"".join(struct.pack("HBBI", *step) for step in program))
+    sock.setsockopt(socket.SOL_SOCKET, _SO_ATTACH_FILTER, struct.pack("@HP", len(program), ctypes.addressof(code)))
+
+
+def go_deaf(sock: socket.socket) -> None:
+    """Let nothing more arrive at a socket, not even what its kernel would acknowledge: the far half of half-open."""
+    _attach(sock, [_DROP])
+
+
+def lose(sock: socket.socket, share: float) -> None:
+    """Let a random share of the packets to a socket be lost."""
+    _attach(sock, [_LOAD_RANDOM, (0x35, 0, 1, int(share * 0xFFFFFFFF)), _TAKE, _DROP])
+
+
+TEXT, BINARY, CLOSE, PING, PONG = 1, 2, 8, 9, 10
+
+
+class Raw:
+    """A WebSocket client that can do everything wrong: it writes frames as it is told to."""
+
+    def __init__(self, port: int, *, receive_bytes: int | None = None, headers: str = "") -> None:
+        """Connect and finish the handshake."""
+        self.sock = socket.socket()
+        if receive_bytes is not None:
+            self.sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_bytes)
+        self.sock.settimeout(20.0)
+        self.sock.connect(("127.0.0.1", port))
+        self._buffer = b""
+        self.sock.sendall(handshake(port, headers))
+        while b"\r\n\r\n" not in self._buffer:
+            self._buffer += self.sock.recv(4096)
+        self.response, _, self._buffer = self._buffer.partition(b"\r\n\r\n")
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.sock.close()
+
+    def send(self, opcode: int, data: bytes = b"", *, fin: bool = True, masked: bool = True, rsv: int = 0) -> None:
+        self.sock.sendall(frame(opcode, data, fin=fin, masked=masked, rsv=rsv))
+
+    def say(self, **operation: Any) -> None:
+        """Send one rosbridge operation."""
+        self.send(TEXT, json.dumps(operation).encode())
+
+    def receive(self) -> tuple[int, bytes] | None:
+        """The next frame as (opcode, data), None at the end of the connection, orderly or not."""
+        head = self._take(2)
+        if head is None:
+            return None
+        length = head[1] & 0x7F
+        if length > 125:
+            more = self._take(2 if length == 126 else 8)
+            if more is None:
+                return None
+            length = int.from_bytes(more)
+        data = self._take(length)
+        return None if data is None else (head[0] & 0x0F, data)
+
+    def close_code(self) -> int | None:
+        """The code with which the server closes, None if it just goes; what it says before is passed over."""
+        while (received := self.receive()) is not None:
+            if received[0] == CLOSE:
+                return int.from_bytes(received[1][:2])
+        return None
+
+    def vanish(self) -> None:
+        """Reset the connection."""
+        self.sock.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+        self.sock.close()
+
+    def _take(self, count: int) -> bytes | None:
+        while len(self._buffer) < count:
+            try:
+                data = self.sock.recv(65536)
+            except ConnectionError:
+                return None
+            if not data:
+                return None
+            self._buffer += data
+        taken, self._buffer = self._buffer[:count], self._buffer[count:]
+        return taken
+
+
+def handshake(port: int, headers: str = "") -> bytes:
+    """The request that opens a WebSocket; `headers` come before its own and may replace Host."""
+    host = "" if "Host:" in headers else f"Host: localhost:{port}\r\n"
+    return (
+        f"GET / HTTP/1.1\r\n{headers}{host}Upgrade: websocket\r\nConnection: Upgrade\r\n"
+        "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Version: 13\r\n\r\n"
+    ).encode()
+
+
+def frame(opcode: int, data: bytes = b"", *, fin: bool = True, masked: bool = True, rsv: int = 0) -> bytes:
+    """One frame; its mask is zero, so that the data stands in it as it is."""
+    head = bytes([(0x80 if fin else 0) | rsv << 4 | opcode])
+    mask = 0x80 if masked else 0
+    if len(data) < 126:
+        head += bytes([mask | len(data)])
+    elif len(data) < 65536:
+        head += bytes([mask | 126]) + len(data).to_bytes(2)
+    else:
+        head += bytes([mask | 127]) + len(data).to_bytes(8)
+    return head + (bytes(4) if masked else b"") + data

@@ -1,0 +1,242 @@
+"""N08, N10, N12, N13, N15, N16, N19 of the fault catalogue: bad clients below the protocol, against both servers.
+
+After each of them a client that was there before commands, and is obeyed.
+"""
+
+import json
+import socket
+import tracemalloc
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
+from typing import Any
+
+import pytest
+from websockets.exceptions import InvalidStatus
+from websockets.sync.client import ClientConnection, connect
+
+from simconsole.profiles.bridge import BridgeLimits
+from tests.bridge.networks import BINARY, CLOSE, PING, PONG, TEXT, Raw, frame, handshake
+
+CONTROL = "/control/command/control_cmd"
+MIB = 1 << 20
+
+
+def settle(client: ClientConnection) -> None:
+    """Return when everything sent before has been applied: a refusal is answered in order."""
+    client.send('{"op":"no_such","id":"settle"}')
+    while json.loads(client.recv(timeout=20.0)).get("id") != "settle":
+        pass
+
+
+@contextmanager
+def unharmed(server: Any, control: Callable[..., dict[str, Any]]) -> Iterator[None]:
+    """Someone else commands before the block, and still after it."""
+    with connect(server.url) as client:
+        for road_wheel_rad in (0.1, 0.2):
+            client.send(json.dumps({"op": "publish", "topic": CONTROL, "msg": control(road_wheel_rad)}))
+            settle(client)
+            assert server.applied() == road_wheel_rad
+            if road_wheel_rad == 0.1:
+                yield
+
+
+def test_n08_giant_frame_is_refused_by_its_header(edge: Callable[..., Any], control: Callable[..., Any]) -> None:
+    server = edge()
+    head_of_two = frame(TEXT, b"x" * (2 * MIB))[:14]
+    with unharmed(server, control):
+        tracemalloc.start()
+        try:
+            with Raw(server.port) as raw:
+                raw.sock.sendall(b"\x81\xff" + (1 << 30).to_bytes(8) + bytes(4))
+                assert raw.close_code() == 1009
+            with Raw(server.port) as raw:
+                raw.sock.sendall(head_of_two)
+                assert raw.close_code() == 1009
+            assert tracemalloc.get_traced_memory()[1] < 2 * MIB
+        finally:
+            tracemalloc.stop()
+
+
+@pytest.mark.parametrize("pieces", [2, 8])
+def test_n08_giant_message_in_pieces(edge: Callable[..., Any], control: Callable[..., Any], pieces: int) -> None:
+    server = edge(limits=BridgeLimits(message_bytes=65_536))
+    with unharmed(server, control), Raw(server.port) as raw:
+        for number in range(pieces):
+            raw.send(TEXT if not number else 0, b"x" * (70_000 // pieces), fin=number == pieces - 1)
+        assert raw.close_code() == 1009
+
+
+def test_n10_compression_is_off(edge: Callable[..., Any], control: Callable[..., Any]) -> None:
+    server = edge()
+    offer = "Sec-WebSocket-Extensions: permessage-deflate\r\n"
+    with unharmed(server, control), Raw(server.port, headers=offer) as raw:
+        assert b"deflate" not in raw.response
+        raw.send(TEXT, b"x", rsv=4)
+        assert raw.close_code() == 1002
+
+
+def test_n12_idle_handshakes_are_ended_and_harm_nobody(
+    edge: Callable[..., Any], control: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for module in ("server", "lockstep"):
+        monkeypatch.setattr(f"simconsole.bridge.{module}._HANDSHAKE_S", 0.3)
+    server = edge()
+    with unharmed(server, control), ExitStack() as stack:
+        idle = [stack.enter_context(socket.create_connection(("127.0.0.1", server.port), 20.0)) for _ in range(200)]
+        for sock in idle[::2]:
+            sock.sendall(handshake(server.port)[:20])
+        for sock in idle:
+            while ended(sock) is False:
+                with socket.create_connection(("127.0.0.1", server.port)):
+                    pass  # someone comes: lockstep sweeps then
+
+
+def ended(sock: socket.socket) -> bool:
+    """Whether the server has closed; waits a moment for it."""
+    sock.settimeout(0.1)
+    try:
+        return sock.recv(1000) == b""
+    except TimeoutError:
+        return False
+    except ConnectionError:
+        return True
+
+
+def test_n13_message_in_a_million_fragments(edge: Callable[..., Any], control: Callable[..., Any]) -> None:
+    server = edge()
+    thousand = frame(0, b"x", fin=False) * 1000
+    with unharmed(server, control), Raw(server.port) as raw:
+        raw.send(TEXT, b"x", fin=False)
+        raw.sock.sendall(thousand)
+        assert raw.close_code() == 1008
+        assert raw.receive() is None
+
+
+def test_n13_fragments_within_the_limit_are_a_message(edge: Callable[..., Any], control: Callable[..., Any]) -> None:
+    server = edge()
+    text = json.dumps({"op": "publish", "topic": CONTROL, "msg": control(0.3)}).encode()
+    with Raw(server.port) as raw:
+        for number, octet in enumerate(text):
+            raw.send(TEXT if not number else 0, bytes([octet]), fin=number == len(text) - 1)
+        raw.send(TEXT, b'{"op":"no_such"}')
+        assert raw.receive() is not None
+        assert server.applied() == 0.3
+
+
+@pytest.mark.parametrize("origin", ["http://evil.example", "null", "file://", "https://localhost.evil.example"])
+def test_n15_page_from_elsewhere_is_turned_away(
+    edge: Callable[..., Any], control: Callable[..., Any], origin: str
+) -> None:
+    server = edge()
+    with unharmed(server, control):
+        with pytest.raises(InvalidStatus) as caught:
+            connect(server.url, origin=origin)  # type: ignore[arg-type]  # a NewType of str there
+        assert caught.value.response.status_code == 403
+
+
+@pytest.mark.parametrize("host", ["evil.example", "evil.example:9090", "127.0.0.1.evil.example", "", "a\r\nHost: b"])
+def test_n16_other_host_is_turned_away(edge: Callable[..., Any], control: Callable[..., Any], host: str) -> None:
+    server = edge()
+    with unharmed(server, control), socket.create_connection(("127.0.0.1", server.port), 20.0) as raw:
+        raw.sendall(handshake(server.port, f"Host: {host}\r\n"))
+        assert raw.recv(100).split()[1] in (b"403", b"400")
+
+
+@pytest.mark.parametrize(
+    ("data", "code"),
+    [
+        (frame(3), 1002),
+        (frame(7), 1002),
+        (frame(11), 1002),
+        (frame(15), 1002),
+        (frame(TEXT, b"x", rsv=1), 1002),
+        (frame(TEXT, b"x", rsv=2), 1002),
+        (frame(PING, b"", rsv=4), 1002),
+        (frame(TEXT, b"{}", masked=False), 1002),
+        (frame(0, b"x"), 1002),
+        (frame(TEXT, b"x", fin=False) + frame(TEXT, b"y"), 1002),
+        (frame(PING, b"", fin=False), 1002),
+        (frame(PING, b"x" * 126), 1002),
+        (frame(CLOSE, b"x"), 1002),
+        *((frame(CLOSE, code.to_bytes(2)), 1002) for code in (0, 999, 1004, 1005, 1006, 1015, 2999, 5000, 65535)),
+        (frame(CLOSE, (1000).to_bytes(2) + b"\xff"), 1007),
+        (frame(CLOSE, (1000).to_bytes(2)), 1000),
+        (frame(CLOSE, (1001).to_bytes(2) + b"bye"), 1001),
+        (frame(CLOSE, (4999).to_bytes(2)), 4999),
+    ],
+)
+def test_n19_frames_against_the_rules_end_their_connection_in_order(
+    edge: Callable[..., Any], control: Callable[..., Any], data: bytes, code: int
+) -> None:
+    server = edge()
+    with unharmed(server, control), Raw(server.port) as raw:
+        raw.sock.sendall(data)
+        assert raw.close_code() == code
+        assert raw.receive() is None
+
+
+def test_n19_close_without_a_code_is_answered(edge: Callable[..., Any], control: Callable[..., Any]) -> None:
+    server = edge()
+    with unharmed(server, control), Raw(server.port) as raw:
+        raw.send(CLOSE)
+        assert raw.receive() == (CLOSE, b"")
+
+
+def test_n19_text_that_is_no_unicode_is_answered_or_ends_it(
+    edge: Callable[..., Any], control: Callable[..., Any]
+) -> None:
+    server = edge()
+    with unharmed(server, control), Raw(server.port) as raw:
+        raw.send(TEXT, b'{"op":"\xff"}')
+        received = raw.receive()
+        assert received is not None
+        opcode, answer = received
+        assert (opcode == TEXT and b'"status"' in answer) or (opcode == CLOSE and answer[:2] == (1007).to_bytes(2))
+
+
+@pytest.mark.parametrize(
+    "data", [b"", b"\x00", b"\xff" * 1000, bytes(range(256)), b'{"op":"subscribe","topic":"/odom"}']
+)
+def test_n19_unsolicited_binary_is_refused_and_the_connection_goes_on(
+    edge: Callable[..., Any], control: Callable[..., Any], data: bytes
+) -> None:
+    server = edge()
+    with unharmed(server, control), Raw(server.port) as raw:
+        for _ in range(3):
+            raw.send(BINARY, data)
+            received = raw.receive()
+            assert received is not None
+            assert json.loads(received[1])["op"] == "status"
+        raw.say(op="call_service", service="/rosapi/get_time", id="still")
+        received = raw.receive()
+        assert received is not None
+        assert json.loads(received[1])["id"] == "still"
+
+
+def test_n19_ping_flood_is_answered_and_pongs_are_passed_over(
+    edge: Callable[..., Any], control: Callable[..., Any]
+) -> None:
+    server = edge()
+    with unharmed(server, control), Raw(server.port) as raw:
+        for number in range(2000):
+            data = number.to_bytes(2)
+            raw.sock.sendall(frame(PONG, data) + frame(PING, data) + frame(PONG))
+            assert raw.receive() == (PONG, data)
+
+
+def test_n19_pings_nobody_waits_for_do_not_fill_memory(edge: Callable[..., Any], control: Callable[..., Any]) -> None:
+    """A client that sends pings without end and reads none of the answers is stopped or cut, not served from memory."""
+    server = edge()
+    flood = frame(PING, b"x" * 125) * 1000
+    with unharmed(server, control), Raw(server.port, receive_bytes=4096) as raw:
+        tracemalloc.start()
+        try:
+            raw.sock.settimeout(0.2)
+            sent = 0
+            with suppress(TimeoutError, ConnectionError):
+                for sent in range(400):  # noqa: B007  (how far it came, whatever ended it)
+                    raw.sock.sendall(flood)
+            print("flooded with", sent, "of 400")
+            assert tracemalloc.get_traced_memory()[0] < 4 * MIB
+        finally:
+            tracemalloc.stop()
