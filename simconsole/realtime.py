@@ -139,6 +139,7 @@ def station_specs(resolved: ResolvedSession, console: Console, folder: Path, bun
             "profile": msgspec.to_builtins(outputs.hud),
             "control": msgspec.to_builtins(resolved.session.features.control),
             "tick_hz": tick_hz,
+            "can": outputs.can is not None,
         }
         specs.append(StationSpec(name="hud", target="simconsole.station_programs:hud", arguments=arguments))
     if outputs.scene is not None:

@@ -11,6 +11,7 @@ from simconsole.compiling import compiled
 from simconsole.errors import ProfileError
 from simconsole.pipeline import Console
 from simconsole.ports import DeviceSource, NobodySeated, Seat, Station
+from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.rows import Snapshot
 
@@ -53,23 +54,31 @@ def open_seating(
 
     devices = open_source(driver, resolved.cockpit, tick_hz=console.tick_hz, keys=keys)
     stack.callback(devices.close)
-    if driver == "sdl" and resolved.cockpit.force_feedback is not None:
-        return _with_motor(devices, resolved.cockpit.force_feedback, stack)
-    return Seating(devices)
+    if driver != "sdl":
+        return Seating(devices)
+    if resolved.cockpit.force_feedback is None:
+        _say(f"no force feedback: {resolved.cockpit.title} has none; everything else works")
+        return Seating(devices)
+    return _with_motor(devices, resolved.cockpit, resolved.cockpit.force_feedback, stack)
 
 
-def _with_motor(devices: DeviceSource, force: ForceFeedback, stack: ExitStack) -> Seating:
+def _say(line: str) -> None:
+    print(f"simconsole: {line}", file=sys.stderr, flush=True)
+
+
+def _with_motor(devices: DeviceSource, cockpit: CockpitProfile, force: ForceFeedback, stack: ExitStack) -> Seating:
     """Add the wheel's motor; without one everything else works, and the person is told."""
-    from simconsole.devices.haptics import open_haptics
+    from simconsole.devices.back_ends import open_motor
     from simconsole.devices.motor import MotorisedSource, NoHaptics, WheelMotor
     from simconsole.devices.sdl import SdlSource
 
     assert isinstance(devices, SdlSource)
     wheel = {"id": devices.instance_id("wheel")}
+    identity = next((role.vendor_id, role.product_id) for role in cockpit.roles if role.role == "wheel")
 
     def opened() -> "HapticPort":
         number = wheel["id"]
-        return NoHaptics() if number is None else open_haptics(number, force)
+        return NoHaptics("the wheel is unplugged") if number is None else open_motor(number, identity, force)
 
     def replugged() -> "HapticPort | None":
         now = devices.instance_id("wheel")
@@ -78,10 +87,8 @@ def _with_motor(devices: DeviceSource, force: ForceFeedback, stack: ExitStack) -
         wheel["id"] = now
         return opened()
 
-    motor = WheelMotor(opened(), force, lambda snapshot: time.monotonic())
+    motor = WheelMotor(opened(), force, lambda snapshot: time.monotonic(), _say)
     stack.callback(motor.close)
-    if not motor.obeys:
-        print(f"simconsole: no force feedback: {motor.reason}", file=sys.stderr)
     return Seating(MotorisedSource(devices, motor, replugged), stations=(motor,))
 
 

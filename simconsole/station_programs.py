@@ -89,7 +89,7 @@ def canbus(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) ->
 
 
 def hud(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> None:
-    """Show the cluster. Arguments: `profile` (HudProfile), `control` (ControlProfile), `tick_hz`."""
+    """Show the cluster. Arguments: `profile` (HudProfile), `control` (ControlProfile), `tick_hz`, `can` (a bus?)."""
     from simconsole.hud.view import settings_of
     from simconsole.hud.window import Ports, run
 
@@ -105,7 +105,8 @@ def hud(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> No
     def report_keys(mask: int) -> None:
         keys.write(np.array([float(mask)]), time.monotonic_ns())
 
-    run(Ports(latest, report_keys, stop), profile, settings_of(profile, control))
+    can = CanWatch(folder / CAN_STATUS, time.time, time.monotonic) if arguments["can"] else lambda: None
+    run(Ports(latest, report_keys, stop, can), profile, settings_of(profile, control))
 
 
 def scene(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> None:
@@ -124,6 +125,36 @@ def scene(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> 
         return [snapshot_of(record, tick_hz) for record in records]
 
     follow(Ports(new_ticks, stop), load_job(folder / SCENE_JOB), Path(arguments["path"]))
+
+
+class CanWatch:
+    """Says whether the CAN bus is up, by what its station last wrote; one that writes no more counts as down."""
+
+    LOOK_S: Final = 0.2
+    SILENT_S: Final = 3.0
+
+    def __init__(self, path: Path, file_clock_s: Callable[[], float], clock_s: Callable[[], float]) -> None:
+        self._path = path
+        self._file_clock_s = file_clock_s
+        self._clock_s = clock_s
+        self._looked_s = -1e9
+        self._up = False
+
+    def __call__(self) -> bool:
+        """Return what was seen at most LOOK_S ago."""
+        now_s = self._clock_s()
+        if now_s - self._looked_s >= self.LOOK_S:
+            self._looked_s = now_s
+            self._up = self._read()
+        return self._up
+
+    def _read(self) -> bool:
+        try:
+            status = msgspec.json.decode(self._path.read_bytes())
+            silent_s = self._file_clock_s() - self._path.stat().st_mtime
+        except (OSError, msgspec.DecodeError):
+            return False
+        return bool(status.get("up")) and silent_s < self.SILENT_S
 
 
 class NewestOnce:

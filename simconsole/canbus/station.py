@@ -93,12 +93,12 @@ def serve(
         snapshots: returns the newest snapshot once, None when there is no new one.
         on_command: takes each changed command and its receipt.
         on_events: takes a mask of `signals.Event`.
-        on_status: takes `OnBus.status` about once a second, and at the end.
+        on_status: takes `OnBus.status` about once a second, when the bus goes off or comes back, and at the end.
         stop: ends the station.
     """
     node, clock_ns = on_bus.node, time.monotonic_ns
     written = node.command
-    status_ns = 0
+    status_ns, told_up = 0, True
     expected_s, phase = 0.0, Phase(node.tick_hz)
     while not stop():
         snapshot = snapshots()
@@ -114,8 +114,8 @@ def serve(
             on_command(written, node.receipt_ns)
         if events:
             on_events(events)
-        if now_ns - status_ns >= _STATUS_S * 1e9:
-            status_ns = now_ns
+        if now_ns - status_ns >= _STATUS_S * 1e9 or on_bus.port.recovery.up != told_up:
+            status_ns, told_up = now_ns, on_bus.port.recovery.up
             on_status(on_bus.status(now_ns))
     on_status(on_bus.status(clock_ns()))
 

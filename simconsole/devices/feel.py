@@ -7,8 +7,8 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from simconsole.devices.back_ends import open_motor
 from simconsole.devices.commands import Pace, Say, realtime
-from simconsole.devices.haptics import open_haptics
 from simconsole.devices.motor import HapticPort, SimulatedWheelPort, WheelMotor
 from simconsole.devices.sdl import SdlSource
 from simconsole.devices.settings import settings
@@ -136,6 +136,7 @@ class _Bench:
     ) -> None:
         self._tick_hz = tick_hz
         self._settings = settings(cockpit, tick_hz)
+        self._identity = next((at.vendor_id, at.product_id) for at in cockpit.roles if at.role == "wheel")
         self._plugged: VirtualCockpit | None = None
         self._wheel: SimulatedWheel | None = None
         if virtual:
@@ -207,4 +208,4 @@ class _Bench:
             return SimulatedWheelPort(self._wheel)
         number = self._source.instance_id("wheel")
         assert number is not None  # the source refuses a cockpit without one
-        return open_haptics(number, force)
+        return open_motor(number, self._identity, force)

@@ -112,13 +112,20 @@ class SimulatedWheelPort:
 class WheelMotor:
     """A `Station` that turns the row's torque into the device's effect."""
 
-    def __init__(self, port: HapticPort, force: ForceFeedback, clock_s: Callable[[Snapshot], float]) -> None:
+    def __init__(
+        self,
+        port: HapticPort,
+        force: ForceFeedback,
+        clock_s: Callable[[Snapshot], float],
+        say: Callable[[str], None] = lambda line: None,
+    ) -> None:
         """Take hold of the motor, without force.
 
         Args:
             port: The device.
             force: Its profile.
             clock_s: The time of a snapshot in s: real in a paced drive, simulated in any other.
+            say: Takes one line when there is no force, or no longer, or again.
         """
         self._port = port
         self._force = force
@@ -129,7 +136,9 @@ class WheelMotor:
         self._started_s = -1e9
         self._level = 0.0
         self._runs = False
+        self._say = say
         self.failure: str | None = None
+        self._tell(first=True)
 
     @property
     def obeys(self) -> bool:
@@ -153,11 +162,19 @@ class WheelMotor:
                 self._release()
         except DeviceError as error:
             self.failure = str(error)
+            self._say(f"force feedback ends: {error}; everything else goes on")
 
     def exchange(self, port: HapticPort) -> None:
         """Take another device's motor, after the wheel was plugged in again."""
         self.close()
         self._port, self.failure = port, None
+        self._tell(first=False)
+
+    def _tell(self, first: bool) -> None:
+        if not self.obeys:
+            self._say(f"no force feedback: {self.reason}; everything else works")
+        elif not first:
+            self._say("force feedback is back")
 
     def close(self) -> None:
         """Let go of the wheel; a device that is gone already is no error."""

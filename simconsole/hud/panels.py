@@ -29,6 +29,8 @@ from simconsole.words import validity_words
 FULL_STEERING_DEG: Final = 40.0
 """Road-wheel angle at the end of the steering scale."""
 
+_FORCE_LEVELS: Final = {"none": "plain", "on": "good", "limit": "warn", "lost": "warn"}
+
 
 def _panel(box: Box, title: str) -> list[DrawItem]:
     cap = min(0.030 * box.h, 0.05 * box.w)
@@ -164,14 +166,17 @@ def _link_shape(words: str, box: Box, colour: Colour) -> list[DrawItem]:
 
 
 def status(view: HudView, box: Box) -> list[DrawItem]:
-    """Return the lamps: the three devices, engine and hand brake."""
-    cells = (
+    """Return the lamps: the three devices, the wheel's motor, engine and hand brake, and CAN where there is a bus."""
+    cells = [
         ("WHEEL", *_device(view.wheel_validity)),
         ("PEDALS", *_device(view.pedals_validity)),
         ("SHIFTER", *_device(view.shifter_validity)),
+        ("FORCE", view.force, _FORCE_LEVELS[view.force]),
         ("ENGINE", "running", "good") if view.engine_running else ("ENGINE", "off", "plain"),
         ("HAND BRAKE", "on", "warn") if view.handbrake > 0.05 else ("HAND BRAKE", "off", "plain"),
-    )
+    ]
+    if view.can_up is not None:
+        cells.append(("CAN", "on", "good") if view.can_up else ("CAN", "down", "warn"))
     items: list[DrawItem] = [Rect(box, PANEL, "status", 0.12 * box.h)]
     for index, (name, words, level) in enumerate(cells):
         cell = box.inset(0.01 * box.w).column(index / len(cells), (index + 1) / len(cells))

@@ -15,6 +15,8 @@ SPEED_HYSTERESIS_KMH: Final = 0.5
 """The shown integer follows only when the speed has left it by this much more than rounding (rule 11)."""
 SPEED_PERIOD_S: Final = 0.2
 """The speed's digits change at most this often (rule 11)."""
+CLIP_SHOWN_S: Final = 0.3
+"""How long a cut-off force is shown: one tick of it could not be seen."""
 
 
 class HudSettings(NamedTuple):
@@ -31,6 +33,8 @@ class HudMemory(NamedTuple):
 
     shown_kmh: int = 0
     shown_s: float = -1e9
+    motor_seen: bool = False  # the wheel has had a motor in this drive
+    clipped_s: float = -1e9  # when force was last cut off
 
 
 class HudView(NamedTuple):
@@ -67,6 +71,8 @@ class HudView(NamedTuple):
     pedals_validity: float = 0.0
     shifter_validity: float = 0.0
     distance_m: float = 0.0
+    force: str = "none"  # of the wheel's motor: none, on, limit (more is wished for than it has), lost
+    can_up: bool | None = None  # None: this drive has no CAN bus
 
 
 def shown_speed(speed_mps: float, t_s: float, memory: HudMemory) -> tuple[int, float]:
@@ -84,7 +90,17 @@ def settings_of(hud: HudProfile, control: ControlProfile) -> HudSettings:
     return HudSettings(hud.rpm_max, hud.rpm_red, control.minimal_risk_after_s, control.command_stale_s)
 
 
-def view(snapshot: Snapshot, age_s: float, memory: HudMemory, settings: HudSettings) -> tuple[HudView, HudMemory]:
+def force_words(snapshot: Snapshot, memory: HudMemory) -> tuple[str, bool, float]:
+    """Return the sign of the wheel's motor, whether it has had one, and when its force was last cut off."""
+    clipped_s = snapshot.t_s if snapshot.torque.clipped > 0.0 else memory.clipped_s
+    if snapshot.sample.wheel_motor <= 0.0:
+        return ("lost" if memory.motor_seen else "none"), memory.motor_seen, clipped_s
+    return ("limit" if 0.0 <= snapshot.t_s - clipped_s < CLIP_SHOWN_S else "on"), True, clipped_s
+
+
+def view(
+    snapshot: Snapshot, age_s: float, memory: HudMemory, settings: HudSettings, can_up: bool | None = None
+) -> tuple[HudView, HudMemory]:
     """Return the content of one picture.
 
     Args:
@@ -92,11 +108,13 @@ def view(snapshot: Snapshot, age_s: float, memory: HudMemory, settings: HudSetti
         age_s: how long ago the display last saw a new tick, in s of its own clock.
         memory: what the previous picture left.
         settings: the dial's and the rules' numbers.
+        can_up: whether the CAN bus is up; None without one.
     """
     vehicle, command, driver = snapshot.vehicle, snapshot.command, snapshot.driver
     arbitration = snapshot.arbitration
     arbiter = ArbiterMemory(*snapshot.row[MEMORY_AT : MEMORY_AT + MEMORY_WIDTH].tolist())
     kmh, shown_s = shown_speed(vehicle.vx_mps, snapshot.t_s, memory)
+    force, motor_seen, clipped_s = force_words(snapshot, memory)
     asked = arbitration.mode == Mode.TAKEOVER_REQUESTED
     waited_s = arbiter.mode_ticks / snapshot.tick_hz
     shown = HudView(
@@ -131,8 +149,10 @@ def view(snapshot: Snapshot, age_s: float, memory: HudMemory, settings: HudSetti
         pedals_validity=_worst(driver.throttle_validity, driver.brake_validity, driver.clutch_validity),
         shifter_validity=driver.shifter_validity,
         distance_m=vehicle.distance_m,
+        force=force,
+        can_up=can_up,
     )
-    return shown, HudMemory(kmh, shown_s)
+    return shown, HudMemory(kmh, shown_s, motor_seen, clipped_s)
 
 
 def _link_age_s(snapshot: Snapshot) -> float | None:

@@ -47,6 +47,7 @@ class Ports(NamedTuple):
     latest: Callable[[], Snapshot | None]  # the newest tick, None before the first
     report_keys: Callable[[int], None]  # takes a `Key` mask at every frame: its silence means the keyboard is gone
     stop: Callable[[], bool]  # True ends the window
+    can_up: Callable[[], bool | None] = lambda: None  # whether the CAN bus is up; None where there is none
 
 
 class Freshness:
@@ -92,21 +93,21 @@ class Window:
         if profile.fullscreen:
             pygame.mouse.set_visible(False)
 
-    def frame(self, snapshot: Snapshot | None, now_s: float) -> None:
-        """Draw one frame; a picture equal to the last one costs nothing."""
+    def frame(self, snapshot: Snapshot | None, now_s: float, can_up: bool | None = None) -> None:
+        """Draw one frame; a picture equal to the last one costs nothing. `can_up`: None without a CAN bus."""
         import pygame
 
-        items = layout(self._content(snapshot, now_s), self._screen)
+        items = layout(self._content(snapshot, now_s, can_up), self._screen)
         if items == self._drawn:
             return
         pygame.display.update(self._painter.repaint(self._surface, self._drawn, items))
         self._drawn = items
 
-    def _content(self, snapshot: Snapshot | None, now_s: float) -> HudView:
+    def _content(self, snapshot: Snapshot | None, now_s: float, can_up: bool | None) -> HudView:
         if snapshot is None:
             return HudView(stale=True)
         age_s = self._freshness.age_s(snapshot.tick, now_s)
-        shown, self._memory = view(snapshot, age_s, self._memory, self._settings)
+        shown, self._memory = view(snapshot, age_s, self._memory, self._settings, can_up)
         return shown
 
     def close(self) -> None:
@@ -139,7 +140,7 @@ def run(ports: Ports, profile: HudProfile, settings: HudSettings) -> None:
             if any(event.type == pygame.QUIT for event in pygame.event.get()):
                 break
             ports.report_keys(held_keys())
-            window.frame(ports.latest(), time.monotonic())
+            window.frame(ports.latest(), time.monotonic(), ports.can_up())
             clock.tick(profile.rate_hz)
     finally:
         ports.report_keys(0)

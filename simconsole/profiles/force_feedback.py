@@ -24,6 +24,7 @@ class ForceFeedback(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     max_torque_nm: Annotated[float, Meta(ge=0.5, le=30.0)]
     level_pushes: Literal["left", "right"] = "left"  # where a positive level turns the wheel: a sign test tells
     motor: Motor = Motor()
+    back_end: Literal["auto", "sdl", "evdev"] = "auto"  # auto: SDL, or evdev where SDL finds no motor
     # What is felt.
     car_share: Annotated[float, Meta(ge=0.0, le=2.0)] = 1.0  # of the torque at the rim of the real car
     damping_nms: Annotated[float, Meta(ge=0.0, le=2.0)] = 0.08

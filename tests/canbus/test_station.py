@@ -134,6 +134,22 @@ def test_station_sends_takes_commands_and_reports(
     assert station.statuses[-1]["command_state"] in (Check.OK.name, Check.NO_NEW_DATA.name)
 
 
+def test_station_tells_at_once_when_the_bus_goes_off(
+    on_bus: OnBus, snapshot: Snapshots, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    station = Station(on_bus)
+    try:
+        station.snapshots.append(snapshot(0))
+        until(lambda: len(station.statuses) == 1)
+        monkeypatch.setattr("simconsole.canbus.station._STATUS_S", 1e6)  # never again by its turn
+        on_bus.port._down("a test")
+        until(lambda: len(station.statuses) == 2)
+    finally:
+        station.end()
+    assert [status["up"] for status in station.statuses[:2]] == [True, False]
+    assert station.statuses[1]["down_reason"] == "a test"
+
+
 def test_station_without_new_ticks_is_silent(on_bus: OnBus, ecu_port: CanPort, snapshot: Snapshots) -> None:
     station = Station(on_bus)
     try:

@@ -1,25 +1,32 @@
 """Runs behind the mocked kernel: the console's own motor on SDL's own driver, 250 ticks a second.
 
-python haptic_program.py HOW      HOW: drive, hang (SIGSTOP to itself) or kill (SIGKILL to itself)
+python haptic_program.py HOW [BACK_END]      HOW: drive, hang (SIGSTOP to itself), kill (SIGKILL to itself),
+contract (port_contract.py) or motion (read what the kernel plays)
 """
 
+import json
 import os
 import signal
 import sys
 import time
 
+import msgspec
 import numpy as np
 
 from simconsole.devices import sdl_runtime
-from simconsole.devices.haptics import open_haptics
+from simconsole.devices.back_ends import open_motor
 from simconsole.devices.motor import WheelMotor
-from simconsole.devices.sdl import found
+from simconsole.devices.sdl import SdlSource, found
+from simconsole.profile_files import load
+from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.rows import MOTOR_AT, PLATFORM_AT, TORQUE_AT, Snapshot
 from simconsole.signals import WheelTorque
+from tests.devices.port_contract import closes_twice_and_then_has_no_force, takes_every_level_in_any_order
 
 LEVELS = [0.0, 0.5, 1.0, -1.0, -0.25, 9.0, -9.0, 0.0]
-FORCE = ForceFeedback(max_torque_nm=4.0)
+BACK_END = sys.argv[2] if len(sys.argv) > 2 else "sdl"
+FORCE = ForceFeedback(max_torque_nm=4.0, back_end=BACK_END)  # type: ignore[arg-type]  # sdl or evdev
 
 
 def shot(torque_nm: float, enabled: float = 1.0) -> Snapshot:
@@ -28,13 +35,35 @@ def shot(torque_nm: float, enabled: float = 1.0) -> Snapshot:
     return Snapshot(1, 250, row)
 
 
+def motion() -> None:
+    """Print one line of JSON for each new sample of a second."""
+    cockpit = load("devices", "t500rs_th8rs", CockpitProfile)
+    wheel, pedals, shifter = cockpit.roles
+    same = {"vendor_id": wheel.vendor_id, "product_id": wheel.product_id}  # only the wheel stands behind the mock
+    roles = [wheel, pedals, msgspec.structs.replace(shifter, **same)]
+    source = SdlSource(msgspec.structs.replace(cockpit, roles=roles))
+    before = None
+    for tick in range(1, 301):
+        sample = source.poll(tick)
+        if sample != before:
+            print(json.dumps(sample._asdict()), flush=True)
+        before = sample
+        time.sleep(0.004)
+    source.close()
+
+
 def main(how: str) -> None:
     pygame = sdl_runtime.acquire()
     pygame.event.get()
     ((entry, joystick),) = found(pygame)
     print(entry, joystick.get_instance_id(), flush=True)
-    port = open_haptics(entry.instance_id, FORCE)
+    port = open_motor(entry.instance_id, (entry.vendor_id, entry.product_id), FORCE)
     print(port.capability, flush=True)
+    if how == "contract":
+        takes_every_level_in_any_order(port)
+        closes_twice_and_then_has_no_force(port)
+        sdl_runtime.release()
+        return
     motor = WheelMotor(port, FORCE, lambda snapshot: time.monotonic())
     for level in LEVELS:
         for _ in range(5):
@@ -52,4 +81,7 @@ def main(how: str) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    if sys.argv[1] == "motion":
+        motion()
+    else:
+        main(sys.argv[1])

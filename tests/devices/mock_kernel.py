@@ -1,6 +1,8 @@
 """A T500 RS behind the kernel's evdev interface, mocked by umockdev: runs a command that believes in it.
 
-    /usr/bin/python3 mock_kernel.py LOG COMMAND...
+    /usr/bin/python3 mock_kernel.py LOG MOTION COMMAND...
+
+MOTION is a recorded motion, lines of `SECONDS TYPE CODE VALUE` from the first read on; `-` where nothing moves.
 
 Runs under the system's own Python (it has umockdev's bindings) and apart from the command: the bindings answer from a
 thread, and a command that waits for its own answer would never get it. Every force-feedback call becomes a line of JSON
@@ -64,9 +66,11 @@ def bits(numbers: Any, size: int) -> bytes:
 class Kernel(UMockdev.IoctlBase):  # type: ignore[misc]  # its bindings have no types
     """Answers ioctls; notes what has to do with force."""
 
-    def __init__(self, log: TextIO) -> None:
+    def __init__(self, log: TextIO, motion: list[tuple[float, int, int, int]]) -> None:
         super().__init__()
         self.log = log
+        self.motion = motion
+        self.start_s: float | None = None
         self.lock = threading.Lock()
         self.effects: dict[int, int] = {}
 
@@ -138,7 +142,24 @@ class Kernel(UMockdev.IoctlBase):  # type: ignore[misc]  # its bindings have no 
         return None
 
     def do_handle_read(self, client: Any) -> bool:
-        client.complete(-1, 11)  # EAGAIN: nothing moves
+        now_s = time.monotonic()
+        if self.start_s is None:
+            self.start_s = now_s
+        place = client.get_arg()
+        room = len(bytes(place.retrieve())) // 24
+        due = 0
+        while due < min(room, len(self.motion)) and self.motion[due][0] <= now_s - self.start_s:
+            due += 1
+        if not due:
+            client.complete(-1, 11)  # EAGAIN: nothing moves
+            return True
+        stamp_s = time.time()
+        data = b"".join(
+            struct.pack("<qqHHi", int(stamp_s), int(stamp_s % 1.0 * 1e6), *event) for _, *event in self.motion[:due]
+        )
+        self.motion = self.motion[due:]
+        place.update(0, data)
+        client.complete(len(data), 0)
         return True
 
     def do_handle_write(self, client: Any) -> bool:
@@ -152,12 +173,18 @@ class Kernel(UMockdev.IoctlBase):  # type: ignore[misc]  # its bindings have no 
         return True
 
 
+def recorded(path: Path) -> list[tuple[float, int, int, int]]:
+    lines = [line.split() for line in path.read_text().splitlines() if line and not line.startswith("#")]
+    return [(float(at_s), int(kind), int(code), int(value)) for at_s, kind, code, value in lines]
+
+
 def main() -> int:
-    log_path, *command = sys.argv[1:]
+    log_path, motion_path, *command = sys.argv[1:]
+    motion = [] if motion_path == "-" else recorded(Path(motion_path))
     with Path(log_path).open("w") as log:
         testbed = UMockdev.Testbed.new()
         testbed.add_from_string(DEVICE)
-        kernel = Kernel(log)
+        kernel = Kernel(log, motion)
         testbed.attach_ioctl(NODE, kernel)
         environment = {
             **os.environ,

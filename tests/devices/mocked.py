@@ -25,14 +25,14 @@ def need_umockdev() -> None:
         pytest.skip("umockdev or its bindings are not installed (system-packages.txt)")
 
 
-def start(log: Path, how: str) -> "subprocess.Popen[str]":
-    """Start haptic_program.py behind the mock."""
+def start(log: Path, *how: str, motion: Path | None = None) -> "subprocess.Popen[str]":
+    """Start haptic_program.py behind the mock, which plays a recorded motion."""
     need_umockdev()
     environment = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
     environment |= {"SDL_VIDEODRIVER": "dummy", "PYTHONPATH": str(ROOT)}
-    program = [sys.executable, str(HERE / "haptic_program.py"), how]
+    program = [sys.executable, str(HERE / "haptic_program.py"), *how]
     return subprocess.Popen(
-        [SYSTEM_PYTHON, str(HERE / "mock_kernel.py"), str(log), *program],
+        [SYSTEM_PYTHON, str(HERE / "mock_kernel.py"), str(log), str(motion or "-"), *program],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

@@ -1,26 +1,36 @@
 """Force through SDL: against the kernel's own interface, mocked; and joysticks that have none."""
 
 import ctypes
+import json
+import math
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+from simconsole.devices import back_ends, evdev_haptics
+from simconsole.devices.evdev_haptics import open_evdev
 from simconsole.devices.haptics import _Condition, _Constant, _Effect, open_haptics
+from simconsole.devices.motor import Capability, NoHaptics
 from simconsole.devices.sdl import SdlSource
+from simconsole.devices.settings import settings
 from simconsole.devices.virtual_cockpit import VirtualCockpit
+from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.force_feedback import ForceFeedback
+from simconsole.signals import Button, DeviceSample
 from tests.devices.mocked import calls, start
+from tests.devices.people import Seat
 
 FF_CONSTANT, FF_DAMPER = 0x52, 0x55
 STEERING = 0x4000
 FORCE = ForceFeedback(max_torque_nm=4.0)
 
 
-@pytest.fixture(scope="module")
-def driven(tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, Any]]:
+@pytest.fixture(scope="module", params=["sdl", "evdev"])
+def driven(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, Any]]:
     """The calls of one drive: levels 0, 0.5, 1, -1, -0.25, 9, -9, 0, then closed twice."""
     log = tmp_path_factory.mktemp("mock") / "calls.jsonl"
-    done = start(log, "drive")
+    done = start(log, "drive", request.param)
     out, err = done.communicate(timeout=60.0)
     assert done.returncode == 0, out + err
     assert "vendor_id=1103, product_id=46686, name='Thrustmaster TRS Racing wheel'" in out
@@ -72,6 +82,69 @@ def test_after_closing_nothing_plays(driven: list[dict[str, Any]]) -> None:
             playing.pop(call["id"], None)
     assert playing == {}
     assert driven[-1] == {**driven[-1], "what": "end", "code": 0}
+
+
+@pytest.mark.parametrize("back_end", ["sdl", "evdev"])
+def test_back_end_keeps_the_contract_of_every_motor(back_end: str, tmp_path: Path) -> None:
+    done = start(tmp_path / "calls.jsonl", "contract", back_end)
+    out, err = done.communicate(timeout=60.0)
+    assert done.returncode == 0, out + err
+
+
+def test_recorded_motion_of_a_t500_arrives_as_a_person(tmp_path: Path, t500: CockpitProfile) -> None:
+    """The kernel's events of a wheel, a pedal and a paddle, through SDL's own evdev driver, calibrated."""
+    done = start(tmp_path / "calls.jsonl", "motion", motion=Path(__file__).with_name("t500_motion.txt"))
+    out, err = done.communicate(timeout=60.0)
+    assert done.returncode == 0, out + err
+    seat = Seat(settings(t500, 250))
+    drivers = [seat.feel(DeviceSample(**json.loads(line))) for line in out.splitlines() if line.startswith("{")]
+    assert len(drivers) >= 40
+    first, last = drivers[1], drivers[-1]
+    assert (first.throttle, first.brake, first.clutch) == (0.0, 0.0, 0.0), "at rest before the first report"
+    angles = [driver.hand_wheel_rad for driver in drivers]
+    assert max(angles) == pytest.approx(math.radians(540.0), rel=0.01), "the lock on the left"
+    assert min(angles) > -0.01
+    assert max(driver.throttle for driver in drivers) == 1.0
+    assert {driver.brake for driver in drivers} == {0.0}
+    assert [driver.edges for driver in drivers].count(float(Button.SHIFT_DOWN)) == 1
+    assert (last.hand_wheel_rad, last.throttle) == (pytest.approx(0.0, abs=0.01), 0.0)
+
+
+def test_no_event_device_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(evdev_haptics, "NODES", tmp_path)
+    assert "an event device 044f:b65e that may be written" in open_evdev((0x044F, 0xB65E), FORCE).capability.name
+    (tmp_path / "event3").write_bytes(b"")  # neither the identity nor a device
+    port = open_evdev((0x044F, 0xB65E), FORCE)
+    assert not port.capability.constant
+    port.write(1.0)
+    port.close()
+
+
+class Able(NoHaptics):
+    """A port that says that it has force."""
+
+    @property
+    def capability(self) -> Capability:
+        return Capability(self._reason, constant=True)
+
+
+@pytest.mark.parametrize(
+    ("wanted", "sdl_able", "evdev_able", "expected"),
+    [
+        ("auto", True, True, "sdl"),
+        ("auto", False, True, "evdev"),
+        ("auto", False, False, "sdl"),
+        ("sdl", False, True, "sdl"),
+        ("evdev", True, False, "evdev"),
+    ],
+)
+def test_sdl_is_first_and_evdev_second(
+    wanted: Any, sdl_able: bool, evdev_able: bool, expected: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(back_ends, "open_haptics", lambda *_: (Able if sdl_able else NoHaptics)("sdl"))
+    monkeypatch.setattr(back_ends, "open_evdev", lambda *_: (Able if evdev_able else NoHaptics)("evdev"))
+    force = ForceFeedback(max_torque_nm=4.0, back_end=wanted)
+    assert back_ends.open_motor(0, (1, 2), force).capability.name == expected
 
 
 def test_structures_have_the_sizes_of_sdls() -> None:

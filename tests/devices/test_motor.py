@@ -23,6 +23,8 @@ from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.rows import MOTOR_AT, PLATFORM_AT, TORQUE_AT, Snapshot
 from simconsole.signals import NO_SAMPLE, DeviceSample, WheelTorque
 
+from .port_contract import closes_twice_and_then_has_no_force, takes_every_level_in_any_order
+
 FORCE = ForceFeedback(max_torque_nm=4.0)
 HZ = 250
 
@@ -120,6 +122,19 @@ def test_device_that_fails_counts_as_one_without_a_motor() -> None:
     assert source.poll(3).wheel_motor == 1.0
 
 
+def test_person_is_told_in_words_what_becomes_of_the_force() -> None:
+    said: list[str] = []
+    wheel = WheelMotor(NoHaptics("no driver"), FORCE, lambda snapshot: snapshot.t_s, said.append)
+    assert said == ["no force feedback: no driver; everything else works"]
+    log = Log()
+    wheel.exchange(log)
+    assert said[1:] == ["force feedback is back"]
+    log.broken = True
+    wheel.publish(shot(0, 1.0))
+    wheel.publish(shot(1, 1.0))
+    assert said[2:] == ["force feedback ends: log: motor: value unplugged: plugged in; everything else goes on"]
+
+
 class Still:
     """A cockpit at rest."""
 
@@ -144,24 +159,13 @@ def simulated() -> HapticPort:
 
 @pytest.mark.parametrize("make", [NoHaptics, simulated], ids=["none", "simulated"])
 class TestContract:
-    """What every port must do; the one of SDL takes the same in test_haptics.py."""
+    """What every port must do; SDL's and evdev's take the same in test_haptics.py, behind a mocked kernel."""
 
     def test_takes_every_level_in_any_order(self, make: Callable[[], HapticPort]) -> None:
-        port = make()
-        port.stop()
-        for level in (0.0, 1.0, -1.0, 0.3):
-            port.write(level)
-            port.start()
-        port.stop()
-        port.stop()
-        port.close()
+        takes_every_level_in_any_order(make())
 
     def test_closes_twice_and_then_has_no_force(self, make: Callable[[], HapticPort]) -> None:
-        port = make()
-        port.start()
-        port.close()
-        port.close()
-        assert not port.capability.constant
+        closes_twice_and_then_has_no_force(make())
 
     def test_works_behind_the_motor(self, make: Callable[[], HapticPort]) -> None:
         wheel = motor(make())

@@ -348,3 +348,17 @@ def test_boxes_measure_themselves() -> None:
     assert box.column(0.0, 0.5) == Box(10.0, 20.0, 15.0, 40.0)
     assert box.inset(5.0) == Box(15.0, 25.0, 20.0, 30.0)
     assert bounds(Rect(box, TEXT, "x")) == box
+
+
+@pytest.mark.parametrize(("force", "warns"), [("none", 0), ("on", 0), ("limit", 1), ("lost", 1)])
+def test_force_feedback_is_told_in_words_with_a_warning_where_it_is_cut_off(force: str, warns: int) -> None:
+    items = layout(HudView(force=force), SCREEN)
+    assert [t.text for t in texts(items) if t.role == "status.force.words"] == [force]
+    assert len(by_role(items, "status.force.lamp")) == {"none": 0, "on": 1}.get(force, 3)
+    assert warns == (len(by_role(items, "status.force.lamp")) == 3)
+
+
+def test_bus_that_is_down_warns_and_none_is_not_shown() -> None:
+    assert said(HudView(can_up=False), "status.can.words") == ["down"]
+    assert said(HudView(can_up=True), "status.can.words") == ["on"]
+    assert said(HudView(can_up=None), "status.can.words") == []

@@ -97,6 +97,7 @@ def test_the_content_comes_from_the_row() -> None:
     assert shown.link_age_s == pytest.approx(0.02)
     assert shown.distance_m == 321.0
     assert memory == HudMemory(36, 2.0)
+    assert shown.force == "none"
 
 
 def test_no_command_ever_is_no_link() -> None:
@@ -140,3 +141,18 @@ def test_settings_come_from_their_profiles() -> None:
 def test_pedals_are_as_good_as_their_worst(throttle: float, brake: float, clutch: float, worst: float) -> None:
     row = snapshot(driver__throttle_validity=throttle, driver__brake_validity=brake, driver__clutch_validity=clutch)
     assert view(row, 0.0, HudMemory(), HudSettings())[0].pedals_validity == worst
+
+
+def test_sign_of_the_motor_says_on_limit_lost_or_none() -> None:
+    memory, shown = HudMemory(), []
+    ticks = [(0, 0.0, 0.0), (1, 1.0, 0.0), (2, 1.0, 1.0), (60, 1.0, 0.0), (100, 1.0, 0.0), (101, 0.0, 0.0)]
+    for tick, motor, clipped in ticks:
+        row = snapshot(tick, sample__wheel_motor=motor, torque__clipped=clipped)
+        content, memory = view(row, 0.0, memory, HudSettings())
+        shown.append(content.force)
+    assert shown == ["none", "on", "limit", "limit", "on", "lost"]
+
+
+def test_can_is_shown_only_where_there_is_a_bus() -> None:
+    assert view(snapshot(), 0.0, HudMemory(), HudSettings())[0].can_up is None
+    assert view(snapshot(), 0.0, HudMemory(), HudSettings(), can_up=False)[0].can_up is False

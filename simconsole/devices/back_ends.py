@@ -1,0 +1,23 @@
+"""Which way to the wheel's motor: SDL first, evdev where SDL finds none, or the one that the profile names."""
+
+from simconsole.devices.evdev_haptics import open_evdev
+from simconsole.devices.haptics import open_haptics
+from simconsole.devices.motor import HapticPort
+from simconsole.profiles.force_feedback import ForceFeedback
+
+
+def open_motor(instance_id: int, identity: tuple[int, int], force: ForceFeedback) -> HapticPort:
+    """Open the motor of a wheel; the port says why where there is no force.
+
+    Args:
+        instance_id: SDL's, of the wheel's open joystick.
+        identity: Its USB vendor and product id.
+        force: The cockpit's; its `back_end` may name one.
+    """
+    if force.back_end == "evdev":
+        return open_evdev(identity, force)
+    port = open_haptics(instance_id, force)
+    if port.capability.constant or force.back_end == "sdl":
+        return port
+    other = open_evdev(identity, force)
+    return other if other.capability.constant else port

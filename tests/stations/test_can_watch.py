@@ -1,0 +1,32 @@
+"""What the driver's display knows of the CAN bus: what the station last wrote, and that it still writes."""
+
+import os
+from pathlib import Path
+
+from simconsole.station_programs import CanWatch
+
+
+def test_bus_is_up_only_while_its_station_says_so(tmp_path: Path) -> None:
+    path, clock = tmp_path / "can.json", [100.0]
+    watch = CanWatch(path, lambda: clock[0], lambda: clock[0])
+
+    def look(step_s: float) -> bool:
+        clock[0] += step_s
+        return watch()
+
+    def write(text: str) -> None:
+        path.write_text(text)
+        os.utime(path, (clock[0], clock[0]))
+
+    assert not look(0.0), "no file yet"
+    write('{"up": true}')
+    assert not look(0.11), "looked at not more often than five times a second"
+    assert look(0.11)
+    write('{"up": false}')
+    assert not look(0.21)
+    write('{"up": true}')
+    assert look(0.21)
+    assert look(2.5)
+    assert not look(0.5), "a station that writes no more"
+    write("{")
+    assert not look(0.21)
