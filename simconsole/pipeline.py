@@ -170,6 +170,7 @@ def decide(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
         DeviceSample(*take(row, SAMPLE_AT, SAMPLE_WIDTH)),
         DeviceSample(*take(previous, SAMPLE_AT, SAMPLE_WIDTH)),
         DriverInput(*take(previous, DRIVER_AT, DRIVER_WIDTH)),
+        vehicle.road_wheel_rad / control.road_wheel_per_hand_wheel,
         CockpitSettings(*take(settings, COCKPIT_AT, COCKPIT_WIDTH)),
         tick_s,
     )

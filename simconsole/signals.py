@@ -186,6 +186,7 @@ class DriverInput(NamedTuple):
     shifter_validity: float
     neutral_ticks: float  # how long the lever has shown no gear (dwell)
     refused_ticks: float = 0.0  # ticks in a row in which a reading was refused (not finite or out of range)
+    lever_fault: float = 0.0  # 1: the lever shows two gears at once
 
 
 class Request(NamedTuple):

@@ -35,7 +35,7 @@ UNITLESS = {
     # counts, flags and masks
     *("sequence", "refused", "refused_seen", "sequence_seen", "invalid_run", "automatic", "engine_running"),
     *("wheel_buttons", "shifter_buttons", "pressed", "edges", "events", "faults", "gate_active", "throttle_override"),
-    *("wheel_motor", "ramp", "clipped", "enabled", "hands_on", "live"),
+    *("wheel_motor", "ramp", "clipped", "enabled", "hands_on", "live", "lever_fault"),
     # members of an enumeration
     *("kind", "mode", "reason", "refusal", "gear", "direction", "takeover_stage"),
     *("wheel_validity", "throttle_validity", "brake_validity", "clutch_validity", "shifter_validity"),

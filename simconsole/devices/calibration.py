@@ -7,10 +7,10 @@ seen at rest (else unknown), and only then scaled.
 from typing import NamedTuple
 
 from simconsole.devices.cockpit import NOBODY, CockpitSettings
-from simconsole.devices.lever import held_roles, lever_gear, shown_gear, stepped_gear
+from simconsole.devices.lever import TWO_GEARS, held_roles, lever_gear, shown_gear, stepped_gear
 from simconsole.devices.settings import settings
-from simconsole.devices.validity import axis_good, mask_good, next_validity, trusted
-from simconsole.kernels import clip, kernel
+from simconsole.devices.validity import LOST, axis_good, heard, mask_good, next_validity, trusted
+from simconsole.kernels import clip, is_finite, kernel
 from simconsole.signals import NO_SAMPLE, DeviceSample, DriverInput
 
 __all__ = ["NOBODY", "NO_SAMPLE", "CockpitSettings", "calibrate", "settings"]
@@ -37,6 +37,7 @@ class Lever(NamedTuple):
     gear: float
     validity: float
     neutral_ticks: float
+    fault: float  # 1: it shows two gears at once
 
 
 @kernel
@@ -89,21 +90,39 @@ def pedal(
 
 
 @kernel
+def wheel_angle(raw: float, settings: CockpitSettings) -> float:
+    """Return where a good reading says that the hand wheel is."""
+    offset = _beyond(raw - settings.wheel_centre_raw, settings.wheel_dead_raw)
+    return _bent(offset, settings.wheel_curve) * settings.wheel_rad_per_raw
+
+
+@kernel
 def wheel(
-    raw: float, age_ticks: float, refused_ticks: float, before: Wheel, settings: CockpitSettings, tick_s: float
+    raw: float,
+    age_ticks: float,
+    refused_ticks: float,
+    before: Wheel,
+    model_rad: float,
+    settings: CockpitSettings,
+    tick_s: float,
 ) -> Wheel:
     """Return the hand wheel: held where it was while it is not trusted, its rate through a first-order filter.
 
-    A wheel has no rest: it is armed by its first good reading.
+    A wheel has no rest: it is armed by its first good reading. One that was lost stays so until it stands where the
+    car's own steering does (`model_rad`): the road wheels must not jump to wherever it comes back.
     """
     good = axis_good(raw)
+    if before.validity == LOST and good:
+        offset_rad = wheel_angle(raw, settings) - model_rad
+        good = is_finite(offset_rad) and abs(offset_rad) <= settings.wheel_rearm_rad
+        if not good:
+            return Wheel(before.rad, 0.0, LOST)
     validity = next_validity(before.validity, age_ticks, 0.0 if good else refused_ticks, settings.stale_ticks, True)
     if not trusted(validity):
         return Wheel(before.rad, 0.0, validity)
     if not good:
         return Wheel(before.rad, before.radps, validity)
-    offset = _beyond(raw - settings.wheel_centre_raw, settings.wheel_dead_raw)
-    rad = _bent(offset, settings.wheel_curve) * settings.wheel_rad_per_raw
+    rad = wheel_angle(raw, settings)
     if not trusted(before.validity) or tick_s <= 0.0:
         return Wheel(rad, 0.0, validity)
     share = tick_s / (tick_s + settings.wheel_rate_filter_s)
@@ -136,12 +155,14 @@ def lever(sample: DeviceSample, edges: int, refused_ticks: float, before: Lever,
         before.validity, sample.shifter_age_ticks, 0.0 if good else refused_ticks, settings.stale_ticks, at_rest
     )
     if not trusted(validity) or not good:
-        return Lever(before.gear, validity, before.neutral_ticks)
+        return Lever(before.gear, validity, before.neutral_ticks, 0.0)
+    fault = 1.0 if shown == TWO_GEARS and settings.sequential == 0.0 else 0.0
     if settings.sequential > 0.0:
         gear = stepped_gear(before.gear, edges, settings.top_gear)
-        return Lever(gear, validity, before.neutral_ticks + 1.0 if gear == 0.0 else 0.0)
+        return Lever(gear, validity, before.neutral_ticks + 1.0 if gear == 0.0 else 0.0, 0.0)
     neutral_ticks = before.neutral_ticks + 1.0 if shown == 0.0 else 0.0
-    return Lever(lever_gear(before.gear, shown, neutral_ticks, settings.neutral_dwell_ticks), validity, neutral_ticks)
+    gear = lever_gear(before.gear, shown, neutral_ticks, settings.neutral_dwell_ticks)
+    return Lever(gear, validity, neutral_ticks, fault)
 
 
 @kernel
@@ -156,7 +177,12 @@ def refused(sample: DeviceSample) -> bool:
 
 @kernel
 def calibrate(
-    sample: DeviceSample, before: DeviceSample, previous: DriverInput, settings: CockpitSettings, tick_s: float
+    sample: DeviceSample,
+    before: DeviceSample,
+    previous: DriverInput,
+    model_wheel_rad: float,
+    settings: CockpitSettings,
+    tick_s: float,
 ) -> DriverInput:
     """Return what the person does, from the cockpit as read.
 
@@ -164,6 +190,7 @@ def calibrate(
         sample: The cockpit in this tick, raw.
         before: The cockpit in the tick before, raw: button edges are against it.
         previous: The result of the tick before; `NOBODY` at the first tick.
+        model_wheel_rad: Where the hand wheel would stand if it were fixed to the car's road wheels.
         settings: The device profile as numbers.
         tick_s: Length of a tick in s.
 
@@ -177,6 +204,7 @@ def calibrate(
         sample.wheel_age_ticks,
         bad_ticks,
         Wheel(previous.hand_wheel_rad, previous.hand_wheel_radps, previous.wheel_validity),
+        model_wheel_rad,
         settings,
         tick_s,
     )
@@ -225,18 +253,13 @@ def calibrate(
         settings.handbrake_curve,
         settings,
     )
-    held = 0
-    if trusted(angle.validity):
-        held = _held(sample, int(previous.pressed), settings)
-    earlier = int(previous.pressed)
-    if trusted(previous.wheel_validity):
-        earlier = _held(before, earlier, settings)
-    edges = held & ~earlier if trusted(previous.wheel_validity) else 0
+    held = _held(sample, sample, int(previous.pressed), settings)
+    edges = held & ~_held(before, sample, int(previous.pressed), settings)
     shift = lever(
         sample,
         edges,
         bad_ticks,
-        Lever(previous.gear, previous.shifter_validity, previous.neutral_ticks),
+        Lever(previous.gear, previous.shifter_validity, previous.neutral_ticks, previous.lever_fault),
         settings,
     )
     return DriverInput(
@@ -256,11 +279,27 @@ def calibrate(
         shift.validity,
         shift.neutral_ticks,
         bad_ticks,
+        shift.fault,
     )
 
 
 @kernel
-def _held(sample: DeviceSample, otherwise: int, settings: CockpitSettings) -> int:
-    if mask_good(sample.wheel_buttons) and mask_good(sample.shifter_buttons):
-        return held_roles(sample.wheel_buttons, sample.shifter_buttons, settings)
-    return otherwise
+def _held(sample: DeviceSample, now: DeviceSample, otherwise: int, settings: CockpitSettings) -> int:
+    """Return the roles held in `sample`: `now` itself, or the sample before it, to which buttons are compared.
+
+    Buttons of a device that is silent now are not held; those of one that was silent before count as held then, so
+    that a button which is down while its device comes back is no press. A wheel that is not armed has its buttons.
+    """
+    if not (mask_good(sample.wheel_buttons) and mask_good(sample.shifter_buttons)):
+        return otherwise
+    if not (mask_good(now.wheel_buttons) and mask_good(now.shifter_buttons)):
+        return otherwise
+    wheel_buttons = 0.0
+    shifter_buttons = 0.0
+    if heard(now.wheel_age_ticks, settings.stale_ticks):
+        then = heard(sample.wheel_age_ticks, settings.stale_ticks)
+        wheel_buttons = sample.wheel_buttons if then else now.wheel_buttons
+    if heard(now.shifter_age_ticks, settings.stale_ticks):
+        then = heard(sample.shifter_age_ticks, settings.stale_ticks)
+        shifter_buttons = sample.shifter_buttons if then else now.shifter_buttons
+    return held_roles(wheel_buttons, shifter_buttons, settings)

@@ -13,6 +13,7 @@ class CockpitSettings(NamedTuple):
     wheel_curve: float  # 1: straight (calibration.curved)
     wheel_rad_per_raw: float  # negative where the axis grows to the right
     wheel_rate_filter_s: float
+    wheel_rearm_rad: float  # how far from the car's own steering a wheel that was lost may come back
     throttle_rest_raw: float
     throttle_full_raw: float
     throttle_dead: float  # share of the travel that still reads 0

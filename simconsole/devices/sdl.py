@@ -14,7 +14,10 @@ from simconsole.profiles.device import CockpitProfile, RoleBinding, RoleName
 from simconsole.signals import NEVER_TICKS, DeviceSample
 
 INVERTED_SHARE: Final = 0.95
-"""All pedals beyond this at the start: nobody stands on all of them, the profile has their ends swapped."""
+"""An accelerator beyond this at the start: nobody sits down on it, the profile has its ends swapped.
+
+Brake and clutch are no sign: people start with a foot on either.
+"""
 
 
 class Found(NamedTuple):
@@ -215,20 +218,12 @@ class SdlSource:
         )
 
     def _check_polarity(self, sample: DeviceSample) -> None:
-        pedals = self._cockpit.pedals
-        shares = [
-            travel(raw, pedal.rest_raw, pedal.full_raw)
-            for raw, pedal in zip(
-                (sample.throttle_axis, sample.brake_axis, sample.clutch_axis),
-                (pedals.throttle, pedals.brake, pedals.clutch),
-                strict=True,
-            )
-            if pedal is not None
-        ]
-        if min(shares) >= INVERTED_SHARE:
+        throttle = self._cockpit.pedals.throttle
+        share = travel(sample.throttle_axis, throttle.rest_raw, throttle.full_raw)
+        if share >= INVERTED_SHARE:
             raise DeviceError(
-                f"{self._cockpit.title}: pedals: value all read {min(shares):.0%} pressed at rest: below "
-                f"{INVERTED_SHARE:.0%}; rest_raw and full_raw of the profile look swapped"
+                f"{self._cockpit.title}: pedals.throttle: value {share:.0%} pressed at the start: below "
+                f"{INVERTED_SHARE:.0%}; foot off, or rest_raw and full_raw of the profile are swapped"
             )
 
 

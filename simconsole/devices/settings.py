@@ -24,6 +24,7 @@ def settings(profile: CockpitProfile, tick_hz: int) -> CockpitSettings:
         wheel.curve,
         sign * 0.5 * wheel.lock_to_lock_deg * RAD_PER_DEG,
         wheel.rate_filter_s,
+        profile.limits.rearm_deg * RAD_PER_DEG,
         *_ends(pedals.throttle),
         *_ends(pedals.brake),
         *_ends(pedals.clutch),

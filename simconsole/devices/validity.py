@@ -36,6 +36,14 @@ def mask_good(mask: float) -> bool:
 
 
 @kernel
+def heard(age_ticks: float, stale_ticks: float) -> bool:
+    """Return whether a device has answered lately; an age that is none is never."""
+    if not is_finite(age_ticks):
+        return False
+    return 0.0 <= age_ticks <= stale_ticks
+
+
+@kernel
 def next_validity(previous: float, age_ticks: float, refused_ticks: float, stale_ticks: float, at_rest: bool) -> float:
     """Return how far one input may be trusted after this tick.
 

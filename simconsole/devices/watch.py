@@ -36,7 +36,7 @@ class Watch:
 
     def see(self, sample: DeviceSample) -> DriverInput:
         """Take one sample; return it calibrated."""
-        self.driver = calibrate(sample, self._before, self.driver, self._settings, self._tick_s)
+        self.driver = calibrate(sample, self._before, self.driver, 0.0, self._settings, self._tick_s)
         self._before = sample
         for name, pedal in self._pedals():
             share = travel(getattr(sample, f"{name}_axis"), pedal.rest_raw, pedal.full_raw)

@@ -107,5 +107,6 @@ def sample_views() -> list[HudView]:
     validities = (0.0, 1.0, 2.0, 3.0, 4.0)
     views += [wide._replace(wheel_validity=v, pedals_validity=v, shifter_validity=v) for v in validities]
     views += [wide._replace(force=force, can_up=up) for force, up in (("limit", False), ("lost", True), ("on", None))]
+    views += [wide._replace(lever_words=words) for words in ("two gears", "not now")]
     views += [wide._replace(link_age_s=None, handbrake=1.0, engine_running=False, road_wheel_rad=-0.6)]
     return [*views, wide._replace(stale=True)]

@@ -170,7 +170,7 @@ def status(view: HudView, box: Box) -> list[DrawItem]:
     cells = [
         ("WHEEL", *_device(view.wheel_validity)),
         ("PEDALS", *_device(view.pedals_validity)),
-        ("SHIFTER", *_device(view.shifter_validity)),
+        ("SHIFTER", view.lever_words, "warn") if view.lever_words else ("SHIFTER", *_device(view.shifter_validity)),
         ("FORCE", view.force, _FORCE_LEVELS[view.force]),
         ("ENGINE", "running", "good") if view.engine_running else ("ENGINE", "off", "plain"),
         ("HAND BRAKE", "on", "warn") if view.handbrake > 0.05 else ("HAND BRAKE", "off", "plain"),

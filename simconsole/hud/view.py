@@ -5,7 +5,7 @@ from typing import Final, NamedTuple
 from simconsole.profiles.control import ControlProfile
 from simconsole.profiles.view import HudProfile
 from simconsole.rows import MEMORY_AT, MEMORY_WIDTH, Snapshot
-from simconsole.signals import NEVER_TICKS, ArbiterMemory, Mode
+from simconsole.signals import NEVER_TICKS, ArbiterMemory, GateLimit, Mode
 from simconsole.units import KMH_PER_MPS, RPM_PER_RADPS
 from simconsole.words import gear_words, mode_words, reason_words
 
@@ -70,6 +70,7 @@ class HudView(NamedTuple):
     wheel_validity: float = 0.0
     pedals_validity: float = 0.0
     shifter_validity: float = 0.0
+    lever_words: str = ""  # what is wrong with the gear that the lever shows
     distance_m: float = 0.0
     force: str = "none"  # of the wheel's motor: none, on, limit (more is wished for than it has), lost
     can_up: bool | None = None  # None: this drive has no CAN bus
@@ -148,11 +149,18 @@ def view(
         wheel_validity=driver.wheel_validity,
         pedals_validity=_worst(driver.throttle_validity, driver.brake_validity, driver.clutch_validity),
         shifter_validity=driver.shifter_validity,
+        lever_words=_lever_words(driver.lever_fault, command.gate_active),
         distance_m=vehicle.distance_m,
         force=force,
         can_up=can_up,
     )
     return shown, HudMemory(kmh, shown_s, motor_seen, clipped_s)
+
+
+def _lever_words(lever_fault: float, gate_active: float) -> str:
+    if lever_fault > 0.0:
+        return "two gears"
+    return "not now" if int(gate_active) & GateLimit.GEAR else ""
 
 
 def _link_age_s(snapshot: Snapshot) -> float | None:

@@ -119,6 +119,7 @@ class Limits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     arming: Annotated[float, Meta(gt=0.0, le=0.2)] = 0.05
     stale_s: Annotated[float, Meta(gt=0.0, le=0.5)] = 0.1
+    rearm_deg: Annotated[float, Meta(gt=0.0, le=90.0)] = 5.0  # a wheel that was lost obeys again this near the car's
 
 
 class Provenance(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

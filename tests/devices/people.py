@@ -16,10 +16,11 @@ class Seat:
         self.settings = settings
         self.before = NO_SAMPLE
         self.driver = NOBODY
+        self.model_rad = 0.0
 
     def feel(self, sample: DeviceSample, ticks: int = 1) -> DriverInput:
         for _ in range(ticks):
-            self.driver = calibrate(sample, self.before, self.driver, self.settings, TICK_S)
+            self.driver = calibrate(sample, self.before, self.driver, self.model_rad, self.settings, TICK_S)
             self.before = sample
         return self.driver
 

@@ -3,6 +3,7 @@
 import math
 import random
 
+import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -12,12 +13,13 @@ from simconsole.devices.calibration import NOBODY, CockpitSettings, calibrate, c
 from simconsole.devices.uncalibrate import Intent, pedal_raw, uncalibrate, wheel_raw
 from simconsole.devices.validity import ARMED, LIVE, LOST, STALE, UNKNOWN
 from simconsole.profile_files import load
-from simconsole.profiles.device import MIN_TRAVEL_RAW, CockpitProfile
+from simconsole.profiles.device import MIN_TRAVEL_RAW, ButtonBinding, CockpitProfile
 from simconsole.signals import NEVER_TICKS, NO_SAMPLE, Button, DeviceSample
 
 from .people import TICK_S, Seat
 
-SETTINGS = settings(load("devices", "t500rs_th8rs", CockpitProfile), 250)
+PROFILE = load("devices", "t500rs_th8rs", CockpitProfile)
+SETTINGS = settings(PROFILE, 250)
 PEDALS = ("throttle", "brake", "clutch")
 STALE_TICKS = int(SETTINGS.stale_ticks)
 
@@ -125,6 +127,46 @@ def test_lost_pedals_must_be_seen_at_rest_again(seat: Seat) -> None:
     assert (back.throttle, back.throttle_validity) == (0.0, UNKNOWN)
     seat.do()
     assert seat.do(Intent(throttle=0.8)).throttle == pytest.approx(0.8)
+
+
+@pytest.mark.parametrize("off_deg", [-6.0, -5.1, 5.1, 400.0])
+def test_lost_wheel_stays_lost_until_it_stands_as_the_car_steers(off_deg: float, seat: Seat) -> None:
+    """D04: 5 degrees. The road wheels keep what they were told until then."""
+    model_deg = 40.0
+    seat.do(Intent(hand_wheel_rad=1.0), ticks=3)
+    seat.do(wheel_age_ticks=NEVER_TICKS)
+    seat.model_rad = math.radians(model_deg)
+    away = seat.do(Intent(hand_wheel_rad=math.radians(model_deg + off_deg)), ticks=500)
+    assert away.wheel_validity == LOST
+    assert (away.hand_wheel_rad, away.hand_wheel_radps) == (pytest.approx(1.0), 0.0)
+    near = seat.do(Intent(hand_wheel_rad=math.radians(model_deg + math.copysign(4.9, off_deg))))
+    assert near.wheel_validity == ARMED
+    assert near.hand_wheel_rad == pytest.approx(math.radians(model_deg + math.copysign(4.9, off_deg)))
+    assert seat.do(Intent(hand_wheel_rad=-2.0)).hand_wheel_rad == pytest.approx(-2.0), "and then it obeys everywhere"
+
+
+def test_lost_wheel_that_reads_nonsense_or_a_car_whose_angle_is_none_stays_lost(seat: Seat) -> None:
+    seat.do(wheel_age_ticks=NEVER_TICKS)
+    assert seat.do(wheel_axis=math.nan, ticks=60).wheel_validity == LOST
+    seat.model_rad = math.nan
+    assert seat.do().wheel_validity == LOST
+
+
+def test_emergency_button_of_a_wheel_that_is_not_armed_works(seat: Seat) -> None:
+    seat.do(wheel_age_ticks=NEVER_TICKS)
+    seat.model_rad = 2.0
+    seat.do()
+    pressed = seat.do(Intent(pressed=int(Button.EMERGENCY_STOP)))
+    assert (pressed.wheel_validity, pressed.edges) == (LOST, float(Button.EMERGENCY_STOP))
+
+
+def test_shifter_buttons_work_while_the_wheel_is_gone() -> None:
+    buttons = msgspec.structs.replace(PROFILE.buttons, mark=ButtonBinding(on="shifter", button=9))
+    seat = Seat(settings(msgspec.structs.replace(PROFILE, buttons=buttons), 250))
+    seat.do(ticks=2)
+    seat.do(wheel_age_ticks=NEVER_TICKS)
+    assert seat.do(Intent(pressed=int(Button.MARK)), wheel_age_ticks=NEVER_TICKS).edges == float(Button.MARK)
+    assert seat.do(Intent(), shifter_age_ticks=NEVER_TICKS).pressed == 0.0
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 1.5, -1e308])
@@ -287,7 +329,7 @@ def test_compiled_twin_gives_equal_bits(name: str) -> None:
     twin = compiled(calibrate)
     before, plain, fast = NO_SAMPLE, NOBODY, NOBODY
     for sample in random_samples(seed, 4000, cockpit):
-        plain = calibrate(sample, before, plain, cockpit, TICK_S)
-        fast = twin(sample, before, fast, cockpit, TICK_S)
+        plain = calibrate(sample, before, plain, 0.3, cockpit, TICK_S)
+        fast = twin(sample, before, fast, 0.3, cockpit, TICK_S)
         before = sample
         assert [number.hex() for number in plain] == [float(number).hex() for number in fast]

@@ -47,8 +47,10 @@ def test_shift_through_the_gate_is_never_neutral(seat: Seat) -> None:
 def test_two_gears_at_once_keep_the_last(mask: int, seat: Seat) -> None:
     """D08."""
     seat.do(Intent(gear=4))
-    assert seat.do(ticks=50, shifter_buttons=float(mask)).gear == 4.0
-    assert seat.do(Intent(gear=5)).gear == 5.0
+    both = seat.do(ticks=50, shifter_buttons=float(mask))
+    assert (both.gear, both.lever_fault) == (4.0, 1.0)
+    one = seat.do(Intent(gear=5))
+    assert (one.gear, one.lever_fault) == (5.0, 0.0)
 
 
 def test_lever_in_gear_at_the_start_counts_only_after_neutral(t500_settings: CockpitSettings) -> None:

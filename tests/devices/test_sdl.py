@@ -219,12 +219,21 @@ def test_device_with_too_few_axes_is_refused(plug: Plug, t500: CockpitProfile) -
         SdlSource(t500)
 
 
-def test_pedals_calibrated_the_wrong_way_round_are_refused(plug: Plug, t500: CockpitProfile) -> None:
+@pytest.mark.parametrize("rest", [(0.0, -1.0, -1.0, -1.0), (0.0, 1.0, -1.0, 1.0)], ids=["all", "throttle"])
+def test_throttle_calibrated_the_wrong_way_round_is_refused(
+    plug: Plug, t500: CockpitProfile, rest: tuple[float, ...]
+) -> None:
     """D09."""
-    plug(VirtualSpec("Wheel", 0x044F, 0xB65E, 4, 13, 1, (0.0, -1.0, -1.0, -1.0)))
+    plug(VirtualSpec("Wheel", 0x044F, 0xB65E, 4, 13, 1, rest))
     plug(VirtualSpec("Shifter", 0x044F, 0xB660, 2, 10))
-    with pytest.raises(DeviceError, match="look swapped"):
+    with pytest.raises(DeviceError, match=r"pedals\.throttle: value 100% pressed at the start: below 95%; foot off"):
         SdlSource(t500)
+
+
+def test_foot_on_brake_and_clutch_at_the_start_is_no_fault(plug: Plug, t500: CockpitProfile) -> None:
+    plug(VirtualSpec("Wheel", 0x044F, 0xB65E, 4, 13, 1, (0.0, -1.0, 1.0, -1.0)))
+    plug(VirtualSpec("Shifter", 0x044F, 0xB660, 2, 10))
+    SdlSource(t500).close()
 
 
 def test_cockpit_without_devices_is_refused(sdl: None, t500: CockpitProfile) -> None:

@@ -7,7 +7,7 @@ from simconsole.hud.view import HudMemory, HudSettings, settings_of, shown_speed
 from simconsole.profiles.control import ControlProfile
 from simconsole.profiles.view import HudProfile
 from simconsole.rows import PLATFORM_AT, Snapshot, columns
-from simconsole.signals import NEVER_TICKS, Mode, Reason
+from simconsole.signals import NEVER_TICKS, GateLimit, Mode, Reason
 from simconsole.units import MPS_PER_KMH
 from simconsole.vehicle.platform import Pose
 
@@ -156,3 +156,17 @@ def test_sign_of_the_motor_says_on_limit_lost_or_none() -> None:
 def test_can_is_shown_only_where_there_is_a_bus() -> None:
     assert view(snapshot(), 0.0, HudMemory(), HudSettings())[0].can_up is None
     assert view(snapshot(), 0.0, HudMemory(), HudSettings(), can_up=False)[0].can_up is False
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({"driver__lever_fault": 1.0}, "two gears"),
+        ({"command__gate_active": float(GateLimit.GEAR | GateLimit.RATE)}, "not now"),
+        ({"command__gate_active": float(GateLimit.RATE)}, ""),
+    ],
+)
+def test_what_is_wrong_with_the_lever_is_said(fields: dict[str, float], words: str) -> None:
+    """D08: the gear is kept, and the driver is told why."""
+    shown, _ = view(snapshot(**fields), 0.0, HudMemory(), HudSettings())
+    assert shown.lever_words == words
