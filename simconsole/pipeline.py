@@ -204,7 +204,7 @@ def feel(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
     torque, memory = wheel_torque(
         DriverInput(*take(row, DRIVER_AT, DRIVER_WIDTH)),
         sample.wheel_motor,
-        arbitration.mode,
+        arbitration,
         watched(arbitration.mode),
         EventInput(*take(row, EVENTS_AT, EVENTS_WIDTH)).events,
         VehicleState(*take(row, VEHICLE_AT, VEHICLE_WIDTH)),

@@ -288,6 +288,7 @@ class WheelTorque(NamedTuple):
     torque_nm: float
     car_nm: float  # the car's part of it, before the limits
     servo_nm: float  # the part that follows the road wheels
+    guide_nm: float  # the part that guides the person's hands while control is shared
     ramp: float  # 0 (let go) to 1: torque comes in slowly
     clipped: float  # 1: more is wished for than the motor has
     enabled: float
@@ -309,6 +310,7 @@ class WheelMemory(NamedTuple):
     model_nm: float
     explained_rad: float  # how far the motor alone has moved it since a take-over has been possible
     explained_radps: float
+    guide_rad: float  # slow part of the angle that the controller asks of the hand wheel
 
 
 class TickTiming(NamedTuple):
@@ -320,6 +322,9 @@ class TickTiming(NamedTuple):
 
 NO_SAMPLE: Final = DeviceSample(*(0.0,) * 9, NEVER_TICKS, NEVER_TICKS, NEVER_TICKS)
 """A cockpit that is not there."""
+
+NO_TORQUE: Final = WheelTorque(*(0.0,) * len(WheelTorque._fields))
+"""A wheel that is let go of."""
 
 NO_COMMAND: Final = RemoteCommand(*(0.0,) * len(RemoteCommand._fields))._replace(age_ticks=NEVER_TICKS, direction=1.0)
 """A controller that has said nothing; until it does, forwards is the direction it means."""

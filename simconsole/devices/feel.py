@@ -19,7 +19,7 @@ from simconsole.errors import DeviceError
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.rows import MOTOR_AT, PLATFORM_AT, TORQUE_AT, Snapshot
-from simconsole.signals import WheelTorque
+from simconsole.signals import NO_TORQUE
 from simconsole.units import DEG_PER_RAD
 
 TURNED_DEG: Final = 3.0
@@ -185,7 +185,7 @@ class _Bench:
 
     def _step(self, torque_nm: float, enabled: float) -> None:
         row = np.zeros(PLATFORM_AT)
-        row[TORQUE_AT:MOTOR_AT] = WheelTorque(torque_nm, 0.0, 0.0, 1.0, 0.0, enabled, 0.0, 0.0)
+        row[TORQUE_AT:MOTOR_AT] = NO_TORQUE._replace(torque_nm=torque_nm, ramp=1.0, enabled=enabled)
         self._look()
         self.motor.publish(Snapshot(self._ticks, self._tick_hz, row))
         if self.motor.failure is not None:

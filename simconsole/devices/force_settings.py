@@ -28,6 +28,13 @@ class ForceSettings(NamedTuple):
     end_stop_nm_per_rad: float
     servo_nm_per_rad: float
     servo_damping_nms: float
+    guide_support: float
+    guide_feedback: float
+    guide_authority_nm_per_rad: float
+    guide_stiffness_nm_per_rad: float
+    guide_damping_nms: float
+    guide_slow_s: float
+    guide_most_nm: float
     hand_wheel_per_road_wheel: float
     ramp_per_tick: float
     slew_nm: float  # per tick
@@ -71,6 +78,13 @@ def force_settings(
         end_stop_nm_per_rad=force.end_stop_nm_per_rad,
         servo_nm_per_rad=force.servo_nm_per_rad,
         servo_damping_nms=force.servo_damping_nms,
+        guide_support=force.guidance.support,
+        guide_feedback=force.guidance.feedback,
+        guide_authority_nm_per_rad=force.guidance.authority_nm_per_rad,
+        guide_stiffness_nm_per_rad=force.guidance.stiffness_nm_per_rad,
+        guide_damping_nms=force.guidance.damping_nms,
+        guide_slow_s=force.guidance.slow_s,
+        guide_most_nm=force.guidance.most_nm,
         hand_wheel_per_road_wheel=steering_ratio,
         ramp_per_tick=tick_s / force.ramp_s,
         slew_nm=force.slew_nmps * tick_s,

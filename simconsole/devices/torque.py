@@ -8,10 +8,11 @@ from typing import Final, NamedTuple
 
 from simconsole.devices.estimator import Felt, at_rest, observe
 from simconsole.devices.force_settings import ForceSettings
+from simconsole.devices.guidance import Wanted, guidance, wanted
 from simconsole.devices.rim import Rim, turn
 from simconsole.devices.validity import trusted
 from simconsole.kernels import approach, clip, is_finite, kernel
-from simconsole.signals import DriverInput, Event, Mode, VehicleState, WheelMemory, WheelTorque
+from simconsole.signals import Arbitration, DriverInput, Event, Mode, VehicleState, WheelMemory, WheelTorque
 from simconsole.trigonometry import sin
 
 _MANUAL: Final = float(Mode.MANUAL)
@@ -35,6 +36,7 @@ class Parts(NamedTuple):
 
     car_nm: float
     servo_nm: float
+    guide_nm: float
     feel_nm: float  # damping, friction, end stop, road
 
 
@@ -89,7 +91,9 @@ def road(vehicle: VehicleState, rolling: float, force: ForceSettings) -> float:
 
 
 @kernel
-def compose(follows: bool, target: Rim, rim: Rim, vehicle: VehicleState, force: ForceSettings) -> Parts:
+def compose(
+    follows: bool, target: Rim, rim: Rim, vehicle: VehicleState, asked: Wanted, share: float, force: ForceSettings
+) -> Parts:
     """Return the parts of the torque, unlimited.
 
     Args:
@@ -97,17 +101,20 @@ def compose(follows: bool, target: Rim, rim: Rim, vehicle: VehicleState, force: 
         target: Where the road wheels have it.
         rim: The wheel as estimated.
         vehicle: The vehicle after this tick.
+        asked: What the controller asks of the hand wheel.
+        share: How much of its guidance there is, 0 to 1.
         force: Of this drive.
     """
     speed = abs(vehicle.vx_mps)
     rolling = speed / (speed + force.fade_mps)
     texture = road(vehicle, rolling, force)
     if follows:
-        return Parts(0.0, servo(target, rim, force), texture)
+        return Parts(0.0, servo(target, rim, force), 0.0, texture)
     friction = force.friction_nm + (1.0 - rolling) * force.standstill_friction_nm
     drag = -force.damping_nms * rim.radps - friction * rim.radps / (abs(rim.radps) + FRICTION_RADPS)
     car = force.car_share * rolling * vehicle.hand_wheel_torque_nm
-    return Parts(car, 0.0, drag + end_stop(rim, force) + texture)
+    guide = guidance(asked, rim, rolling, share, force)
+    return Parts(car, 0.0, guide, drag + end_stop(rim, force) + texture)
 
 
 @kernel
@@ -161,7 +168,7 @@ def motion_alone(
 def wheel_torque(
     driver: DriverInput,
     wheel_motor: float,
-    mode: float,
+    arbitration: Arbitration,
     watching: bool,
     events: float,
     vehicle: VehicleState,
@@ -176,7 +183,7 @@ def wheel_torque(
     Args:
         driver: The person, calibrated.
         wheel_motor: 1 while the wheel's motor obeys.
-        mode: Who drives.
+        arbitration: Who drives, and what the controller asks for.
         watching: Whether the person may take over by moving the wheel: then the motor's own motion is followed.
         events: Edges of this tick.
         vehicle: The vehicle after this tick.
@@ -186,6 +193,7 @@ def wheel_torque(
         rate_filter_s: Of the rate in `driver`: the explained rate is filtered alike.
         tick_s: Length of a tick.
     """
+    mode = arbitration.mode
     live = wheel_motor > 0.0 and trusted(driver.wheel_validity)
     motor_nm = memory.motor_nm + force.motor_lag_share * (before.torque_nm - memory.motor_nm)
     felt = at_rest(driver.hand_wheel_rad)
@@ -198,21 +206,34 @@ def wheel_torque(
     wanted_rad = vehicle.road_wheel_rad * force.hand_wheel_per_road_wheel
     finite = is_finite(wanted_rad) and is_finite(vehicle.hand_wheel_torque_nm) and is_finite(vehicle.vx_mps)
     finite = finite and is_finite(vehicle.distance_m) and is_finite(felt.rad) and is_finite(felt.radps)
-    target = Rim(memory.target_rad, 0.0)
+    finite = finite and is_finite(arbitration.remote_road_wheel_rad)
+    target, asked = Rim(memory.target_rad, 0.0), Wanted(0.0, 0.0)
     if finite:
+        asked = wanted(arbitration.remote_road_wheel_rad, memory.guide_rad, mode, force, tick_s)
         target_rad = clip(wanted_rad, -lock, lock)
         target = Rim(target_rad, (target_rad - memory.target_rad) / tick_s if memory.live > 0.0 else 0.0)
     driven = follows or mode in (_MANUAL, _SHARED)
     enabled = live and finite and driven and int(events) & _LOOP_STALL == 0
     ramp = approach(before.ramp, 1.0, force.ramp_per_tick) if enabled else 0.0
-    torque = WheelTorque(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, felt.human_nm, felt.hands_on)
+    torque = WheelTorque(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, felt.human_nm, felt.hands_on)
     if enabled:
-        parts = compose(follows, target, rim, vehicle, force)
-        raw_nm = parts.car_nm + parts.servo_nm + parts.feel_nm
+        guided = arbitration.remote_lateral if mode == _SHARED else 0.0
+        parts = compose(follows, target, rim, vehicle, asked, guided, force)
+        raw_nm = parts.car_nm + parts.servo_nm + parts.guide_nm + parts.feel_nm
         wished_nm = ramp * soft_clip(raw_nm, force)
         torque_nm = approach(before.torque_nm, wished_nm, force.slew_nm)
         clipped = 1.0 if abs(raw_nm) > force.max_torque_nm else 0.0
-        torque = WheelTorque(torque_nm, parts.car_nm, parts.servo_nm, ramp, clipped, 1.0, felt.human_nm, felt.hands_on)
+        torque = WheelTorque(
+            torque_nm,
+            parts.car_nm,
+            parts.servo_nm,
+            parts.guide_nm,
+            ramp,
+            clipped,
+            1.0,
+            felt.human_nm,
+            felt.hands_on,
+        )
     share = ramp if follows else 0.0
     alone = motion_alone(driver, felt, target, share, watching, live, memory, force, rate_filter_s, tick_s)
     return torque, WheelMemory(
@@ -227,4 +248,5 @@ def wheel_torque(
         alone.motor_nm,
         alone.explained_rad,
         alone.explained_radps,
+        asked.slow_rad,
     )

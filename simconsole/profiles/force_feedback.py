@@ -18,6 +18,24 @@ class Motor(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     level_steps: Annotated[int, Meta(ge=10, le=32_767)] = 127
 
 
+Gain: TypeAlias = Annotated[float, Meta(ge=0.0, le=3.0)]
+
+
+class Guidance(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The controller's voice in the wheel while control is shared, each times its authority over steering.
+
+    Support, feedback and stiffness are JOAN's; a belt-driven wheel needs more authority than its 1 N m/rad to be moved.
+    """
+
+    support: Gain = 1.0  # level of haptic support: of the torque that the road's bend needs
+    feedback: Gain = 1.0  # strength of haptic feedback: of the torque that corrections need
+    authority_nm_per_rad: Annotated[float, Meta(ge=0.0, le=20.0)] = 6.0  # level of haptic authority
+    stiffness_nm_per_rad: Annotated[float, Meta(ge=0.0, le=10.0)] = 1.0  # of the car's steering about the middle
+    damping_nms: Annotated[float, Meta(ge=0.0, le=3.0)] = 0.8
+    slow_s: Annotated[float, Meta(ge=0.05, le=10.0)] = 0.8  # slower than this is the road's bend
+    most_nm: Annotated[float, Meta(ge=0.0, le=10.0)] = 3.0
+
+
 class ForceFeedback(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """How torque is composed and handed to the device. Without this section the wheel has no motor."""
 
@@ -37,6 +55,7 @@ class ForceFeedback(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     # The wheel that follows the road wheels while the controller drives.
     servo_nm_per_rad: Annotated[float, Meta(ge=0.0, le=100.0)] = 18.0
     servo_damping_nms: Annotated[float, Meta(ge=0.0, le=10.0)] = 1.1
+    guidance: Guidance = Guidance()
     # Limits.
     ramp_s: Annotated[float, Meta(ge=0.1, le=5.0)] = 0.7
     slew_nmps: Annotated[float, Meta(ge=5.0, le=2000.0)] = 150.0

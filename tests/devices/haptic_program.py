@@ -21,7 +21,7 @@ from simconsole.profile_files import load
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.rows import MOTOR_AT, PLATFORM_AT, TORQUE_AT, Snapshot
-from simconsole.signals import WheelTorque
+from simconsole.signals import NO_TORQUE
 from tests.devices.port_contract import closes_twice_and_then_has_no_force, takes_every_level_in_any_order
 
 LEVELS = [0.0, 0.5, 1.0, -1.0, -0.25, 9.0, -9.0, 0.0]
@@ -31,7 +31,7 @@ FORCE = ForceFeedback(max_torque_nm=4.0, back_end=BACK_END)  # type: ignore[arg-
 
 def shot(torque_nm: float, enabled: float = 1.0) -> Snapshot:
     row = np.zeros(PLATFORM_AT)
-    row[TORQUE_AT:MOTOR_AT] = WheelTorque(torque_nm, 0.0, 0.0, 1.0, 0.0, enabled, 0.0, 0.0)
+    row[TORQUE_AT:MOTOR_AT] = NO_TORQUE._replace(torque_nm=torque_nm, ramp=1.0, enabled=enabled)
     return Snapshot(1, 250, row)
 
 

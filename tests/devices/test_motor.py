@@ -21,7 +21,7 @@ from simconsole.devices.simulated_wheel import HANDS_OFF, SimulatedWheel
 from simconsole.errors import DeviceError
 from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.rows import MOTOR_AT, PLATFORM_AT, TORQUE_AT, Snapshot
-from simconsole.signals import NO_SAMPLE, DeviceSample, WheelTorque
+from simconsole.signals import NO_SAMPLE, NO_TORQUE, DeviceSample
 
 from .port_contract import closes_twice_and_then_has_no_force, takes_every_level_in_any_order
 
@@ -58,7 +58,7 @@ class Log:
 
 def shot(tick: int, torque_nm: float, enabled: float = 1.0) -> Snapshot:
     row = np.zeros(PLATFORM_AT)
-    row[TORQUE_AT:MOTOR_AT] = WheelTorque(torque_nm, 0.0, 0.0, 1.0, 0.0, enabled, 0.0, 0.0)
+    row[TORQUE_AT:MOTOR_AT] = NO_TORQUE._replace(torque_nm=torque_nm, ramp=1.0, enabled=enabled)
     return Snapshot(tick, HZ, row)
 
 

@@ -9,12 +9,13 @@ import pytest
 
 from simconsole.compiling import compiled
 from simconsole.devices.force_settings import NO_FORCE, ForceSettings, force_settings
+from simconsole.devices.guidance import Wanted
 from simconsole.devices.rim import Rim, turn
-from simconsole.devices.torque import compose, end_stop, servo, soft_clip, wheel_torque
+from simconsole.devices.torque import Parts, compose, end_stop, servo, soft_clip, wheel_torque
 from simconsole.pipeline import DriverInput
 from simconsole.profile_files import load
 from simconsole.profiles.device import CockpitProfile
-from simconsole.signals import Event, Mode, Validity, VehicleState, WheelMemory, WheelTorque
+from simconsole.signals import Arbitration, Event, Mode, Validity, VehicleState, WheelMemory, WheelTorque
 
 RATIO, LOCK_RAD, HZ, TICK_S = 15.5, math.radians(36.0), 250, 0.004
 PERSON = DriverInput(*(0.0,) * len(DriverInput._fields))._replace(wheel_validity=float(Validity.LIVE))
@@ -43,13 +44,17 @@ class Motor:
         motor: float = 1.0,
         events: float = 0.0,
         ticks: int = 1,
+        remote: tuple[float, float] = (0.0, 0.0),
     ) -> WheelTorque:
+        arbitration = Arbitration(*(0.0,) * len(Arbitration._fields))._replace(
+            mode=mode, remote_road_wheel_rad=remote[0], remote_lateral=remote[1]
+        )
         watching = mode in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED, Mode.MINIMAL_RISK)
         for _ in range(ticks):
             self.torque, self.memory = self.kernel(
                 driver,
                 motor,
-                mode,
+                arbitration,
                 watching,
                 events,
                 vehicle,
@@ -60,6 +65,11 @@ class Motor:
                 TICK_S,
             )
         return self.torque
+
+
+def alone(force: ForceSettings, target: Rim, rim: Rim, vehicle: VehicleState) -> Parts:
+    """The parts in MANUAL."""
+    return compose(False, target, rim, vehicle, Wanted(0.0, 0.0), 0.0, force)
 
 
 @pytest.fixture
@@ -116,20 +126,20 @@ def test_part_that_is_no_number_lets_go_and_leaves_nothing_behind(field: str, va
 
 
 def test_car_torque_fades_and_friction_grows_towards_standstill(force: ForceSettings) -> None:
-    at = [compose(False, STRAIGHT, STRAIGHT, CAR._replace(vx_mps=v), force).car_nm for v in (0.0, 0.5, 5.0, 30.0)]
+    at = [alone(force, STRAIGHT, STRAIGHT, CAR._replace(vx_mps=v)).car_nm for v in (0.0, 0.5, 5.0, 30.0)]
     assert at[0] == 0.0
     assert at == sorted(at, reverse=True)
     turning = Rim(0.0, 1.0)
-    drags = [compose(False, STRAIGHT, turning, CAR._replace(vx_mps=v), force).feel_nm for v in (0.0, 1.0, 20.0)]
+    drags = [alone(force, STRAIGHT, turning, CAR._replace(vx_mps=v)).feel_nm for v in (0.0, 1.0, 20.0)]
     assert drags[0] < drags[1] < drags[2] < 0.0
 
 
 def test_road_is_felt_over_distance_alone(force: ForceSettings) -> None:
-    felt = [compose(False, STRAIGHT, STRAIGHT, CAR._replace(distance_m=0.1 * k), force).feel_nm for k in range(400)]
+    felt = [alone(force, STRAIGHT, STRAIGHT, CAR._replace(distance_m=0.1 * k)).feel_nm for k in range(400)]
     assert 0.02 < max(felt) <= force.texture_nm
     assert abs(sum(felt) / len(felt)) < 0.005
     standing = CAR._replace(vx_mps=0.0, distance_m=3.3)
-    assert compose(False, STRAIGHT, STRAIGHT, standing, force).feel_nm == 0.0
+    assert alone(force, STRAIGHT, STRAIGHT, standing).feel_nm == 0.0
 
 
 def test_end_stop_pushes_back_only_beyond_the_lock(force: ForceSettings) -> None:
