@@ -1,14 +1,14 @@
 """From resolved profiles to a console that is ready to drive: pure, so that a replay builds exactly the same one."""
 
-from msgspec import Struct
+from msgspec import Struct, structs
 
 from simconsole.control.settings import settings as control_settings
 from simconsole.devices.calibration import settings as cockpit_settings
 from simconsole.devices.force_settings import force_settings
 from simconsole.pipeline import Console, ConsoleState, Execution, build_console, initial_state
 from simconsole.profiles.device import CockpitProfile
-from simconsole.profiles.session import SessionProfile
-from simconsole.profiles.vehicle import VehicleProfile
+from simconsole.profiles.session import Aids, SessionProfile
+from simconsole.profiles.vehicle import CarProfile, VehicleProfile
 from simconsole.profiles.world import WorldProfile
 from simconsole.units import RAD_PER_DEG
 from simconsole.vehicle.platform import Ground, Pose
@@ -29,9 +29,14 @@ def assemble(resolved: ResolvedSession, execution: Execution) -> tuple[Console, 
     session = resolved.session
     start, environment, tick_hz = session.scenario.start, session.environment, session.mode.tick_hz
     platform = build(
-        resolved.vehicle,
+        switched(resolved.vehicle, session.features.aids),
         Pose(start.x_m, start.y_m, start.yaw_deg * RAD_PER_DEG),
-        Ground(environment.friction, environment.slope_x_percent / 100.0, environment.slope_y_percent / 100.0),
+        Ground(
+            environment.friction,
+            environment.slope_x_percent / 100.0,
+            environment.slope_y_percent / 100.0,
+            environment.friction_right_share,
+        ),
     )
     console = build_console(
         cockpit_settings(resolved.cockpit, tick_hz),
@@ -48,3 +53,11 @@ def assemble(resolved: ResolvedSession, execution: Execution) -> tuple[Console, 
         force_settings(resolved.cockpit, platform.steering_ratio, platform.max_road_wheel_rad, tick_hz),
     )
     return console, initial_state(console)
+
+
+def switched(vehicle: VehicleProfile, aids: Aids) -> VehicleProfile:
+    """Return the vehicle with its driver aids switched as the session says; a ball has none."""
+    if not isinstance(vehicle, CarProfile):
+        return vehicle
+    asked = {name: on for name, on in structs.asdict(aids).items() if on is not None}
+    return structs.replace(vehicle, aids=structs.replace(vehicle.aids, **asked))

@@ -1,4 +1,7 @@
-"""Drive one scenario headless and judge it: bounds on columns, and its golden. Worker of `simconsole check`."""
+"""Drive one scenario headless and judge it: bounds on columns, its golden, the limits of its manoeuvre.
+
+Worker of `simconsole check`.
+"""
 
 from pathlib import Path
 from typing import NamedTuple
@@ -13,12 +16,14 @@ from simconsole.devices.settings import settings
 from simconsole.drive import Cast, run
 from simconsole.errors import ProfileError
 from simconsole.faulting import with_faults
+from simconsole.handling.attempt import Result
 from simconsole.kernels import Row
+from simconsole.manoeuvring import drive, judge_limit
+from simconsole.memory import MemoryRecorder
 from simconsole.pacing import UnpacedPacer
 from simconsole.ports import DeviceSource, NobodySeated
+from simconsole.profiles.manoeuvre import Limit, Manoeuvre
 from simconsole.profiles.scenario import Check, ScenarioProfile
-from simconsole.recording.framing import START_OF_CHAIN, chain
-from simconsole.rows import Snapshot
 from simconsole.scripted import ScriptedCommands
 from simconsole.session_files import load_scenario, resolve
 
@@ -31,30 +36,22 @@ class Verdict(NamedTuple):
     ticks: int
     digest: str
     problems: list[str]
-
-
-class MemoryRecorder:
-    """Keeps every row, and the chained hash that a log would have."""
-
-    def __init__(self, ticks: int, width: int) -> None:
-        self.rows = np.empty((ticks, width))
-        self.ticks = 0
-        self.digest = START_OF_CHAIN
-
-    def write(self, snapshot: Snapshot) -> None:
-        """Keep one tick."""
-        self.rows[self.ticks] = snapshot.row
-        self.ticks += 1
-        self.digest = chain(self.digest, snapshot.tick, snapshot.row.tobytes())
+    title: str = ""
+    result: Result | None = None  # of a manoeuvre
+    limits: tuple[Limit, ...] = ()
 
 
 def check_scenario(name_or_path: str, update_golden: bool = False) -> Verdict:
     """Drive a scenario and compare; with `update_golden`, what was driven becomes the golden (bounds still count).
 
+    A manoeuvre is judged by its characteristic values: it has no golden.
+
     Raises:
-        ProfileError: scenario or golden cannot be read, or a bound names a column that no row has.
+        ProfileError: scenario or golden cannot be read, or a bound names a column or value that there is not.
     """
     scenario, path = load_scenario(name_or_path)
+    if scenario.manoeuvre is not None:
+        return _check_manoeuvre(scenario, scenario.manoeuvre, path)
     recorder, columns = drive_scenario(scenario)
     tick_hz = scenario.session.mode.tick_hz
     judged = [judge(check, recorder.rows, columns, tick_hz, str(path)) for check in scenario.checks]
@@ -66,7 +63,25 @@ def check_scenario(name_or_path: str, update_golden: bool = False) -> Verdict:
         golden_path.write_text(golden.write(driven), "utf-8")
     else:
         problems += _against_golden(golden_path, driven)
-    return Verdict(path.stem, not problems, recorder.ticks, recorder.digest.hex(), problems)
+    return Verdict(path.stem, not problems, recorder.ticks, recorder.digest.hex(), problems, scenario.title)
+
+
+def _check_manoeuvre(scenario: ScenarioProfile, manoeuvre: Manoeuvre, path: Path) -> Verdict:
+    driven = drive(scenario, manoeuvre)
+    problems = [driven.result.problem] if driven.result.problem is not None else []
+    if not problems:
+        judged = [judge_limit(limit, driven.result.values, str(path)) for limit in scenario.limits]
+        problems = [problem for problem in judged if problem is not None]
+    return Verdict(
+        path.stem,
+        not problems,
+        driven.ticks,
+        driven.digest,
+        problems,
+        scenario.title,
+        driven.result,
+        scenario.limits,
+    )
 
 
 def drive_scenario(scenario: ScenarioProfile) -> tuple[MemoryRecorder, tuple[str, ...]]:

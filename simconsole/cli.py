@@ -78,6 +78,7 @@ def _driving(commands: Any) -> None:
     check = _command(commands, "check", "check:check", "drive scripted scenarios headless against their goldens")
     check.add_argument("scenarios", nargs="+", metavar="SCENARIO")
     check.add_argument("--jobs", type=int, default=1, metavar="N")
+    check.add_argument("--report", metavar="FILE", help="write values and plots of the test manoeuvres as HTML")
     check.add_argument("--junit", metavar="FILE", help="write a JUnit report")
     check.add_argument("--update-golden", action="store_true", help="accept what was driven as the new golden")
 

@@ -8,7 +8,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 from simconsole.checking import Verdict, check_scenario
-from simconsole.commands.outcome import Outcome
+from simconsole.commands.outcome import Outcome, table
 
 
 def check(words: Namespace) -> Outcome:
@@ -20,14 +20,34 @@ def check(words: Namespace) -> Outcome:
         verdicts = [check_scenario(scenario, words.update_golden) for scenario in words.scenarios]
     if words.junit:
         _write_junit(Path(words.junit), verdicts)
+    if words.report:
+        _write_report(Path(words.report), verdicts)
     passed = all(verdict.passed for verdict in verdicts)
-    results: dict[str, Any] = {"passed": passed, "scenarios": [verdict._asdict() for verdict in verdicts]}
+    results: dict[str, Any] = {"passed": passed, "scenarios": [_results(verdict) for verdict in verdicts]}
     return Outcome(0 if passed else 1, results, "\n".join(_line(verdict) for verdict in verdicts))
+
+
+def _results(verdict: Verdict) -> dict[str, Any]:
+    kept = {name: getattr(verdict, name) for name in ("scenario", "passed", "ticks", "digest", "problems")}
+    return kept if verdict.result is None else {**kept, "values": verdict.result.values}
 
 
 def _line(verdict: Verdict) -> str:
     head = f"{'pass' if verdict.passed else 'FAIL'}  {verdict.scenario}  {verdict.ticks} ticks  {verdict.digest}"
-    return "\n".join((head, *(f"      {problem}" for problem in verdict.problems)))
+    values = {} if verdict.result is None else verdict.result.values
+    rows = table([(name, f"{value:.4g}") for name, value in values.items()])
+    return "\n".join((head, *(f"      {problem}" for problem in verdict.problems), *([rows] if rows else [])))
+
+
+def _write_report(path: Path, verdicts: list[Verdict]) -> None:
+    from simconsole.report.handling_page import Chapter, write_handling_report
+
+    chapters = [
+        Chapter(verdict.scenario, verdict.title, verdict.result, verdict.limits, tuple(verdict.problems))
+        for verdict in verdicts
+        if verdict.result is not None
+    ]
+    write_handling_report(path, chapters)
 
 
 def _write_junit(path: Path, verdicts: list[Verdict]) -> None:

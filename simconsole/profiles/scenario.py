@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from msgspec import Meta
 
 from simconsole.profiles.device import ScriptProfile
+from simconsole.profiles.manoeuvre import Limit, Manoeuvre
 from simconsole.profiles.session import Section, SessionProfile
 
 Seconds = Annotated[float, Meta(ge=0.0, le=86_400.0)]
@@ -60,4 +61,7 @@ class ScenarioProfile(Section, frozen=True, kw_only=True):
     remote: tuple[RemoteStep, ...] = ()
     events: tuple[EventStep, ...] = ()
     checks: tuple[Check, ...] = ()
+    manoeuvre: Manoeuvre | None = None
+    """Drives the car in the place of script and commands, and is judged by `limits` instead of checks and golden."""
+    limits: tuple[Limit, ...] = ()
     golden_hz: Literal[1, 2, 5, 10, 25, 50] = 2

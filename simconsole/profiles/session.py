@@ -32,6 +32,7 @@ class Environment(Section, frozen=True, kw_only=True):
 
     world: Name | None = None
     friction: Annotated[float, Meta(gt=0.0, le=2.0)] = 1.0
+    friction_right_share: Annotated[float, Meta(ge=0.0, le=1.0)] = 1.0  # of it, under the right wheels
     slope_x_percent: Annotated[float, Meta(ge=-40.0, le=40.0)] = 0.0
     slope_y_percent: Annotated[float, Meta(ge=-40.0, le=40.0)] = 0.0
 
@@ -45,10 +46,20 @@ class Scenario(Section, frozen=True, kw_only=True):
     faults: Faults = ()
 
 
+class Aids(Section, frozen=True, kw_only=True):
+    """Driver aids switched on or off for this drive; what is not mentioned is as in the vehicle's profile."""
+
+    anti_lock: bool | None = None
+    traction_control: bool | None = None
+    stability_control: bool | None = None
+    hill_hold: bool | None = None
+
+
 class Features(Section, frozen=True, kw_only=True):
     """What the console does beside driving: who may command, and how it supervises them."""
 
     control: ControlProfile = ControlProfile()
+    aids: Aids = Aids()
     commander: Literal["ros", "can"] = "ros"
     """Whose commands drive, for the whole drive: the ROS side's, or the ECU's on `outputs.can`."""
     autopilot: Name | None = None

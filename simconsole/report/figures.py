@@ -3,7 +3,9 @@
 import io
 from typing import Any, Final
 
+from simconsole.handling.attempt import Panel
 from simconsole.report.figure_map import draw_map
+from simconsole.report.figure_panels import draw_panels
 from simconsole.report.figure_traces import draw_traces
 from simconsole.report.metrics import ModeChange, Track
 from simconsole.report.table import Drive
@@ -42,6 +44,12 @@ def map_svg(drive: Drive, way: Track, changes: list[ModeChange], course: Course 
 def traces_svg(drive: Drive, way: Track, changes: list[ModeChange], course: Course | None) -> str:
     """Return lateral deviation, speed and steering over the distance driven, with the mode beneath."""
     return _svg("traces", (9.2, 7.6), lambda figure: draw_traces(figure, drive, way, changes, course))
+
+
+def panels_svg(name: str, panels: tuple[Panel, ...]) -> str:
+    """Return the plots of a test manoeuvre, two beside each other."""
+    rows = -(-len(panels) // 2)
+    return _svg(name, (9.2, 2.9 * rows), lambda figure: draw_panels(figure, panels))
 
 
 def _svg(name: str, size_inch: tuple[float, float], draw: Any) -> str:

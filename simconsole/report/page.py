@@ -13,7 +13,7 @@ from simconsole.report.metrics import metrics, mode_changes, track
 from simconsole.report.table import drive_of
 from simconsole.world.course import Course
 
-_STYLE: Final = """
+STYLE: Final = """
 :root{color-scheme:light}
 body{font:15px/1.5 system-ui,-apple-system,"Segoe UI",Roboto,"DejaVu Sans",sans-serif;color:#202124;background:#fff;
 max-width:960px;margin:2rem auto;padding:0 1rem}
@@ -91,7 +91,7 @@ def page(title: str, found: Mapping[str, Any], svgs: Sequence[str], extra: Mappi
         "<!DOCTYPE html>",
         '<html lang="en"><head><meta charset="utf-8">',
         '<meta name="viewport" content="width=device-width,initial-scale=1">',
-        f"<title>{escape(title)}</title><style>{_STYLE}</style></head><body>",
+        f"<title>{escape(title)}</title><style>{STYLE}</style></head><body>",
         f"<h1>{escape(title)}</h1>",
         '<p class="note">simconsole drive report. Lateral errors are those of base_link (centre of the rear axle) '
         "from the theoretical path, over every tick in which the autopilot drove.</p>",

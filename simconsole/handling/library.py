@@ -1,0 +1,44 @@
+"""The manoeuvres by the kind of their description."""
+
+from simconsole.handling.attempt import Driving
+from simconsole.handling.braking import coast_down, straight_braking
+from simconsole.handling.lane_change import lane_change
+from simconsole.handling.observed import observed
+from simconsole.handling.sine_with_dwell import sine_with_dwell
+from simconsole.handling.steering import steady_circle, step_steer
+from simconsole.profiles.manoeuvre import (
+    CoastDown,
+    DoubleLaneChange,
+    Manoeuvre,
+    Observed,
+    SineWithDwell,
+    SteadyCircle,
+    StepSteer,
+    StraightBraking,
+)
+from simconsole.vehicle.platform import Platform
+
+
+def drive_manoeuvre(spec: Manoeuvre, car: Platform, duration_s: float) -> Driving:
+    """Return the manoeuvre at work: it yields `Attempt`s, takes their drives and returns its `Result`.
+
+    Args:
+        spec: its description.
+        car: what is driven.
+        duration_s: of a scripted drive.
+    """
+    match spec:
+        case SteadyCircle():
+            return steady_circle(spec, car)
+        case StepSteer():
+            return step_steer(spec, car)
+        case SineWithDwell():
+            return sine_with_dwell(spec, car)
+        case DoubleLaneChange():
+            return lane_change(spec, car)
+        case StraightBraking():
+            return straight_braking(spec, car)
+        case CoastDown():
+            return coast_down(spec, car)
+        case Observed():
+            return observed(spec, car, duration_s)

@@ -1,0 +1,44 @@
+"""What a scripted drive was like: launch, stall, hill start, reverse, parking."""
+
+import numpy as np
+
+from simconsole.handling.attempt import Attempt, Driving, Result, part, traces
+from simconsole.profiles.manoeuvre import Observed
+from simconsole.units import DEG_PER_RAD, KMH_PER_MPS, RPM_PER_RADPS
+from simconsole.vehicle.platform import Platform
+
+
+def observed(spec: Observed, car: Platform, duration_s: float) -> Driving:
+    """Drive the scenario's script and describe the part of it that counts."""
+    driven = yield Attempt("script", None, duration_s)
+    last = None if spec.until_s is None else round(spec.until_s * driven.tick_hz)
+    seen = part(driven, round(spec.from_s * driven.tick_hz), last)
+    speed = seen.column("vehicle.vx_mps")
+    x = seen.column("vehicle.x_m") - seen.column("vehicle.x_m")[0]
+    y = seen.column("vehicle.y_m") - seen.column("vehicle.y_m")[0]
+    ax = seen.column("vehicle.ax_mps2")
+    engine = seen.column("vehicle.engine_radps") * RPM_PER_RADPS
+    running = seen.column("vehicle.engine_running")
+    values = {
+        "highest_speed_mps": float(speed.max()),
+        "lowest_speed_mps": float(speed.min()),
+        "end_speed_mps": float(speed[-1]),
+        "distance_m": float(np.ptp(seen.column("vehicle.distance_m"))),
+        "end_displacement_m": float(np.hypot(x[-1], y[-1])),
+        "rolled_back_m": float(max(0.0, -x.min())),
+        "end_yaw_angle_deg": float(
+            (seen.column("vehicle.yaw_rad")[-1] - seen.column("vehicle.yaw_rad")[0]) * DEG_PER_RAD
+        ),
+        "highest_acceleration_mps2": float(ax.max()),
+        "lowest_acceleration_mps2": float(ax.min()),
+        "lowest_engine_speed_rpm": float(engine.min()),
+        "highest_engine_speed_rpm": float(engine.max()),
+        "engine_stalled": float((running == 0.0).any()),
+        "end_engine_running": float(running[-1]),
+    }
+    panels = (
+        traces("Speed", "speed / km/h", {"": (seen, speed * KMH_PER_MPS)}),
+        traces("Engine", "engine speed / rpm", {"": (seen, engine)}),
+        traces("Acceleration along the body", "acceleration / m/s²", {"": (seen, ax)}),
+    )
+    return Result(values, panels)

@@ -1,0 +1,32 @@
+"""The test driver in the seat: a pilot's hands and feet as the axes of the cockpit."""
+
+from simconsole.devices.cockpit import CockpitSettings
+from simconsole.devices.uncalibrate import Intent, uncalibrate
+from simconsole.handling.attempt import Pilot
+from simconsole.rows import Snapshot
+from simconsole.signals import DeviceSample
+
+
+class PilotSeat:
+    """Seat and cockpit in one (ports.py): `act` sees the last tick, `poll` gives the coming one its sample."""
+
+    def __init__(self, pilot: Pilot, settings: CockpitSettings) -> None:
+        self._pilot = pilot
+        self._settings = settings
+        self._intent = Intent()
+        self.finished = False
+
+    def act(self, snapshot: Snapshot) -> None:
+        """Let the pilot look and move."""
+        intent = self._pilot(snapshot)
+        if intent is None:
+            self.finished = True
+        else:
+            self._intent = intent
+
+    def poll(self, tick: int) -> DeviceSample:
+        """Return what the axes read, age 0."""
+        return uncalibrate(self._intent, self._settings)
+
+    def close(self) -> None:
+        """Nothing to release."""

@@ -1,0 +1,91 @@
+"""Drive a scenario's manoeuvre, attempt by attempt, and judge its characteristic values by the scenario's limits."""
+
+import math
+from typing import NamedTuple
+
+from msgspec.structs import replace
+
+from simconsole.assembly import ResolvedSession, assemble
+from simconsole.compiling import compiled
+from simconsole.devices.script import ScriptSource
+from simconsole.devices.settings import settings
+from simconsole.drive import Cast, run
+from simconsole.errors import ProfileError
+from simconsole.handling.attempt import Attempt, Result
+from simconsole.handling.library import drive_manoeuvre
+from simconsole.handling.seat import PilotSeat
+from simconsole.memory import MemoryRecorder
+from simconsole.pacing import UnpacedPacer
+from simconsole.pipeline import Console
+from simconsole.ports import NobodyCommands
+from simconsole.profiles.manoeuvre import Limit, Manoeuvre
+from simconsole.profiles.scenario import ScenarioProfile
+from simconsole.recording.framing import START_OF_CHAIN
+from simconsole.report.table import drive_of
+from simconsole.session_files import resolve
+
+
+class Driven(NamedTuple):
+    """A manoeuvre as driven."""
+
+    result: Result
+    ticks: int
+    digest: str  # chained over all attempts
+
+
+def drive(scenario: ScenarioProfile, manoeuvre: Manoeuvre) -> Driven:
+    """Drive every attempt of a manoeuvre and evaluate it.
+
+    Raises:
+        ProfileError: a profile that the scenario names is missing or wrong; it watches a script but has none.
+    """
+    resolved = resolve(scenario.session)
+    console, _ = assemble(resolved, compiled)
+    at_work = drive_manoeuvre(manoeuvre, console.platform, scenario.duration_s)
+    ticks, digest = 0, START_OF_CHAIN
+    attempt = next(at_work)
+    while True:
+        recorder = _drive(scenario, resolved, attempt, digest)
+        ticks, digest = ticks + recorder.ticks, recorder.digest
+        try:
+            attempt = at_work.send(drive_of(recorder.rows[: recorder.ticks], console.columns, console.tick_hz))
+        except StopIteration as end:
+            return Driven(end.value, ticks, digest.hex())
+
+
+def judge_limit(limit: Limit, values: dict[str, float], origin: str) -> str | None:
+    """Return what is wrong with one value, None if it is inside; `origin` (the scenario's file) opens an error.
+
+    Raises:
+        ProfileError: the manoeuvre has no such value.
+    """
+    if limit.value not in values:
+        raise ProfileError(f"{origin}: limits: value: value {limit.value}: one of {', '.join(sorted(values))}")
+    low = -math.inf if limit.min is None else limit.min
+    high = math.inf if limit.max is None else limit.max
+    value = values[limit.value]
+    return None if low <= value <= high else f"{limit.value}: {value:.6g} not in {low:g} to {high:g}"
+
+
+def _drive(scenario: ScenarioProfile, resolved: ResolvedSession, attempt: Attempt, digest: bytes) -> MemoryRecorder:
+    session = resolved.session
+    features = replace(session.features, aids=replace(session.features.aids, **dict.fromkeys(attempt.off, False)))
+    if attempt.pilot is not None:
+        features = replace(features, control=replace(features.control, manual_automatic=True))
+    console, state = assemble(replace(resolved, session=replace(session, features=features)), compiled)
+    ticks = round(attempt.longest_s * console.tick_hz)
+    recorder = MemoryRecorder(ticks, console.width, digest)
+    if attempt.pilot is None:
+        run(console, state, _scripted(scenario, resolved, recorder, console), ticks)
+        return recorder
+    seat = PilotSeat(attempt.pilot, settings(resolved.cockpit, console.tick_hz))
+    cast = Cast(seat, NobodyCommands(), recorder, (), UnpacedPacer(), seat)
+    run(console, state, cast, ticks, lambda snapshot: seat.finished)
+    return recorder
+
+
+def _scripted(scenario: ScenarioProfile, resolved: ResolvedSession, recorder: MemoryRecorder, console: Console) -> Cast:
+    if scenario.script is None:
+        raise ProfileError(f"{scenario.title}: script: value missing: a script that the manoeuvre can watch")
+    source = ScriptSource(scenario.script, settings(resolved.cockpit, console.tick_hz), tick_hz=console.tick_hz)
+    return Cast(source, NobodyCommands(), recorder, (), UnpacedPacer())

@@ -1,0 +1,90 @@
+"""Test manoeuvres as descriptions: what is driven, not how; `simconsole/handling` drives and evaluates them.
+
+The figures that the kinds have as defaults are those of the standards named with them.
+"""
+
+from typing import Annotated, Literal, TypeAlias
+
+from msgspec import Meta
+
+from simconsole.profiles.session import Section
+
+Kmh: TypeAlias = Annotated[float, Meta(ge=5.0, le=250.0)]
+HandDeg: TypeAlias = Annotated[float, Meta(ge=1.0, le=500.0)]
+DegPerS: TypeAlias = Annotated[float, Meta(ge=1.0, le=1500.0)]
+
+
+class SteadyCircle(Section, frozen=True, kw_only=True, tag_field="kind", tag="steady_state_circle"):
+    """ISO 4138, constant speed with slowly increasing steering, up to the limit of grip."""
+
+    speed_kmh: Kmh = 80.0
+    hand_wheel_degps: DegPerS = 13.5
+    fit_from_mps2: Annotated[float, Meta(ge=0.1, le=12.0)] = 1.0  # the gradients are those between these two
+    fit_to_mps2: Annotated[float, Meta(ge=0.2, le=12.0)] = 4.0
+
+
+class StepSteer(Section, frozen=True, kw_only=True, tag_field="kind", tag="step_steer"):
+    """ISO 7401, step input: a fast turn of the hand wheel, then held; the throttle keeps its place."""
+
+    speed_kmh: Kmh = 100.0
+    hand_wheel_deg: HandDeg = 30.0
+    hand_wheel_degps: DegPerS = 500.0
+    hold_s: Annotated[float, Meta(ge=1.0, le=20.0)] = 4.0
+
+
+class SineWithDwell(Section, frozen=True, kw_only=True, tag_field="kind", tag="sine_with_dwell"):
+    """FMVSS 126 (49 CFR 571.126): with ESC from 1.5 A to 270 deg, and once more without it."""
+
+    speed_kmh: Kmh = 80.0
+    frequency_hz: Annotated[float, Meta(ge=0.1, le=3.0)] = 0.7
+    dwell_s: Annotated[float, Meta(ge=0.0, le=2.0)] = 0.5
+    factors: Annotated[tuple[float, ...], Meta(min_length=1, max_length=30)] = (1.5, 2.5, 3.5, 4.5, 5.0, 5.5, 6.0, 6.5)
+    final_hand_wheel_deg: HandDeg = 270.0
+    without_factor: Annotated[float, Meta(ge=0.5, le=10.0)] = 6.5
+
+
+class DoubleLaneChange(Section, frozen=True, kw_only=True, tag_field="kind", tag="double_lane_change"):
+    """ISO 3888-1 or -2: the highest entry speed at which no corner of the car leaves the lanes, found by halving."""
+
+    course: Literal["iso_3888_1", "iso_3888_2"] = "iso_3888_2"
+    from_kmh: Kmh = 30.0
+    to_kmh: Kmh = 130.0
+    within_kmh: Annotated[float, Meta(ge=0.1, le=20.0)] = 1.0
+
+
+class StraightBraking(Section, frozen=True, kw_only=True, tag_field="kind", tag="straight_braking"):
+    """Full braking in a straight line (ISO 21994), with the anti-lock brakes and once more without them.
+
+    The driver keeps to the line with the hand wheel, so that it also serves on split friction.
+    """
+
+    speed_kmh: Kmh = 100.0
+    brake: Annotated[float, Meta(gt=0.0, le=1.0)] = 1.0
+    without: bool = True
+
+
+class CoastDown(Section, frozen=True, kw_only=True, tag_field="kind", tag="coast_down"):
+    """Out of gear from one speed to another: air and rolling resistance."""
+
+    from_kmh: Kmh = 100.0
+    to_kmh: Kmh = 20.0
+
+
+class Observed(Section, frozen=True, kw_only=True, tag_field="kind", tag="observed"):
+    """The scenario's own script, observed from one moment to another: launch, stall, hill start, reverse, parking."""
+
+    from_s: Annotated[float, Meta(ge=0.0, le=3600.0)] = 0.0
+    until_s: Annotated[float, Meta(gt=0.0, le=3600.0)] | None = None
+
+
+Manoeuvre: TypeAlias = (
+    SteadyCircle | StepSteer | SineWithDwell | DoubleLaneChange | StraightBraking | CoastDown | Observed
+)
+
+
+class Limit(Section, frozen=True, kw_only=True):
+    """What a characteristic value must be."""
+
+    value: str
+    min: float | None = None
+    max: float | None = None

@@ -1,0 +1,69 @@
+"""The report of test manoeuvres: one HTML file that needs nothing else (shell: it writes the file)."""
+
+from collections.abc import Sequence
+from html import escape
+from pathlib import Path
+from typing import Final, NamedTuple
+
+from simconsole.errors import RecordingError
+from simconsole.handling.attempt import Result
+from simconsole.profiles.manoeuvre import Limit
+from simconsole.report.figures import panels_svg
+from simconsole.report.page import STYLE
+
+_GOOD: Final = "inside its limits"
+_BAD: Final = "NOT inside its limits"
+
+
+class Chapter(NamedTuple):
+    """One manoeuvre of a report."""
+
+    name: str
+    title: str
+    result: Result
+    limits: tuple[Limit, ...]
+    problems: tuple[str, ...]
+
+
+def write_handling_report(path: Path, chapters: Sequence[Chapter]) -> None:
+    """Write the report of these manoeuvres.
+
+    Raises:
+        RecordingError: the file cannot be written.
+    """
+    body = "\n".join(_chapter(chapter) for chapter in chapters)
+    text = (
+        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">\n'
+        '<meta name="viewport" content="width=device-width,initial-scale=1">\n'
+        f"<title>Test manoeuvres</title><style>{STYLE}</style></head><body>\n<h1>Test manoeuvres</h1>\n{body}\n"
+        "</body></html>\n"
+    )
+    try:
+        path.write_text(text, encoding="utf-8", newline="\n")
+    except OSError as error:
+        raise RecordingError(f"{path}: cannot be written: {error.strerror}") from error
+
+
+def _chapter(chapter: Chapter) -> str:
+    limits = {limit.value: limit for limit in chapter.limits}
+    lines = ["<table><tr><th>characteristic value</th><th class=n>driven</th><th class=n>limits</th></tr>"]
+    for name, value in chapter.result.values.items():
+        bounds = limits.get(name)
+        lines.append(
+            f"<tr><td>{escape(name)}</td><td class=n>{value:.4g}</td>"
+            f"<td class=n>{'' if bounds is None else escape(_between(bounds))}</td></tr>"
+        )
+    verdict = _BAD if chapter.problems else _GOOD
+    notes = "".join(f"<p>{escape(problem)}</p>" for problem in chapter.problems)
+    figure = panels_svg(chapter.name, chapter.result.panels) if chapter.result.panels else ""
+    return (
+        f"<h2>{escape(chapter.title)}</h2>\n<p class=note>{escape(chapter.name)}: {verdict}</p>{notes}\n"
+        + "\n".join((*lines, "</table>"))
+        + f"\n<figure>{figure}</figure>"
+    )
+
+
+def _between(limit: Limit) -> str:
+    if limit.min is None:
+        return f"at most {limit.max:g}"
+    return f"at least {limit.min:g}" if limit.max is None else f"{limit.min:g} to {limit.max:g}"
