@@ -29,12 +29,12 @@ wheel: .venv/ready-to-test  ## dist/*.whl, profiles included
 	$(BIN)/python -m build --wheel --no-isolation
 
 clean:  ## Remove .venv and all that was built
-	rm -rf .venv build dist out .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
+	rm -rf .venv .venv-ros2 build dist out .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
 
 .venv/ready-to-run: pyproject.toml constraints.txt scripts/make-venv
 	@scripts/make-venv
 	@touch $@
 
-.venv/ready-to-test: pyproject.toml constraints.txt scripts/make-venv
+.venv/ready-to-test: pyproject.toml constraints.txt scripts/make-venv scripts/make-ros2-venv
 	@scripts/make-venv dev
 	@touch $@ .venv/ready-to-run

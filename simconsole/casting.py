@@ -144,8 +144,10 @@ def open_realtime(
 
 def _check_address(profile: BridgeProfile) -> None:
     """Listen for a moment where the bridge will: a taken port is one line now, not a station that dies and dies."""
+    from simconsole.bridge.ros2 import check
     from simconsole.bridge.wire import listen
 
+    check(profile)
     listen(profile.host, profile.port).close()
 
 

@@ -123,6 +123,10 @@ class Calls:
         """Return the number of the client that provides each service of a client."""
         return {name: provider.session.number for name, provider in self._services.items()}
 
+    def action_providers(self) -> dict[str, int]:
+        """Return the number of the client that provides each action."""
+        return {name: provider.session.number for name, provider in self._actions.items()}
+
     def apply(self, session: Session, operation: CallOperation, now_ns: int) -> str:
         """Apply one operation of a client; return the service or action it is about.
 

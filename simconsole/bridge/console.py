@@ -91,6 +91,10 @@ class ConsoleBridge:
         """Apply one text of a client."""
         return self.router.receive(session, text, now_ns)
 
+    def receive_plain(self, session: Session, name: str, plain: dict[str, Any], now_ns: int) -> Outcome:
+        """Apply one message of a topic that did not come as text."""
+        return self.router.receive_plain(session, name, plain, now_ns)
+
     def disconnect(self, session: Session, now_ns: int) -> bool:
         """Remove a client; if it was commanding, raise COMMANDER_LOST and return True."""
         commanded = self.router.disconnect(session, now_ns)

@@ -6,9 +6,11 @@ round trips with the bridge in a thread). Between two calls nothing happens; the
 
 import logging
 import selectors
+import socket
 import time
+from contextlib import suppress
 from types import TracebackType
-from typing import Final, Self
+from typing import TYPE_CHECKING, Final, Self
 
 import msgspec
 
@@ -20,11 +22,14 @@ from simconsole.bridge.handshake import role_at
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.session import Session
 from simconsole.bridge.topics import ODOMETRY
-from simconsole.bridge.wire import address_url, listen, load_access, log_outcome
+from simconsole.bridge.wire import RECEIVE_BYTES, address_url, listen, load_access, log_outcome
 from simconsole.errors import ProfileError
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.rows import Snapshot
 from simconsole.signals import EventInput, RemoteCommand
+
+if TYPE_CHECKING:
+    from simconsole.bridge.ros2 import Ros2Link
 
 _HANDSHAKE_S: Final = 5.0
 _ANSWERS: Final = 4.0
@@ -73,6 +78,10 @@ class LockstepBridge:
         self._listener = listen(profile.host, profile.port)
         self._selector = selectors.DefaultSelector()
         self._selector.register(self._listener, selectors.EVENT_READ, None)
+        self._ros2: Ros2Link | None = None
+        self._bell: tuple[socket.socket, ...] = ()
+        if profile.ros2 is not None:
+            self._join_ros2()
 
     def __enter__(self) -> Self:
         """Return the bridge; it is closed at the end of the block."""
@@ -116,6 +125,7 @@ class LockstepBridge:
         self.console.inputs.tick = snapshot.tick
         self._serve(0.0)
         self.console.publish(snapshot, self._now_ns)
+        self._pump_ros2()
         self._flush()
 
     def exchange(self, snapshot: Snapshot, timeout_s: float = 2.0) -> bool:
@@ -131,6 +141,7 @@ class LockstepBridge:
         self._now_ns = snapshot.t_ns
         inputs.tick = snapshot.tick
         self.console.publish(snapshot, self._now_ns, odometry=True)
+        self._pump_ros2()
         self._flush()
         before = inputs.command.sequence
         deadline = time.monotonic() + timeout_s
@@ -138,7 +149,7 @@ class LockstepBridge:
             if inputs.command.sequence != before and inputs.stamp_ns in (snapshot.t_ns, None):
                 return True
             left_s = deadline - time.monotonic()
-            if left_s <= 0.0 or inputs.command.sequence == self._lost_at or not self._connections:
+            if left_s <= 0.0 or inputs.command.sequence == self._lost_at or not self.clients:
                 return False
             self._serve(left_s)
 
@@ -151,6 +162,9 @@ class LockstepBridge:
         if self._listener.fileno() < 0:
             return
         self._closing = True
+        if self._ros2 is not None:
+            self._ros2.close()
+            self._ros2 = None
         deadline = time.monotonic() + _GOOD_BYE_S
         for connection in list(self._connections):
             connection.say_good_bye()
@@ -163,6 +177,8 @@ class LockstepBridge:
             self._forget(connection)
         self._selector.close()
         self._listener.close()
+        for end in self._bell:
+            end.close()
 
     def role_of(self, path: str, authorization: str | None) -> Role:
         """Return what a client may do (Connection's owner)."""
@@ -180,10 +196,13 @@ class LockstepBridge:
     def _serve(self, timeout_s: float) -> None:
         """Wait at most `timeout_s` for sockets and serve each that is ready once."""
         for key, mask in self._selector.select(timeout_s):
-            connection: Connection | None = key.data
-            if connection is None:
+            if key.data is None:
                 self._accept()
                 continue
+            if isinstance(key.data, socket.socket):
+                self._pump_ros2(key.data)
+                continue
+            connection: Connection = key.data
             if mask & selectors.EVENT_READ:
                 connection.read()
             self._settle(connection)
@@ -191,6 +210,29 @@ class LockstepBridge:
             # What one client published may wait for another.
             if connection.session is not None and connection.session.due_ns() is not None:
                 self._settle(connection)
+
+    def _join_ros2(self) -> None:
+        from simconsole.bridge.ros2 import Ros2Link
+
+        # rclpy's thread rings, so that a wait for sockets ends for the graph too; one byte that waits is enough.
+        rung, ring = socket.socketpair()
+        rung.setblocking(False)
+        ring.setblocking(False)
+
+        def wake() -> None:
+            with suppress(OSError):
+                ring.send(b"!")
+
+        self._selector.register(rung, selectors.EVENT_READ, rung)
+        self._bell = (rung, ring)
+        self._ros2 = Ros2Link(self.console, self._profile, wake)
+
+    def _pump_ros2(self, rung: socket.socket | None = None) -> None:
+        if rung is not None:
+            rung.recv(RECEIVE_BYTES)
+        if self._ros2 is not None:
+            self._ros2.check()
+            self._ros2.pump(self._now_ns)
 
     def _accept(self) -> None:
         try:

@@ -97,6 +97,10 @@ class Router:
             counts = counts.plus(session.counts())
         return counts
 
+    def topic(self, name: str) -> Topic | None:
+        """Return a topic, None if there is none of that name."""
+        return self.board.find(name)
+
     def add_output(self, name: str, type_name: str, depth: int = 1, latch: bool = False) -> None:
         """Add a topic that only the console publishes, keeping the `depth` newest messages for a slow client."""
         self.board.add(Topic(name, self.registry.resolve(type_name), depth, True, None, latch))
@@ -161,6 +165,17 @@ class Router:
         except BridgeError as error:
             return self._refuse(session, document.fields, str(error), now_ns)
         return Outcome("done", "", "") if whole is None else self._receive(session, whole, now_ns, True)
+
+    def receive_plain(self, session: Session, name: str, plain: dict[str, Any], now_ns: int) -> Outcome:
+        """Apply a message that did not come as text: checked like any other. Never raises for what is in it."""
+        session.received += 1
+        self.calls.expire(now_ns)
+        fields = {"op": "publish", "topic": name, "msg": plain}
+        try:
+            self._require(session, Role.PUBLISH)
+            return self._publish(session, name, Publish(name, plain), Document(fields, False), b"", now_ns)
+        except BridgeError as error:
+            return self._refuse(session, fields, str(error), now_ns)
 
     def _refuse(self, session: Session, fields: dict[str, Any], reason: str, now_ns: int) -> Outcome:
         session.refused += 1
@@ -246,7 +261,7 @@ class Router:
             return self._throttle(session, topic.name, now_ns)
         if document.literals or (isinstance(text, Binary) and not _is_finite(operation.msg)):
             raise RemoteProtocolError("NaN and Infinity are not JSON and no command")
-        if has_duplicate_keys(text, document.fields):
+        if text and has_duplicate_keys(text, document.fields):
             raise RemoteProtocolError("a key is given twice")
         if command.leased and not self.lease.is_open_to(session.number, now_ns):
             raise RemoteProtocolError("another client commands the console")

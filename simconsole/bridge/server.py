@@ -10,7 +10,7 @@ import socket
 import time
 from collections.abc import Callable
 from http import HTTPStatus
-from typing import Any, Final, cast
+from typing import TYPE_CHECKING, Any, Final, cast
 
 from websockets.asyncio.server import Server, ServerConnection
 from websockets.asyncio.server import serve as serve_websockets
@@ -40,6 +40,9 @@ from simconsole.errors import RemoteProtocolError
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.rows import Snapshot
 from simconsole.units import NS_PER_S
+
+if TYPE_CHECKING:
+    from simconsole.bridge.ros2 import Ros2Link
 
 _HANDSHAKE_S: Final = 5.0
 _CLOSE_S: Final = 1.0
@@ -110,6 +113,8 @@ class BridgeServer:
         self._server: Server | None = None
         self._watcher: asyncio.Task[None] | None = None
         self._port = 0
+        self._ros2: Ros2Link | None = None
+        self._ros2_woken = False
 
     @property
     def port(self) -> int:
@@ -150,13 +155,20 @@ class BridgeServer:
             logger=_logger,
         )
         self._watcher = asyncio.create_task(self._watch())
+        if self._profile.ros2 is not None:
+            self._join_ros2(asyncio.get_running_loop())
 
     def publish(self, snapshot: Snapshot) -> None:
         """Queue what is due of a snapshot; the clients' tasks send it."""
         self.console.publish(snapshot, self._clock_ns())
+        if self._ros2 is not None:
+            self._ros2.check()
 
     async def close(self) -> None:
         """Say good-bye to all clients and stop listening; harmless when closed."""
+        if self._ros2 is not None:
+            self._ros2.close()
+            self._ros2 = None
         if self._watcher is not None:
             self._watcher.cancel()
             self._watcher = None
@@ -164,6 +176,21 @@ class BridgeServer:
         if server is not None:
             server.close()
             await server.wait_closed()
+
+    def _join_ros2(self, loop: asyncio.AbstractEventLoop) -> None:
+        from simconsole.bridge.ros2 import Ros2Link
+
+        def wake() -> None:
+            if not self._ros2_woken:
+                self._ros2_woken = True
+                loop.call_soon_threadsafe(self._pump_ros2)
+
+        self._ros2 = Ros2Link(self.console, self._profile, wake)
+
+    def _pump_ros2(self) -> None:
+        self._ros2_woken = False
+        if self._ros2 is not None:
+            self._ros2.pump(self._clock_ns())
 
     def _admit(self, connection: ServerConnection, request: Request) -> Response | None:
         hosts = request.headers.get_all("Host")

@@ -15,6 +15,7 @@ def bridge(words: Namespace) -> Outcome:
 
 def serve(words: Namespace) -> Outcome:
     """Serve rosbridge on a standing car that nobody sits in, in real time, until interrupted; nothing is kept."""
+    from simconsole.bridge.ros2 import check as check_ros2
     from simconsole.bridge.wire import address_url, load_access, load_tls
     from simconsole.session import drive
     from simconsole.session_files import load_session, override, resolve
@@ -27,6 +28,7 @@ def serve(words: Namespace) -> Outcome:
         "certificate": certificate,
         "certificate_key": None if certificate is None else str(Path(certificate).with_suffix(".key")),
         "trust_network": words.trust_network,
+        "ros2": {} if words.ros2 else None,
     }
     session = override(load_session("bridge"), outputs={"bridge": section})
     if words.duration_s is not None:
@@ -35,6 +37,7 @@ def serve(words: Namespace) -> Outcome:
         # Here and not only in the server's own process: a refusal shall be one line, at once.
         load_access(session.outputs.bridge)
         load_tls(session.outputs.bridge)
+        check_ros2(session.outputs.bridge)
     print(f"rosbridge at {address_url(words.host, words.port, certificate is not None)}", flush=True)
     with tempfile.TemporaryDirectory(prefix="simconsole-bridge-") as folder:
         result = drive(resolve(session), Path(folder))

@@ -39,6 +39,18 @@ class BridgeLimits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     queued_bytes: Annotated[int, Meta(ge=65_536, le=67_108_864)] = 1_048_576
 
 
+class Ros2Profile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The console as a node of a live ROS 2 graph. A graph has no tokens: these keys say what it may do."""
+
+    node: Annotated[str, Meta(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", max_length=64)] = "simconsole"
+    domain_id: Annotated[int, Meta(ge=0, le=232)] | None = None
+    """Without: what ROS_DOMAIN_ID says."""
+    role: Literal["view", "publish", "control"] | None = None
+    """What the nodes of the graph may do; without: what a rosbridge client that shows no token may, at least view."""
+    discovery: Literal["localhost", "subnet"] = "localhost"
+    """subnet: nodes of other machines are found too; only with `trust_network`, for a graph shows no tokens."""
+
+
 class BridgeProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """One rosbridge server.
 
@@ -68,6 +80,8 @@ class BridgeProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """PEM files; with them the server speaks TLS only (wss://)."""
     trust_network: bool = False
     """Listen on an address others can reach without token and TLS."""
+    ros2: Ros2Profile | None = None
+    """Join a live ROS 2 graph as well; needs rclpy (extra `ros2`)."""
     sender_clock: Literal["own", "console"] = "own"
     """console: senders stamp with /clock, so that stamps from the future and stale ones are refused too."""
     max_stamp_age_ms: Annotated[float, Meta(gt=0.0, le=10_000.0)] = 200.0

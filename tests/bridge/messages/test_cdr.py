@@ -3,7 +3,8 @@ from typing import Any
 import pytest
 
 from simconsole.bridge.messages import standard_registry
-from simconsole.bridge.messages.cdr import serialize
+from simconsole.bridge.messages.cdr import deserialize, serialize
+from simconsole.errors import RemoteProtocolError
 
 HEADER = b"\x00\x01\x00\x00"
 
@@ -27,7 +28,12 @@ def test_bytes_of_a_message(definition: str, plain: dict[str, Any], body: str) -
     registry = standard_registry()
     registry.add("demo/Case", definition)
     message = registry.from_plain("demo/Case", plain)
-    assert serialize(registry, "demo/Case", message) == HEADER + bytes.fromhex(body)
+    data = serialize(registry, "demo/Case", message)
+    assert data == HEADER + bytes.fromhex(body)
+    assert registry.from_plain("demo/Case", deserialize(registry, "demo/Case", data)) == message
+    for length in range(len(data)):
+        with pytest.raises(RemoteProtocolError, match="CDR"):
+            deserialize(registry, "demo/Case", data[:length])
 
 
 def test_length_of_an_odometry() -> None:
@@ -35,3 +41,22 @@ def test_length_of_an_odometry() -> None:
     data = serialize(registry, "nav_msgs/Odometry", registry.struct("nav_msgs/Odometry")())
     # Header 8 + 4 + 1, child frame at 16: 4 + 1, then 7 + 36 + 6 + 36 doubles from 24 on.
     assert len(data) == 4 + 24 + 85 * 8
+
+
+def test_big_endian_is_read() -> None:
+    registry = standard_registry()
+    registry.add("demo/Case", "uint8 a\nfloat64[] b\nwstring c\n")
+    data = b"\0\0\0\0" + bytes.fromhex("07000000 00000001 4000000000000000 00000002 006800e9")
+    assert deserialize(registry, "demo/Case", data) == {"a": 7, "b": [2.0], "c": "hé"}
+
+
+@pytest.mark.parametrize("body", ["ffffffff", "ffffffff 00", "02000000 ff00", "03000000 ffffff"])
+def test_hostile_strings(body: str) -> None:
+    registry = standard_registry()
+    with pytest.raises(RemoteProtocolError, match="do not fit"):
+        deserialize(registry, "std_msgs/String", HEADER + bytes.fromhex(body))
+
+
+def test_bytes_after_the_end_are_padding() -> None:
+    data = HEADER + bytes.fromhex("02000000 6100 0000")
+    assert deserialize(standard_registry(), "std_msgs/String", data) == {"data": "a"}

@@ -1,0 +1,346 @@
+"""The console as a node of a ROS 2 graph, without the graph: what to offer it, and what passes between it and clients.
+
+To the router the graph is a client like any other, with the same checks, roles and lease: one session for everything
+that is not a command, and one for each node that commands, so that two nodes never drive at once. Messages cross in
+CDR; what comes from the graph is read and checked as if it came from a rosbridge client.
+"""
+
+from collections.abc import Callable, Mapping
+from typing import Any, Final, Literal, NamedTuple
+
+import cbor2
+import msgspec
+import orjson
+
+from simconsole.bridge.access import Role
+from simconsole.bridge.console import ConsoleBridge
+from simconsole.bridge.documents import Binary
+from simconsole.bridge.messages import Definition
+from simconsole.bridge.messages.cdr import deserialize, serialize
+from simconsole.bridge.messages.spelled import is_same_layout
+from simconsole.bridge.session import Session
+from simconsole.errors import BridgeError
+
+Describe = Callable[[str], tuple[Definition, ...] | None]
+"""Tells the messages that a type of the graph is made of, None where it is not installed."""
+
+SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
+"""action_msgs/GoalStatus."""
+
+ANYONE: Final = "graph"
+"""Who published where ROS does not tell: one node for all such."""
+
+OUTPUT_DEPTH: Final = 10
+"""Messages of a topic of the console that ROS keeps for a slow node, as rclpy does without being told."""
+
+MAX_NODES: Final = 64
+"""Nodes told apart as commanders; further ones count as one."""
+_UNASKED: Final = frozenset({"rcl_interfaces", "type_description_interfaces"})
+"""Packages of services that every node has; six for each would fill the table."""
+
+
+class GraphView(NamedTuple):
+    """What others have in the graph: topics, services, actions with their types, topics listened to, nodes."""
+
+    topics: Mapping[str, str]
+    listened: frozenset[str]
+    services: Mapping[str, str]
+    actions: Mapping[str, str]
+    nodes: frozenset[str]
+
+
+class Offer(NamedTuple):
+    """One topic that the relay publishes in the graph."""
+
+    type: str
+    latched: bool
+    depth: int
+
+
+class Demand(NamedTuple):
+    """What the relay needs to have in the graph, by name: types of topics heard, of services and actions offered."""
+
+    publishers: dict[str, Offer]
+    subscriptions: dict[str, str]
+    services: dict[str, str]
+    actions: dict[str, str]
+
+
+class Order(NamedTuple):
+    """One thing to do in the graph; `data` is CDR, None where something failed and `text` says why.
+
+    send a message; call a service or pursue a goal of the graph; cancel such a goal; reply to a call of the graph;
+    tell feedback and the end of a goal of the graph; remark something about a node.
+    """
+
+    does: Literal["send", "call", "goal", "cancel", "reply", "feedback", "end", "remark"]
+    name: str
+    key: str = ""
+    type: str = ""
+    data: bytes | None = None
+    text: str = ""
+    status: int = 0
+
+
+class Relay:
+    """Between one console's router and one graph. All methods belong to the router's thread."""
+
+    def __init__(self, console: ConsoleBridge, role: Role, describe: Describe, wake: Callable[[], None]) -> None:
+        """Join with `role`; `wake` is called when `orders` has something."""
+        self._console = console
+        self._router = console.router
+        self._registry = console.router.registry
+        self._role = role
+        self._describe = describe
+        self._wake = wake
+        self._main = self._router.connect("ros2", wake, role=role)
+        self._main.set_level("warning")
+        self._nodes: dict[str, Session] = {}
+        self._usable: dict[str, bool] = {}
+        self._missing: list[str] = []
+        self._advertised: dict[str, dict[str, str]] = {"topic": {}, "service": {}, "action": {}}
+        self._listening: set[str] = set()
+        self._asked: dict[str, str] = {}
+        """Services and actions by key that the graph waits for, with their types."""
+        self._orders: list[Order] = []
+
+    def observe(self, view: GraphView, now_ns: int) -> Demand:
+        """Take in what the graph has now; return what the relay needs to have in it."""
+        for node in [node for node in self._nodes if node not in view.nodes and node != ANYONE]:
+            self._console.disconnect(self._nodes.pop(node), now_ns)
+        if self._role >= Role.PUBLISH:
+            self._advertise("topic", view.topics, now_ns)
+            self._advertise("service", view.services, now_ns)
+            self._advertise("action", view.actions, now_ns)
+        demand = self._demand()
+        if self._missing:
+            text = f"not relayed, because this ROS 2 has no such type: {', '.join(self._missing)}"
+            self._orders.append(Order("remark", "ros2", text=text))
+            self._missing.clear()
+        heard = {name for name, offer in demand.publishers.items() if offer.latched or name in view.listened}
+        for name in sorted(heard - self._listening):
+            self._say(now_ns, op="subscribe", topic=name, compression="cbor-raw")
+        for name in sorted(self._listening - heard):
+            self._say(now_ns, op="unsubscribe", topic=name)
+        self._listening = heard
+        return demand
+
+    def hear(self, name: str, data: bytes, node: str, now_ns: int) -> None:
+        """Take a message of the graph's `node`."""
+        topic = self._router.topic(name)
+        if topic is None:
+            return
+        session = self._main if topic.command is None else self._session_of(node)
+        try:
+            plain = deserialize(self._registry, topic.type, data)
+        except BridgeError as error:
+            self._orders.append(Order("remark", node, text=f"{name}: {error}"))
+            return
+        self._drain(now_ns)
+        self._console.receive_plain(session, name, plain, now_ns)
+        echo = self._main.outlets.get(name)
+        if echo is not None:
+            # What was drained before was for the graph; what waits now has just come from it.
+            self._main.outgoing.forget(echo)
+
+    def ask(self, key: str, service: str, data: bytes, now_ns: int) -> None:
+        """Take a call by the graph of a client's service; a `reply` with this key will be ordered."""
+        self._pass_on(key, service, "Request", data, now_ns, op="call_service", service=service)
+
+    def pursue(self, key: str, action: str, data: bytes, now_ns: int) -> None:
+        """Take a goal of the graph for a client's action; an `end` with this key will be ordered."""
+        self._pass_on(key, action, "Goal", data, now_ns, op="send_action_goal", action=action, feedback=True)
+
+    def cancel(self, key: str, action: str, now_ns: int) -> None:
+        """Take the graph's wish to end a goal."""
+        self._say(now_ns, op="cancel_action_goal", action=action, id=key)
+
+    def answered(self, key: str, service: str, data: bytes | None, why: str, now_ns: int) -> None:
+        """Take the graph's answer to a `call`, None for a failure."""
+        values = self._values("service", service, "Response", data)
+        self._say(
+            now_ns, op="service_response", service=service, id=key, result=values is not None,
+            values=why if values is None else values,
+        )  # fmt: skip
+
+    def progressed(self, key: str, action: str, data: bytes, now_ns: int) -> None:
+        """Take feedback on a `goal`."""
+        values = self._values("action", action, "Feedback", data)
+        self._say(now_ns, op="action_feedback", action=action, id=key, values=values)
+
+    def ended(self, key: str, action: str, data: bytes | None, status: int, why: str, now_ns: int) -> None:
+        """Take the end of a `goal`, None for a failure."""
+        values = self._values("action", action, "Result", data)
+        self._say(
+            now_ns, op="action_result", action=action, id=key, status=status, result=status == SUCCEEDED,
+            values=why if values is None else values,
+        )  # fmt: skip
+
+    def orders(self, now_ns: int) -> list[Order]:
+        """Return what is to be done in the graph, in order, each once."""
+        self._drain(now_ns)
+        orders, self._orders = self._orders, []
+        return orders
+
+    def leave(self, now_ns: int) -> None:
+        """Leave the router."""
+        for session in (self._main, *self._nodes.values()):
+            self._console.disconnect(session, now_ns)
+        self._nodes.clear()
+
+    def _demand(self) -> Demand:
+        router, own = self._router, self._main.number
+        publishers, subscriptions = {}, {}
+        for name, topic in router.topics.items():
+            if not self._is_usable(topic.type):
+                continue
+            if topic.command is not None:
+                if self._role >= Role.CONTROL:
+                    subscriptions[name] = topic.type
+            elif topic.owned or topic.publishers - {own}:
+                depth = OUTPUT_DEPTH if topic.owned else topic.depth
+                publishers[name] = Offer(topic.type, topic.latch, 1 if topic.latch else depth)
+            if not topic.owned and topic.subscribers.keys() - {own} and self._role >= Role.PUBLISH:
+                subscriptions[name] = topic.type
+        calls = router.calls
+        services = self._offered("srv", calls.services(), calls.providers())
+        actions = self._offered("action", calls.actions(), calls.action_providers())
+        return Demand(publishers, subscriptions, services, actions)
+
+    def _offered(self, kind: str, types: Mapping[str, str], providers: Mapping[str, int]) -> dict[str, str]:
+        offered = {}
+        for name, number in providers.items():
+            full = _three_parts(types[name], kind)
+            if number != self._main.number and self._role >= Role.PUBLISH and self._is_usable(full):
+                offered[name] = full
+        return offered
+
+    def _advertise(self, kind: Literal["topic", "service", "action"], seen: Mapping[str, str], now_ns: int) -> None:
+        """Advertise to the clients what the graph has."""
+        known = self._advertised[kind]
+        op = "advertise" if kind == "topic" else f"advertise_{kind}"
+        for name in [name for name in known if seen.get(name) != known[name]]:
+            del known[name]
+            self._say(now_ns, op=f"un{op}", **{kind: name})
+        for name, type_name in seen.items():
+            if name in known or type_name.partition("/")[0] in _UNASKED or not self._is_free(kind, name, type_name):
+                continue
+            if self._is_usable(type_name) and self._say(now_ns, op=op, type=type_name, **{kind: name}):
+                known[name] = type_name
+
+    def _is_free(self, kind: str, name: str, type_name: str) -> bool:
+        """Return whether what the graph has is not the console's, and no client has it in its place."""
+        if kind == "topic":
+            topic = self._router.topic(name)
+            return topic is None or (not topic.owned and topic.type == type_name)
+        calls = self._router.calls
+        return name not in (calls.services() if kind == "service" else calls.actions())
+
+    def _is_usable(self, type_name: str) -> bool:
+        """Return whether a type is installed in the graph and the same there; makes it known here."""
+        if type_name not in self._usable:
+            self._usable[type_name] = self._learn(type_name)
+        return self._usable[type_name]
+
+    def _learn(self, type_name: str) -> bool:
+        found = self._describe(type_name)
+        if found is None:
+            self._missing.append(type_name)
+            return False
+        names = set(self._registry.names())
+        for definition in found:
+            if definition.name not in names:
+                self._registry.add_definition(definition)
+            elif not is_same_layout(definition, self._registry.definition(definition.name)):
+                text = f"{type_name} is not relayed: {definition.name} has other fields in this ROS 2"
+                self._orders.append(Order("remark", "ros2", text=text))
+                return False
+        return True
+
+    def _session_of(self, node: str) -> Session:
+        session = self._nodes.get(node)
+        if session is None:
+            if len(self._nodes) >= MAX_NODES:
+                return self._main
+            session = self._nodes[node] = self._router.connect(f"ros2:{node}", self._wake, role=self._role)
+            session.set_level("warning")
+        return session
+
+    def _say(self, now_ns: int, **operation: Any) -> bool:
+        """Speak as a client; return whether it was accepted."""
+        return self._router.receive(self._main, msgspec.json.encode(operation), now_ns).kind == "done"
+
+    def _pass_on(self, key: str, name: str, part: str, data: bytes, now_ns: int, **operation: Any) -> None:
+        type_name = (self._router.calls.actions() if part == "Goal" else self._router.calls.services()).get(name, "")
+        self._asked[key] = type_name
+        try:
+            args = deserialize(self._registry, self._registry.part(type_name, part) or "", data)
+        except BridgeError as error:
+            self._finish(key, Order("end" if part == "Goal" else "reply", name, text=str(error), status=ABORTED))
+            return
+        self._say(now_ns, id=key, args=args, **operation)
+
+    def _values(self, kind: str, name: str, part: str, data: bytes | None) -> Any:
+        if data is None:
+            return None
+        full = self._registry.part(self._advertised[kind].get(name, ""), part)
+        return None if full is None else deserialize(self._registry, full, data)
+
+    def _drain(self, now_ns: int) -> None:
+        for name, session in (("ros2", self._main), *self._nodes.items()):
+            while (text := session.next_text(now_ns)) is not None:
+                self._take(name, text)
+
+    def _take(self, peer: str, text: bytes) -> None:
+        """Make an order of what the router says to one of the relay's sessions."""
+        if isinstance(text, Binary):
+            published = cbor2.loads(text)
+            self._orders.append(Order("send", published["topic"], data=published["msg"]["bytes"]))
+            return
+        said = orjson.loads(text)
+        key = said.get("id")
+        match said["op"]:
+            case "status":
+                self._orders.append(Order("remark", peer, text=said["msg"]))
+            case "call_service":
+                self._orders.append(self._request("call", "service", said, "Request"))
+            case "send_action_goal":
+                self._orders.append(self._request("goal", "action", said, "Goal"))
+            case "cancel_action_goal":
+                self._orders.append(Order("cancel", said["action"], key))
+            case "action_feedback":
+                data, why = self._cdr(self._asked.get(key, ""), "Feedback", said["values"])
+                self._orders.append(Order("feedback", said["action"], key, data=data, text=why))
+            case "service_response":
+                data, why = self._ending(key, "Response", said)
+                self._finish(key, Order("reply", said["service"], data=data, text=why))
+            case _:  # action_result
+                data, why = self._ending(key, "Result", said)
+                self._finish(key, Order("end", said["action"], data=data, text=why, status=said["status"]))
+
+    def _request(self, does: Literal["call", "goal"], kind: str, said: dict[str, Any], part: str) -> Order:
+        name = said[kind]
+        type_name = self._advertised[kind].get(name, "")
+        data, why = self._cdr(type_name, part, said["args"])
+        return Order(does, name, said["id"], type_name, data, why)
+
+    def _ending(self, key: str, part: str, said: dict[str, Any]) -> tuple[bytes | None, str]:
+        if not isinstance(said["values"], dict):
+            return None, str(said["values"])
+        return self._cdr(self._asked.get(key, ""), part, said["values"])
+
+    def _finish(self, key: str, order: Order) -> None:
+        self._asked.pop(key, None)
+        self._orders.append(order._replace(key=key))
+        self._wake()
+
+    def _cdr(self, type_name: str, part: str, values: Any) -> tuple[bytes | None, str]:
+        full = self._registry.part(type_name, part)
+        if full is None:
+            return None, "it has left the graph"
+        return serialize(self._registry, full, self._registry.from_plain(full, values)), ""
+
+
+def _three_parts(name: str, kind: str) -> str:
+    package, _, rest = name.partition("/")
+    return f"{package}/{kind}/{rest.removeprefix(f'{kind}/')}"

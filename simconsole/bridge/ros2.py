@@ -1,0 +1,110 @@
+"""The ROS 2 graph as one more client of a console's bridge, beside the sockets.
+
+rclpy spins on a thread of its own; its callbacks only put what they got into an inbox and wake the bridge's thread,
+which does everything else in `pump`.
+"""
+
+import importlib.util
+import logging
+from collections import deque
+from collections.abc import Callable
+from typing import Any, Final
+
+from simconsole.bridge.access import Role
+from simconsole.bridge.console import ConsoleBridge
+from simconsole.bridge.relay import Relay
+from simconsole.bridge.ros2_graph import NOT_INSTALLED, Graph, Heard
+from simconsole.bridge.ros2_types import describe
+from simconsole.errors import BridgeError, ProfileError
+from simconsole.profiles.bridge import BridgeProfile, Ros2Profile
+
+MAX_HEARD: Final = 1000
+"""Messages that wait for the bridge's thread; of more, the oldest are dropped."""
+
+_logger = logging.getLogger("simconsole.bridge.ros2")
+
+
+class Ros2Link:
+    """Joins a console bridge to the graph. All methods belong to the bridge's thread."""
+
+    def __init__(self, console: ConsoleBridge, profile: BridgeProfile, wake: Callable[[], None]) -> None:
+        """Join the graph.
+
+        Args:
+            console: whose router the graph becomes a client of.
+            profile: its `ros2` section says how.
+            wake: called on any thread when `pump` has something to do.
+
+        Raises:
+            BridgeError: rclpy is not installed, or cannot join.
+            ProfileError: the graph would be open to other machines.
+        """
+        settings = profile.ros2 or Ros2Profile()
+        self._inbox: deque[tuple[str, tuple[Any, ...]]] = deque()
+        self._heard: deque[Heard] = deque(maxlen=MAX_HEARD)
+        self._wake = wake
+        self._relay = Relay(console, role_of_graph(profile, console.router.access.anonymous), describe, wake)
+        try:
+            self._graph = Graph(settings, self._put, self._hear)
+        except BridgeError:
+            self._relay.leave(0)
+            raise
+
+    def check(self) -> None:
+        """Raise BridgeError if rclpy has failed."""
+        if self._graph.broken:
+            raise BridgeError("outputs.bridge.ros2: rclpy has failed; its own message stands above")
+
+    def pump(self, now_ns: int) -> None:
+        """Pass on what has come from the graph and what is for it."""
+        while self._inbox:
+            event, arguments = self._inbox.popleft()
+            if event == "view":
+                self._graph.want(self._relay.observe(arguments[0], now_ns))
+            else:
+                getattr(self._relay, event)(*arguments, now_ns)
+        for _ in range(len(self._heard)):
+            self._relay.hear(*self._heard.popleft(), now_ns)
+        for order in self._relay.orders(now_ns):
+            if order.does == "remark":
+                _logger.warning("%s: %s", order.name, order.text)
+            else:
+                self._graph.do(order)
+
+    def close(self) -> None:
+        """Leave the graph; harmless when closed."""
+        self._graph.close()
+
+    def _put(self, event: str, *arguments: Any) -> None:
+        self._inbox.append((event, arguments))
+        self._wake()
+
+    def _hear(self, heard: Heard) -> None:
+        self._heard.append(heard)
+        self._wake()
+
+
+def check(profile: BridgeProfile) -> None:
+    """Find out at once, and not in the bridge's own process, that the graph cannot be joined.
+
+    Raises:
+        BridgeError: rclpy is not installed.
+        ProfileError: the graph would be open to other machines.
+    """
+    if profile.ros2 is None:
+        return
+    role_of_graph(profile, Role.VIEW)
+    if importlib.util.find_spec("rclpy") is None:
+        raise BridgeError(NOT_INSTALLED)
+
+
+def role_of_graph(profile: BridgeProfile, anonymous: Role) -> Role:
+    """Return what the nodes of the graph may do: what the profile says, else what a client without token may.
+
+    Raises:
+        ProfileError: the graph would reach beyond this machine without `trust_network`.
+    """
+    settings = profile.ros2 or Ros2Profile()
+    if settings.discovery != "localhost" and not profile.trust_network:
+        raise ProfileError("outputs.bridge.ros2.discovery: value subnet: only with outputs.bridge.trust_network")
+    return max(Role.VIEW, anonymous) if settings.role is None else Role[settings.role.upper()]

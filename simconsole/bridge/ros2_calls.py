@@ -1,0 +1,184 @@
+"""Services and actions of a ROS 2 node, both ways: the graph's for rosbridge clients, and theirs for the graph.
+
+Everything here runs on rclpy's thread. What is for the bridge's thread is `put`: the name of one of the relay's
+methods and its arguments.
+"""
+
+import itertools
+import logging
+from collections.abc import Callable
+from typing import Any, Final
+
+from simconsole.bridge.relay import ABORTED, CANCELED, SUCCEEDED, Order
+from simconsole.bridge.ros2_types import load
+
+_logger: Final = logging.getLogger("simconsole.bridge.ros2")
+
+
+class GraphCalls:
+    """All open calls and goals of one node."""
+
+    def __init__(self, node: Any, executor: Any, group: Any, put: Callable[..., None]) -> None:
+        """Begin without any; `group` is a reentrant callback group, so that no call waits for another."""
+        self._node = node
+        self._executor = executor
+        self._group = group
+        self._put = put
+        self._numbers = itertools.count(1)
+        self._clients: dict[str, Any] = {}
+        self._waiting: dict[str, Any] = {}
+        """Futures by key: what the graph has asked of rosbridge clients."""
+        self._served: dict[str, tuple[Any, Any]] = {}
+        """The graph's goals by key: handle and types."""
+        self._pursued: dict[str, Any] = {}
+        """Handles of the clients' goals by key, None until the graph has accepted one."""
+
+    def do(self, order: Order) -> None:
+        """Do one thing that the relay ordered."""
+        match order.does:
+            case "call":
+                self._call(order)
+            case "goal":
+                self._pursue(order)
+            case "cancel":
+                self._cancel(order)
+            case "reply" | "end":
+                self._finish(order)
+            case "feedback":
+                self._tell(order)
+
+    def make_service(self, name: str, kind: str) -> Any:
+        """Return a service of the graph that a client of the bridge answers."""
+        from rclpy.serialization import deserialize_message, serialize_message
+
+        types = load(kind)
+
+        async def serve(request: Any, response: Any) -> Any:
+            _, answer = self._ask("ask", name, serialize_message(request))
+            order = await answer
+            if order.data is None:
+                # ROS 2 has no word for a failed call: the response stays what it is by default.
+                _logger.warning("%s: %s", name, order.text)
+                return response
+            return deserialize_message(order.data, types.Response)
+
+        return self._node.create_service(types, name, serve, callback_group=self._group)
+
+    def make_action(self, name: str, kind: str) -> Any:
+        """Return an action of the graph whose goals a client of the bridge pursues."""
+        from rclpy.action import ActionServer, CancelResponse
+        from rclpy.serialization import deserialize_message, serialize_message
+
+        types = load(kind)
+
+        async def execute(goal: Any) -> Any:
+            key, end = self._ask("pursue", name, serialize_message(goal.request))
+            self._served[key] = (goal, types)
+            order = await end
+            del self._served[key]
+            if order.status == SUCCEEDED:
+                goal.succeed()
+            elif order.status == CANCELED and goal.is_cancel_requested:
+                goal.canceled()
+            else:
+                _logger.warning("%s: %s", name, order.text or "aborted")
+                goal.abort()
+            return types.Result() if order.data is None else deserialize_message(order.data, types.Result)
+
+        def cancel(goal: Any) -> Any:
+            identity = bytes(goal.goal_id.uuid)
+            for key, (known, _) in self._served.items():
+                if bytes(known.goal_id.uuid) == identity:
+                    self._put("cancel", key, name)
+                    return CancelResponse.ACCEPT
+            return CancelResponse.REJECT
+
+        return ActionServer(
+            self._node, types, name, execute, callback_group=self._group, cancel_callback=cancel
+        )  # fmt: skip
+
+    def _ask(self, event: str, name: str, data: bytes) -> tuple[str, Any]:
+        from rclpy.task import Future
+
+        key = f"graph:{next(self._numbers)}"
+        future: Any = Future(executor=self._executor)
+        self._waiting[key] = future
+        self._put(event, key, name, data)
+        return key, future
+
+    def _finish(self, order: Order) -> None:
+        future = self._waiting.pop(order.key, None)
+        if future is not None:
+            future.set_result(order)
+
+    def _tell(self, order: Order) -> None:
+        from rclpy.serialization import deserialize_message
+
+        if order.key in self._served and order.data is not None:
+            goal, types = self._served[order.key]
+            goal.publish_feedback(deserialize_message(order.data, types.Feedback))
+
+    def _call(self, order: Order) -> None:
+        from rclpy.serialization import deserialize_message, serialize_message
+
+        if order.data is None:
+            self._put("answered", order.key, order.name, None, order.text)
+            return
+        types = load(order.type)
+        client = self._clients.get(order.name)
+        if client is None:
+            client = self._node.create_client(types, order.name, callback_group=self._group)
+            self._clients[order.name] = client
+
+        def done(future: Any) -> None:
+            error = future.exception()
+            data = None if error is not None else serialize_message(future.result())
+            self._put("answered", order.key, order.name, data, str(error))
+
+        client.call_async(deserialize_message(order.data, types.Request)).add_done_callback(done)
+
+    def _pursue(self, order: Order) -> None:
+        from rclpy.action import ActionClient
+        from rclpy.serialization import deserialize_message, serialize_message
+
+        key, name = order.key, order.name
+        if order.data is None:
+            self._put("ended", key, name, None, ABORTED, order.text)
+            return
+        types = load(order.type)
+        client = self._clients.get(name)
+        if client is None:
+            client = self._clients[name] = ActionClient(self._node, types, name, callback_group=self._group)
+
+        def accepted(future: Any) -> None:
+            goal = future.result()
+            if not goal.accepted:
+                self._pursued.pop(key, None)
+                self._put("ended", key, name, None, ABORTED, "the goal was not accepted")
+                return
+            wants_end = key in self._pursued and self._pursued[key] == "cancel"
+            self._pursued[key] = goal
+            goal.get_result_async().add_done_callback(ended)
+            if wants_end:
+                goal.cancel_goal_async()
+
+        def ended(future: Any) -> None:
+            self._pursued.pop(key, None)
+            found = future.result()
+            self._put("ended", key, name, serialize_message(found.result), found.status, "")
+
+        def progressed(message: Any) -> None:
+            self._put("progressed", key, name, serialize_message(message.feedback))
+
+        self._pursued[key] = None
+        goal = deserialize_message(order.data, types.Goal)
+        client.send_goal_async(goal, feedback_callback=progressed).add_done_callback(accepted)
+
+    def _cancel(self, order: Order) -> None:
+        if order.key not in self._pursued:
+            return
+        goal = self._pursued[order.key]
+        if goal is None:
+            self._pursued[order.key] = "cancel"
+        elif goal != "cancel":
+            goal.cancel_goal_async()

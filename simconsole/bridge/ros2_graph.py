@@ -1,0 +1,272 @@
+"""A node of rclpy on a thread of its own, and all that it has in the graph."""
+
+import os
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from typing import Any, Final, NamedTuple
+
+from simconsole.bridge.relay import ANYONE, Demand, GraphView, Offer, Order
+from simconsole.bridge.ros2_calls import GraphCalls
+from simconsole.bridge.ros2_types import load
+from simconsole.errors import BridgeError
+from simconsole.profiles.bridge import Ros2Profile
+
+LOOK_S: Final = 0.1
+"""How often the graph is looked at: what comes or goes there is seen this much later."""
+DEPTH: Final = 10
+MAX_LOOKS: Final = 10
+MAX_UNNAMED: Final = 100
+_NAMELESS: Final = "_NODE_NAME_UNKNOWN_"
+"""rmw's name of a node whose endpoints are known before itself."""
+NOT_INSTALLED: Final = (
+    "outputs.bridge.ros2: there is no rclpy; pip install 'simconsole[ros2]', or source a ROS 2 that uses this Python"
+)
+_JOIN_S: Final = 3.0
+_DISCOVERY: Final = "ROS_AUTOMATIC_DISCOVERY_RANGE"
+
+
+class Heard(NamedTuple):
+    """A message of the graph, in CDR, and the node that published it."""
+
+    topic: str
+    data: bytes
+    node: str
+
+
+class _Unnamed(NamedTuple):
+    """A message whose publisher's node is not known yet, and for how many looks at the graph it has waited."""
+
+    topic: str
+    data: bytes
+    identity: bytes
+    looks: int
+
+
+class _Way(NamedTuple):
+    """How a topic is subscribed to."""
+
+    type: str
+    reliable: bool
+    latched: bool
+
+
+class Graph:
+    """The console's node. Public methods belong to the bridge's thread, all others to rclpy's."""
+
+    def __init__(self, settings: Ros2Profile, put: Callable[..., None], hear: Callable[[Heard], None]) -> None:
+        """Join; `put` and `hear` are called on rclpy's thread.
+
+        Raises:
+            BridgeError: rclpy is not installed, or cannot join.
+        """
+        try:
+            import rclpy
+            import rclpy.action
+            from rclpy.callback_groups import ReentrantCallbackGroup
+            from rclpy.executors import SingleThreadedExecutor
+        except ImportError as error:
+            raise BridgeError(f"{NOT_INSTALLED}: {error}") from None
+        self._rclpy: Any = rclpy
+        self._put = put
+        self._hear = hear
+        self._context: Any = rclpy.Context()
+        try:
+            with _environment(_DISCOVERY, settings.discovery.upper()):
+                rclpy.init(context=self._context, domain_id=settings.domain_id)
+            node: Any = rclpy.create_node(
+                settings.node, context=self._context, enable_rosout=False, start_parameter_services=False
+            )
+        except (RuntimeError, ValueError) as error:
+            raise BridgeError(f"outputs.bridge.ros2: cannot join the graph: {error}") from None
+        self._node = node
+        self._name = node.get_fully_qualified_name()
+        self._group = ReentrantCallbackGroup()
+        self._executor: Any = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(node)
+        self._calls = GraphCalls(node, self._executor, self._group, put)
+        self._demand = Demand({}, {}, {}, {})
+        self._publishers: dict[str, tuple[Any, Any]] = {}
+        self._subscriptions: dict[str, tuple[Any, Any]] = {}
+        self._services: dict[str, tuple[Any, Any]] = {}
+        self._actions: dict[str, tuple[Any, Any]] = {}
+        self.broken = False
+        """Whether rclpy's thread has ended although nobody wanted that."""
+        self._closing = False
+        self._early: dict[str, bytes] = {}
+        """The newest message of each topic whose publisher is not yet made."""
+        self._unnamed: list[_Unnamed] = []
+        self._nodes: dict[bytes, str] = {}
+        """Who publishes, by the identity of the publisher."""
+        node.create_timer(LOOK_S, self._look, callback_group=self._group)
+        self._thread = threading.Thread(target=self._spin, name="ros2", daemon=True)
+        self._thread.start()
+
+    def want(self, demand: Demand) -> None:
+        """Have in the graph what `demand` says, soon."""
+        if demand != self._demand:
+            self._demand = demand
+            self._executor.create_task(self._settle)
+
+    def do(self, order: Order) -> None:
+        """Do one thing that the relay ordered."""
+        if order.does == "send":
+            self._send(order.name, order.data or b"")
+        else:
+            self._executor.create_task(self._calls.do, order)
+
+    def close(self) -> None:
+        """Leave; harmless when closed."""
+        if self._closing:
+            return
+        self._closing = True
+        self._executor.wake()
+        self._thread.join(_JOIN_S)
+        self._executor.shutdown()
+        self._node.destroy_node()
+        self._rclpy.shutdown(context=self._context)
+
+    def _send(self, name: str, data: bytes) -> None:
+        known = self._publishers.get(name)
+        if known is None:
+            self._early[name] = data
+            return
+        from rclpy.exceptions import InvalidHandle
+
+        with suppress(InvalidHandle):  # destroyed meanwhile, because nobody wants it
+            known[1].publish(data)
+
+    def _spin(self) -> None:
+        try:
+            while not self._closing:
+                self._executor.spin_once()
+        finally:
+            if not self._closing:
+                self.broken = True
+                self._put("view", GraphView({}, frozenset(), {}, {}, frozenset()))
+
+    def _look(self) -> None:
+        node = self._node
+        topics, listened = {}, set()
+        for name, types in node.get_topic_names_and_types():
+            if "/_" in name:
+                continue  # hidden: an action's inside
+            if node.count_subscribers(name) > (name in self._subscriptions):
+                listened.add(name)
+            others_publish = node.count_publishers(name) > (name in self._publishers)
+            if len(types) == 1 and (others_publish or name in listened):
+                topics[name] = types[0]
+        services = {
+            name: types[0]
+            for name, types in node.get_service_names_and_types()
+            if "/_" not in name and len(types) == 1 and node.count_services(name) > (name in self._services)
+        }
+        actions = {
+            name: types[0]
+            for name, types in self._rclpy.action.get_action_names_and_types(node)
+            if len(types) == 1 and node.count_services(f"{name}/_action/send_goal") > (name in self._actions)
+        }
+        nodes = {_path(space, name) for name, space in node.get_node_names_and_namespaces()}
+        self._name_them(1)
+        self._put("view", GraphView(topics, frozenset(listened), services, actions, frozenset(nodes)))
+        self._settle()
+
+    def _settle(self) -> None:
+        demand, node = self._demand, self._node
+        _keep(self._publishers, demand.publishers, self._make_publisher, node.destroy_publisher)
+        ways = {name: self._way(name, kind) for name, kind in demand.subscriptions.items()}
+        _keep(self._subscriptions, ways, self._make_subscription, node.destroy_subscription)
+        _keep(self._services, demand.services, self._calls.make_service, node.destroy_service)
+        _keep(self._actions, demand.actions, self._calls.make_action, lambda server: server.destroy())
+
+    def _make_publisher(self, name: str, offer: Offer) -> Any:
+        from rclpy.qos import DurabilityPolicy, QoSProfile
+
+        durability = DurabilityPolicy.TRANSIENT_LOCAL if offer.latched else DurabilityPolicy.VOLATILE
+        qos = QoSProfile(depth=offer.depth, durability=durability)
+        publisher = self._node.create_publisher(load(offer.type), name, qos)
+        early = self._early.pop(name, None)
+        if early is not None:
+            publisher.publish(early)
+        return publisher
+
+    def _way(self, name: str, kind: str) -> _Way:
+        """Return what all who publish now can do: a reliable subscription hears nothing of a best-effort publisher."""
+        from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
+
+        found = self._node.get_publishers_info_by_topic(name)
+        others = [info.qos_profile for info in found if _path(info.node_namespace, info.node_name) != self._name]
+        reliable = all(qos.reliability != ReliabilityPolicy.BEST_EFFORT for qos in others)
+        latched = bool(others) and all(qos.durability == DurabilityPolicy.TRANSIENT_LOCAL for qos in others)
+        return _Way(kind, reliable, latched)
+
+    def _make_subscription(self, name: str, way: _Way) -> Any:
+        from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+        qos = QoSProfile(
+            depth=DEPTH,
+            reliability=ReliabilityPolicy.RELIABLE if way.reliable else ReliabilityPolicy.BEST_EFFORT,
+            durability=DurabilityPolicy.TRANSIENT_LOCAL if way.latched else DurabilityPolicy.VOLATILE,
+        )
+
+        def take(data: bytes, info: Any) -> None:
+            # Where ROS does not tell who publishes (before Kilted), all of the graph is one.
+            identity = (info.get("publisher_gid") or {}).get("data")
+            if identity is None:
+                self._hear(Heard(name, data, ANYONE))
+                return
+            self._unnamed.append(_Unnamed(name, data, identity, 0))
+            self._name_them(0)
+
+        return self._node.create_subscription(load(way.type), name, take, qos, raw=True, callback_group=self._group)
+
+    def _name_them(self, looks: int) -> None:
+        """Pass on, in order, what has come from publishers whose node is known by now.
+
+        A publisher is found some moments before the name of its node. Such messages wait rather than be taken for
+        another node's; for a second at most.
+        """
+        waiting, self._unnamed = self._unnamed, []
+        for each in waiting:
+            node = self._publisher(each)
+            if node is None and each.looks < MAX_LOOKS:
+                self._unnamed.append(each._replace(looks=each.looks + looks))
+            elif node != self._name:
+                self._hear(Heard(each.topic, each.data, node or ANYONE))
+        del self._unnamed[:-MAX_UNNAMED]
+
+    def _publisher(self, message: _Unnamed) -> str | None:
+        if message.identity not in self._nodes:
+            for known in self._node.get_publishers_info_by_topic(message.topic):
+                if known.node_name != _NAMELESS:
+                    self._nodes[bytes(known.endpoint_gid)] = _path(known.node_namespace, known.node_name)
+        return self._nodes.get(message.identity)
+
+
+def _path(namespace: str, name: str) -> str:
+    return f"{namespace.rstrip('/')}/{name}"
+
+
+def _keep(
+    have: dict[str, tuple[Any, Any]], want: Any, make: Callable[[str, Any], Any], end: Callable[[Any], Any]
+) -> None:
+    """Bring what there is to what is wanted; what changed is ended and made anew."""
+    for name in [name for name, (how, _) in have.items() if want.get(name) != how]:
+        end(have.pop(name)[1])
+    for name, how in want.items():
+        if name not in have:
+            have[name] = (how, make(name, how))
+
+
+@contextmanager
+def _environment(name: str, value: str) -> Iterator[None]:
+    """Have a variable of the environment while ROS reads it, and no longer: programs started here keep their own."""
+    before = os.environ.get(name)
+    os.environ[name] = value
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[name]
+        else:
+            os.environ[name] = before

@@ -1,0 +1,310 @@
+"""The relay between a console's bridge and a ROS 2 graph, the graph being played by the tests."""
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from simconsole.bridge.access import Role
+from simconsole.bridge.console import ConsoleBridge
+from simconsole.bridge.messages import Definition, standard_registry
+from simconsole.bridge.messages.cdr import deserialize, serialize
+from simconsole.bridge.messages.spelled import definition_of
+from simconsole.bridge.relay import ABORTED, CANCELED, MAX_NODES, SUCCEEDED, GraphView, Offer, Order, Relay
+from simconsole.signals import Event, RemoteKind
+
+NOTHING = GraphView({}, frozenset(), {}, {}, frozenset())
+GRIP = (definition_of("demo/msg/Grip", {"force": "double"}),)
+NOT_INSTALLED = {"tf2_msgs/msg/TFMessage"}
+PARTS = {"msg": ("",), "srv": ("_Request", "_Response"), "action": ("_Goal", "_Result", "_Feedback")}
+FIBONACCI = "example_interfaces/action/Fibonacci"
+ADD = "example_interfaces/srv/AddTwoInts"
+MS = 1_000_000
+
+
+def describe(name: str) -> tuple[Definition, ...] | None:
+    registry = standard_registry()
+    package, kind, rest = name.split("/")
+    if name == "demo/msg/Grip":
+        return GRIP
+    if name in NOT_INSTALLED or package in ("simconsole_msgs", "nowhere"):
+        return None
+    if name == "std_msgs/msg/Float64":
+        return (definition_of(name, {"data": "float"}),)
+    return tuple(registry.definition(f"{package}/msg/{rest}{part}") for part in PARTS[kind])
+
+
+class Graph:
+    """A relay at work and what it ordered."""
+
+    def __init__(self, bridge: ConsoleBridge, role: Role = Role.CONTROL) -> None:
+        self.bridge = bridge
+        self.woken = 0
+        self.now_ns = 0
+        self.relay = Relay(bridge, role, describe, self._wake)
+
+    def _wake(self) -> None:
+        self.woken += 1
+
+    def observe(self, **view: Any) -> Any:
+        return self.relay.observe(NOTHING._replace(**view), self.now_ns)
+
+    def orders(self) -> list[Order]:
+        return [order for order in self.relay.orders(self.now_ns) if order.does != "remark"]
+
+    def remarks(self) -> list[tuple[str, str]]:
+        return [(order.name, order.text) for order in self.relay.orders(self.now_ns) if order.does == "remark"]
+
+    def hear(self, topic: str, type_name: str, plain: dict[str, Any], node: str = "/driver") -> None:
+        self.relay.hear(topic, self.cdr(type_name, plain), node, self.now_ns)
+
+    def cdr(self, type_name: str, plain: dict[str, Any]) -> bytes:
+        registry = self.bridge.router.registry
+        return serialize(registry, type_name, registry.from_plain(type_name, plain))
+
+    def plain(self, type_name: str, data: bytes | None) -> dict[str, Any]:
+        assert data is not None
+        return deserialize(self.bridge.router.registry, type_name, data)
+
+
+@pytest.fixture
+def graph(bridge: ConsoleBridge) -> Graph:
+    return Graph(bridge)
+
+
+def test_what_the_console_wants_in_the_graph(graph: Graph) -> None:
+    demand = graph.observe()
+    assert demand.publishers["/odom"] == Offer("nav_msgs/msg/Odometry", False, 10)
+    assert demand.subscriptions["/cmd_vel"] == "geometry_msgs/msg/Twist"
+    assert "/tf_static" not in demand.publishers
+    assert demand.services == demand.actions == {}
+    missing, other = graph.remarks()[::-1]
+    assert missing[1].startswith("not relayed, because this ROS 2 has no such type: ")
+    assert "tf2_msgs/msg/TFMessage" in missing[1]
+    assert other == ("ros2", "std_msgs/msg/Float64 is not relayed: std_msgs/msg/Float64 has other fields in this ROS 2")
+    assert graph.observe() == demand
+    assert graph.remarks() == []
+
+
+def test_outputs_are_sent_while_somebody_listens(graph: Graph, snapshot: Any) -> None:
+    graph.observe()
+    graph.bridge.publish(snapshot(250), 0)
+    assert graph.orders() == []
+    graph.observe(listened=frozenset({"/odom"}))
+    graph.bridge.publish(snapshot(500, x_m=3.0), 0)
+    (order,) = graph.orders()
+    assert (order.does, order.name) == ("send", "/odom")
+    assert graph.plain("nav_msgs/Odometry", order.data)["pose"]["pose"]["position"]["x"] == 3.0
+    assert graph.woken
+    graph.observe()
+    graph.bridge.publish(snapshot(750), 0)
+    assert graph.orders() == []
+
+
+def test_latched_outputs_are_sent_at_once(graph: Graph, snapshot: Any) -> None:
+    NOT_INSTALLED.clear()
+    try:
+        graph.bridge.publish(snapshot(1), 0)
+        assert graph.observe().publishers["/tf_static"] == Offer("tf2_msgs/msg/TFMessage", True, 1)
+        assert [order.name for order in graph.orders()] == ["/tf_static"]
+    finally:
+        NOT_INSTALLED.add("tf2_msgs/msg/TFMessage")
+
+
+def test_a_node_commands(graph: Graph) -> None:
+    graph.observe()
+    graph.hear("/cmd_vel", "geometry_msgs/Twist", {"linear": {"x": 2.0}})
+    command = graph.bridge.inputs.command
+    assert (command.kind, command.speed_mps, command.sequence) == (RemoteKind.TWIST, 2.0, 1.0)
+    graph.hear("/cmd_vel", "geometry_msgs/Twist", {"linear": {"x": 3.0}}, node="/other")
+    assert graph.bridge.inputs.command.speed_mps == 2.0
+    assert graph.remarks()[-1] == ("/other", "publish /cmd_vel: another client commands the console")
+
+
+def test_commands_are_checked(graph: Graph) -> None:
+    graph.observe()
+    graph.hear("/cmd_vel", "geometry_msgs/Twist", {"linear": {"x": float("nan")}})
+    graph.hear("/cmd_vel", "geometry_msgs/Twist", {"linear": {"x": 1e6}})
+    graph.relay.hear("/cmd_vel", b"\0\1\0\0\0", "/driver", 0)
+    graph.relay.hear("/nowhere", b"", "/driver", 0)
+    assert graph.bridge.inputs.command.sequence == 0.0
+    assert graph.bridge.inputs.command.refused == 2.0  # what is no message at all is nobody's command
+    said = [text for _, text in graph.remarks()]
+    assert [text for text in said if "linear.x" in text or "CDR" in text] == said[-3:]
+
+
+def test_a_commander_that_vanishes(graph: Graph) -> None:
+    graph.observe(nodes=frozenset({"/driver"}))
+    graph.hear("/cmd_vel", "geometry_msgs/Twist", {"linear": {"x": 2.0}})
+    graph.observe(nodes=frozenset({"/driver"}))
+    assert graph.bridge.inputs.take(1)[1].events == 0.0
+    graph.observe()
+    assert graph.bridge.inputs.take(2)[1].events == float(Event.COMMANDER_LOST)
+
+
+def test_many_nodes_count_as_one(graph: Graph) -> None:
+    graph.observe()
+    before = len(graph.bridge.router.sessions)
+    for number in range(MAX_NODES + 9):
+        graph.hear("/console/request", "std_msgs/String", {"data": "mark"}, node=f"/n{number}")
+    assert len(graph.bridge.router.sessions) == before + MAX_NODES
+
+
+def test_a_viewing_graph_does_nothing(bridge: ConsoleBridge, join: Callable[..., Any]) -> None:
+    graph, peer = Graph(bridge, Role.VIEW), join(bridge)
+    peer.send(op="subscribe", topic="/chatter", type="std_msgs/String")
+    peer.send(op="advertise_service", service="/add", type=ADD)
+    demand = graph.observe(topics={"/talk": "std_msgs/msg/String"}, services={"/sum": ADD})
+    assert (demand.subscriptions, demand.services) == ({}, {})
+    assert bridge.router.topic("/talk") is None
+    graph.hear("/cmd_vel", "geometry_msgs/Twist", {})
+    assert bridge.inputs.command.sequence == 0.0
+    assert "needs the role publish" in graph.remarks()[-1][1]
+
+
+def test_a_publishing_graph_commands_nothing(bridge: ConsoleBridge) -> None:
+    graph = Graph(bridge, Role.PUBLISH)
+    assert graph.observe().subscriptions == {}
+    graph.hear("/cmd_vel", "geometry_msgs/Twist", {"linear": {"x": 1.0}})
+    assert bridge.inputs.command.sequence == 0.0
+
+
+def test_topics_between_graph_and_clients(graph: Graph, join: Callable[..., Any]) -> None:
+    peer = join(graph.bridge)
+    view = {"topics": {"/grip": "demo/msg/Grip", "/odom": "nav_msgs/msg/Odometry"}, "listened": frozenset({"/grip"})}
+    graph.observe(**view)
+    peer.send(op="subscribe", topic="/grip")  # its type is known from the graph
+    assert graph.observe(**view).subscriptions["/grip"] == "demo/msg/Grip"
+    graph.hear("/grip", "demo/Grip", {"force": 1.5})
+    assert [message["msg"] for message in peer.heard()] == [{"force": 1.5}]
+    assert graph.orders() == []
+    peer.publish("/grip", {"force": 2.5})
+    peer.send(op="advertise", topic="/grip", type="demo/Grip")
+    assert graph.observe(**view).publishers["/grip"] == Offer("demo/msg/Grip", False, 100)
+    peer.publish("/grip", {"force": 3.5})
+    graph.hear("/grip", "demo/Grip", {"force": 4.5})
+    peer.publish("/grip", {"force": 5.5})
+    sent = [graph.plain("demo/Grip", order.data)["force"] for order in graph.orders()]
+    assert sent == [3.5, 5.5]  # what came from the graph does not go back
+    assert [message["msg"]["force"] for message in peer.heard()] == [2.5, 3.5, 4.5, 5.5]
+
+
+def test_what_leaves_the_graph_is_no_longer_advertised(graph: Graph) -> None:
+    graph.observe(topics={"/grip": "demo/msg/Grip"}, services={"/sum": ADD}, actions={"/go": FIBONACCI})
+    router = graph.bridge.router
+    assert router.topic("/grip") is not None
+    assert (router.calls.services()["/sum"], router.calls.actions()) == (ADD, {"/go": FIBONACCI})
+    graph.observe()
+    assert router.topic("/grip") is None
+    assert ("/sum" in router.calls.services(), router.calls.actions()) == (False, {})
+
+
+def test_what_somebody_has_already_is_left_to_them(graph: Graph, join: Callable[..., Any]) -> None:
+    peer = join(graph.bridge)
+    peer.send(op="advertise", topic="/chatter", type="std_msgs/Int8")
+    peer.send(op="advertise_service", service="/add", type=ADD)
+    graph.observe(
+        topics={"/chatter": "std_msgs/msg/String", "/odd": "nowhere/msg/Odd"},
+        services={"/add": ADD, "/n/list_parameters": "rcl_interfaces/srv/ListParameters"},
+    )
+    assert graph.bridge.router.calls.providers() == {"/add": peer.session.number}
+    topics = graph.bridge.router.topics
+    assert ("/odd" in topics, topics["/chatter"].type) == (False, "std_msgs/msg/Int8")
+
+
+def test_clients_call_services_of_the_graph(graph: Graph, join: Callable[..., Any]) -> None:
+    peer = join(graph.bridge)
+    graph.observe(services={"/sum": ADD})
+    for number in range(3):
+        peer.send(op="call_service", service="/sum", id=number, args={"a": 1, "b": number})
+    orders = graph.orders()
+    assert {(order.does, order.name, order.type) for order in orders} == {("call", "/sum", ADD)}
+    assert graph.plain("example_interfaces/AddTwoInts_Request", orders[2].data) == {"a": 1, "b": 2}
+    answer = graph.cdr("example_interfaces/AddTwoInts_Response", {"sum": 3})
+    graph.relay.answered(orders[2].key, "/sum", answer, "", 0)
+    graph.relay.answered(orders[0].key, "/sum", None, "it broke", 0)
+    heard = {message["id"]: (message["result"], message["values"]) for message in peer.heard()}
+    assert heard == {2: (True, {"sum": 3}), 0: (False, "it broke")}
+    graph.observe()  # the third is never answered: the service is gone
+    assert peer.heard()[0]["result"] is False
+
+
+def test_the_graph_calls_services_of_clients(graph: Graph, join: Callable[..., Any]) -> None:
+    peer = join(graph.bridge)
+    peer.send(op="advertise_service", service="/add", type="example_interfaces/AddTwoInts")
+    assert graph.observe().services == {"/add": ADD}
+    request = graph.cdr("example_interfaces/AddTwoInts_Request", {"a": 2, "b": 3})
+    for key in ("one", "two", "three"):
+        graph.relay.ask(key, "/add", request, 0)
+    first, second, third = peer.heard()
+    assert first["args"] == {"a": 2, "b": 3}
+    peer.send(op="service_response", service="/add", id=first["id"], values={"sum": 5}, result=True)
+    peer.send(op="service_response", service="/add", id=second["id"], values="no", result=False)
+    peer.send(op="service_response", service="/add", id=third["id"], values={"sum": "x"}, result=True)
+    good, bad, wrong = graph.orders()
+    assert (good.does, good.key, graph.plain("example_interfaces/AddTwoInts_Response", good.data)) == (
+        "reply", "one", {"sum": 5},
+    )  # fmt: skip
+    assert (bad.key, bad.data, bad.text) == ("two", None, "no")
+    assert (wrong.key, wrong.data) == ("three", None)
+    graph.relay.ask("four", "/add", b"", 0)
+    graph.relay.ask("five", "/none", request, 0)
+    assert [(order.key, order.data) for order in graph.orders()] == [("four", None), ("five", None)]
+
+
+def test_clients_pursue_goals_in_the_graph(graph: Graph, join: Callable[..., Any]) -> None:
+    peer = join(graph.bridge)
+    graph.observe(actions={"/go": FIBONACCI})
+    for name in ("g", "h"):
+        peer.send(op="send_action_goal", action="/go", action_type=FIBONACCI, id=name, args={"order": 3}, feedback=True)
+    peer.send(op="cancel_action_goal", action="/go", id="h")
+    goal, other, cancel = graph.orders()
+    assert (goal.does, goal.name, goal.type, cancel.does, cancel.key) == ("goal", "/go", FIBONACCI, "cancel", other.key)
+    assert graph.plain("example_interfaces/Fibonacci_Goal", goal.data) == {"order": 3}
+    sequence = graph.cdr("example_interfaces/Fibonacci_Result", {"sequence": [0, 1, 1]})
+    graph.relay.progressed(goal.key, "/go", sequence, 0)
+    graph.relay.ended(goal.key, "/go", sequence, SUCCEEDED, "", 0)
+    graph.relay.ended(other.key, "/go", None, CANCELED, "gone", 0)
+    feedback, result, cancelled = peer.heard()
+    assert feedback == {"op": "action_feedback", "action": "/go", "id": "g", "values": {"sequence": [0, 1, 1]}}
+    assert (result["id"], result["status"], result["values"]) == ("g", SUCCEEDED, {"sequence": [0, 1, 1]})
+    assert (cancelled["id"], cancelled["status"], cancelled["result"]) == ("h", CANCELED, False)
+
+
+def test_the_graph_pursues_goals_of_clients(graph: Graph, join: Callable[..., Any]) -> None:
+    peer = join(graph.bridge)
+    peer.send(op="advertise_action", action="/go", type=FIBONACCI)
+    assert graph.observe().actions == {"/go": FIBONACCI}
+    goal = graph.cdr("example_interfaces/Fibonacci_Goal", {"order": 3})
+    graph.relay.pursue("one", "/go", goal, 0)
+    graph.relay.pursue("two", "/go", b"", 0)
+    graph.relay.cancel("one", "/go", 0)
+    asked, cancel = peer.heard()
+    assert (asked["args"], asked["feedback"], cancel["id"]) == ({"order": 3}, True, asked["id"])
+    told = {"action": "/go", "id": asked["id"], "values": {"sequence": [0, 1]}}
+    peer.send(op="action_feedback", **told)
+    peer.send(op="action_result", status=SUCCEEDED, result=True, **told)
+    wrong, feedback, end = graph.orders()
+    assert (wrong.does, wrong.key, wrong.data, wrong.status) == ("end", "two", None, ABORTED)
+    assert (feedback.does, feedback.key) == ("feedback", "one")
+    assert (end.does, end.key, end.status) == ("end", "one", SUCCEEDED)
+    assert graph.plain("example_interfaces/Fibonacci_Result", end.data) == {"sequence": [0, 1]}
+
+
+def test_a_service_that_leaves_with_a_call_on_its_way(graph: Graph, join: Callable[..., Any]) -> None:
+    peer = join(graph.bridge)
+    graph.observe(services={"/sum": ADD})
+    peer.send(op="call_service", service="/sum", id=1, args={"a": 1})
+    graph.observe()
+    (order,) = graph.orders()
+    assert (order.does, order.data, order.text) == ("call", None, "it has left the graph")
+    graph.relay.answered(order.key, "/sum", b"\0\1\0\0", "", 0)  # nobody waits for it any more
+    assert [message["result"] for message in peer.heard()] == [False]
+
+
+def test_leaving(graph: Graph) -> None:
+    graph.observe(nodes=frozenset({"/driver"}))
+    graph.hear("/cmd_vel", "geometry_msgs/Twist", {"linear": {"x": 2.0}})
+    graph.relay.leave(10 * MS)
+    assert graph.bridge.router.sessions == ()
+    assert graph.bridge.inputs.take(1)[1].events == float(Event.COMMANDER_LOST)

@@ -1,0 +1,222 @@
+"""A real ROS 2, rclpy over DDS on loopback, meets the console with no rosbridge_server between."""
+
+import json
+import socket
+import subprocess
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+from websockets.sync.client import ClientConnection, connect
+
+from simconsole.cli import main
+from tests.interop.ros2 import HERE, environment, needs_ros2, program
+
+pytestmark = needs_ros2
+
+FIBONACCI = "test_msgs/action/Fibonacci"
+SESSION = """
+schema: 1
+title: Driven by a ROS 2 node
+scenario:
+  vehicle: hatchback
+  duration_s: 60
+features:
+  control:
+    person_required: false
+outputs:
+  bridge:
+    port: 0
+    ros2: {}
+  hud: null
+  scene: null
+  report: false
+devices:
+  driver: none
+mode:
+  pacing: lockstep
+"""
+SUCCEEDED, CANCELED = 4, 5
+
+
+def test_an_rclpy_node_drives_for_a_minute(tmp_path: Path, record_property: Callable[[str, object], None]) -> None:
+    profile, bundle = tmp_path / "session.yaml", tmp_path / "bundle"
+    profile.write_text(SESSION)
+    around = environment()
+    words = ["-m", "simconsole", "drive", str(profile), "--out", str(bundle), "--json"]
+    with program(around, *words) as console, program(around, str(HERE / "rclpy_driver.py"), "60") as driver:
+        told, complaint = driver.communicate(timeout=60.0)
+        assert driver.returncode == 0, complaint
+        output, complaint = console.communicate(timeout=60.0)
+        assert console.returncode == 0, complaint
+    results, seen = json.loads(output.splitlines()[-1]), json.loads(told)
+    assert (results["unanswered"], results["exchanges"]) == (0, 3000)
+    assert seen["answers"] == 3000
+    assert results["duration_s"] == pytest.approx(60.0, abs=0.1)
+    assert results["distance_m"] > 350.0
+    assert seen["x_m"] > 350.0
+    assert 1.0 < seen["y_m"] < 5.0  # it steered there, from 0
+    assert main(["replay", str(bundle)]) == 0
+    record_property("rclpy in lockstep", f"60 s driven in {seen['wall_s']:.1f} s, 50 Hz control over DDS")
+
+
+class Client:
+    """A rosbridge client, one text at a time."""
+
+    def __init__(self, web: ClientConnection) -> None:
+        self.web = web
+
+    def say(self, **operation: Any) -> None:
+        self.web.send(json.dumps(operation))
+
+    def hear(self, wanted: Callable[[dict[str, Any]], Any]) -> dict[str, Any]:
+        """The next operation that is wanted."""
+        while True:
+            heard: dict[str, Any] = json.loads(self.web.recv(timeout=20.0))
+            assert heard["op"] != "status", heard
+            if wanted(heard):
+                return heard
+
+    def message(self, topic: str) -> Any:
+        return self.hear(lambda heard: heard.get("topic") == topic)["msg"]
+
+
+def free_port() -> int:
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        return int(listener.getsockname()[1])
+
+
+@contextmanager
+def serving(around: dict[str, str], *options: str) -> Iterator[tuple[str, "subprocess.Popen[str]"]]:
+    """`simconsole bridge serve --ros2`, and where it listens."""
+    port = free_port()
+    words = ["-m", "simconsole", "bridge", "serve", "--ros2", "--port", str(port), *options]
+    with program(around, *words) as console:
+        assert console.stdout is not None
+        assert str(port) in console.stdout.readline()
+        yield f"ws://127.0.0.1:{port}", console
+
+
+@contextmanager
+def client(url: str) -> Iterator[Client]:
+    """A client, as soon as the bridge listens."""
+    port = int(url.rpartition(":")[2])
+    pause = threading.Event()
+    deadline_s = time.monotonic() + 20.0
+    while True:
+        with socket.socket() as probe:
+            if not probe.connect_ex(("127.0.0.1", port)):
+                break
+        assert time.monotonic() < deadline_s, "the bridge does not listen"
+        pause.wait(0.05)
+    with connect(url, close_timeout=0.1) as web:
+        yield Client(web)
+
+
+@pytest.fixture(scope="module")
+def met() -> Iterator[Client]:
+    """A rosbridge client of a console that has joined a graph with a peer in it."""
+    around = environment()
+    with (
+        serving(around) as (url, _),
+        program(around, str(HERE / "rclpy_peer.py")) as peer,
+        client(url) as made,
+    ):
+        made.say(op="subscribe", topic="/ros/says", type="std_msgs/String", queue_length=100)
+        yield made
+        assert peer.poll() is None
+
+
+def said(client: Client, text: str) -> None:
+    client.hear(lambda heard: heard.get("topic") == "/ros/says" and heard["msg"]["data"] == text)
+
+
+def test_topics_of_the_graph(met: Client) -> None:
+    met.say(op="subscribe", topic="/ros/scan", type="sensor_msgs/LaserScan")
+    met.say(op="subscribe", topic="/ros/latched", type="std_msgs/String")
+    assert met.message("/ros/latched") == {"data": "once"}  # published before anyone here asked
+    assert met.message("/ros/scan")["ranges"] == [1.0, None, 2.0]  # by a best-effort publisher
+    met.say(op="unsubscribe", topic="/ros/scan")
+    met.say(op="unsubscribe", topic="/ros/latched")
+
+
+def test_topics_of_clients(met: Client) -> None:
+    met.say(op="advertise", topic="/web/talk", type="std_msgs/String")
+    met.say(op="subscribe", topic="/web/talk")
+    for number in range(200):
+        met.say(op="publish", topic="/web/talk", msg={"data": str(number)})
+        assert met.message("/web/talk") == {"data": str(number)}  # once: the graph does not send it back
+        try:
+            heard = json.loads(met.web.recv(timeout=0.05))
+        except TimeoutError:
+            continue
+        assert heard["topic"] == "/ros/says"
+        if heard["msg"]["data"].startswith("heard "):
+            break
+    else:
+        pytest.fail("the peer has heard nothing")
+    met.say(op="unadvertise", topic="/web/talk")
+    met.say(op="unsubscribe", topic="/web/talk")
+
+
+def test_a_service_of_the_graph(met: Client) -> None:
+    met.say(op="call_service", id="list", service="/rosapi/services")
+    services = met.hear(lambda heard: heard.get("id") == "list")["values"]["services"]
+    assert "/ros/flip" in services
+    for number in range(5):
+        met.say(op="call_service", id=number, service="/ros/flip", args={"data": bool(number % 2)})
+    answers = [met.hear(lambda heard, n=number: heard.get("id") == n)["values"] for number in range(5)]
+    assert [answer["success"] for answer in answers] == [True, False, True, False, True]
+
+
+def test_an_action_of_the_graph(met: Client) -> None:
+    goal = {"op": "send_action_goal", "action": "/ros/fibonacci", "action_type": FIBONACCI, "feedback": True}
+    met.say(**goal, id="short", args={"order": 4})
+    feedback = met.hear(lambda heard: heard.get("id") == "short")
+    assert (feedback["op"], feedback["values"]["sequence"][:2]) == ("action_feedback", [0, 1])
+    result = met.hear(lambda heard: heard["op"] == "action_result")
+    assert (result["status"], result["values"]["sequence"]) == (SUCCEEDED, [0, 1, 1, 2, 3])
+    met.say(**goal, id="long", args={"order": 40})
+    met.hear(lambda heard: heard.get("id") == "long")
+    met.say(op="cancel_action_goal", action="/ros/fibonacci", id="long")
+    result = met.hear(lambda heard: heard["op"] == "action_result")
+    assert (result["id"], result["status"]) == ("long", CANCELED)
+
+
+def test_services_and_actions_of_clients(met: Client) -> None:
+    met.say(op="advertise_service", service="/web/flip", type="std_srvs/srv/SetBool")
+    met.say(op="advertise_action", action="/web/fibonacci", type=FIBONACCI)
+    call = met.hear(lambda heard: heard["op"] == "call_service")
+    assert call["args"] == {"data": True}
+    values = {"success": False, "message": "no"}
+    met.say(op="service_response", service="/web/flip", id=call["id"], values=values, result=True)
+    goal = met.hear(lambda heard: heard["op"] == "send_action_goal")
+    assert goal["args"] == {"order": 3}
+    told = {"action": "/web/fibonacci", "id": goal["id"]}
+    met.say(op="action_feedback", values={"sequence": [0, 1]}, **told)
+    met.say(op="action_result", values={"sequence": [0, 1, 1, 2]}, status=SUCCEEDED, result=True, **told)
+    wanted = {"flip False no", "feedback [0, 1]", "result 4 [0, 1, 1, 2]"}
+    while wanted:
+        wanted.discard(met.message("/ros/says")["data"])
+
+
+def test_a_node_commands_in_real_time_and_vanishes() -> None:
+    around = environment()
+    with (
+        serving(around) as (url, _),
+        client(url) as watcher,
+        program(around, str(HERE / "rclpy_driver.py"), "1e9") as driver,
+    ):
+        watcher.say(op="subscribe", topic="/vehicle/status/velocity_status")
+        watcher.hear(lambda heard: heard["msg"]["longitudinal_velocity"] > 3.0)
+        driver.kill()
+        watcher.hear(lambda heard: heard["msg"]["longitudinal_velocity"] < 0.1)
+
+
+def test_without_rclpy_it_says_so_at_once(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["bridge", "serve", "--ros2", "--for", "1"]) == 2
+    assert "there is no rclpy; pip install 'simconsole[ros2]'" in capsys.readouterr().err
