@@ -20,6 +20,9 @@ from simconsole.profiles.bridge import BridgeProfile, Ros2Profile
 
 MAX_HEARD: Final = 1000
 """Messages that wait for the bridge's thread; of more, the oldest are dropped."""
+LOGGED: Final = 10
+LOGGED_EVERY: Final = 1000
+"""Remarks of a node that are logged, the first ones and then now and again: a flood must not fill the disk."""
 
 _logger = logging.getLogger("simconsole.bridge.ros2")
 
@@ -42,6 +45,7 @@ class Ros2Link:
         settings = profile.ros2 or Ros2Profile()
         self._inbox: deque[tuple[str, tuple[Any, ...]]] = deque()
         self._heard: deque[Heard] = deque(maxlen=MAX_HEARD)
+        self._remarks: dict[str, int] = {}
         self._wake = wake
         self._relay = Relay(console, role_of_graph(profile, console.router.access.anonymous), describe, wake)
         try:
@@ -67,13 +71,18 @@ class Ros2Link:
             self._relay.hear(*self._heard.popleft(), now_ns)
         for order in self._relay.orders(now_ns):
             if order.does == "remark":
-                _logger.warning("%s: %s", order.name, order.text)
+                self._log(order.name, order.text)
             else:
                 self._graph.do(order)
 
     def close(self) -> None:
         """Leave the graph; harmless when closed."""
         self._graph.close()
+
+    def _log(self, node: str, text: str) -> None:
+        count = self._remarks[node] = self._remarks.get(node, 0) + 1
+        if count <= LOGGED or count % LOGGED_EVERY == 0:
+            _logger.warning("%s (%d): %s", node, count, text)
 
     def _put(self, event: str, *arguments: Any) -> None:
         self._inbox.append((event, arguments))

@@ -38,7 +38,9 @@ class Driver(Node):
     def _answer(self, odometry: Odometry) -> None:
         position = odometry.pose.pose.position
         self.x_m, self.y_m = position.x, position.y
-        command = TwistStamped(header=odometry.header)
+        command = TwistStamped()
+        command.header.stamp = odometry.header.stamp
+        command.header.frame_id = "base_link"
         command.twist.linear.x = SPEED_MPS
         command.twist.angular.z = -0.05 * (position.y - 3.0)
         self._commands.publish(command)
