@@ -117,6 +117,7 @@ class GateLimit(IntFlag):
     LATERAL_ACCELERATION = 8
     BRAKE_OVER_THROTTLE = 16
     GEAR = 32
+    LATERAL_JERK = 64
 
 
 class DeviceSample(NamedTuple):
@@ -254,6 +255,7 @@ class VehicleCommand(NamedTuple):
     target_y_m: float
     target_yaw_rad: float
     gate_active: float  # `GateLimit` mask of the limits that changed something
+    gate_active_ticks: float  # in how many ticks of the drive they have
 
 
 class VehicleState(NamedTuple):

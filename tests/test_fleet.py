@@ -10,7 +10,7 @@ from simconsole.compiling import compiled
 from simconsole.fleet import Fleet
 from simconsole.kernels import put
 from simconsole.lane_values import LANES
-from simconsole.rows import COMMAND_AT, PLATFORM_AT, VEHICLE_AT, VEHICLE_WIDTH
+from simconsole.rows import COMMAND_AT, COMMAND_WIDTH, PLATFORM_AT, VEHICLE_AT, VEHICLE_WIDTH
 from simconsole.vehicle.platform import Ground, Platform, Pose
 from tests.vehicle.driving import LEVEL, platform
 from tests.vehicle.test_car_twin import FUSED, commands
@@ -97,7 +97,7 @@ def test_vectors_and_no_fused_operation_are_in_the_machine_code() -> None:
 def test_a_fleet_can_be_put_back_to_try_again() -> None:
     fleet = Fleet([platform()] * 9)
     before = fleet.states
-    command = np.zeros((9, 12))
+    command = np.zeros((9, COMMAND_WIDTH))
     command[:, 1], command[:, 5], command[:, 6] = np.linspace(0.0, 1.0, 9), 1.0, 1.0
     fleet.command(command)
     fleet.step(1500)
@@ -113,5 +113,5 @@ def test_what_is_no_fleet_is_refused() -> None:
         Fleet([platform(), platform("ball")])
     with pytest.raises(ValueError, match="at least one"):
         Fleet([])
-    with pytest.raises(ValueError, match=r"shape \(3,\), must be \(2, 12\)"):
+    with pytest.raises(ValueError, match=rf"shape \(3,\), must be \(2, {COMMAND_WIDTH}\)"):
         Fleet([platform(ground=LEVEL)] * 2).command(np.zeros(3))

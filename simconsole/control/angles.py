@@ -1,4 +1,4 @@
-"""How far an automatic source may turn the road wheels at a speed."""
+"""How far and how fast an automatic source may turn the road wheels at a speed."""
 
 from typing import Final
 
@@ -6,7 +6,7 @@ from simconsole.control.longitudinal import known
 from simconsole.control.settings import ControlSettings
 from simconsole.kernels import clip, kernel
 from simconsole.signals import VehicleState
-from simconsole.trigonometry import atan
+from simconsole.trigonometry import atan, cos
 
 _MOST_MPS: Final = 100.0
 
@@ -25,3 +25,25 @@ def gentle_angle(
         return road_wheel_rad
     most = atan(lateral_accel_mps2 * settings.wheelbase_m / (speed * speed))
     return clip(road_wheel_rad, -most, most)
+
+
+@kernel
+def gentle_step(
+    angle_rad: float,
+    step_rad: float,
+    lateral_jerk_mps3: float,
+    vehicle: VehicleState,
+    settings: ControlSettings,
+    tick_s: float,
+) -> float:
+    """Return how far the road wheels may turn in this tick from a finite `angle_rad`: at most `step_rad` (>= 0).
+
+    Less where that would be more lateral jerk than the limit; 0 is no limit. The derivative of lateral acceleration =
+    speed^2 tan(angle) / wheelbase at a constant speed: jerk = speed^2 / (wheelbase cos(angle)^2) * steering rate.
+    """
+    speed = clip(known(vehicle.vx_mps, 0.0), -_MOST_MPS, _MOST_MPS)
+    if lateral_jerk_mps3 <= 0.0 or abs(speed) <= settings.standstill_speed_mps:
+        return step_rad
+    share = cos(angle_rad)
+    most = lateral_jerk_mps3 * settings.wheelbase_m * share * share / (speed * speed) * tick_s
+    return most if most < step_rad else step_rad

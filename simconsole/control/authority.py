@@ -2,7 +2,7 @@
 
 from typing import Final, NamedTuple
 
-from simconsole.control.angles import gentle_angle
+from simconsole.control.angles import gentle_angle, gentle_step
 from simconsole.control.decision import Decision
 from simconsole.control.link import Link
 from simconsole.control.moment import Moment
@@ -148,8 +148,16 @@ def _held_back(now: Moment, offered: RemoteRequest) -> RemoteRequest:
     gentle = gentle_angle(
         clip(offered.road_wheel_rad, -most, most), settings.automatic_lateral_accel_mps2, now.vehicle, settings
     )
+    step = gentle_step(
+        before.remote_road_wheel_rad,
+        settings.automatic_road_wheel_radps * tick_s,
+        settings.automatic_lateral_jerk_mps3,
+        now.vehicle,
+        settings,
+        tick_s,
+    )
     return RemoteRequest(
-        approach(before.remote_road_wheel_rad, gentle, settings.automatic_road_wheel_radps * tick_s),
+        approach(before.remote_road_wheel_rad, gentle, step),
         approach(before.remote_throttle, offered.throttle, settings.automatic_throttle_slew_per_s * tick_s),
         approach(before.remote_brake, offered.brake, settings.automatic_brake_slew_per_s * tick_s),
         offered.direction,

@@ -1,17 +1,18 @@
 """The last gate: what no path, manual, autonomous or emergency, may exceed on its way to the vehicle.
 
-Order: finite, range, lateral acceleration, rate. Finiteness comes first because a NaN passes every comparison. The
-rate comes last and therefore wins: nothing ever jumps, not even back into a range that has just become narrower.
-Throttle is the exception downwards: with the brake pressed or in a stop it is cut at once.
+Order: finite, range, lateral acceleration, then jerk and rate. Finiteness comes first because a NaN passes every
+comparison. The rate comes last and therefore wins: nothing ever jumps, not even back into a range that has just become
+narrower. Throttle is the exception downwards: with the brake pressed or in a stop it is cut at once.
 """
 
 from typing import Final, NamedTuple
 
-from simconsole.control.angles import gentle_angle
+from simconsole.control.angles import gentle_angle, gentle_step
 from simconsole.control.longitudinal import known
 from simconsole.control.settings import ControlSettings
 from simconsole.kernels import approach, clip, is_finite, kernel
 from simconsole.signals import (
+    NEVER_TICKS,
     Arbitration,
     GateLimit,
     Mode,
@@ -36,6 +37,7 @@ _RATE: Final = int(GateLimit.RATE)
 _LATERAL: Final = int(GateLimit.LATERAL_ACCELERATION)
 _OVER: Final = int(GateLimit.BRAKE_OVER_THROTTLE)
 _GEAR: Final = int(GateLimit.GEAR)
+_JERK: Final = int(GateLimit.LATERAL_JERK)
 
 _SAFE_BRAKE: Final = 0.3
 """Stands in for a brake request that is not finite: slows any car, locks none on a dry road."""
@@ -43,11 +45,12 @@ _MOST_YAW_RAD: Final = 1000.0
 
 
 class Limits(NamedTuple):
-    """What the gate lets pass in one mode. A lateral acceleration of 0 is no limit."""
+    """What the gate lets pass in one mode. A lateral acceleration or jerk of 0 is no limit."""
 
     road_wheel_rad: float
     road_wheel_radps: float
     lateral_accel_mps2: float
+    lateral_jerk_mps3: float
     throttle_slew_per_s: float
     brake_slew_per_s: float
     target_accel_mps2: float
@@ -72,25 +75,31 @@ class Target(NamedTuple):
 
 @kernel
 def limits_of(mode: float, settings: ControlSettings) -> Limits:
-    """Return the limits of a mode. A person's hands and feet are never noticeably held back, also in SHARED."""
+    """Return the limits of a mode. A person's hands and feet are never noticeably held back, also in SHARED.
+
+    In MANUAL and SHARED the wheel passes in the same tick up to the steering lock and a rate that no hand reaches;
+    lateral acceleration and jerk are free: catching a skid or swerving needs more of both than any comfort limit has.
+    """
     slew = settings.manual_pedal_slew_per_s
     if mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED):
         return Limits(
             settings.automatic_road_wheel_rad,
             settings.automatic_road_wheel_radps,
             settings.automatic_lateral_accel_mps2,
+            settings.automatic_lateral_jerk_mps3,
             settings.automatic_throttle_slew_per_s,
             settings.automatic_brake_slew_per_s,
             settings.target_accel_mps2,
         )
     if mode in (_MANUAL, _SHARED):
         lock = settings.max_road_wheel_rad
-        return Limits(lock, settings.manual_road_wheel_radps, 0.0, slew, slew, settings.target_accel_mps2)
+        return Limits(lock, settings.manual_road_wheel_radps, 0.0, 0.0, slew, slew, settings.target_accel_mps2)
     emergency = mode == _EMERGENCY_STOP
     return Limits(
         settings.max_road_wheel_rad,
         settings.stop_road_wheel_radps,
         0.0 if emergency else settings.automatic_lateral_accel_mps2,
+        settings.automatic_lateral_jerk_mps3,
         slew,
         settings.emergency_brake_slew_per_s if emergency else settings.automatic_brake_slew_per_s,
         settings.target_accel_mps2 if emergency else settings.stop_decel_mps2,
@@ -146,7 +155,15 @@ def gate(
         target.y_m,
         target.yaw_rad,
         float(active),
+        _counted(before.gate_active_ticks, active),
     )
+
+
+@kernel
+def _counted(before_ticks: float, active: int) -> float:
+    """Return for how many ticks of the drive the gate has changed something."""
+    ticks = clip(known(before_ticks, 0.0), 0.0, NEVER_TICKS)
+    return ticks + 1.0 if active != 0 else ticks
 
 
 @kernel
@@ -174,9 +191,11 @@ def _road_wheel(
     gentle = gentle_angle(ranged, limits.lateral_accel_mps2, vehicle, settings)
     if gentle != ranged:
         active |= _LATERAL
-    moved = approach(before_rad, gentle, limits.road_wheel_radps * tick_s)
+    step = limits.road_wheel_radps * tick_s
+    smooth_step = gentle_step(before_rad, step, limits.lateral_jerk_mps3, vehicle, settings, tick_s)
+    moved = approach(before_rad, gentle, smooth_step)
     if moved != gentle:
-        active |= _RATE
+        active |= _JERK if smooth_step < step else _RATE
     return Passed(clip(moved, -settings.max_road_wheel_rad, settings.max_road_wheel_rad), active)
 
 

@@ -29,6 +29,23 @@ _AUTHORITY = """## What each mode does
 The person's brake counts in full in every mode, and the brake always beats the throttle. Authority moves from one side
 to the other over 0.6 s, starting from the command in force. Every figure is a setting of
 `simconsole/profiles/control.py`, with its source.
+
+## What the last gate lets pass
+
+Every path goes through it, a person's too. What it changes is told by limit (`command.gate_active`) and counted in
+ticks (`command.gate_active_ticks`).
+
+| | MANUAL, SHARED | AUTONOMOUS, TAKEOVER_REQUESTED, the controller's part in SHARED | stops |
+|---|---|---|---|
+| finite, in range, a gear that exists | yes | yes | yes |
+| steering rate | 1500 deg/s at the hand wheel | 1 rad/s at the road wheels | 0.5 rad/s at the road wheels |
+| lateral acceleration | free | 5 m/s2 | 5 m/s2, EMERGENCY_STOP free |
+| lateral jerk | free | 7 m/s3 | 7 m/s3 |
+| throttle, brake | a stroke in 40 ms | 4/s, 6/s | throttle cut at once; brake 6/s, EMERGENCY_STOP in the same tick |
+
+In MANUAL the wheel acts in the same tick: the only limits are the lock and a rate above what the fastest hands reach
+(about 1100 deg/s). Lateral acceleration and jerk stay free there: catching a skid or swerving around an obstacle needs
+more of both than any comfort limit leaves.
 """
 
 

@@ -66,6 +66,7 @@ class ControlSettings(NamedTuple):
     automatic_road_wheel_rad: float
     automatic_road_wheel_radps: float
     automatic_lateral_accel_mps2: float
+    automatic_lateral_jerk_mps3: float
     automatic_throttle_slew_per_s: float
     automatic_brake_slew_per_s: float
     stop_road_wheel_radps: float

@@ -81,6 +81,7 @@ class ControlProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_f
     automatic_road_wheel_max_rad: Annotated[float, msgspec.Meta(gt=0.0, le=1.5)] = 1.0  # AW steer_lim
     automatic_road_wheel_rate_radps: Annotated[float, msgspec.Meta(gt=0.0, le=5.0)] = 1.0  # AW steer_rate_lim
     automatic_lateral_accel_mps2: Acceleration = 5.0  # AW lat_acc_lim
+    automatic_lateral_jerk_mps3: Annotated[float, msgspec.Meta(ge=0.0, le=100.0)] = 7.0  # AW lat_jerk_lim; 0: no limit
     automatic_throttle_slew_per_s: Slew = 4.0
     automatic_brake_slew_per_s: Slew = 6.0
     stop_road_wheel_rate_radps: Annotated[float, msgspec.Meta(gt=0.0, le=5.0)] = 0.5

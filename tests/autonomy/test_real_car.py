@@ -44,7 +44,8 @@ def test_a_lap_in_the_hatchback_keeps_the_bars(course: Course) -> None:
         after = row.copy()
         after[COMMAND_AT:VEHICLE_AT] = VehicleCommand(
             wheel, throttle, brake, 0.0, 0.0, gear=1.0, automatic=1.0,
-            target_speed_mps=0.0, target_x_m=0.0, target_y_m=0.0, target_yaw_rad=0.0, gate_active=0.0,
+            target_speed_mps=0.0, target_x_m=0.0, target_y_m=0.0, target_yaw_rad=0.0,
+            gate_active=0.0, gate_active_ticks=0.0,
         )  # fmt: skip
         step(row, after, car.parameters, 1000 // TICK_HZ)
         row, tick = after, tick + 1

@@ -123,8 +123,9 @@ def test_nobody_notices_the_manual_limits(control: ControlSettings) -> None:
 def test_lateral_acceleration_is_limited_by_angle(mode: Mode, speed: float, control: ControlSettings) -> None:
     vehicle = zeros(VehicleState)._replace(vx_mps=speed)
     command = zeros(VehicleCommand)
+    free = control._replace(automatic_lateral_jerk_mps3=0.0)
     for _ in range(400):
-        command = passed(control, mode, command, vehicle, road_wheel_rad=-0.6)
+        command = passed(free, mode, command, vehicle, road_wheel_rad=-0.6)
     real = max(-100.0, min(100.0, speed))
     lateral = real**2 * math.tan(command.road_wheel_rad) / control.wheelbase_m
     assert lateral == pytest.approx(-min(5.0, real**2 * math.tan(0.6) / control.wheelbase_m))
@@ -135,8 +136,45 @@ def test_lateral_acceleration_is_limited_by_angle(mode: Mode, speed: float, cont
 def test_a_range_that_has_become_narrower_is_approached_not_jumped_to(control: ControlSettings) -> None:
     vehicle = zeros(VehicleState)._replace(vx_mps=20.0)
     before = zeros(VehicleCommand)._replace(road_wheel_rad=0.5)
-    command = passed(control, Mode.AUTONOMOUS, before, vehicle, road_wheel_rad=0.5)
+    free = control._replace(automatic_lateral_jerk_mps3=0.0)
+    command = passed(free, Mode.AUTONOMOUS, before, vehicle, road_wheel_rad=0.5)
     assert command.road_wheel_rad == pytest.approx(0.5 - control.automatic_road_wheel_radps * TICK_S)
+    smooth = passed(control, Mode.AUTONOMOUS, before, vehicle, road_wheel_rad=0.5)
+    assert command.road_wheel_rad < smooth.road_wheel_rad < 0.5
+
+
+@pytest.mark.parametrize("mode", sorted(set(Mode) - {Mode.MANUAL, Mode.SHARED}))
+@pytest.mark.parametrize("speed", [-25.0, 14.0, 40.0])
+def test_lateral_jerk_is_limited_wherever_no_hand_steers(mode: Mode, speed: float, control: ControlSettings) -> None:
+    vehicle = zeros(VehicleState)._replace(vx_mps=speed)
+    command = zeros(VehicleCommand)
+    for _ in range(40):
+        before = command
+        command = passed(control, mode, before, vehicle, road_wheel_rad=0.6)
+        turned = math.tan(command.road_wheel_rad) - math.tan(before.road_wheel_rad)
+        jerk = speed**2 / control.wheelbase_m * turned / TICK_S
+        if active(command) & GateLimit.LATERAL_JERK:
+            assert jerk == pytest.approx(control.automatic_lateral_jerk_mps3, rel=0.01)
+        assert jerk <= control.automatic_lateral_jerk_mps3 * 1.01
+    assert GateLimit.LATERAL_JERK in active(passed(control, mode, None, vehicle, road_wheel_rad=0.6))
+
+
+@pytest.mark.parametrize("mode", [Mode.MANUAL, Mode.SHARED])
+def test_a_persons_wheel_passes_in_the_same_tick_at_any_speed(mode: Mode, control: ControlSettings) -> None:
+    """1100 deg/s at the hand wheel, the fastest hands, at 50 m/s: 2500 times the comfort limit of an automat."""
+    vehicle = zeros(VehicleState)._replace(vx_mps=50.0)
+    step = math.radians(1100.0) / 15.0 * TICK_S
+    command = passed(control, mode, None, vehicle, road_wheel_rad=step)
+    assert (command.road_wheel_rad, active(command)) == (step, 0)
+
+
+def test_ticks_in_which_the_gate_changed_something_are_counted(control: ControlSettings) -> None:
+    command = passed(control, road_wheel_rad=9.0)
+    assert command.gate_active_ticks == 1.0
+    command = passed(control, before=command, road_wheel_rad=9.0, throttle=5.0)
+    assert command.gate_active_ticks == 2.0
+    command = passed(control, before=command, road_wheel_rad=command.road_wheel_rad, throttle=command.throttle)
+    assert (command.gate_active, command.gate_active_ticks) == (0.0, 2.0)
 
 
 def test_emergency_stop_keeps_an_angle_that_was_let_in_before(control: ControlSettings) -> None:

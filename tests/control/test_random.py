@@ -236,9 +236,15 @@ def test_every_output_is_finite_and_in_its_range(long_drive: Drive) -> None:
 def test_never_more_than_one_rate_step(long_drive: Drive) -> None:
     modes = long_drive.modes[1:].astype(int)
     limits = np.array([limits_of(float(mode), long_drive.settings) for mode in Mode])[modes] * long_drive.tick_s
-    _, wheel_step, _, throttle_step, brake_step, speed_step = limits.T
+    _, wheel_step, _, jerk_step, throttle_step, brake_step, speed_step = limits.T
     tiny = 1e-12
-    assert (np.abs(np.diff(long_drive.of(VehicleCommand, "road_wheel_rad"))) <= wheel_step + tiny).all()
+    angle = long_drive.of(VehicleCommand, "road_wheel_rad")
+    assert (np.abs(np.diff(angle)) <= wheel_step + tiny).all()
+    speed = long_drive.outputs[1:, SPEED_AT]
+    smooth = (jerk_step > 0.0) & (speed > 0.1) & (long_drive.inputs[1:, VX] == KEEP_SPEED)
+    assert smooth.sum() > 1_000
+    jerk = np.abs(np.diff(angle)) * speed**2 / (long_drive.settings.wheelbase_m * np.cos(angle[:-1]) ** 2)
+    assert (jerk[smooth] <= jerk_step[smooth] + 1e-9).all()
     assert (np.abs(np.diff(long_drive.of(VehicleCommand, "brake"))) <= brake_step + tiny).all()
     assert (np.diff(long_drive.of(VehicleCommand, "throttle")) <= throttle_step + tiny).all()
     assert (np.abs(np.diff(long_drive.of(VehicleCommand, "target_speed_mps"))) <= speed_step + tiny).all()
