@@ -71,14 +71,20 @@ def _with_motor(devices: DeviceSource, cockpit: CockpitProfile, force: ForceFeed
     from simconsole.devices.back_ends import open_motor
     from simconsole.devices.motor import MotorisedSource, NoHaptics, WheelMotor
     from simconsole.devices.sdl import SdlSource
+    from simconsole.devices.watched import open_watchdog, watched
 
     assert isinstance(devices, SdlSource)
     wheel = {"id": devices.instance_id("wheel")}
     identity = next((role.vendor_id, role.product_id) for role in cockpit.roles if role.role == "wheel")
+    watchdog = open_watchdog(identity, _say)
+    if watchdog is not None:
+        stack.callback(watchdog.close)
 
     def opened() -> "HapticPort":
         number = wheel["id"]
-        return NoHaptics("the wheel is unplugged") if number is None else open_motor(number, identity, force)
+        if number is None:
+            return NoHaptics("the wheel is unplugged")
+        return watched(open_motor(number, identity, force), watchdog)
 
     def replugged() -> "HapticPort | None":
         now = devices.instance_id("wheel")

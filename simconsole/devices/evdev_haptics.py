@@ -6,16 +6,13 @@ Documentation/input/ff.rst. The kernel erases a process's effects when it closes
 
 import os
 import struct
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Final
 
+from simconsole.devices.event_nodes import EV_FF, EVENT, READ, WRITE, open_node, request
 from simconsole.devices.motor import EFFECT_S, Capability, HapticPort, NoHaptics
 from simconsole.errors import DeviceError
 from simconsole.profiles.force_feedback import ForceFeedback
 
-NODES: Final = Path("/dev/input")
-_EV_FF: Final = 0x15
 _CONSTANT: Final = 0x52
 _DAMPER: Final = 0x55
 _GAIN: Final = 0x60
@@ -30,18 +27,9 @@ _HEAD: Final = struct.Struct("<HhHHHHH")  # type, id, direction, trigger button 
 _UNION_AT: Final = 16
 _LEVEL: Final = struct.Struct("<h")
 _CONDITION: Final = struct.Struct("<HHhhHh")  # saturations, coefficients, dead band, centre
-_EVENT: Final = struct.Struct("<qqHHi")
-_WRITE, _READ = 1, 2
-
-
-def _request(direction: int, number: int, size: int) -> int:
-    return direction << 30 | size << 16 | ord("E") << 8 | number
-
-
-_UPLOAD: Final = _request(_WRITE, 0x80, _EFFECT_BYTES)
-_REMOVE: Final = _request(_WRITE, 0x81, 4)
-_IDENTITY: Final = _request(_READ, 0x02, 8)
-_ABLE: Final = _request(_READ, 0x20 + _EV_FF, _FF_BYTES)
+_UPLOAD: Final = request(WRITE, 0x80, _EFFECT_BYTES)
+_REMOVE: Final = request(WRITE, 0x81, 4)
+_ABLE: Final = request(READ, 0x20 + EV_FF, _FF_BYTES)
 
 
 def open_evdev(identity: tuple[int, int], force: ForceFeedback) -> HapticPort:
@@ -61,14 +49,9 @@ class EvdevHaptics:
         Raises:
             DeviceError: no such device, it may not be written, it has no constant force, or this is no Linux.
         """
-        try:
-            import fcntl
-        except ImportError:
-            raise DeviceError("wheel: force feedback: value no evdev: Linux") from None
-        self._ioctl = fcntl.ioctl
         self._force = force
         self._effects: list[int] = []
-        self._descriptor: int | None = self._find(identity)
+        self._descriptor: int | None = open_node(identity)
         try:
             self._prepare()
         except BaseException:
@@ -165,49 +148,25 @@ class EvdevHaptics:
         if self._descriptor is None:
             raise _refused("closed")
         try:
-            os.write(self._descriptor, _EVENT.pack(0, 0, _EV_FF, code, value))
+            os.write(self._descriptor, EVENT.pack(0, 0, EV_FF, code, value))
         except OSError as error:
             raise _refused(error.strerror) from error
 
-    def _call(self, request: int, argument: bytearray | int) -> None:
+    def _call(self, number: int, argument: bytearray | int) -> None:
         if self._descriptor is None:
             raise _refused("closed")
+        import fcntl
+
         try:
-            self._ioctl(self._descriptor, request, argument)
+            fcntl.ioctl(self._descriptor, number, argument)
         except OSError as error:
             raise _refused(error.strerror) from error
-
-    def _find(self, identity: tuple[int, int]) -> int:
-        refused = "none"
-        for node in _nodes():
-            try:
-                descriptor = os.open(node, os.O_RDWR | os.O_NONBLOCK | os.O_CLOEXEC)
-            except OSError as error:
-                refused = f"{node}: {error.strerror}"
-                continue
-            found = bytearray(8)
-            try:
-                self._ioctl(descriptor, _IDENTITY, found)
-            except OSError:
-                found = bytearray(8)
-            if struct.unpack("<4H", found)[1:3] == identity:
-                return descriptor
-            os.close(descriptor)
-        wanted = f"{identity[0]:04x}:{identity[1]:04x}"
-        raise DeviceError(f"wheel: force feedback: value {refused}: an event device {wanted} that may be written")
 
     def _shut(self) -> None:
         descriptor, self._descriptor = self._descriptor, None
         self._effects = []
         if descriptor is not None:
             os.close(descriptor)
-
-
-def _nodes() -> Iterator[Path]:
-    try:
-        yield from sorted(path for path in NODES.iterdir() if path.name.startswith("event"))
-    except OSError:
-        return
 
 
 def _refused(reason: str | None) -> DeviceError:

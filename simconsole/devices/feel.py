@@ -15,6 +15,7 @@ from simconsole.devices.settings import settings
 from simconsole.devices.simulated_wheel import HANDS_OFF, SimulatedWheel
 from simconsole.devices.uncalibrate import Intent, uncalibrate
 from simconsole.devices.virtual_cockpit import VirtualCockpit
+from simconsole.devices.watched import open_watchdog, watched
 from simconsole.errors import DeviceError
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.force_feedback import ForceFeedback
@@ -85,7 +86,7 @@ def feel_devices(
     if not 0.05 <= strength <= 0.6:
         raise DeviceError(f"strength: value {strength:g}: 0.05 to 0.6")
     with ExitStack() as stack:
-        bench = _Bench(cockpit, force, virtual, tick_hz, stack)
+        bench = _Bench(cockpit, force, virtual, tick_hz, say, stack)
         if not bench.motor.obeys:
             raise DeviceError(f"{cockpit.title}: no force feedback: {bench.motor.reason}")
         say(f"{cockpit.title}: {len(FORCES)} forces at {strength:.0%}. Hands off, fingers away from the spokes.")
@@ -132,7 +133,7 @@ class _Bench:
     """The wheel on a bench: torque in, angle out."""
 
     def __init__(
-        self, cockpit: CockpitProfile, force: ForceFeedback, virtual: bool, tick_hz: int, stack: ExitStack
+        self, cockpit: CockpitProfile, force: ForceFeedback, virtual: bool, tick_hz: int, say: Say, stack: ExitStack
     ) -> None:
         self._tick_hz = tick_hz
         self._settings = settings(cockpit, tick_hz)
@@ -145,6 +146,9 @@ class _Bench:
             self._wheel = SimulatedWheel(force, cockpit.wheel.lock_to_lock_deg, tick_hz=tick_hz)
         self._source = SdlSource(cockpit)
         stack.callback(self._source.close)
+        self._watchdog = None if virtual else open_watchdog(self._identity, say)
+        if self._watchdog is not None:
+            stack.callback(self._watchdog.close)
         self._ticks = 0
         self.motor = WheelMotor(self._port(force), force, lambda snapshot: snapshot.t_s)
         stack.callback(self.motor.close)
@@ -208,4 +212,4 @@ class _Bench:
             return SimulatedWheelPort(self._wheel)
         number = self._source.instance_id("wheel")
         assert number is not None  # the source refuses a cockpit without one
-        return open_motor(number, self._identity, force)
+        return watched(open_motor(number, self._identity, force), self._watchdog)

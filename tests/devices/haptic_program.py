@@ -1,6 +1,6 @@
 """Runs behind the mocked kernel: the console's own motor on SDL's own driver, 250 ticks a second.
 
-python haptic_program.py HOW [BACK_END]      HOW: drive, hang (SIGSTOP to itself), kill (SIGKILL to itself),
+python haptic_program.py HOW [BACK_END [watched]]      HOW: drive, hang (SIGSTOP to itself), kill (SIGKILL to itself),
 contract (port_contract.py) or motion (read what the kernel plays)
 """
 
@@ -17,6 +17,7 @@ from simconsole.devices import sdl_runtime
 from simconsole.devices.back_ends import open_motor
 from simconsole.devices.motor import WheelMotor
 from simconsole.devices.sdl import SdlSource, found
+from simconsole.devices.watched import Watchdog, watched
 from simconsole.profile_files import load
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.force_feedback import ForceFeedback
@@ -59,6 +60,12 @@ def main(how: str) -> None:
     print(entry, joystick.get_instance_id(), flush=True)
     port = open_motor(entry.instance_id, (entry.vendor_id, entry.product_id), FORCE)
     print(port.capability, flush=True)
+    watchdog = None
+    if sys.argv[3:] == ["watched"]:
+        watchdog = Watchdog((entry.vendor_id, entry.product_id))
+        port = watched(port, watchdog)
+        time.sleep(0.5)  # until it has opened the device
+        print("watchdog", watchdog.process_id, flush=True)
     if how == "contract":
         takes_every_level_in_any_order(port)
         closes_twice_and_then_has_no_force(port)
@@ -77,6 +84,8 @@ def main(how: str) -> None:
         os.kill(os.getpid(), signal.SIGKILL)
     motor.close()
     motor.close()
+    if watchdog is not None:
+        watchdog.close()
     sdl_runtime.release()
 
 

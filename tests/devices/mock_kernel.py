@@ -9,6 +9,8 @@ thread, and a command that waits for its own answer would never get it. Every fo
 in LOG, with the monotonic time. Written for Linux' `struct ff_effect` and `struct input_event` of 64-bit machines.
 """
 
+import contextlib
+import ctypes
 import json
 import os
 import struct
@@ -53,6 +55,7 @@ BUTTONS = range(288, 301)
 EV_KEY, EV_ABS, EV_FF = 1, 3, 0x15
 FF_CONSTANT, FF_DAMPER, FF_GAIN, FF_AUTOCENTER = 0x52, 0x55, 0x60, 0x61
 SLOTS = 15
+PR_SET_CHILD_SUBREAPER = 36
 
 
 def bits(numbers: Any, size: int) -> bytes:
@@ -191,8 +194,12 @@ def main() -> int:
             "UMOCKDEV_DIR": testbed.get_root_dir(),
             "LD_PRELOAD": "libumockdev-preload.so.0",
         }
+        ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1)
         child = subprocess.Popen(command, env=environment)
         code = child.wait()
+        with contextlib.suppress(ChildProcessError):
+            while True:
+                os.wait()  # a watchdog outlives its killed console, and this kernel them both
         kernel.note("end", code=code)
     return int(code) if code >= 0 else 128 - code
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from simconsole.devices import back_ends, evdev_haptics
+from simconsole.devices import back_ends, event_nodes
 from simconsole.devices.evdev_haptics import open_evdev
 from simconsole.devices.haptics import _Condition, _Constant, _Effect, open_haptics
 from simconsole.devices.motor import Capability, NoHaptics
@@ -111,7 +111,7 @@ def test_recorded_motion_of_a_t500_arrives_as_a_person(tmp_path: Path, t500: Coc
 
 
 def test_no_event_device_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(evdev_haptics, "NODES", tmp_path)
+    monkeypatch.setattr(event_nodes, "NODES", tmp_path)
     assert "an event device 044f:b65e that may be written" in open_evdev((0x044F, 0xB65E), FORCE).capability.name
     (tmp_path / "event3").write_bytes(b"")  # neither the identity nor a device
     port = open_evdev((0x044F, 0xB65E), FORCE)

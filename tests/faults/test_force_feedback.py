@@ -6,6 +6,7 @@ import math
 import os
 import signal
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from tests.devices.closed_loop import Loop
 from tests.devices.mocked import calls, start
 
 LET_GO_S = 0.25
+SLOTS = 15  # of the mocked device
 
 
 def last_force(log: list[dict[str, Any]]) -> tuple[float, float]:
@@ -69,6 +71,71 @@ def test_d12_hung_process_lets_go(tmp_path: Path) -> None:
     finally:
         mock.kill()
         mock.communicate()
+
+
+@pytest.mark.parametrize("back_end", ["sdl", "evdev"])
+def test_d12_watchdog_stops_what_a_hung_process_left(
+    back_end: str, tmp_path: Path, record_property: Callable[[str, object], None]
+) -> None:
+    """SIGSTOP at full torque: another process stops every effect, and no force is left 250 ms after the last start."""
+    log = tmp_path / "calls.jsonl"
+    mock = start(log, "hang", back_end, "watched")
+    try:
+        child = stopped_child(mock.pid)
+        stops = wait_for_stops(log)
+        record_property(f"{back_end}: hung process let go by the watchdog", f"{1e3 * let_go_s(calls(log)):.0f} ms")
+        assert {call["id"] for call in stops} == set(range(SLOTS)), "all there are, whoever loaded them"
+        assert let_go_s(calls(log)) <= LET_GO_S
+        os.kill(child, signal.SIGKILL)
+        mock.communicate(timeout=60.0)
+    finally:
+        mock.kill()
+        mock.communicate()
+
+
+def test_d11_watchdog_stops_what_a_killed_process_left(
+    tmp_path: Path, record_property: Callable[[str, object], None]
+) -> None:
+    log = tmp_path / "calls.jsonl"
+    mock = start(log, "kill", "evdev", "watched")
+    try:
+        stops = wait_for_stops(log)
+        assert {call["id"] for call in stops} == set(range(SLOTS))
+        assert let_go_s(calls(log)) <= LET_GO_S
+        record_property("killed process let go by the watchdog", f"{1e3 * let_go_s(calls(log)):.0f} ms")
+        mock.communicate(timeout=60.0)
+    finally:
+        mock.kill()
+        mock.communicate()
+
+
+def test_watchdog_of_a_process_that_closes_its_motor_does_nothing(tmp_path: Path) -> None:
+    log = tmp_path / "calls.jsonl"
+    mock = start(log, "drive", "evdev", "watched")
+    out, err = mock.communicate(timeout=60.0)
+    assert mock.returncode == 0, out + err
+    assert {call["id"] for call in calls(log) if call["what"] == "play"} == {0, 1}, "the motor's own two effects"
+
+
+def wait_for_stops(log: Path) -> list[dict[str, Any]]:
+    """Wait until the watchdog has stopped the last slot: the motor never touches that one."""
+    deadline_s = time.monotonic() + 60.0
+    while time.monotonic() < deadline_s:
+        noted = calls(log)
+        if any(call["what"] == "play" and call["id"] == SLOTS - 1 for call in noted):
+            started = max(i for i, call in enumerate(noted) if call["what"] == "play" and call["value"] == 1)
+            return [call for call in noted[started:] if call["what"] == "play" and call["value"] == 0]
+        time.sleep(0.01)
+    raise AssertionError("the watchdog did nothing")
+
+
+def let_go_s(log: list[dict[str, Any]]) -> float:
+    """Return how long after the last start of an effect there was no force: it was stopped, or it had ended."""
+    ends_s, _ = last_force(log)
+    plays = [call for call in log if call["what"] == "play"]
+    started = max(i for i, call in enumerate(plays) if call["value"] == 1)
+    stopped = {call["id"]: call["t_ns"] / 1e9 for call in reversed(plays[started:]) if call["value"] == 0}
+    return min(ends_s, max(stopped[0], stopped[1])) - plays[started]["t_ns"] / 1e9
 
 
 def stopped_child(parent: int) -> int:

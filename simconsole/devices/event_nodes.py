@@ -1,0 +1,73 @@
+"""Linux' event devices, found by USB identity: what the motor, the watchdog and `devices check` ask of them directly.
+
+Layout and numbers: linux/input.h, of 64-bit machines. Loads nothing but the standard library: the watchdog is small.
+"""
+
+import os
+import struct
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Final
+
+from simconsole.errors import DeviceError
+
+NODES: Final = Path("/dev/input")
+EV_FF: Final = 0x15
+EVENT: Final = struct.Struct("<qqHHi")
+WRITE, READ = 1, 2
+
+
+def request(direction: int, number: int, size: int) -> int:
+    """Return the number of an ioctl of the input subsystem."""
+    return direction << 30 | size << 16 | ord("E") << 8 | number
+
+
+_IDENTITY: Final = request(READ, 0x02, 8)
+_SLOTS: Final = request(READ, 0x84, 4)
+
+
+def open_node(identity: tuple[int, int], *, writable: bool = True) -> int:
+    """Return a descriptor of the event device with this USB vendor and product id.
+
+    Raises:
+        DeviceError: no such device, it may not be opened, or this is no Linux.
+    """
+    try:
+        import fcntl
+    except ImportError:
+        raise DeviceError("wheel: event device: value none: Linux") from None
+    refused = "none"
+    mode = (os.O_RDWR if writable else os.O_RDONLY) | os.O_NONBLOCK | os.O_CLOEXEC
+    for node in _nodes():
+        try:
+            descriptor = os.open(node, mode)
+        except OSError as error:
+            refused = f"{node}: {error.strerror}"
+            continue
+        found = bytearray(8)
+        try:
+            fcntl.ioctl(descriptor, _IDENTITY, found)
+        except OSError:
+            found = bytearray(8)
+        if struct.unpack("<4H", found)[1:3] == identity:
+            return descriptor
+        os.close(descriptor)
+    wanted = f"{identity[0]:04x}:{identity[1]:04x}"
+    may = "written" if writable else "read"
+    raise DeviceError(f"wheel: event device: value {refused}: an event device {wanted} that may be {may}")
+
+
+def effect_slots(descriptor: int) -> int:
+    """Return how many effects a device holds. Raises OSError where it holds none."""
+    import fcntl
+
+    slots = bytearray(4)
+    fcntl.ioctl(descriptor, _SLOTS, slots)
+    return int(struct.unpack("<i", slots)[0])
+
+
+def _nodes() -> Iterator[Path]:
+    try:
+        yield from sorted(path for path in NODES.iterdir() if path.name.startswith("event"))
+    except OSError:
+        return

@@ -1,0 +1,131 @@
+"""The console's side of the watchdog: a motor that says with every start of its effects that somebody is there."""
+
+import json
+import mmap
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Final
+
+from simconsole.devices.motor import EFFECT_S, Capability, HapticPort
+from simconsole.devices.watchdog import BEATS, FORCE, MEMORY_BYTES
+from simconsole.errors import DeviceError
+
+END_S: Final = 2.0
+
+
+class Watchdog:
+    """One for a cockpit's wheel, however often it is plugged in again."""
+
+    def __init__(self, identity: tuple[int, int]) -> None:
+        """Start it.
+
+        Args:
+            identity: The wheel's USB vendor and product id.
+
+        Raises:
+            DeviceError: its process cannot be started.
+        """
+        memory = Path("/dev/shm")
+        descriptor, name = tempfile.mkstemp(prefix="simconsole-beat-", dir=memory if memory.is_dir() else None)
+        self._path = Path(name)
+        self._process: subprocess.Popen[bytes] | None = None
+        try:
+            os.ftruncate(descriptor, MEMORY_BYTES)
+            self._words = memoryview(mmap.mmap(descriptor, MEMORY_BYTES)).cast("q")
+            self._start(identity)
+        except OSError as error:
+            self._path.unlink(missing_ok=True)
+            raise DeviceError(f"wheel: watchdog: {error.strerror}: a process beside this one") from error
+        finally:
+            os.close(descriptor)
+
+    @property
+    def process_id(self) -> int | None:
+        """Of its process; None when it has ended."""
+        return None if self._process is None or self._process.poll() is not None else self._process.pid
+
+    def beat(self, force: bool) -> None:
+        """Say that the loop lives, and whether it leaves force on the wheel."""
+        self._words[FORCE] = int(force)
+        self._words[BEATS] += 1
+
+    def close(self) -> None:
+        """Send it home. Twice is harmless."""
+        process, self._process = self._process, None
+        if process is None:
+            return
+        self.beat(force=False)
+        if process.stdin is not None:
+            process.stdin.close()
+        try:
+            process.wait(END_S)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+        self._path.unlink(missing_ok=True)
+
+    def _start(self, identity: tuple[int, int]) -> None:
+        told = {"memory": str(self._path), "vendor_id": identity[0], "product_id": identity[1]}
+        # A group of its own, so that what stops or ends the console's group leaves the watchdog to act. The child
+        # imports what its parent imports, and nothing that happens to lie in the working directory.
+        path = os.pathsep.join(entry for entry in sys.path if entry)
+        self._process = subprocess.Popen(
+            [sys.executable, "-P", "-m", "simconsole.devices.watchdog"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,
+            env={**os.environ, "PYTHONPATH": path},
+            process_group=0,
+        )
+        assert self._process.stdin is not None
+        self._process.stdin.write(json.dumps(told).encode() + b"\n")
+        self._process.stdin.flush()
+
+
+class WatchedPort:
+    """A motor whose every start is a beat. A `HapticPort`."""
+
+    def __init__(self, port: HapticPort, watchdog: Watchdog) -> None:
+        self._port = port
+        self._watchdog = watchdog
+
+    @property
+    def capability(self) -> Capability:
+        """That of the motor."""
+        return self._port.capability
+
+    def write(self, level: float) -> None:
+        """Set the level."""
+        self._port.write(level)
+
+    def start(self) -> None:
+        """Start the effects, and say so."""
+        self._watchdog.beat(force=True)  # first: a console that stops in between is watched already
+        self._port.start()
+
+    def stop(self) -> None:
+        """End them, and say that nothing is left to watch."""
+        self._port.stop()
+        self._watchdog.beat(force=False)
+
+    def close(self) -> None:
+        """Let go. The watchdog stays, for the wheel that is plugged in again."""
+        self._port.close()
+        self._watchdog.beat(force=False)
+
+
+def open_watchdog(identity: tuple[int, int], say: Callable[[str], None]) -> Watchdog | None:
+    """Start a watchdog; where none can be had, say so: effects still end by themselves."""
+    try:
+        return Watchdog(identity)
+    except DeviceError as error:
+        say(f"no watchdog: {error}; forces end by themselves after {EFFECT_S:g} s")
+        return None
+
+
+def watched(port: HapticPort, watchdog: Watchdog | None) -> HapticPort:
+    """Return the motor with its watchdog; one without force, or without a watchdog, as it is."""
+    return port if watchdog is None or not port.capability.constant else WatchedPort(port, watchdog)
