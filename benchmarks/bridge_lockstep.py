@@ -32,7 +32,7 @@ TYPE = "autoware_control_msgs/Control"
 
 def controller(url: str) -> None:
     """Answer every odometry until the server says good-bye."""
-    with BridgeClient(url) as client:
+    with BridgeClient(url, comes_back=False) as client:
         client.subscribe("/odom", "nav_msgs/Odometry")
         client.advertise(CONTROL, TYPE)
         client.connect()

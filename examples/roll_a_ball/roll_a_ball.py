@@ -6,7 +6,6 @@ python examples/roll_a_ball/roll_a_ball.py         # this program, in another
 
 import argparse
 import math
-import time
 
 from simconsole.bridge.client import BridgeClient
 from simconsole.errors import BridgeError
@@ -21,30 +20,18 @@ def main() -> None:
     """Connect, set the speed, roll."""
     words = argparse.ArgumentParser(description="Roll a ball round a square, over rosbridge.")
     words.add_argument("--url", default="ws://127.0.0.1:9090")
-    with BridgeClient(words.parse_args().url) as client:
+    with BridgeClient(words.parse_args().url, comes_back=False) as client:
         client.advertise("/ball/desired_speed", "std_msgs/Float64")
         client.advertise("/ball/desired_pose", "geometry_msgs/PoseStamped")
         client.advertise("/console/request", "std_msgs/String")
         client.subscribe("/console/arbitration", "simconsole_msgs/Arbitration")
         client.subscribe("/odom", "nav_msgs/Odometry")
-        connect(client)
+        client.connect(PATIENCE_S)  # whoever starts first waits for the other
         client.publish("/ball/desired_speed", {"data": SPEED_MPS})
         try:
             roll(client)
         except BridgeError:
             print("the drive has ended")
-
-
-def connect(client: BridgeClient) -> None:
-    """Connect as soon as the console listens: whoever starts first waits for the other."""
-    deadline_s = time.monotonic() + PATIENCE_S
-    while True:
-        try:
-            return client.connect()
-        except BridgeError:
-            if time.monotonic() > deadline_s:
-                raise
-        time.sleep(0.1)
 
 
 def roll(client: BridgeClient) -> None:

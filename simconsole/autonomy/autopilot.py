@@ -26,7 +26,6 @@ CONTROL: Final = "autoware_control_msgs/Control"
 _DRIVING: Final = (Mode.AUTONOMOUS, Mode.SHARED, Mode.TAKEOVER_REQUESTED)
 """In the other modes a remote share is the console's own: a parking hold or a stop."""
 _PATIENCE_S: Final = 10.0  # for the console to open its port
-_RETRY_S: Final = 0.05
 _WAIT_S: Final = 0.25  # how often `stop` is asked while nothing comes
 
 
@@ -38,14 +37,14 @@ def run(
     namespace: str = "",
     patience_s: float = _PATIENCE_S,
 ) -> dict[str, Any]:
-    """Drive until the server closes the connection or `stop()` says so; return statistics.
+    """Drive until the server says good-bye or is gone for `patience_s`, or `stop()` says so; return statistics.
 
     Args:
         url: the rosbridge server, `ws://HOST:PORT`.
         course_name: a world profile, by name or path.
         stop: asked after every message and four times a second.
         namespace: put before every topic, `/car1`.
-        patience_s: how long to try to connect.
+        patience_s: how long to try to connect, at the start and after a connection was lost.
 
     Raises:
         ProfileError: the course cannot be read.
@@ -53,27 +52,43 @@ def run(
     """
     tracker = Tracker(Course(load("worlds", course_name, WorldProfile, max_bytes=MAX_DATA_BYTES)))
     tally = Tally()
-    with BridgeClient(url) as client:
+    with BridgeClient(url, until_good_bye=True) as client:
         client.advertise(namespace + COMMAND, CONTROL)
         client.subscribe(namespace + ODOMETRY, "nav_msgs/Odometry")
         client.subscribe(namespace + ARBITRATION, "simconsole_msgs/Arbitration")
-        _connect(client, patience_s)
+        client.connect(patience_s)
         try:
-            _answer(client, tracker, tally, namespace, stop or _never)
-            ended = "stopped"
+            ended = _answer(client, tracker, tally, namespace, stop or _never, patience_s)
         except BridgeError as error:
             ended = str(error)
-    return {"url": url, "course": course_name, "ended": ended, **tally.results()}
+        results = {"url": url, "course": course_name, "ended": ended, "connections": client.connections}
+    return {**results, **tally.results()}
 
 
-def _answer(client: BridgeClient, tracker: Tracker, tally: Tally, namespace: str, stop: Callable[[], bool]) -> None:
-    """Answer odometry until `stop`. Raises BridgeError when the connection ends."""
+def _answer(
+    client: BridgeClient,
+    tracker: Tracker,
+    tally: Tally,
+    namespace: str,
+    stop: Callable[[], bool],
+    patience_s: float,
+) -> str:
+    """Answer odometry, through lost connections, until `stop` or nobody is there any more; return which.
+
+    Raises:
+        BridgeError: the server has said good-bye.
+    """
     command = client.registry.struct(CONTROL)()
     odometry_topic, command_topic = namespace + ODOMETRY, namespace + COMMAND
     # A console says who drives; a server that says nothing has given us the car.
     engaged = True
+    heard_s = time.monotonic()
     while not stop():
         received = client.receive(_WAIT_S)
+        if client.connected:
+            heard_s = time.monotonic()
+        elif time.monotonic() - heard_s > patience_s:
+            return client.failure
         if received is None:
             continue
         topic, message = received
@@ -88,6 +103,7 @@ def _answer(client: BridgeClient, tracker: Tracker, tally: Tally, namespace: str
         fill(command, message.header.stamp, answer)
         client.publish(command_topic, command)
         tally.add(engaged, tracker.s_m or 0.0, tracker.lateral_m, seen.vx_mps)
+    return "stopped"
 
 
 def sighting(odometry: Any) -> Sighting | None:
@@ -112,18 +128,6 @@ def fill(command: Any, stamp: Any, answer: Steering) -> None:
     longitudinal.jerk = answer.jerk_mps3
     longitudinal.is_defined_acceleration = True
     longitudinal.is_defined_jerk = True
-
-
-def _connect(client: BridgeClient, patience_s: float) -> None:
-    deadline = time.monotonic() + patience_s
-    while True:
-        try:
-            client.connect()
-            return
-        except BridgeError:
-            if time.monotonic() >= deadline:
-                raise
-        time.sleep(_RETRY_S)
 
 
 def _never() -> bool:

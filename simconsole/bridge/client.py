@@ -1,10 +1,10 @@
-"""A small synchronous rosbridge client for programs: one socket, no thread, no event loop.
+"""A rosbridge client for programs: one socket, no thread, no event loop, and everything there again after a restart.
 
 Example:
     with BridgeClient("ws://127.0.0.1:9090") as client:
-        client.connect()
         client.subscribe("/odom", "nav_msgs/Odometry")
         client.advertise("/cmd_vel", "geometry_msgs/Twist")
+        client.connect()
         while True:
             received = client.receive(timeout_s=1.0)
             if received is not None:
@@ -12,74 +12,90 @@ Example:
 """
 
 import logging
-import socket
-import ssl
+import random
 import time
 from collections import deque
+from collections.abc import Callable
 from types import TracebackType
-from typing import Any, Final, Self
+from typing import Any, Final, Literal, Self
 
-from websockets.client import ClientProtocol as WebSocketClientProtocol
-from websockets.exceptions import InvalidURI
-from websockets.frames import Frame
-from websockets.protocol import SEND_EOF, State
-from websockets.uri import parse_uri
-
-from simconsole.bridge.client_protocol import Callback, ClientProtocol, Received
+from simconsole.bridge.backoff import CAP_S, FIRST_S, Backoff, Liveness
+from simconsole.bridge.client_protocol import (
+    Answer,
+    Callback,
+    ClientProtocol,
+    Feedback,
+    Goal,
+    Handler,
+    Received,
+)
+from simconsole.bridge.link import ABNORMAL, Link
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.operations import Status
-from simconsole.bridge.wire import RECEIVE_BYTES, MessageAssembler, is_data
 from simconsole.errors import BridgeError
 
-MAX_MESSAGE_BYTES: Final = 16_777_216
+State = Literal["connecting", "connected"]
+GOOD_BYES: Final = (1000, 1001)
+"""WebSocket close codes of a server that ends in order."""
+_RETRY_S: Final = 0.05
 
 _logger = logging.getLogger("simconsole.bridge.client")
 
 
 class BridgeClient:
-    """A connection to a rosbridge server. Not safe to share between threads."""
+    """A client of a rosbridge server. Not safe to share between threads.
+
+    What the program advertised, subscribed and provides is one table in `protocol`, repeated on each new connection.
+    Callbacks and handlers run within `receive`.
+    """
 
     def __init__(
         self,
         url: str,
         *,
         registry: Registry | None = None,
-        connect_timeout_s: float = 5.0,
         token: str | None = None,
         certificate: str | None = None,
+        timeout_s: float = 2.0,
+        comes_back: bool = True,
+        until_good_bye: bool = False,
+        on_state: Callable[[State], None] = lambda state: None,
+        first_s: float = FIRST_S,
+        cap_s: float = CAP_S,
     ) -> None:
-        """Remember where to connect; `connect` does it.
+        """Remember where to connect.
 
         Args:
             url: ws://HOST:PORT or wss://HOST:PORT.
             registry: message types, the standard ones without.
-            connect_timeout_s: how long `connect` waits.
             token: shown to the server at once.
             certificate: a PEM file that a wss:// server is checked against, in place of the system's authorities.
+            timeout_s: how long one attempt to connect may take.
+            comes_back: connect again by itself, whenever `receive` or `publish` is called; without, the end of a
+                connection is a BridgeError.
+            until_good_bye: take a server that closes in order (a drive that has ended) for the end, not for a restart.
+            on_state: called with each change of the connection's state.
+            first_s: the first pause between two attempts.
+            cap_s: the longest, without its scatter.
 
         Raises:
             BridgeError: `url` is not such an address, or the certificate cannot be read.
         """
-        try:
-            self._uri = parse_uri(url)
-        except InvalidURI as error:
-            raise BridgeError(f"url: {error}") from None
-        self._tls: ssl.SSLContext | None = None
-        self._token = token
-        if self._uri.secure:
-            try:
-                self._tls = ssl.create_default_context(cafile=certificate)
-            except OSError as error:
-                raise BridgeError(f"certificate: {certificate}: {error}") from None
-        self.url = url
         self.protocol = ClientProtocol(registry)
-        self._connect_timeout_s = connect_timeout_s
-        self._socket: socket.socket | None = None
-        self._web: WebSocketClientProtocol | None = None
-        self._texts = MessageAssembler()
+        self._link = Link(url, timeout_s, token, certificate)
+        self._comes_back = comes_back
+        self._until_good_bye = until_good_bye
+        self._on_state = on_state
+        self._backoff = Backoff(first_s, cap_s)
+        self._liveness = Liveness()
+        self._chance = random.Random()
+        self._next_attempt_s = 0.0
         self._received: deque[Received] = deque()
-        self.heard_s = 0.0
-        """When something last arrived, on the monotonic clock."""
+        self.state: State = "connecting"
+        self.connections = 0
+        """How often the connection was made."""
+        self.failure = ""
+        """Why there is, or was last, no connection."""
 
     def __enter__(self) -> Self:
         """Return the client; it is closed at the end of the block."""
@@ -89,12 +105,17 @@ class BridgeClient:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         """Close the connection."""
-        self.close()
+        self.disconnect()
+
+    @property
+    def url(self) -> str:
+        """Where this client connects."""
+        return self._link.url
 
     @property
     def connected(self) -> bool:
         """Whether the connection is open as far as this side knows."""
-        return self._web is not None and self._web.state is State.OPEN
+        return self._link.is_open
 
     @property
     def registry(self) -> Registry:
@@ -106,51 +127,27 @@ class BridgeClient:
         """The server's remarks (refusals with their reason), newest last."""
         return self.protocol.statuses
 
-    def connect(self) -> None:
-        """Open the connection and repeat everything already advertised and subscribed.
+    def connect(self, patience_s: float = 0.0) -> None:
+        """Open the connection now and repeat everything wished for; try again for `patience_s` where it fails.
 
         Raises:
             BridgeError: nobody listens there, the server refused, or it did not answer in time.
         """
-        self.close()
-        self._received.clear()
-        self._texts = MessageAssembler()
-        deadline = time.monotonic() + self._connect_timeout_s
-        try:
-            address = (self._uri.host, self._uri.port)
-            self._socket = socket.create_connection(address, timeout=self._connect_timeout_s)
-            if self._tls is not None:
-                self._socket = self._tls.wrap_socket(self._socket, server_hostname=self._uri.host)
-            self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        except OSError as error:
-            self.drop()
-            raise BridgeError(f"{self.url}: cannot connect: {error}") from None
-        self._web = WebSocketClientProtocol(self._uri, max_size=MAX_MESSAGE_BYTES, logger=_logger)
-        request = self._web.connect()
-        if self._token is not None:
-            request.headers["Authorization"] = f"Bearer {self._token}"
-        self._web.send_request(request)
-        self._flush()
-        while self._web.state is State.CONNECTING and self._web.handshake_exc is None:
-            if not self._read(deadline - time.monotonic()):
-                self.drop()
-                raise BridgeError(f"{self.url}: no answer within {self._connect_timeout_s} s")
-        if self._web.handshake_exc is not None:
-            reason = self._web.handshake_exc
-            self.drop()
-            raise BridgeError(f"{self.url}: refused: {reason}")
-        for text in self.protocol.wishes():
-            self._send(text)
-
-    def close(self) -> None:
-        """Say good-bye and close; harmless when not connected."""
-        if self._web is not None and self._web.state is State.OPEN:
+        self.disconnect()
+        deadline_s = time.monotonic() + patience_s
+        while True:
             try:
-                self._web.send_close(1000)
-                self._flush()
-            except BridgeError:
-                pass
-        self.drop()
+                return self._open()
+            except BridgeError as error:
+                self._lost(error)
+                if time.monotonic() >= deadline_s:
+                    raise
+            time.sleep(_RETRY_S)
+
+    def disconnect(self) -> None:
+        """Say good-bye and close; harmless when not connected."""
+        self._link.close()
+        self._change("connecting")
 
     def advertise(self, topic: str, type_name: str) -> None:
         """Announce that this client publishes `topic`. Errors as `ClientProtocol.advertise`."""
@@ -160,13 +157,17 @@ class BridgeClient:
         """Withdraw a publisher."""
         self._wish(self.protocol.unadvertise(topic))
 
-    def publish(self, topic: str, message: Any) -> None:
-        """Send one message, a dict or an instance of the topic's type.
+    def publish(self, topic: str, message: Any) -> bool:
+        """Send one message, a dict or an instance of the topic's type; False when there is no connection.
+
+        A message is never kept for later: an old command must not be sent when the server is back.
 
         Raises:
-            BridgeError: not connected, not advertised, or the message does not fit its type.
+            LocalProtocolError: not advertised, or the message does not fit its type.
+            BridgeError: there is no connection, and this client does not come back.
         """
-        self._send(self.protocol.publish(topic, message))
+        text = self.protocol.publish(topic, message)
+        return self._connect() and self._send(text)
 
     def subscribe(
         self,
@@ -183,96 +184,142 @@ class BridgeClient:
         """End a subscription."""
         self._wish(self.protocol.unsubscribe(topic))
 
+    def advertise_service(self, service: str, type_name: str, handler: Handler) -> None:
+        """Answer the requests of a service; `handler` gets the arguments and returns the values."""
+        self._wish(self.protocol.advertise_service(service, type_name, handler))
+
+    def unadvertise_service(self, service: str) -> None:
+        """Answer no more."""
+        self._wish(self.protocol.unadvertise_service(service))
+
+    def call_service(self, service: str, args: Any, on_answer: Answer) -> bool:
+        """Ask a service; `on_answer` gets (values, result), also when the connection ends first. False: not sent."""
+        return self._ask(lambda: self.protocol.call_service(service, args, on_answer))
+
+    def advertise_action(self, action: str, type_name: str, pursue: Callable[[Goal], None]) -> None:
+        """Take the goals of an action; `pursue` gets each and may keep it to tell of its progress and end later."""
+        self._wish(self.protocol.advertise_action(action, type_name, pursue))
+
+    def unadvertise_action(self, action: str) -> None:
+        """Take no more goals."""
+        self._wish(self.protocol.unadvertise_action(action))
+
+    def send_goal(
+        self, action: str, type_name: str, args: Any, on_result: Answer, on_feedback: Feedback | None = None
+    ) -> bool:
+        """Send a goal; `on_result` gets (values, result), also when the connection ends first. False: not sent."""
+        return self._ask(lambda: self.protocol.send_goal(action, type_name, args, on_result, on_feedback))
+
     def receive(self, timeout_s: float) -> Received | None:
         """Return the next message (topic, message) without a callback, or None after `timeout_s`.
 
         Callbacks of messages that come before it run inside this call.
 
         Raises:
-            BridgeError: the connection is closed.
+            BridgeError: the connection has ended, and this client does not come back.
         """
-        deadline = time.monotonic() + timeout_s
+        deadline_s = time.monotonic() + timeout_s
         while not self._received:
-            if not self._read(deadline - time.monotonic()):
+            now_s = time.monotonic()
+            left_s = max(0.0, deadline_s - now_s)
+            if self._connect():
+                self._read(min(left_s, self._liveness.patience_s(now_s)))
+            else:
+                time.sleep(min(left_s, max(0.0, self._next_attempt_s - time.monotonic())))
+            if not self._received and time.monotonic() >= deadline_s:
                 return None
         return self._received.popleft()
 
-    def _wish(self, text: bytes) -> None:
-        """Send a wish now if connected; otherwise `connect` will."""
-        if self.connected:
-            self._send(text)
+    def _open(self) -> None:
+        self._received.clear()
+        self._link.open()
+        for text in self.protocol.wishes():
+            self._link.send(text)
+        self.connections += 1
+        self._backoff.reset()
+        self._liveness.begin(time.monotonic())
+        self._change("connected")
 
-    def _send(self, text: bytes) -> None:
-        if self._web is None or self._web.state is not State.OPEN:
+    def _connect(self) -> bool:
+        """Return whether there is a connection, made now if it is time for an attempt."""
+        if self._link.is_open:
+            return True
+        if self.state == "connected":
+            code = self._link.close_code or ABNORMAL
+            self._lost_or_raise(BridgeError(f"{self.url}: connection closed by the server ({code})"))
+        if not self._comes_back:
             raise BridgeError(f"{self.url}: not connected")
-        self._web.send_text(text)
-        self._flush()
-
-    def _flush(self) -> None:
-        assert self._web is not None
-        assert self._socket is not None
-        for data in self._web.data_to_send():
-            try:
-                if data is SEND_EOF and self._tls is not None:
-                    continue  # half a TLS connection cannot be closed; the whole one is, in a moment
-                if data is SEND_EOF:
-                    self._socket.shutdown(socket.SHUT_WR)
-                else:
-                    self._socket.settimeout(self._connect_timeout_s)
-                    self._socket.sendall(data)
-            except OSError as error:
-                self.drop()
-                raise BridgeError(f"{self.url}: connection lost: {error}") from None
-
-    def _read(self, timeout_s: float) -> bool:
-        """Wait for data and digest it; False when nothing came in time."""
-        if self._web is None or self._socket is None:
-            raise BridgeError(f"{self.url}: not connected")
-        try:
-            self._socket.settimeout(max(timeout_s, 1e-6))
-            data = self._socket.recv(RECEIVE_BYTES)
-        except TimeoutError:
+        if time.monotonic() < self._next_attempt_s:
             return False
-        except OSError as error:
-            self.drop()
-            raise BridgeError(f"{self.url}: connection lost: {error}") from None
-        if data:
-            self.heard_s = time.monotonic()
-            self._web.receive_data(data)
-        else:
-            self._web.receive_eof()
-        web = self._web
-        self._digest()
-        if self._web is not None:
-            self._flush()
-        if web.state is State.CLOSED and web.handshake_exc is None:
-            self.drop()
-            if not self._received:
-                raise BridgeError(f"{self.url}: connection closed by the server ({web.close_code})")
+        try:
+            self._open()
+        except BridgeError as error:
+            self._lost(error)
+            return False
         return True
 
-    def _digest(self) -> None:
-        assert self._web is not None
-        for event in self._web.events_received():
-            if isinstance(event, Frame) and is_data(event):
-                text = self._texts.add(event)
-                received = self.protocol.receive(text) if text is not None else None
-                if received is not None:
-                    self._received.append(received)
+    def _wish(self, text: bytes) -> None:
+        """Send a wish now if connected; otherwise `connect` will."""
+        if self._link.is_open:
+            self._send(text)
 
-    def ping(self) -> None:
-        """Ask the server for a sign of life.
+    def _ask(self, make: Callable[[], bytes]) -> bool:
+        return self._connect() and self._send(make())
 
-        Raises:
-            BridgeError: the connection is lost.
-        """
-        if self._web is not None and self._web.state is State.OPEN:
-            self._web.send_ping(b"")
-            self._flush()
+    def _send(self, text: bytes) -> bool:
+        try:
+            self._link.send(text)
+        except BridgeError as error:
+            return self._lost_or_raise(error)
+        return True
 
-    def drop(self) -> None:
-        """Close without a word: the other side is gone."""
-        if self._socket is not None:
-            self._socket.close()
-        self._socket = None
-        self._web = None
+    def _read(self, timeout_s: float) -> None:
+        try:
+            messages = self._link.read(timeout_s)
+        except BridgeError as error:
+            self._lost_or_raise(error)
+            return
+        for text in messages or ():
+            received = self.protocol.receive(text, time.monotonic_ns())
+            if received is not None:
+                self._received.append(received)
+        if self._link.is_open:
+            self._answer(messages is None)
+
+    def _answer(self, is_silent: bool) -> None:
+        """Send what the messages asked for, and look whether the server still lives."""
+        try:
+            while self.protocol.replies:
+                self._link.send(self.protocol.replies.popleft())
+            now_s = time.monotonic()
+            self._liveness.heard(self._link.heard_s)
+            if is_silent and self._liveness.is_dead(now_s):
+                raise BridgeError(f"{self.url}: the server has been silent for too long")
+            if self._liveness.ping_due(now_s):
+                self._link.ping()
+        except BridgeError as error:
+            self._lost_or_raise(error)
+
+    def _lost_or_raise(self, error: BridgeError) -> bool:
+        """Note the end of a connection; return False, or raise where it is not to be made again."""
+        self._lost(error)
+        if self._until_good_bye and self._link.close_code in GOOD_BYES:
+            self._comes_back = False
+        if not self._comes_back:
+            raise error
+        return False
+
+    def _lost(self, error: BridgeError) -> None:
+        self.failure = str(error)
+        self._link.drop()
+        self._next_attempt_s = time.monotonic() + self._backoff.pause_s(self._chance.random())
+        self._change("connecting")
+
+    def _change(self, state: State) -> None:
+        if state == self.state:
+            return
+        self.state = state
+        if state == "connecting":
+            self.protocol.end_calls()
+        _logger.info("%s: %s %s", self.url, state, self.failure if state == "connecting" else "")
+        self._on_state(state)

@@ -1,22 +1,50 @@
 """The client's side of rosbridge without a socket: operations out as text, messages in from text.
 
-It keeps what the program asked for (advertised topics, subscriptions), so that a new connection can be given the
-same wishes again.
+It keeps what the program asked for (what it advertised, subscribed and provides), so that a new connection can be
+given the same wishes again. Types are named in two parts, which servers of ROS 1 and ROS 2 both know.
 """
 
+from collections import deque
 from collections.abc import Callable
 from typing import Any, Final, NamedTuple
 
+import msgspec
 import orjson
 
 from simconsole.bridge.documents import read
+from simconsole.bridge.forms import Dialect, spell
+from simconsole.bridge.fragments import Assembler
 from simconsole.bridge.messages import Registry, standard_registry
-from simconsole.bridge.operations import Operation, Publish, Status, read_operation, write_publish
+from simconsole.bridge.operations import (
+    ActionFeedback,
+    ActionResult,
+    CallService,
+    CancelActionGoal,
+    Fragment,
+    Operation,
+    Publish,
+    SendActionGoal,
+    ServiceResponse,
+    Status,
+    read_operation,
+    write_publish,
+)
 from simconsole.errors import BridgeError, LocalProtocolError, RemoteProtocolError
 
 MAX_STATUS: Final = 100
+MAX_WHOLE: Final = 16_777_216
+MAX_PIECES: Final = 65_536
+SUCCEEDED: Final = 4
+CANCELED: Final = 5
+ABORTED: Final = 6
+"""action_msgs/GoalStatus."""
 
 Callback = Callable[[str, Any], None]
+Answer = Callable[[Any, bool], None]
+"""Takes the values and whether it went well; if not, the values are why, as text."""
+Feedback = Callable[[Any], None]
+Handler = Callable[[Any], Any]
+"""A service: takes arguments, returns values; a BridgeError it raises is the answer that it failed."""
 
 
 class Received(NamedTuple):
@@ -29,21 +57,70 @@ class Received(NamedTuple):
 class _Subscription(NamedTuple):
     type_name: str
     callback: Callback | None
-    text: bytes
+
+
+class _Call(NamedTuple):
+    """A request or goal of ours."""
+
+    on_answer: Answer
+    on_feedback: Feedback | None
+
+
+class Goal:
+    """A goal that this client pursues for another."""
+
+    def __init__(self, protocol: "ClientProtocol", action: str, identifier: Any, args: Any) -> None:
+        """Take a goal; its arguments are plain values."""
+        self.args = args
+        self.cancelled = False
+        """Whether whoever sent it no longer wants it."""
+        self.action = action
+        self.id = identifier
+        self._protocol = protocol
+
+    def tell(self, values: Any) -> None:
+        """Say how far it is."""
+        self._protocol.reply(op="action_feedback", action=self.action, id=self.id, values=values)
+
+    def succeed(self, values: Any) -> None:
+        """End it with its result."""
+        self._end(values, SUCCEEDED, True)
+
+    def fail(self, reason: str) -> None:
+        """End it without; as cancelled if it was."""
+        self._end(reason, CANCELED if self.cancelled else ABORTED, False)
+
+    def _end(self, values: Any, status: int, result: bool) -> None:
+        self._protocol.goals.pop(self.id, None)
+        self._protocol.reply(
+            op="action_result", action=self.action, id=self.id, values=values, status=status, result=result
+        )
 
 
 class ClientProtocol:
-    """What a client says and hears. Knows no socket and no time."""
+    """What a client says and hears. Knows no socket and no time but what it is told."""
 
-    def __init__(self, registry: Registry | None = None) -> None:
-        """Use `registry` for message types, the standard one without."""
+    def __init__(self, registry: Registry | None = None, dialect: Dialect | None = None) -> None:
+        """Use `registry` for message types, the standard one without; None finds the server's dialect out."""
         self.registry = registry if registry is not None else standard_registry()
+        self.dialect = dialect
+        """How the server spells times: as it was told, or as the first stamp it sent."""
         self.statuses: list[Status] = []
         """What the server remarked, newest last, at most MAX_STATUS."""
         self.refused = 0
         """Messages of the server that could not be used."""
-        self._advertised: dict[str, tuple[str, bytes]] = {}
+        self.replies: deque[bytes] = deque()
+        """What the server's requests and goals are answered with; whoever owns the connection sends it."""
+        self.goals: dict[Any, Goal] = {}
+        """What this client pursues for others, by id."""
+        self._wishes: dict[tuple[str, str], bytes] = {}
+        self._advertised: dict[str, str] = {}
         self._subscriptions: dict[str, _Subscription] = {}
+        self._services: dict[str, Handler] = {}
+        self._actions: dict[str, Callable[[Goal], None]] = {}
+        self._calls: dict[str, _Call] = {}
+        self._numbers = 0
+        self._assembler = Assembler(MAX_WHOLE, MAX_PIECES)
 
     def advertise(self, topic: str, type_name: str) -> bytes:
         """Return the text that announces a publisher.
@@ -53,17 +130,16 @@ class ClientProtocol:
             LocalProtocolError: the topic was advertised with another type.
         """
         full = self.registry.resolve(type_name)
-        known = self._advertised.get(topic)
-        if known is not None and known[0] != full:
-            raise LocalProtocolError(f"{topic}: advertised as {known[0]}, cannot be {full} too")
-        text = orjson.dumps({"op": "advertise", "topic": topic, "type": full})
-        self._advertised[topic] = (full, text)
-        return text
+        known = self._advertised.get(topic, full)
+        if known != full:
+            raise LocalProtocolError(f"{topic}: advertised as {known}, cannot be {full} too")
+        self._advertised[topic] = full
+        return self._wish("advertise", topic=topic, type=_two_parts(full))
 
     def unadvertise(self, topic: str) -> bytes:
         """Return the text that withdraws a publisher."""
         self._advertised.pop(topic, None)
-        return orjson.dumps({"op": "unadvertise", "topic": topic})
+        return self._withdraw("advertise", topic=topic)
 
     def publish(self, topic: str, message: Any) -> bytes:
         """Return the text of one message: a dict, or an instance of the topic's type (`registry.struct`).
@@ -71,14 +147,16 @@ class ClientProtocol:
         Raises:
             LocalProtocolError: the topic is not advertised, or the message does not fit its type.
         """
-        known = self._advertised.get(topic)
-        if known is None:
+        full = self._advertised.get(topic)
+        if full is None:
             raise LocalProtocolError(f"{topic}: advertise it before publishing")
         try:
-            self.registry.from_plain(known[0], message)
+            typed = self.registry.from_plain(full, message)
         except RemoteProtocolError as error:
             raise LocalProtocolError(f"{topic}: {error}") from None
-        # As given, not with defaults filled in: a server refuses a command in which a field was forgotten.
+        if self.dialect == "ros1":
+            message = spell(self.registry, full, typed, "ros1")
+        # Otherwise as given, not with defaults filled in: a server refuses a command in which a field was forgotten.
         return write_publish(topic, message)
 
     def subscribe(
@@ -102,51 +180,165 @@ class ClientProtocol:
             BridgeError: the type is not known.
         """
         full = self.registry.resolve(type_name)
-        fields: dict[str, Any] = {"op": "subscribe", "topic": topic, "type": full}
-        if throttle_rate:
-            fields["throttle_rate"] = throttle_rate
-        if queue_length:
-            fields["queue_length"] = queue_length
-        text = orjson.dumps(fields)
-        self._subscriptions[topic] = _Subscription(full, callback, text)
-        return text
+        self._subscriptions[topic] = _Subscription(full, callback)
+        asked = {"throttle_rate": throttle_rate, "queue_length": queue_length}
+        more = {name: value for name, value in asked.items() if value}
+        return self._wish("subscribe", topic=topic, type=_two_parts(full), **more)
 
     def unsubscribe(self, topic: str) -> bytes:
         """Return the text that ends a subscription."""
         self._subscriptions.pop(topic, None)
-        return orjson.dumps({"op": "unsubscribe", "topic": topic})
+        return self._withdraw("subscribe", topic=topic)
+
+    def advertise_service(self, service: str, type_name: str, handler: Handler) -> bytes:
+        """Return the text that offers a service, answered by `handler` within `receive`."""
+        self._services[service] = handler
+        return self._wish("advertise_service", service=service, type=type_name)
+
+    def unadvertise_service(self, service: str) -> bytes:
+        """Return the text that offers it no more."""
+        self._services.pop(service, None)
+        return self._withdraw("advertise_service", service=service)
+
+    def call_service(self, service: str, args: Any, on_answer: Answer) -> bytes:
+        """Return the text of a request; `on_answer` is called by `receive`, or by `end_calls`."""
+        identifier = self._call(on_answer, None)
+        return orjson.dumps({"op": "call_service", "service": service, "args": args, "id": identifier})
+
+    def advertise_action(self, action: str, type_name: str, pursue: Callable[[Goal], None]) -> bytes:
+        """Return the text that offers an action, whose goals `pursue` gets within `receive`."""
+        self._actions[action] = pursue
+        return self._wish("advertise_action", action=action, type=type_name)
+
+    def unadvertise_action(self, action: str) -> bytes:
+        """Return the text that offers it no more."""
+        self._actions.pop(action, None)
+        return self._withdraw("advertise_action", action=action)
+
+    def send_goal(
+        self, action: str, type_name: str, args: Any, on_result: Answer, on_feedback: Feedback | None = None
+    ) -> bytes:
+        """Return the text of a goal; the callbacks are called by `receive`, or by `end_calls`."""
+        identifier = self._call(on_result, on_feedback)
+        fields = {"op": "send_action_goal", "action": action, "action_type": type_name, "args": args}
+        return orjson.dumps({**fields, "feedback": on_feedback is not None, "id": identifier})
 
     def wishes(self) -> list[bytes]:
         """Return the texts that give a new connection everything this client asked for."""
-        return [
-            *(text for _, text in self._advertised.values()),
-            *(subscription.text for subscription in self._subscriptions.values()),
-        ]
+        return list(self._wishes.values())
 
-    def receive(self, text: bytes) -> Received | None:
+    def end_calls(self) -> None:
+        """End everything that cannot outlive its connection: calls fail, goals of others are cancelled."""
+        calls, self._calls = self._calls, {}
+        goals, self.goals = self.goals, {}
+        self._assembler = Assembler(MAX_WHOLE, MAX_PIECES)
+        self.replies.clear()
+        for call in calls.values():
+            call.on_answer("the connection has ended", False)
+        for goal in goals.values():
+            goal.cancelled = True
+
+    def reply(self, **fields: Any) -> None:
+        """Queue an operation for the server."""
+        self.replies.append(msgspec.json.encode(fields))
+
+    def receive(self, text: bytes, now_ns: int = 0) -> Received | None:
         """Read one message of the server; return it if it is a subscribed topic's and has no callback.
 
-        What cannot be used is counted in `refused`: a server's mistake must not end a drive.
+        What cannot be used is counted in `refused`: a server's mistake must not end a drive. An exception of a
+        callback is the program's own and goes through.
         """
         try:
-            operation = read_operation(read(text).fields)
-            subscription, message = self._understand(operation)
+            operation: Operation | None = read_operation(read(text).fields)
+            if isinstance(operation, Fragment):
+                whole = self._assembler.add(operation, now_ns)
+                operation = None if whole is None else read_operation(read(whole).fields)
+            message = self._typed(operation) if isinstance(operation, Publish) else None
         except BridgeError:
             self.refused += 1
             return None
-        if isinstance(operation, Status):
-            self.statuses = [*self.statuses[-MAX_STATUS + 1 :], operation]
-        if not isinstance(operation, Publish) or subscription is None:
-            return None
-        if subscription.callback is None:
-            return Received(operation.topic, message)
-        subscription.callback(operation.topic, message)
+        if message is not None and isinstance(operation, Publish):
+            return self._deliver(operation.topic, message)
+        if operation is not None:
+            self._react(operation)
         return None
 
-    def _understand(self, operation: Operation) -> tuple[_Subscription | None, Any]:
-        if not isinstance(operation, Publish):
-            return None, None
+    def _typed(self, operation: Publish) -> Any:
+        """Return a subscribed topic's message in its type, None for another topic's."""
         subscription = self._subscriptions.get(operation.topic)
         if subscription is None:
-            return None, None
-        return subscription, self.registry.from_plain(subscription.type_name, operation.msg)
+            return None
+        if self.dialect is None:
+            self.dialect = _dialect_of(operation.msg)
+        return self.registry.from_plain(subscription.type_name, operation.msg)
+
+    def _deliver(self, topic: str, message: Any) -> Received | None:
+        callback = self._subscriptions[topic].callback
+        if callback is None:
+            return Received(topic, message)
+        callback(topic, message)
+        return None
+
+    def _react(self, operation: Operation) -> None:
+        match operation:
+            case Status():
+                self.statuses = [*self.statuses[-MAX_STATUS + 1 :], operation]
+            case ServiceResponse() | ActionResult():
+                call = self._calls.pop(str(operation.id), None)
+                if call is not None:
+                    call.on_answer(operation.values, operation.result)
+            case ActionFeedback():
+                waiting = self._calls.get(str(operation.id))
+                if waiting is not None and waiting.on_feedback is not None:
+                    waiting.on_feedback(operation.values)
+            case CallService():
+                self._serve(operation)
+            case SendActionGoal():
+                pursue = self._actions.get(operation.action)
+                if pursue is not None:
+                    goal = self.goals[operation.id] = Goal(self, operation.action, operation.id, operation.args)
+                    pursue(goal)
+            case CancelActionGoal():
+                unwanted = self.goals.get(operation.id)
+                if unwanted is not None:
+                    unwanted.cancelled = True
+            case _:
+                pass
+
+    def _serve(self, operation: CallService) -> None:
+        handler = self._services.get(operation.service)
+        try:
+            if handler is None:
+                raise BridgeError("not provided here")
+            values, result = handler(operation.args), True
+        except BridgeError as error:
+            values, result = str(error), False
+        self.reply(op="service_response", service=operation.service, id=operation.id, values=values, result=result)
+
+    def _call(self, on_answer: Answer, on_feedback: Feedback | None) -> str:
+        self._numbers += 1
+        identifier = f"c{self._numbers}"
+        self._calls[identifier] = _Call(on_answer, on_feedback)
+        return identifier
+
+    def _wish(self, op: str, **fields: Any) -> bytes:
+        name = next(iter(fields.values()))
+        text = self._wishes[op, name] = orjson.dumps({"op": op, **fields})
+        return text
+
+    def _withdraw(self, op: str, **fields: str) -> bytes:
+        self._wishes.pop((op, next(iter(fields.values()))), None)
+        return orjson.dumps({"op": f"un{op}", **fields})
+
+
+def _two_parts(full: str) -> str:
+    return full.replace("/msg/", "/")
+
+
+def _dialect_of(message: Any) -> Dialect | None:
+    """Return how the first stamp of a message is spelled, None where there is none."""
+    header = message.get("header") if isinstance(message, dict) else None
+    stamp = header.get("stamp") if isinstance(header, dict) else None
+    if not isinstance(stamp, dict):
+        return None
+    return "ros1" if "secs" in stamp else "ros2" if "sec" in stamp else None

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from simconsole.bridge.console import ConsoleBridge
+from simconsole.bridge.messages import Registry
 from simconsole.bridge.protocol import Outcome
 from simconsole.bridge.server import serve
 from simconsole.bridge.session import Session
@@ -97,18 +98,18 @@ def control() -> Callable[..., dict[str, Any]]:
 class Served:
     """A bridge server on a thread of its own, as its process would run it."""
 
-    def __init__(self, profile: BridgeProfile) -> None:
+    def __init__(self, profile: BridgeProfile, registry: Registry | None = None) -> None:
         self.commands: queue.SimpleQueue[tuple[RemoteCommand, int | None]] = queue.SimpleQueue()
         self.events: queue.SimpleQueue[int] = queue.SimpleQueue()
         self.snapshots: queue.SimpleQueue[Snapshot] = queue.SimpleQueue()
         self._port: queue.SimpleQueue[int] = queue.SimpleQueue()
         self._stop = threading.Event()
-        self._thread = threading.Thread(target=self._run, args=(profile,))
+        self._thread = threading.Thread(target=self._run, args=(profile, registry))
         self._thread.start()
         self.port = self._port.get(timeout=10.0)
         self.url = f"ws://127.0.0.1:{self.port}"
 
-    def _run(self, profile: BridgeProfile) -> None:
+    def _run(self, profile: BridgeProfile, registry: Registry | None) -> None:
         serve(
             profile,
             self._newest,
@@ -116,6 +117,7 @@ class Served:
             self.events.put,
             self._stop.is_set,
             on_ready=self._port.put,
+            registry=registry,
         )
 
     def _newest(self) -> Snapshot | None:

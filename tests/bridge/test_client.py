@@ -1,5 +1,6 @@
 import socket
 import threading
+import time
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -8,7 +9,8 @@ from websockets.sync.server import Server, ServerConnection
 from websockets.sync.server import serve as serve_websockets
 
 from simconsole.bridge.client import BridgeClient
-from simconsole.errors import BridgeError
+from simconsole.bridge.client_protocol import Goal
+from simconsole.errors import BridgeError, LocalProtocolError
 
 
 @pytest.fixture
@@ -44,7 +46,7 @@ def test_nobody_listens() -> None:
 
 def test_somebody_listens_but_says_nothing() -> None:
     with socket.create_server(("127.0.0.1", 0)) as mute:
-        client = BridgeClient(f"ws://127.0.0.1:{mute.getsockname()[1]}", connect_timeout_s=0.05)
+        client = BridgeClient(f"ws://127.0.0.1:{mute.getsockname()[1]}", timeout_s=0.05)
         with pytest.raises(BridgeError, match="no answer within"):
             client.connect()
         assert not client.connected
@@ -68,14 +70,14 @@ def test_server_that_is_none() -> None:
 
 
 def test_not_connected_is_said() -> None:
-    client = BridgeClient("ws://127.0.0.1:1")
+    client = BridgeClient("ws://127.0.0.1:1", comes_back=False)
     client.subscribe("/s", "std_msgs/String")
     client.advertise("/s", "std_msgs/String")
     with pytest.raises(BridgeError, match="not connected"):
         client.publish("/s", {"data": "x"})
     with pytest.raises(BridgeError, match="not connected"):
         client.receive(0.0)
-    client.close()
+    client.disconnect()
 
 
 def test_wishes_made_before_and_after_connecting_hold_again_after_another_connect(serving: Callable[..., Any]) -> None:
@@ -131,7 +133,7 @@ def test_server_that_goes_is_an_error_after_everything_received(
         for word in ("one", "two"):
             peer.send(f'{{"op":"publish","topic":"/s","msg":{{"data":"{word}"}}}}')
 
-    with BridgeClient(faking(handler)) as client:
+    with BridgeClient(faking(handler), comes_back=False) as client:
         client.connect()
         client.subscribe("/s", "std_msgs/String")
         received = [client.receive(10.0) for _ in range(2)]
@@ -158,3 +160,120 @@ def test_server_s_oddities_are_survived(faking: Callable[[Callable[[ServerConnec
         assert received.message.data == "in three pieces"
         assert client.protocol.refused == 2
         client.unsubscribe("/s")
+
+
+def test_silent_server_is_given_up(serving: Callable[..., Any]) -> None:
+    server = serving()
+    with BridgeClient(server.url, first_s=0.01, cap_s=0.02) as client:
+        assert client.receive(0.05) is None
+        assert client.state == "connected"
+        # As if three seconds had passed in silence, and a ping had not been answered.
+        client._liveness.begin(time.monotonic() - 3.5)
+        client._link.heard_s = 0.0
+        assert client.receive(0.0) is None
+        assert (client.state, client.connections) == ("connecting", 1)
+        assert "silent" in client.failure
+        assert client.receive(0.2) is None
+        assert (client.state, client.connections) == ("connected", 2)
+
+
+def test_ping_keeps_a_quiet_connection(serving: Callable[..., Any]) -> None:
+    with BridgeClient(serving().url) as client:
+        client.receive(0.01)
+        client._liveness.begin(time.monotonic() - 1.5)
+        client._link.heard_s = 0.0
+        assert client.receive(0.3) is None
+        assert client._link.heard_s > 0.0
+        assert client.connections == 1
+
+
+def test_a_programs_own_mistakes_are_not_swallowed(serving: Callable[..., Any]) -> None:
+    with BridgeClient(serving().url) as client:
+        client.receive(0.01)
+        client.advertise("/a", "std_msgs/String")
+        with pytest.raises(LocalProtocolError, match="cannot be std_msgs/msg/Bool too"):
+            client.advertise("/a", "std_msgs/Bool")
+        with pytest.raises(LocalProtocolError, match="advertise it before"):
+            client.publish("/b", {})
+        client.unadvertise("/a")
+        client.subscribe("/a", "std_msgs/String")
+        client.unsubscribe("/a")
+        assert client.registry.struct("std_msgs/String")
+
+
+def test_end_in_order_is_the_end_for_who_says_so(serving: Callable[..., Any]) -> None:
+    server = serving()
+    with BridgeClient(server.url, until_good_bye=True, first_s=0.001) as client:
+        assert client.receive(0.05) is None
+        server.stop()
+        with pytest.raises(BridgeError, match=r"closed by the server \(1001\)"):
+            client.receive(10.0)
+        with pytest.raises(BridgeError, match="not connected"):
+            client.receive(10.0)
+
+
+def test_rude_end_is_not(faking: Callable[[Callable[[ServerConnection], None]], str]) -> None:
+    def handler(peer: ServerConnection) -> None:
+        peer.send('{"op":"publish","topic":"/s","msg":{"data":"here"}}')
+        peer.socket.shutdown(socket.SHUT_RDWR)
+
+    with BridgeClient(faking(handler), until_good_bye=True, first_s=0.001) as client:
+        client.subscribe("/s", "std_msgs/String")
+        for _ in range(3):
+            assert client.receive(10.0) is not None
+        assert client.connections >= 3
+        assert "connection" in client.failure
+
+
+def test_patience_is_for_a_server_that_is_not_there_yet(serving: Callable[..., Any]) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        port = int(listener.getsockname()[1])
+    client = BridgeClient(f"ws://127.0.0.1:{port}")
+    with pytest.raises(BridgeError, match="cannot connect"):
+        client.connect(patience_s=0.1)
+    assert not client.connected
+    later = threading.Timer(0.1, lambda: serving(port=port))
+    later.start()
+    client.connect(patience_s=20.0)
+    assert client.connected
+    later.join()
+    client.disconnect()
+
+
+def test_services_and_actions_both_ways(serving: Callable[..., Any]) -> None:
+    server = serving()
+    answers: list[tuple[Any, bool]] = []
+    told: list[Any] = []
+
+    def add(args: Any) -> Any:
+        if args["b"] == 0:
+            raise BridgeError("not with 0")
+        return {"sum": args["a"] + args["b"]}
+
+    def count(goal: Goal) -> None:
+        goal.tell({"sequence": [1]})
+        goal.succeed({"sequence": [1, goal.args["order"]]})
+
+    with BridgeClient(server.url) as provider, BridgeClient(server.url) as caller:
+        provider.advertise_service("/add", "example_interfaces/AddTwoInts", add)
+        provider.advertise_action("/count", "example_interfaces/Fibonacci", count)
+        provider.receive(0.05)
+        take = lambda values, result: answers.append((values, result))  # noqa: E731  (it is handed on three times)
+        assert caller.call_service("/add", {"a": 2, "b": 40}, take)
+        assert caller.call_service("/add", {"a": 2, "b": 0}, take)
+        assert caller.send_goal("/count", "example_interfaces/Fibonacci", {"order": 7}, take, told.append)
+        while len(answers) < 3:
+            provider.receive(0.01)
+            caller.receive(0.01)
+        assert answers == [({"sum": 42}, True), ("not with 0", False), ({"sequence": [1, 7]}, True)]
+        assert told == [{"sequence": [1]}]
+        provider.unadvertise_service("/add")
+        provider.unadvertise_action("/count")
+        provider.receive(0.01)
+        caller.call_service("/add", {}, take)
+        while len(answers) < 4:
+            caller.receive(0.01)
+        assert answers[3] == ("/add: nobody provides this service", False)
+        assert caller.call_service("/rosapi/get_time", None, take)
+        caller.disconnect()
+        assert answers[4] == ("the connection has ended", False)

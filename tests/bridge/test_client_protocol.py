@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from simconsole.bridge.client_protocol import MAX_STATUS, ClientProtocol
+from simconsole.bridge.client_protocol import MAX_STATUS, ClientProtocol, Goal
 from simconsole.errors import BridgeError, LocalProtocolError
 
 
@@ -17,7 +17,7 @@ def test_messages_are_typed() -> None:
     assert json.loads(client.subscribe("/odom", "nav_msgs/Odometry", throttle_rate=20, queue_length=3)) == {
         "op": "subscribe",
         "topic": "/odom",
-        "type": "nav_msgs/msg/Odometry",
+        "type": "nav_msgs/Odometry",
         "throttle_rate": 20,
         "queue_length": 3,
     }
@@ -116,3 +116,107 @@ def test_wishes_are_what_is_still_wanted() -> None:
     assert json.loads(client.unsubscribe("/c"))["op"] == "unsubscribe"
     wishes = [json.loads(text) for text in client.wishes()]
     assert [(wish["op"], wish["topic"]) for wish in wishes] == [("advertise", "/b"), ("subscribe", "/d")]
+
+
+def sent(client: ClientProtocol) -> list[dict[str, Any]]:
+    texts = [json.loads(text) for text in client.replies]
+    client.replies.clear()
+    return texts
+
+
+@pytest.mark.parametrize(
+    ("stamp", "dialect", "written"),
+    [
+        ({"secs": 1, "nsecs": 2}, "ros1", {"seq": 0, "stamp": {"secs": 3, "nsecs": 4}, "frame_id": ""}),
+        ({"sec": 1, "nanosec": 2}, "ros2", {"stamp": {"sec": 3, "nanosec": 4}}),
+        ({}, None, {"stamp": {"sec": 3, "nanosec": 4}}),
+        (None, None, {"stamp": {"sec": 3, "nanosec": 4}}),
+    ],
+)
+def test_stamps_are_spelled_as_the_server_s_first(stamp: Any, dialect: str | None, written: dict[str, Any]) -> None:
+    client = ClientProtocol()
+    client.subscribe("/odom", "nav_msgs/Odometry")
+    client.receive(publish("/odom", {} if stamp is None else {"header": {"stamp": stamp}}))
+    assert client.dialect == dialect
+    client.advertise("/p", "geometry_msgs/PointStamped")
+    message = json.loads(client.publish("/p", {"header": {"stamp": {"sec": 3, "nanosec": 4}}}))["msg"]
+    assert message["header"] == written
+
+
+def test_messages_in_pieces_as_the_real_server_writes_them() -> None:
+    client = ClientProtocol()
+    client.subscribe("/s", "std_msgs/String")
+    for _ in range(2):  # every message of rosbridge_suite has the id 0 and a fraction for its total
+        text = publish("/s", {"data": "x" * 100}).decode()
+        pieces = [text[at : at + 30] for at in range(0, len(text), 30)]
+        fixed = {"op": "fragment", "id": 0, "total": len(pieces) - 0.3}
+        operations = [{**fixed, "num": number, "data": piece} for number, piece in enumerate(pieces)]
+        received = [client.receive(json.dumps(operation).encode()) for operation in operations]
+        assert [each is not None for each in received] == [False] * (len(pieces) - 1) + [True]
+
+
+def test_requests_are_answered_and_none_is_left_open() -> None:
+    client = ClientProtocol()
+    offered = json.loads(client.advertise_service("/add", "a/Add", lambda args: {"sum": sum(args)}))
+    assert offered == {"op": "advertise_service", "service": "/add", "type": "a/Add"}
+    client.receive(b'{"op":"call_service","service":"/add","id":"1","args":[1,2]}')
+    client.receive(b'{"op":"call_service","service":"/other","id":"2"}')
+    assert [(text["id"], text["result"], text["values"]) for text in sent(client)] == [
+        ("1", True, {"sum": 3}),
+        ("2", False, "not provided here"),
+    ]
+    assert len(client.wishes()) == 1
+    client.unadvertise_service("/add")
+    assert client.wishes() == []
+
+
+def test_goals_are_told_of_cancelled_and_ended() -> None:
+    client, goals = ClientProtocol(), []
+    client.advertise_action("/go", "a/Go", goals.append)
+    client.receive(b'{"op":"send_action_goal","action":"/go","id":"1","args":{"far":3}}')
+    client.receive(b'{"op":"send_action_goal","action":"/other","id":"2"}')
+    client.receive(b'{"op":"cancel_action_goal","action":"/go","id":"1"}')
+    client.receive(b'{"op":"cancel_action_goal","action":"/go","id":"never"}')
+    (goal,) = goals
+    assert (goal.args, goal.cancelled) == ({"far": 3}, True)
+    goal.tell({"m": 1})
+    goal.fail("enough")
+    client.receive(b'{"op":"send_action_goal","action":"/go","id":"3"}')
+    goals[1].succeed({"m": 3})
+    assert [(text["op"], text["values"], text.get("status"), text.get("result")) for text in sent(client)] == [
+        ("action_feedback", {"m": 1}, None, None),
+        ("action_result", "enough", 5, False),
+        ("action_result", {"m": 3}, 4, True),
+    ]
+    assert client.goals == {}
+    client.unadvertise_action("/go")
+    assert client.wishes() == []
+
+
+def test_answers_find_who_asked_and_nobody_waits_for_ever() -> None:
+    client, heard = ClientProtocol(), []
+
+    def take(values: Any, result: bool) -> None:
+        heard.append((values, result))
+
+    first = json.loads(client.call_service("/s", {"x": 1}, take))
+    goal = json.loads(client.send_goal("/a", "t/A", {"y": 2}, take, heard.append))
+    silent = json.loads(client.send_goal("/a", "t/A", {}, take))
+    assert (goal["feedback"], silent["feedback"]) == (True, False)
+    for answer in (
+        {"op": "action_feedback", "action": "/a", "id": goal["id"], "values": 5},
+        {"op": "action_feedback", "action": "/a", "id": silent["id"], "values": 6},
+        {"op": "action_feedback", "action": "/a", "id": "no", "values": 7},
+        {"op": "service_response", "service": "/s", "id": first["id"], "values": {"z": 1}, "result": True},
+        {"op": "service_response", "service": "/s", "id": first["id"], "values": {"z": 2}, "result": True},
+        {"op": "action_result", "action": "/a", "id": goal["id"], "values": {}, "status": 4, "result": True},
+        {"op": "set_level", "level": "none"},
+    ):
+        client.receive(json.dumps(answer).encode())
+    assert heard == [5, ({"z": 1}, True), ({}, True)]
+    client.receive(b'{"op":"send_action_goal","action":"/go","id":"1"}')
+    client.goals["x"] = Goal(client, "/go", "x", {})
+    kept = client.goals["x"]
+    client.end_calls()
+    assert heard[-1] == ("the connection has ended", False)
+    assert (kept.cancelled, client.goals) == (True, {})

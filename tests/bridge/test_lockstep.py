@@ -329,7 +329,7 @@ def test_clients_are_told_good_bye_and_the_port_is_free(snapshot: Callable[..., 
     bridge = LockstepBridge(BridgeProfile(port=0))
 
     def watch() -> None:
-        with BridgeClient(bridge.url) as client:
+        with BridgeClient(bridge.url, comes_back=False) as client:
             client.subscribe("/odom", "nav_msgs/Odometry")
             client.connect()
             with pytest.raises(BridgeError, match=r"closed by the server \(1001\)"):

@@ -46,7 +46,7 @@ def test_encrypted_and_authenticated(
     with pytest.raises(BridgeError, match=r"refused: .*401"):
         BridgeClient(url, token="wrong", certificate=files["certificate"]).connect()
     with pytest.raises(BridgeError):
-        BridgeClient(server.url, token=TOKEN, connect_timeout_s=2.0).connect()
+        BridgeClient(server.url, token=TOKEN, timeout_s=2.0).connect()
 
 
 def test_stock_client_authenticates_after_connecting(serving: Callable[..., Any], files: dict[str, str]) -> None:

@@ -1,0 +1,184 @@
+"""One WebSocket connection of a client: a socket, no thread, no event loop."""
+
+import logging
+import socket
+import ssl
+import time
+from typing import Final
+
+from websockets.client import ClientProtocol as WebSocketClientProtocol
+from websockets.exceptions import InvalidURI
+from websockets.frames import Frame
+from websockets.protocol import SEND_EOF, State
+from websockets.uri import parse_uri
+
+from simconsole.bridge.documents import Binary
+from simconsole.bridge.wire import RECEIVE_BYTES, MessageAssembler, is_data
+from simconsole.errors import BridgeError
+
+MAX_MESSAGE_BYTES: Final = 16_777_216
+ABNORMAL: Final = 1006
+"""WebSocket's close code of a connection that ended without one."""
+
+_logger = logging.getLogger("simconsole.bridge.client")
+
+
+class Link:
+    """A connection that can be opened again and again. Nothing is sent, received or noticed but within a call."""
+
+    def __init__(self, url: str, timeout_s: float, token: str | None, certificate: str | None) -> None:
+        """Remember where to connect.
+
+        Args:
+            url: ws://HOST:PORT or wss://HOST:PORT.
+            timeout_s: how long opening, and one sending, may take.
+            token: shown to the server at once.
+            certificate: a PEM file that a wss:// server is checked against, in place of the system's authorities.
+
+        Raises:
+            BridgeError: `url` is not such an address, or the certificate cannot be read.
+        """
+        try:
+            self._uri = parse_uri(url)
+        except InvalidURI as error:
+            raise BridgeError(f"url: {error}") from None
+        self._tls: ssl.SSLContext | None = None
+        if self._uri.secure:
+            try:
+                self._tls = ssl.create_default_context(cafile=certificate)
+            except OSError as error:
+                raise BridgeError(f"certificate: {certificate}: {error}") from None
+        self.url = url
+        self._timeout_s = timeout_s
+        self._token = token
+        self._socket: socket.socket | None = None
+        self._web: WebSocketClientProtocol | None = None
+        self._messages = MessageAssembler()
+        self.heard_s = 0.0
+        """When something last arrived, on the monotonic clock."""
+        self.close_code: int | None = None
+        """With which the server last closed; None if it did not say."""
+
+    @property
+    def is_open(self) -> bool:
+        """Whether messages can pass, as far as this side knows."""
+        return self._web is not None and self._web.state is State.OPEN
+
+    def open(self) -> None:
+        """Connect.
+
+        Raises:
+            BridgeError: nobody listens there, the server refused, or it did not answer in time.
+        """
+        self._messages = MessageAssembler()
+        self.close_code = None
+        deadline_s = time.monotonic() + self._timeout_s
+        try:
+            address = (self._uri.host, self._uri.port)
+            self._socket = socket.create_connection(address, timeout=self._timeout_s)
+            if self._tls is not None:
+                self._socket = self._tls.wrap_socket(self._socket, server_hostname=self._uri.host)
+            self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        except OSError as error:
+            self.drop()
+            raise BridgeError(f"{self.url}: cannot connect: {error}") from None
+        self._web = WebSocketClientProtocol(self._uri, max_size=MAX_MESSAGE_BYTES, logger=_logger)
+        request = self._web.connect()
+        if self._token is not None:
+            request.headers["Authorization"] = f"Bearer {self._token}"
+        self._web.send_request(request)
+        self._flush()
+        web = self._web
+        while web.state is State.CONNECTING and web.handshake_exc is None:
+            if self.read(deadline_s - time.monotonic()) is None:
+                self.drop()
+                raise BridgeError(f"{self.url}: no answer within {self._timeout_s} s")
+        if web.handshake_exc is not None:
+            self.drop()
+            raise BridgeError(f"{self.url}: refused: {web.handshake_exc}")
+
+    def send(self, message: bytes) -> None:
+        """Send a message, `Binary` or text.
+
+        Raises:
+            BridgeError: not connected, or the connection is lost.
+        """
+        if self._web is None or self._web.state is not State.OPEN:
+            raise BridgeError(f"{self.url}: not connected")
+        if isinstance(message, Binary):
+            self._web.send_binary(message)
+        else:
+            self._web.send_text(message)
+        self._flush()
+
+    def ping(self) -> None:
+        """Ask the server for a sign of life. Raises BridgeError: the connection is lost."""
+        if self._web is not None and self._web.state is State.OPEN:
+            self._web.send_ping(b"")
+            self._flush()
+
+    def read(self, timeout_s: float) -> list[bytes] | None:
+        """Wait for data; return the messages that it completes, None when no data came in time.
+
+        Raises:
+            BridgeError: not connected, or the connection is lost; messages that came before were returned.
+        """
+        if self._web is None or self._socket is None:
+            raise BridgeError(f"{self.url}: not connected")
+        web = self._web
+        try:
+            self._socket.settimeout(max(timeout_s, 1e-6))
+            data = self._socket.recv(RECEIVE_BYTES)
+        except TimeoutError:
+            return None
+        except OSError as error:
+            self.drop()
+            raise BridgeError(f"{self.url}: connection lost: {error}") from None
+        if data:
+            self.heard_s = time.monotonic()
+            web.receive_data(data)
+        else:
+            web.receive_eof()
+        frames = [event for event in web.events_received() if isinstance(event, Frame) and is_data(event)]
+        messages = [whole for whole in map(self._messages.add, frames) if whole is not None]
+        if web.close_rcvd is not None:
+            self.close_code = web.close_rcvd.code
+        self._flush()
+        if web.state is State.CLOSED and web.handshake_exc is None:
+            self.drop()
+            if not messages:
+                raise BridgeError(f"{self.url}: connection closed by the server ({self.close_code or ABNORMAL})")
+        return messages
+
+    def close(self) -> None:
+        """Say good-bye and close; harmless when not connected."""
+        if self._web is not None and self._web.state is State.OPEN:
+            try:
+                self._web.send_close(1000)
+                self._flush()
+            except BridgeError:
+                pass
+        self.drop()
+
+    def drop(self) -> None:
+        """Close without a word: the other side is gone."""
+        if self._socket is not None:
+            self._socket.close()
+        self._socket = None
+        self._web = None
+
+    def _flush(self) -> None:
+        assert self._web is not None
+        assert self._socket is not None
+        for data in self._web.data_to_send():
+            try:
+                if data is SEND_EOF and self._tls is not None:
+                    continue  # half a TLS connection cannot be closed; the whole one is, in a moment
+                if data is SEND_EOF:
+                    self._socket.shutdown(socket.SHUT_WR)
+                else:
+                    self._socket.settimeout(self._timeout_s)
+                    self._socket.sendall(data)
+            except OSError as error:
+                self.drop()
+                raise BridgeError(f"{self.url}: connection lost: {error}") from None
