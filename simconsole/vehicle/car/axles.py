@@ -1,6 +1,6 @@
 """The four wheels on the ground: where their contact patches slide, what their tyres push."""
 
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from simconsole.kernels import kernel
 from simconsole.vehicle.car.parameters import AxleParameters, CarParameters
@@ -8,6 +8,9 @@ from simconsole.vehicle.car.state import BodyState, Car, Wheel
 from simconsole.vehicle.car.steering import Heading, aligning_moment
 from simconsole.vehicle.car.suspension import axle_roll, wheel_load
 from simconsole.vehicle.car.tyre import Tyre, tyre
+
+LIGHT_SHARE: Final = 0.1
+"""Of the static load below which a standing wheel is about to lift and keeps what it has."""
 
 
 class Contact(NamedTuple):
@@ -35,6 +38,20 @@ class Axles(NamedTuple):
 
 
 @kernel
+def kept_share(axle: AxleParameters, wheel: Wheel, step_s: float) -> float:
+    """Return the share of its deflection that a held wheel's contact patch keeps while the load on it changes.
+
+    The side force is proportional to the load, but the rubber that more load brings to the ground comes without
+    deflection: the force stays. Else a stored force would follow the load and push back nothing; two tyres of an axle
+    that hold against each other then make the body sway ever more, out of nothing.
+    """
+    load = axle.static_n - axle.carcass_npm * wheel.lift_m
+    before = load + axle.carcass_npm * wheel.lift_mps * step_s
+    least = LIGHT_SHARE * axle.static_n
+    return before / load if load > least and before > least else 1.0
+
+
+@kernel
 def contact(
     axle: AxleParameters,
     friction: float,
@@ -50,8 +67,9 @@ def contact(
     """Return one tyre one step later, its wheel pointing along (c, s), its contact patch moving with (vx, vy)."""
     load = wheel_load(axle, wheel)
     # The contact patch stays on the ground while the wheel turns about it: its deflection turns back in the wheel.
-    kept_x = wheel.deflection_x_m + turned_rad * wheel.deflection_y_m
-    kept_y = wheel.deflection_y_m - turned_rad * kept_x
+    share = kept_share(axle, wheel, step_s) if wheel.radps == 0.0 else 1.0
+    kept_x = share * (wheel.deflection_x_m + turned_rad * wheel.deflection_y_m)
+    kept_y = share * wheel.deflection_y_m - turned_rad * kept_x
     along = vx_mps * c + vy_mps * s
     t = tyre(
         axle,

@@ -81,11 +81,14 @@ def tyre(
         y = y * (axle.slide_demand / demand)
         demand = axle.slide_demand
     elastic = load_n / (1.0 + 0.25 * demand * demand)
-    # The damping of the carcass fades with grip: sliding rubber does not store. A wheel that the brake holds moves with
-    # the whole car instead of its own small inertia, so it can and must be damped more.
-    held = clip(1.0 - demand / PEAK_DEMAND, 0.0, 1.0)
-    damping = axle.locked_damping_nspm if wheel_radps == 0.0 else axle.damping_nspm
-    rate = damping * held * held * (1.0 + over) / step_s
+    # The damping of a rolling tyre's carcass fades with grip: sliding rubber does not store. A wheel that the brake
+    # holds moves with the whole car instead of its own small inertia, so it can and must be damped more, at any grip:
+    # where it slides, its deflection stays the same and there is nothing to damp.
+    damping = axle.locked_damping_nspm
+    if wheel_radps != 0.0:
+        held = clip(1.0 - demand / PEAK_DEMAND, 0.0, 1.0)
+        damping = axle.damping_nspm * held * held
+    rate = damping * (1.0 + over) / step_s
     force_x = stiffness_x * x * elastic + rate * (x - deflection_x_m)
     force_y = stiffness_y * y * elastic + rate * (y - deflection_y_m)
     force = sqrt(force_x * force_x + force_y * force_y)
