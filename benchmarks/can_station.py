@@ -35,7 +35,7 @@ class TenMessages(CanNode):
 
     def __init__(self, profile: CanProfile, count: int) -> None:
         codec = load_codec()
-        super().__init__(codec, profile, TICK_HZ, commanding=True, wheels=(0, 1))
+        super().__init__(codec, profile, TICK_HZ, wheels=(0, 1))
         infos = (codec.sent_by(CONSOLE) * 2)[:count]
         assert {info.name for info in infos} <= set(BUILDERS)
         self._messages = infos
@@ -66,7 +66,7 @@ def measure(profile: CanProfile, count: int, duration_s: float, folder: Path) ->
     end_s = time.monotonic() + duration_s
     cpu_s, wall_s = time.process_time(), time.monotonic()
     serve(
-        OnBus(node, port, True),
+        OnBus(node, port),
         Ticks(),
         lambda command, receipt_ns: None,
         lambda events: None,

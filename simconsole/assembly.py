@@ -10,6 +10,7 @@ from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.session import Aids, SessionProfile
 from simconsole.profiles.vehicle import CarProfile, VehicleProfile
 from simconsole.profiles.world import WorldProfile
+from simconsole.signals import Commander
 from simconsole.units import RAD_PER_DEG
 from simconsole.vehicle.platform import Ground, Pose
 from simconsole.vehicle.registry import build
@@ -46,6 +47,7 @@ def assemble(resolved: ResolvedSession, execution: Execution) -> tuple[Console, 
             platform.max_road_wheel_rad,
             platform.wheelbase_m,
             tick_hz,
+            Commander.ECU if session.features.commander == "can" else Commander.ROS,
         ),
         platform,
         tick_hz,

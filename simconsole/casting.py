@@ -8,7 +8,6 @@ from subprocess import Popen
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from simconsole.assembly import ResolvedSession
-from simconsole.commander import Commander
 from simconsole.drive import Cast, Recorder
 from simconsole.errors import BridgeError, ProfileError
 from simconsole.faulting import with_faults
@@ -68,11 +67,10 @@ def open_headless(
         raise ProfileError("mode.pacing: value free: lockstep or realtime, where features.autopilot drives")
     can = _open_can(resolved, console, bundle, stack)
     if can is not None:
-        by_can = resolved.session.features.commander == "can"
-        commands = Commander(can, commands) if by_can else Commander(commands, can)
         stations, can_summary = (*stations, can), can.summary
     seating = open_seating(resolved, console, stack)
-    cast = Cast(seating.devices, commands, recorder, (*seating.stations, *stations), pace, seating.seat)
+    outputs = (*seating.stations, *stations)
+    cast = Cast(seating.devices, commands, recorder, outputs, pace, seating.seat, ecu=can or NobodyCommands())
     cast = with_faults(cast, resolved, console.tick_hz)
     return Opened(cast, seating.finished, lambda: {**pace.summary(), **counters(), **can_summary()})
 
@@ -111,7 +109,7 @@ def open_realtime(
     folder = make_run_folder()
     stack.callback(remove_run_folder, folder)
     ring, port, keys = make_memory(folder, console)
-    commands = add_can_memory(resolved, console, folder, port)
+    ecu = add_can_memory(resolved, console, folder)
     supervisor = Supervisor(folder, station_specs(resolved, console, folder, bundle))
     programs: list[Popen[bytes]] = []
     stack.callback(_end_programs, programs)
@@ -132,7 +130,8 @@ def open_realtime(
     seating = open_seating(resolved, console, stack, None if session.outputs.hud is None else keys)
     missing = stack.enter_context(realtime_hints())
     pace = Pacer(console.tick_hz)
-    cast = Cast(seating.devices, commands, recorder, (*seating.stations, ring, supervisor), pace, seating.seat)
+    outputs = (*seating.stations, ring, supervisor)
+    cast = Cast(seating.devices, port, recorder, outputs, pace, seating.seat, ecu=ecu)
     cast = with_faults(cast, resolved, console.tick_hz)
 
     def summary() -> dict[str, Any]:
@@ -201,8 +200,6 @@ def check_commander(session: SessionProfile) -> None:
         raise ProfileError("features.commander: value can: needs outputs.can")
     if session.mode.pacing == "lockstep":
         raise ProfileError("mode.pacing: value lockstep: realtime or free, where features.commander is can")
-    if session.features.autopilot is not None:
-        raise ProfileError("features.autopilot: value set: none, where features.commander is can")
 
 
 def _open_can(resolved: ResolvedSession, console: Console, bundle: Path, stack: ExitStack) -> "InlineCan | None":
@@ -215,7 +212,6 @@ def _open_can(resolved: ResolvedSession, console: Console, bundle: Path, stack: 
     on_bus = put_on_bus(
         session.outputs.can,
         console.tick_hz,
-        commanding=session.features.commander == "can",
         wheels=wheel_columns(console.columns),
         folder=bundle,
     )

@@ -95,8 +95,9 @@ def drive_scenario(scenario: ScenarioProfile) -> tuple[MemoryRecorder, tuple[str
         devices = ScriptSource(scenario.script, settings(resolved.cockpit, tick_hz), tick_hz=tick_hz)
     recorder = MemoryRecorder(ticks, console.width)
     commands = ScriptedCommands(scenario.remote, scenario.events, tick_hz)
-    cast = with_faults(Cast(devices, commands, recorder, (), UnpacedPacer()), resolved, tick_hz)
-    run(console, state, cast, ticks)
+    ecu = ScriptedCommands(scenario.ecu, scenario.ecu_events, tick_hz)
+    cast = Cast(devices, commands, recorder, (), UnpacedPacer(), ecu=ecu)
+    run(console, state, with_faults(cast, resolved, tick_hz), ticks)
     return recorder, console.columns
 
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple, Protocol
 
 from simconsole.pipeline import Console, ConsoleState, advance
-from simconsole.ports import CommandSource, DeviceSource, Seat, Station
+from simconsole.ports import CommandSource, DeviceSource, NobodyCommands, Seat, Station
 from simconsole.rows import Snapshot, TickInputs
 from simconsole.signals import EventInput
 
@@ -34,12 +34,13 @@ class Cast(NamedTuple):
     """Everyone who takes part in a drive."""
 
     devices: DeviceSource
-    commands: CommandSource
+    commands: CommandSource  # of the ROS side
     recorder: Recorder
     stations: Sequence[Station]
     pace: Pace
     seat: Seat | None = None
     faults: Faults | None = None
+    ecu: CommandSource = NobodyCommands()
 
 
 def run(
@@ -63,10 +64,10 @@ def run(
         coming = state.tick + 1
         faults = 0.0 if cast.faults is None else cast.faults.turn(coming, snapshot)
         sample = cast.devices.poll(coming)
-        remote, events = cast.commands.take(coming)
-        if raised or faults:
-            events = EventInput(events=float(int(events.events) | raised), faults=faults)
-        state, snapshot = advance(state, TickInputs(sample, remote, events), console)
+        ros, events = cast.commands.take(coming)
+        ecu, ecu_events = cast.ecu.take(coming)
+        edges = EventInput(float(int(events.events) | raised), faults, ecu_events.events)
+        state, snapshot = advance(state, TickInputs(sample, ros, edges, ecu), console)
         cast.recorder.write(snapshot)
         for station in cast.stations:
             station.publish(snapshot)

@@ -10,6 +10,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from simconsole.control.arbitration import arbitrate, watched
+from simconsole.control.commander import ECU
 from simconsole.control.gate import gate
 from simconsole.control.moment import Moment
 from simconsole.control.settings import ControlSettings
@@ -25,16 +26,20 @@ from simconsole.rows import (
     COMMAND_WIDTH,
     DRIVER_AT,
     DRIVER_WIDTH,
+    ECU_AT,
+    ECU_LINK_AT,
     EVENTS_AT,
     EVENTS_WIDTH,
     INPUT_WIDTH,
+    LINK_WIDTH,
     MEMORY_AT,
     MEMORY_WIDTH,
     MOTOR_AT,
     MOTOR_WIDTH,
     PLATFORM_AT,
-    REMOTE_AT,
     REMOTE_WIDTH,
+    ROS_AT,
+    ROS_LINK_AT,
     SAMPLE_AT,
     SAMPLE_WIDTH,
     TORQUE_AT,
@@ -53,6 +58,7 @@ from simconsole.signals import (
     DeviceSample,
     DriverInput,
     EventInput,
+    Link,
     RemoteCommand,
     VehicleCommand,
     VehicleState,
@@ -132,7 +138,8 @@ def initial_state(console: Console) -> ConsoleState:
     """Return the state before the first tick: vehicle in place, nobody armed, parked."""
     row = np.zeros(console.width, dtype=np.float64)
     put(row, SAMPLE_AT, NO_SAMPLE)
-    put(row, REMOTE_AT, NO_COMMAND)
+    put(row, ROS_AT, NO_COMMAND)
+    put(row, ECU_AT, NO_COMMAND)
     put(row, VEHICLE_AT, console.platform.initial_vehicle)
     put(row, PLATFORM_AT, console.platform.initial_state)
     return ConsoleState(0, row)
@@ -140,7 +147,7 @@ def initial_state(console: Console) -> ConsoleState:
 
 def advance(state: ConsoleState, inputs: TickInputs, console: Console) -> tuple[ConsoleState, Snapshot]:
     """Advance the console by one tick. Neither `state` nor its row is changed."""
-    row = advance_row(state.row, (*inputs.sample, *inputs.remote, *inputs.events), console)
+    row = advance_row(state.row, (*inputs.sample, *inputs.ros, *inputs.events, *inputs.ecu), console)
     tick = state.tick + 1
     return ConsoleState(tick, row), Snapshot(tick, console.tick_hz, row)
 
@@ -161,7 +168,8 @@ def advance_row(previous: Row, inputs: Row | tuple[float, ...], console: Console
 @kernel
 def decide(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
     """Calibrate, arbitrate and gate: turn the inputs in `row` into the one command the vehicle gets."""
-    remote = RemoteCommand(*take(row, REMOTE_AT, REMOTE_WIDTH))
+    ros = RemoteCommand(*take(row, ROS_AT, REMOTE_WIDTH))
+    ecu = RemoteCommand(*take(row, ECU_AT, REMOTE_WIDTH))
     control = ControlSettings(*take(settings, CONTROL_AT, CONTROL_WIDTH))
     vehicle = VehicleState(*take(previous, VEHICLE_AT, VEHICLE_WIDTH))
     command_before = VehicleCommand(*take(previous, COMMAND_AT, COMMAND_WIDTH))
@@ -176,10 +184,13 @@ def decide(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
     )
     now = Moment(
         driver,
-        remote,
+        ros,
+        ecu,
         EventInput(*take(row, EVENTS_AT, EVENTS_WIDTH)),
         vehicle,
         ArbiterMemory(*take(previous, MEMORY_AT, MEMORY_WIDTH)),
+        Link(*take(previous, ROS_LINK_AT, LINK_WIDTH)),
+        Link(*take(previous, ECU_LINK_AT, LINK_WIDTH)),
         Arbitration(*take(previous, ARBITRATION_AT, ARBITRATION_WIDTH)),
         command_before,
         motor.explained_rad,
@@ -187,10 +198,13 @@ def decide(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
         control,
         tick_s,
     )
-    memory, arbitration, request = arbitrate(now)
+    memory, ros_link, ecu_link, arbitration, request = arbitrate(now)
+    remote = ecu if arbitration.commander == ECU else ros
     command = gate(request, remote, arbitration, command_before, vehicle, control, tick_s)
     put(row, DRIVER_AT, driver)
     put(row, MEMORY_AT, memory)
+    put(row, ROS_LINK_AT, ros_link)
+    put(row, ECU_LINK_AT, ecu_link)
     put(row, ARBITRATION_AT, arbitration)
     put(row, COMMAND_AT, command)
 

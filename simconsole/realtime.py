@@ -9,11 +9,10 @@ import msgspec
 import numpy as np
 
 from simconsole.assembly import ResolvedSession
-from simconsole.commander import Commander
 from simconsole.errors import BridgeError, CanError
 from simconsole.exports import LIVE_SCENE, scene_job
 from simconsole.pipeline import Console
-from simconsole.ports import CommandSource
+from simconsole.ports import CommandSource, NobodyCommands
 from simconsole.rows import REMOTE_WIDTH, Snapshot
 from simconsole.shared_memory import EventCounters, Ring
 from simconsole.signals import NEVER_TICKS, NO_COMMAND, EventInput, RemoteCommand
@@ -102,17 +101,16 @@ def make_memory(folder: Path, console: Console) -> tuple[RingStation, CommandPor
     return RingStation(snapshots), CommandPort(command, events, console.tick_hz), KeyPort(keys, console.tick_hz)
 
 
-def add_can_memory(resolved: ResolvedSession, console: Console, folder: Path, ros: CommandPort) -> CommandSource:
-    """Make the CAN station's files where the session has one; return whose commands drive.
+def add_can_memory(resolved: ResolvedSession, console: Console, folder: Path) -> CommandSource:
+    """Make the CAN station's files where the session has one; return where the ECU's commands come from.
 
     Raises:
         StationError: one cannot be made.
     """
     if resolved.session.outputs.can is None:
-        return ros
+        return NobodyCommands()
     slot = Ring.create(folder / CAN_COMMAND, REMOTE_WIDTH, SLOT_CAPACITY)
-    can = CommandPort(slot, EventCounters.create(folder / CAN_EVENTS), console.tick_hz)
-    return Commander(can, ros) if resolved.session.features.commander == "can" else Commander(ros, can)
+    return CommandPort(slot, EventCounters.create(folder / CAN_EVENTS), console.tick_hz)
 
 
 def station_specs(resolved: ResolvedSession, console: Console, folder: Path, bundle: Path) -> list[StationSpec]:
@@ -129,7 +127,6 @@ def station_specs(resolved: ResolvedSession, console: Console, folder: Path, bun
         arguments = {
             "profile": msgspec.to_builtins(outputs.can),
             "tick_hz": tick_hz,
-            "commanding": resolved.session.features.commander == "can",
             "wheels": wheel_columns(console.columns),
             "bundle": str(bundle.absolute()),
         }

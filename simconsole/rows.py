@@ -10,11 +10,14 @@ import numpy as np
 
 from simconsole.kernels import Row
 from simconsole.signals import (
+    NO_COMMAND,
     ArbiterMemory,
     Arbitration,
+    Commander,
     DeviceSample,
     DriverInput,
     EventInput,
+    Link,
     RemoteCommand,
     VehicleCommand,
     VehicleState,
@@ -28,6 +31,7 @@ REMOTE_WIDTH: Final = len(RemoteCommand._fields)
 EVENTS_WIDTH: Final = len(EventInput._fields)
 DRIVER_WIDTH: Final = len(DriverInput._fields)
 MEMORY_WIDTH: Final = len(ArbiterMemory._fields)
+LINK_WIDTH: Final = len(Link._fields)
 ARBITRATION_WIDTH: Final = len(Arbitration._fields)
 COMMAND_WIDTH: Final = len(VehicleCommand._fields)
 VEHICLE_WIDTH: Final = len(VehicleState._fields)
@@ -35,12 +39,15 @@ TORQUE_WIDTH: Final = len(WheelTorque._fields)
 MOTOR_WIDTH: Final = len(WheelMemory._fields)
 
 SAMPLE_AT: Final = 0
-REMOTE_AT: Final = SAMPLE_AT + SAMPLE_WIDTH
-EVENTS_AT: Final = REMOTE_AT + REMOTE_WIDTH
-INPUT_WIDTH: Final = EVENTS_AT + EVENTS_WIDTH
+ROS_AT: Final = SAMPLE_AT + SAMPLE_WIDTH
+EVENTS_AT: Final = ROS_AT + REMOTE_WIDTH
+ECU_AT: Final = EVENTS_AT + EVENTS_WIDTH
+INPUT_WIDTH: Final = ECU_AT + REMOTE_WIDTH
 DRIVER_AT: Final = INPUT_WIDTH
 MEMORY_AT: Final = DRIVER_AT + DRIVER_WIDTH
-ARBITRATION_AT: Final = MEMORY_AT + MEMORY_WIDTH
+ROS_LINK_AT: Final = MEMORY_AT + MEMORY_WIDTH
+ECU_LINK_AT: Final = ROS_LINK_AT + LINK_WIDTH
+ARBITRATION_AT: Final = ECU_LINK_AT + LINK_WIDTH
 COMMAND_AT: Final = ARBITRATION_AT + ARBITRATION_WIDTH
 VEHICLE_AT: Final = COMMAND_AT + COMMAND_WIDTH
 TORQUE_AT: Final = VEHICLE_AT + VEHICLE_WIDTH
@@ -49,10 +56,13 @@ PLATFORM_AT: Final = MOTOR_AT + MOTOR_WIDTH
 
 STAGES: Final[tuple[tuple[str, type[tuple[float, ...]]], ...]] = (
     ("sample", DeviceSample),
-    ("remote", RemoteCommand),
+    ("ros", RemoteCommand),
     ("events", EventInput),
+    ("ecu", RemoteCommand),
     ("driver", DriverInput),
     ("memory", ArbiterMemory),
+    ("ros_link", Link),
+    ("ecu_link", Link),
     ("arbitration", Arbitration),
     ("command", VehicleCommand),
     ("vehicle", VehicleState),
@@ -65,8 +75,9 @@ class TickInputs(NamedTuple):
     """Everything that comes from outside in one tick; this, and only this, is what a replay feeds back."""
 
     sample: DeviceSample
-    remote: RemoteCommand
+    ros: RemoteCommand
     events: EventInput
+    ecu: RemoteCommand = NO_COMMAND
 
 
 def columns(platform_state: type[tuple[float, ...]]) -> tuple[str, ...]:
@@ -77,7 +88,7 @@ def columns(platform_state: type[tuple[float, ...]]) -> tuple[str, ...]:
 
 def input_row(inputs: TickInputs) -> Row:
     """Return the first INPUT_WIDTH columns of a row."""
-    return np.array((*inputs.sample, *inputs.remote, *inputs.events), dtype=np.float64)
+    return np.array((*inputs.sample, *inputs.ros, *inputs.events, *inputs.ecu), dtype=np.float64)
 
 
 class Snapshot(NamedTuple):
@@ -100,17 +111,37 @@ class Snapshot(NamedTuple):
     @property
     def sample(self) -> DeviceSample:
         """The cockpit as read."""
-        return DeviceSample(*self.row[SAMPLE_AT:REMOTE_AT].tolist())
+        return DeviceSample(*self.row[SAMPLE_AT:ROS_AT].tolist())
+
+    @property
+    def ros(self) -> RemoteCommand:
+        """The ROS side's newest command."""
+        return RemoteCommand(*self.row[ROS_AT:EVENTS_AT].tolist())
+
+    @property
+    def ecu(self) -> RemoteCommand:
+        """The ECU's newest command."""
+        return RemoteCommand(*self.row[ECU_AT:INPUT_WIDTH].tolist())
 
     @property
     def remote(self) -> RemoteCommand:
-        """The remote command in force."""
-        return RemoteCommand(*self.row[REMOTE_AT:EVENTS_AT].tolist())
+        """The commander's newest command."""
+        return self.ecu if self.arbitration.commander == Commander.ECU else self.ros
+
+    @property
+    def ros_link(self) -> Link:
+        """How far the ROS side's commands may be relied on."""
+        return Link(*self.row[ROS_LINK_AT:ECU_LINK_AT].tolist())
+
+    @property
+    def ecu_link(self) -> Link:
+        """How far the ECU's commands may be relied on."""
+        return Link(*self.row[ECU_LINK_AT:ARBITRATION_AT].tolist())
 
     @property
     def events(self) -> EventInput:
         """The edges of this tick."""
-        return EventInput(*self.row[EVENTS_AT:INPUT_WIDTH].tolist())
+        return EventInput(*self.row[EVENTS_AT:ECU_AT].tolist())
 
     @property
     def driver(self) -> DriverInput:

@@ -66,6 +66,25 @@ class Reason(IntEnum):
     REFUSED_THROTTLE_PRESSED = 28
     REFUSED_MOVING = 29
     REFUSED_NOT_STABLE = 30
+    REFUSED_NOT_COMMANDER = 31
+
+
+class Commander(IntEnum):
+    """Which controller is the remote side: control/commander.py holds the rule."""
+
+    NOBODY = 0
+    ROS = 1
+    ECU = 2
+
+
+class LinkState(IntEnum):
+    """How far a controller's commands may be relied on."""
+
+    NEVER = 0  # no command yet
+    UNSTEADY = 1  # fresh, but not for long enough to engage
+    STEADY = 2
+    STALE = 3
+    INVALID = 4
 
 
 class RemoteKind(IntEnum):
@@ -142,7 +161,7 @@ class DeviceSample(NamedTuple):
 
 
 class RemoteCommand(NamedTuple):
-    """The newest accepted command of the controller on the ROS side; fields its kind does not use are 0."""
+    """The newest accepted command of the ROS side, or of the ECU on CAN; fields its kind does not use are 0."""
 
     kind: float
     sequence: float  # commands accepted since the start; 0 before the first
@@ -162,10 +181,11 @@ class RemoteCommand(NamedTuple):
 
 
 class EventInput(NamedTuple):
-    """All edges that came in since the last tick, as a mask of `Event`; and what is being done to the drive."""
+    """All edges that came in since the last tick, as masks of `Event`; and what is being done to the drive."""
 
-    events: float
+    events: float  # of operators, the ROS side and the console itself
     faults: float = 0.0  # faults that a test has put on, a bit for each place in the scenario's list
+    ecu_events: float = 0.0  # of the ECU on CAN: they count in full only while it commands
 
 
 class DriverInput(NamedTuple):
@@ -209,15 +229,24 @@ class ArbiterMemory(NamedTuple):
     engage_hand_wheel_rad: float  # where the hand wheel was when autonomy was engaged
     steering_ticks: float  # samples in a row past the take-over threshold; -1: no reference yet
     throttle_override: float  # 1 while the person's accelerator overrides the remote side
-    sequence_seen: float
-    refused_seen: float
-    invalid_run: float  # refused commands in a row
-    fresh_ticks: float  # how long commands have been fresh with none refused
     refusal_ticks: float  # since a request was refused
     standstill_ticks: float
     speed_integral_mps2: float
     stop_accel_mps2: float  # deceleration that a safe stop asks for now (<= 0)
     hold_road_wheel_rad: float  # where a safe or emergency stop holds the wheels
+
+
+class Link(NamedTuple):
+    """One controller's commands as arbitration sees them, and what it must remember of them."""
+
+    sequence_seen: float
+    refused_seen: float
+    invalid_run: float  # refused commands in a row
+    fresh_ticks: float  # how long commands have been fresh with none refused
+    fresh: float  # 1: there is a command, it is finite, of a known kind and young enough
+    invalid: float  # 1: it is not finite, or too many in a row were refused
+    lease_ticks: float  # for how long it may still be the commander without a fresh command
+    state: float  # `LinkState`
 
 
 class Arbitration(NamedTuple):
@@ -238,6 +267,13 @@ class Arbitration(NamedTuple):
     remote_throttle: float
     remote_brake: float
     takeover_stage: float  # 0 none, 1 asked, 2 escalated
+    commander: float  # `Commander`: whose commands are the remote side's
+    ros_road_wheel_rad: float  # what the ROS side asks for, whether it commands or not
+    ros_throttle: float
+    ros_brake: float
+    ecu_road_wheel_rad: float  # and the ECU
+    ecu_throttle: float
+    ecu_brake: float
 
 
 class VehicleCommand(NamedTuple):

@@ -58,7 +58,7 @@ def bridge(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) ->
 def canbus(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> None:
     """Be on the CAN bus.
 
-    Arguments: `profile` (CanProfile), `tick_hz`, `commanding`, `wheels` (columns or None), `bundle` (for the logs).
+    Arguments: `profile` (CanProfile), `tick_hz`, `wheels` (columns or None), `bundle` (for the logs).
     """
     from simconsole.canbus.station import put_on_bus, serve
 
@@ -69,7 +69,6 @@ def canbus(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) ->
     on_bus = put_on_bus(
         msgspec.convert(arguments["profile"], CanProfile),
         int(arguments["tick_hz"]),
-        commanding=bool(arguments["commanding"]),
         wheels=None if wheels is None else tuple(wheels),
         folder=Path(arguments["bundle"]),
     )

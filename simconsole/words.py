@@ -5,7 +5,7 @@ Words are short enough for a glance (facts: at most seven per alert) and never d
 
 from typing import Final
 
-from simconsole.signals import Mode, Reason, Validity
+from simconsole.signals import Commander, LinkState, Mode, Reason, Validity
 
 _MODES: Final[dict[float, str]] = {
     Mode.PARKED: "PARKED",
@@ -47,6 +47,17 @@ _REASONS: Final[dict[float, str]] = {
     Reason.REFUSED_THROTTLE_PRESSED: "refused: throttle is pressed",
     Reason.REFUSED_MOVING: "refused: car is moving",
     Reason.REFUSED_NOT_STABLE: "refused: autopilot not steady yet",
+    Reason.REFUSED_NOT_COMMANDER: "refused: the ECU does not command",
+}
+
+_COMMANDERS: Final[dict[float, str]] = {Commander.NOBODY: "none", Commander.ROS: "ROS", Commander.ECU: "CAN"}
+
+_LINKS: Final[dict[float, str]] = {
+    LinkState.NEVER: "no command yet",
+    LinkState.UNSTEADY: "not steady yet",
+    LinkState.STEADY: "steady",
+    LinkState.STALE: "silent",
+    LinkState.INVALID: "invalid",
 }
 
 _VALIDITIES: Final[dict[float, str]] = {
@@ -66,6 +77,16 @@ def mode_words(mode: float) -> str:
 def reason_words(reason: float) -> str:
     """Return why the mode changed, or why a request was refused ("refused: ..."), in at most seven words."""
     return _REASONS.get(reason, f"reason {reason:g}")
+
+
+def commander_words(commander: float) -> str:
+    """Return whose commands are the remote side's: ROS, CAN or none."""
+    return _COMMANDERS.get(commander, f"commander {commander:g}")
+
+
+def link_words(state: float) -> str:
+    """Return how far a controller's commands may be relied on, in words."""
+    return _LINKS.get(state, f"link {state:g}")
 
 
 def validity_words(validity: float) -> str:

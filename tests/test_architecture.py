@@ -31,13 +31,14 @@ UNITLESS = {
     # pedals, authority and other shares 0..1; raw axes -1..1
     *("throttle", "brake", "clutch", "handbrake", "remote_lateral", "remote_longitudinal"),
     *("person_throttle", "person_brake", "remote_throttle", "remote_brake"),
+    *("ros_throttle", "ros_brake", "ecu_throttle", "ecu_brake"),
     *("wheel_axis", "throttle_axis", "brake_axis", "clutch_axis", "handbrake_axis", "hat_x", "hat_y"),
     # counts, flags and masks
     *("sequence", "refused", "refused_seen", "sequence_seen", "invalid_run", "automatic", "engine_running"),
     *("wheel_buttons", "shifter_buttons", "pressed", "edges", "events", "faults", "gate_active", "throttle_override"),
-    *("wheel_motor", "ramp", "clipped", "enabled", "hands_on", "live", "lever_fault"),
+    *("wheel_motor", "ramp", "clipped", "enabled", "hands_on", "live", "ecu_events", "fresh", "invalid", "lever_fault"),
     # members of an enumeration
-    *("kind", "mode", "reason", "refusal", "gear", "direction", "takeover_stage"),
+    *("kind", "mode", "reason", "refusal", "gear", "direction", "takeover_stage", "commander", "state"),
     *("wheel_validity", "throttle_validity", "brake_validity", "clutch_validity", "shifter_validity"),
 }  # fmt: skip
 

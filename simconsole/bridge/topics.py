@@ -10,10 +10,10 @@ from typing import Any, Final, NamedTuple
 from simconsole.bridge.messages import Registry
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.rows import Snapshot
-from simconsole.signals import NEVER_TICKS, Mode
+from simconsole.signals import NEVER_TICKS, Link, Mode, RemoteCommand
 from simconsole.trigonometry import cos, sin
 from simconsole.units import NS_PER_S
-from simconsole.words import mode_words, reason_words
+from simconsole.words import commander_words, link_words, mode_words, reason_words
 
 CLOCK: Final = "/clock"
 TF: Final = "/tf"
@@ -43,6 +43,7 @@ geometry_msgs/TransformStamped geometry_msgs/Transform geometry_msgs/Vector3 geo
 geometry_msgs/Quaternion geometry_msgs/Pose geometry_msgs/PoseWithCovariance geometry_msgs/Twist
 geometry_msgs/TwistWithCovariance autoware_vehicle_msgs/VelocityReport autoware_vehicle_msgs/SteeringReport
 autoware_vehicle_msgs/GearReport autoware_vehicle_msgs/ControlModeReport simconsole_msgs/Arbitration
+simconsole_msgs/Controller
 """
 _NO_COVARIANCE: Final = [0.0] * 36
 # Numbers of autoware_vehicle_msgs/ControlModeReport.
@@ -184,14 +185,16 @@ class Outputs:
         return self._types["ControlModeReport"](moment.stamp, mode)
 
     def _arbitration(self, moment: Moment) -> Any:
-        decided, remote = moment.snapshot.arbitration, moment.snapshot.remote
-        age_s = -1.0 if remote.age_ticks >= NEVER_TICKS else remote.age_ticks / moment.snapshot.tick_hz
+        snapshot = moment.snapshot
+        decided = snapshot.arbitration
         return self._types["Arbitration"](
             moment.header(BASE_FRAME),
             int(decided.mode),
             int(decided.reason),
             mode_words(decided.mode),
             reason_words(decided.reason),
+            int(decided.refusal),
+            reason_words(decided.refusal) if decided.refusal else "",
             decided.remote_lateral,
             decided.remote_longitudinal,
             decided.person_road_wheel_rad,
@@ -201,9 +204,30 @@ class Outputs:
             decided.remote_throttle,
             decided.remote_brake,
             int(decided.takeover_stage),
-            int(remote.sequence),
-            int(remote.refused),
-            age_s,
+            int(decided.commander),
+            commander_words(decided.commander),
+            self._controller(
+                snapshot.ros, snapshot.ros_link, decided.ros_road_wheel_rad, decided.ros_throttle, decided.ros_brake,
+                snapshot.tick_hz,
+            ),
+            self._controller(
+                snapshot.ecu, snapshot.ecu_link, decided.ecu_road_wheel_rad, decided.ecu_throttle, decided.ecu_brake,
+                snapshot.tick_hz,
+            ),
+        )  # fmt: skip
+
+    def _controller(
+        self, command: RemoteCommand, link: Link, road_wheel_rad: float, throttle: float, brake: float, tick_hz: int
+    ) -> Any:
+        return self._types["Controller"](
+            int(link.state),
+            link_words(link.state),
+            road_wheel_rad,
+            throttle,
+            brake,
+            int(command.sequence),
+            int(command.refused),
+            -1.0 if command.age_ticks >= NEVER_TICKS else command.age_ticks / tick_hz,
         )
 
 

@@ -20,7 +20,7 @@ REQUESTS: Final[dict[int, Event]] = {
 WHEEL_COLUMNS: Final = ("platform.fl_radps", "platform.fr_radps", "platform.rl_radps", "platform.rr_radps")
 """Columns of a row that SC_WHEELS needs; vehicles without them do not send it."""
 _WHEELS: Final = ("FRONT_LEFT_SPEED", "FRONT_RIGHT_SPEED", "REAR_LEFT_SPEED", "REAR_RIGHT_SPEED")
-_MOST_MS: Final = 1023.0
+_MOST_MS: Final = 1020.0
 
 
 class Link(NamedTuple):
@@ -119,6 +119,7 @@ def status(now: Moment) -> Mapping[str, float]:
         "TAKEOVER_STAGE": arbitration.takeover_stage,
         "COMMAND_STATE": now.link.state,
         "COMMAND_AGE": min(now.link.age_ms, _MOST_MS),
+        "COMMANDER": arbitration.commander,
     }
 
 

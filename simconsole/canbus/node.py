@@ -44,7 +44,6 @@ class CanNode:
         profile: CanProfile,
         tick_hz: int,
         *,
-        commanding: bool,
         wheels: tuple[int, ...] | None = None,
     ) -> None:
         """Build the node.
@@ -53,11 +52,9 @@ class CanNode:
             codec: the messages.
             profile: time-out, counter step, bad frames in a row.
             tick_hz: control ticks per second.
-            commanding: whether the ECU's commands and requests drive; without, only its emergency stop counts.
             wheels: where a row holds the four wheels' speeds (messages.wheel_columns).
         """
         self._codec = codec
-        self._commanding = commanding
         self._wheels = wheels
         self.tick_hz = tick_hz
         self._messages = [info for info in codec.sent_by(CONSOLE) if wheels is not None or info.name != "SC_WHEELS"]
@@ -115,17 +112,16 @@ class CanNode:
             self._refuse()
             return 0
         self._accepted += 1
-        if self._commanding:
-            self.receipt_ns = now_ns
-            self.command = NO_COMMAND._replace(
-                kind=COMMAND_KIND,
-                sequence=self.command.sequence + 1.0,
-                refused=self.command.refused,
-                age_ticks=0.0,
-                road_wheel_rad=values["ROAD_WHEEL"],
-                accel_mps2=values["ACCEL"],
-                direction=values["DIRECTION"],
-            )
+        self.receipt_ns = now_ns
+        self.command = NO_COMMAND._replace(
+            kind=COMMAND_KIND,
+            sequence=self.command.sequence + 1.0,
+            refused=self.command.refused,
+            age_ticks=0.0,
+            road_wheel_rad=values["ROAD_WHEEL"],
+            accel_mps2=values["ACCEL"],
+            direction=values["DIRECTION"],
+        )
         return self._asked(int(values["REQUEST"]))
 
     def state(self, now_ns: int) -> Check:
@@ -146,7 +142,7 @@ class CanNode:
         event = REQUESTS.get(request, Event(0))
         if event is Event.EMERGENCY_STOP:
             return 0 if request == before else int(event)
-        if before is None or request == before or not self._commanding:
+        if before is None or request == before:
             return 0
         return int(event)
 

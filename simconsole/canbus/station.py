@@ -43,10 +43,9 @@ def log_paths(profile: CanProfile, folder: Path) -> list[Path]:
 class OnBus:
     """A node and its port together: what both kinds of drive do with them."""
 
-    def __init__(self, node: CanNode, port: CanPort, commanding: bool) -> None:
+    def __init__(self, node: CanNode, port: CanPort) -> None:
         self.node = node
         self.port = port
-        self._commanding = commanding
         self._was_up = True
 
     def send(self, snapshot: Snapshot, now_ns: int) -> None:
@@ -59,7 +58,7 @@ class OnBus:
         frame = self.port.receive(timeout_s)
         up = self.port.recovery.up
         events = 0
-        if self._was_up and not up and self._commanding and self.node.receipt_ns is not None:
+        if self._was_up and not up and self.node.receipt_ns is not None:
             events = int(Event.COMMANDER_LOST)
         self._was_up = up
         if frame is None:
@@ -164,7 +163,6 @@ def put_on_bus(
     profile: CanProfile,
     tick_hz: int,
     *,
-    commanding: bool,
     wheels: tuple[int, ...] | None,
     folder: Path,
 ) -> OnBus:
@@ -174,6 +172,6 @@ def put_on_bus(
         CanError: the bus or a log cannot be opened.
         ProfileError: the DBC is missing.
     """
-    node = CanNode(load_codec(), profile, tick_hz, commanding=commanding, wheels=wheels)
+    node = CanNode(load_codec(), profile, tick_hz, wheels=wheels)
     port = CanPort(profile, node.transmit_ids, node.receive_ids, logs=log_paths(profile, folder))
-    return OnBus(node, port, commanding)
+    return OnBus(node, port)

@@ -8,15 +8,14 @@ The person's brake is never faded down: it counts in full in every mode.
 from typing import Final, NamedTuple
 
 from simconsole.control.authority import RemoteSide, Shares, blend, remote_side, shares_of, transmission_of
+from simconsole.control.commander import Controllers, look
 from simconsole.control.decision import Decision, decide, takeover_stage
-from simconsole.control.link import Link, watch_link
 from simconsole.control.moment import Moment
 from simconsole.control.person import Person, person_of
-from simconsole.control.remote import RemoteRequest, command_finite, remote_request
 from simconsole.control.stops import slow
 from simconsole.control.takeover import WheelWatch, steering_taken, throttle_overrides, watch_wheel
 from simconsole.kernels import kernel
-from simconsole.signals import ArbiterMemory, Arbitration, Mode, Request
+from simconsole.signals import ArbiterMemory, Arbitration, Link, Mode, Request
 
 _AUTONOMOUS: Final = float(Mode.AUTONOMOUS)
 _TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)
@@ -27,36 +26,40 @@ class Seen(NamedTuple):
     """What the sources say in this tick."""
 
     person: Person
-    link: Link
-    offered: RemoteRequest
+    controllers: Controllers
     watch: WheelWatch
     throttle_override: float
     standstill_ticks: float
 
 
 @kernel
-def arbitrate(now: Moment) -> tuple[ArbiterMemory, Arbitration, Request]:
+def arbitrate(now: Moment) -> tuple[ArbiterMemory, Link, Link, Arbitration, Request]:
     """Decide who drives, and what is asked of the vehicle.
 
     Returns:
-        What to remember, who had which authority, and the request for the gate (which may still be out of limits).
+        What to remember, the links of the ROS side and of the ECU, who had which authority, and the request for the
+        gate (which may still be out of limits).
     """
     seen = _see(now)
+    controllers = seen.controllers
     decision = decide(
         now,
         seen.person,
-        seen.link,
-        seen.offered,
+        controllers,
         steering_taken(seen.watch, now.settings),
         seen.standstill_ticks >= now.settings.standstill_ticks,
     )
     mode_ticks = 0.0 if decision.changed > 0.0 else now.memory.mode_ticks + 1.0
     shares = shares_of(decision.mode, seen.throttle_override, now.before, now.settings)
-    side = remote_side(now, decision, shares, seen.offered, seen.link, seen.person)
+    side = remote_side(now, decision, shares, controllers.offered, controllers.link, seen.person)
     transmission = transmission_of(now, decision.mode, side.direction)
     return (
         _remembered(seen, decision, side, mode_ticks),
-        _shown(decision, shares, seen.person, side, takeover_stage(decision.mode, mode_ticks, now.settings)),
+        controllers.ros_link,
+        controllers.ecu_link,
+        _shown(
+            decision, shares, seen.person, side, controllers, takeover_stage(decision.mode, mode_ticks, now.settings)
+        ),
         blend(decision.mode, shares, side, seen.person, transmission, now.driver),
     )
 
@@ -81,20 +84,11 @@ def _see(now: Moment) -> Seen:
     )
     return Seen(
         person,
-        watch_link(now.remote, now.memory, now.settings),
-        _offered(now),
+        look(now),
         watch,
         throttle_overrides(now.memory.throttle_override, person.throttle, now.settings),
         now.memory.standstill_ticks + 1.0 if slow(now.vehicle, now.settings) else 0.0,
     )
-
-
-@kernel
-def _offered(now: Moment) -> RemoteRequest:
-    held_rad = now.command_before.road_wheel_rad
-    if not command_finite(now.remote):
-        return RemoteRequest(held_rad, 0.0, 0.0, 0.0, 0.0)
-    return remote_request(now.remote, held_rad, now.memory.speed_integral_mps2, now.vehicle, now.settings, now.tick_s)
 
 
 @kernel
@@ -104,10 +98,6 @@ def _remembered(seen: Seen, decision: Decision, side: RemoteSide, mode_ticks: fl
         seen.watch.reference_rad,
         seen.watch.past_ticks,
         seen.throttle_override,
-        seen.link.sequence_seen,
-        seen.link.refused_seen,
-        seen.link.invalid_run,
-        seen.link.fresh_ticks,
         decision.refusal_ticks,
         seen.standstill_ticks,
         side.speed_integral_mps2,
@@ -117,7 +107,9 @@ def _remembered(seen: Seen, decision: Decision, side: RemoteSide, mode_ticks: fl
 
 
 @kernel
-def _shown(decision: Decision, shares: Shares, person: Person, side: RemoteSide, stage: float) -> Arbitration:
+def _shown(
+    decision: Decision, shares: Shares, person: Person, side: RemoteSide, controllers: Controllers, stage: float
+) -> Arbitration:
     return Arbitration(
         decision.mode,
         decision.reason,
@@ -131,4 +123,11 @@ def _shown(decision: Decision, shares: Shares, person: Person, side: RemoteSide,
         side.throttle,
         side.brake,
         stage,
+        controllers.commander,
+        controllers.ros_offered.road_wheel_rad,
+        controllers.ros_offered.throttle,
+        controllers.ros_offered.brake,
+        controllers.ecu_offered.road_wheel_rad,
+        controllers.ecu_offered.throttle,
+        controllers.ecu_offered.brake,
     )

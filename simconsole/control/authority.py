@@ -4,14 +4,13 @@ from typing import Final, NamedTuple
 
 from simconsole.control.angles import gentle_angle, gentle_step
 from simconsole.control.decision import Decision
-from simconsole.control.link import Link
 from simconsole.control.moment import Moment
 from simconsole.control.person import Person
 from simconsole.control.remote import RemoteRequest
 from simconsole.control.settings import ControlSettings
 from simconsole.control.stops import safe_stop, stop_start
 from simconsole.kernels import approach, clip, kernel
-from simconsole.signals import Arbitration, DriverInput, Mode, Request, VehicleCommand
+from simconsole.signals import Arbitration, DriverInput, Link, Mode, Request, VehicleCommand
 
 _PARKED: Final = float(Mode.PARKED)
 _MANUAL: Final = float(Mode.MANUAL)

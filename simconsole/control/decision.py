@@ -2,12 +2,11 @@
 
 from typing import Final, NamedTuple
 
+from simconsole.control.commander import Controllers
 from simconsole.control.engage import GRANTED, engage_refusal
-from simconsole.control.link import Link
 from simconsole.control.modes import deciding_trigger, next_mode, reason_of
 from simconsole.control.moment import Moment
-from simconsole.control.person import Person, mask
-from simconsole.control.remote import RemoteRequest
+from simconsole.control.person import Person
 from simconsole.control.settings import ControlSettings
 from simconsole.control.triggers import (
     Asked,
@@ -25,6 +24,7 @@ from simconsole.signals import Mode, Reason
 _TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)
 _PERSON_ASKED: Final = float(Reason.PERSON_ASKED)
 _OPERATOR_ASKED: Final = float(Reason.OPERATOR_ASKED)
+_REFUSED_NOT_COMMANDER: Final = float(Reason.REFUSED_NOT_COMMANDER)
 
 
 class Decision(NamedTuple):
@@ -38,29 +38,28 @@ class Decision(NamedTuple):
 
 
 @kernel
-def decide(now: Moment, person: Person, link: Link, offered: RemoteRequest, steering: bool, standing: bool) -> Decision:
+def decide(now: Moment, person: Person, controllers: Controllers, steering: bool, standing: bool) -> Decision:
     """Decide the mode of this tick.
 
     Args:
         now: This tick.
         person: The person's side of it.
-        link: The controller's side of it.
-        offered: What its command would mean.
+        controllers: The controllers' side of it.
         steering: Whether the person has taken the wheel.
         standing: Whether the vehicle has stood for long enough.
     """
     mode = now.before.mode
     settings = now.settings
-    events = mask(now.events.events)
-    asked = asked_of(now.driver, events)
+    link = controllers.link
+    asked = asked_of(now.driver, controllers.events)
     manual = manual_refusal(mode, person, settings)
     reset = reset_refusal(asked, standing)
     engage = engage_refusal(
         mode,
         person,
         link,
-        now.remote,
-        offered.road_wheel_rad,
+        controllers.remote,
+        controllers.offered.road_wheel_rad,
         now.command_before.road_wheel_rad,
         now.vehicle,
         settings,
@@ -68,12 +67,14 @@ def decide(now: Moment, person: Person, link: Link, offered: RemoteRequest, stee
     shared = engage if engage != GRANTED else manual
     no_reaction = mode == _TAKEOVER_REQUESTED and now.memory.mode_ticks + 1.0 >= settings.minimal_risk_ticks
     present = person_triggers(mode, person, steering, settings)
-    present |= fault_triggers(link, events, no_reaction, standing)
+    present |= fault_triggers(link, controllers.events, no_reaction, standing)
     present |= asked_triggers(asked, manual, reset, engage, shared)
     trigger = deciding_trigger(mode, present)
     if trigger >= 0:
         return Decision(next_mode(mode, trigger), _reason(trigger, asked), 1.0, GRANTED, 0.0)
     refusal = refusal_of(mode, asked, manual, reset, engage, shared)
+    if refusal == GRANTED and controllers.unheard:
+        refusal = _REFUSED_NOT_COMMANDER
     if refusal != GRANTED:
         return Decision(mode, now.before.reason, 0.0, refusal, 0.0)
     shown = now.memory.refusal_ticks + 1.0 < settings.refusal_ticks

@@ -2,11 +2,10 @@
 
 from typing import Final
 
-from simconsole.control.link import Link
 from simconsole.control.person import Person
 from simconsole.control.settings import ControlSettings
 from simconsole.kernels import clip, kernel
-from simconsole.signals import Mode, Reason, RemoteCommand, RemoteKind, VehicleState
+from simconsole.signals import Link, Mode, Reason, RemoteCommand, RemoteKind, VehicleState
 
 _PARKED: Final = float(Mode.PARKED)
 _MANUAL: Final = float(Mode.MANUAL)

@@ -8,6 +8,7 @@ from simconsole.signals import (
     Arbitration,
     DriverInput,
     EventInput,
+    Link,
     RemoteCommand,
     VehicleCommand,
     VehicleState,
@@ -18,10 +19,13 @@ class Moment(NamedTuple):
     """One tick as arbitration finds it: what comes in, and what the tick before has left."""
 
     driver: DriverInput  # the person, calibrated, in this tick
-    remote: RemoteCommand  # the newest accepted command
+    ros: RemoteCommand  # the ROS side's newest accepted command
+    ecu: RemoteCommand  # the ECU's
     events: EventInput  # edges since the last tick
     vehicle: VehicleState  # after the tick before; its fields may be anything
     memory: ArbiterMemory
+    ros_before: Link
+    ecu_before: Link
     before: Arbitration
     command_before: VehicleCommand  # what left the gate in the tick before: hand-overs and stops start from it
     explained_rad: float  # how far the wheel's motor alone has moved it since engagement; 0 without a motor

@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 from simconsole.profiles.control import ControlProfile
+from simconsole.signals import Commander
 from simconsole.units import RAD_PER_DEG
 
 
@@ -25,7 +26,9 @@ class ControlSettings(NamedTuple):
     throttle_release: float
     clutch_pressed: float
     fade_per_tick: float
-    # Faults of the command and take-over requests.
+    # Who is the remote side, faults of its command and take-over requests.
+    preferred_commander: float  # `Commander`
+    lease_ticks: float
     stale_ticks: float
     invalid_commands_max: float
     escalation_ticks: float
@@ -79,7 +82,12 @@ class ControlSettings(NamedTuple):
 
 
 def settings(
-    profile: ControlProfile, steering_ratio: float, max_road_wheel_rad: float, wheelbase_m: float, tick_hz: int
+    profile: ControlProfile,
+    steering_ratio: float,
+    max_road_wheel_rad: float,
+    wheelbase_m: float,
+    tick_hz: int,
+    preferred: Commander = Commander.ROS,
 ) -> ControlSettings:
     """Return the settings of one drive.
 
@@ -89,6 +97,7 @@ def settings(
         max_road_wheel_rad: The vehicle's steering lock.
         wheelbase_m: The vehicle's (> 0), between curvature and road-wheel angle.
         tick_hz: Control ticks per second.
+        preferred: Which controller is the remote side where both could be.
     """
     lock_rad = max_road_wheel_rad
     release_deg = max(0.0, profile.steering_override_deg - profile.steering_override_hysteresis_deg)
@@ -103,6 +112,8 @@ def settings(
         steering_override_ticks=_at_least(profile.steering_override_hold_s, tick_hz),
         throttle_release=max(0.0, profile.throttle_override - profile.throttle_override_hysteresis),
         fade_per_tick=1.0 / _at_least(profile.fade_s, tick_hz),
+        preferred_commander=float(preferred),
+        lease_ticks=_at_most(profile.commander_lease_s, tick_hz),
         stale_ticks=_at_most(profile.command_stale_s, tick_hz),
         escalation_ticks=_at_least(profile.escalation_s, tick_hz),
         minimal_risk_ticks=_at_least(profile.minimal_risk_after_s, tick_hz),

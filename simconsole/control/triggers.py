@@ -3,12 +3,11 @@
 from typing import Final, NamedTuple
 
 from simconsole.control.engage import GRANTED
-from simconsole.control.link import Link
 from simconsole.control.modes import Trigger
 from simconsole.control.person import Person, mask
 from simconsole.control.settings import ControlSettings
 from simconsole.kernels import kernel
-from simconsole.signals import Button, DriverInput, Event, Mode, Reason
+from simconsole.signals import Button, DriverInput, Event, Link, Mode, Reason
 
 _PARKED: Final = float(Mode.PARKED)
 _MANUAL: Final = float(Mode.MANUAL)

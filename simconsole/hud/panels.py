@@ -137,8 +137,9 @@ def _link(view: HudView, box: Box) -> list[DrawItem]:
     sign = Box(box.x, box.y + 0.48 * box.h - 0.5 * side, side, side)
     cap = fit_cap_px("SILENT", 0.17 * box.h, box.w - 1.6 * side)
     x = sign.right + 0.6 * side
+    name = "AUTOPILOT LINK" if view.stale or view.commander == "none" else f"AUTOPILOT ON {view.commander}"
     title = Text(
-        box.x, box.y + 0.14 * box.h, "AUTOPILOT LINK", fit_cap_px("AUTOPILOT LINK", 0.11 * box.h, box.w),
+        box.x, box.y + 0.14 * box.h, name, fit_cap_px("AUTOPILOT ON ROS", 0.11 * box.h, box.w),
         MUTED, "link.title", "l", SECONDARY_ARCMIN,
     )  # fmt: skip
     return [

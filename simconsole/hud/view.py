@@ -7,7 +7,7 @@ from simconsole.profiles.view import HudProfile
 from simconsole.rows import MEMORY_AT, MEMORY_WIDTH, Snapshot
 from simconsole.signals import NEVER_TICKS, ArbiterMemory, GateLimit, Mode
 from simconsole.units import KMH_PER_MPS, RPM_PER_RADPS
-from simconsole.words import gear_words, mode_words, reason_words
+from simconsole.words import commander_words, gear_words, mode_words, reason_words
 
 STALE_S: Final = 0.5
 """Older snapshots are not shown: NO DATA."""
@@ -65,6 +65,7 @@ class HudView(NamedTuple):
     driver_clutch: float = 0.0
     road_wheel_rad: float = 0.0
     remote_lateral: float = 0.0
+    commander: str = "none"
     link_age_s: float | None = None
     link_stale_s: float = 0.2
     wheel_validity: float = 0.0
@@ -144,6 +145,7 @@ def view(
         driver_clutch=driver.clutch,
         road_wheel_rad=vehicle.road_wheel_rad,
         remote_lateral=arbitration.remote_lateral,
+        commander=commander_words(arbitration.commander),
         link_age_s=_link_age_s(snapshot),
         link_stale_s=settings.link_stale_s,
         wheel_validity=driver.wheel_validity,
@@ -164,7 +166,7 @@ def _lever_words(lever_fault: float, gate_active: float) -> str:
 
 
 def _link_age_s(snapshot: Snapshot) -> float | None:
-    """Return how old the newest accepted remote command is, None before the first."""
+    """Return how old the commander's newest accepted command is, None before the first."""
     remote = snapshot.remote
     never = remote.sequence == 0.0 or remote.age_ticks >= NEVER_TICKS
     return None if never else remote.age_ticks / snapshot.tick_hz

@@ -37,6 +37,7 @@ class ControlProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_f
 
     # Faults of the command and take-over requests.
     command_stale_s: Annotated[float, msgspec.Meta(ge=0.02, le=2.0)] = 0.2  # AW and ros2_control: 0.5 s
+    commander_lease_s: Annotated[float, msgspec.Meta(ge=0.1, le=60.0)] = 0.5  # as the lease among clients of the bridge
     invalid_commands_max: Annotated[int, msgspec.Meta(ge=1, le=100)] = 5  # OD: 5 wrong counters
     escalation_s: Seconds = 4.0  # R157 5.4.3.2
     minimal_risk_after_s: Seconds = 10.0  # R157 5.4.4.1

@@ -15,7 +15,7 @@ EventName = Literal[
 
 
 class RemoteStep(Section, frozen=True, kw_only=True):
-    """A controller on the ROS side that repeats one command from `start_s` until `end_s`."""
+    """A controller that repeats one command from `start_s` until `end_s`."""
 
     start_s: Seconds
     end_s: Seconds
@@ -60,6 +60,8 @@ class ScenarioProfile(Section, frozen=True, kw_only=True):
     script: ScriptProfile | None = None
     remote: tuple[RemoteStep, ...] = ()
     events: tuple[EventStep, ...] = ()
+    ecu: tuple[RemoteStep, ...] = ()
+    ecu_events: tuple[EventStep, ...] = ()
     checks: tuple[Check, ...] = ()
     manoeuvre: Manoeuvre | None = None
     """Drives the car in the place of script and commands, and is judged by `limits` instead of checks and golden."""

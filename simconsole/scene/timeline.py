@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from simconsole.scene.entities import Array, Colour
 from simconsole.signals import Event, Mode
 from simconsole.units import DEG_PER_RAD, KMH_PER_MPS, NS_PER_S, RPM_PER_RADPS
-from simconsole.words import gear_words, mode_words, reason_words
+from simconsole.words import commander_words, gear_words, mode_words, reason_words
 
 Ticks = NDArray[np.int64]
 
@@ -78,9 +78,10 @@ PLOTS: Final[tuple[Plot, ...]] = (
 
 
 _LANES: Final = (
-    ("lanes/mode", "arbitration.mode"),
+    ("lanes/mode", "arbitration.mode"),  # rerun sorts lanes by name: who drives comes first
+    ("lanes/remote", "arbitration.commander"),
     ("lanes/takeover", "arbitration.takeover_stage"),
-    ("lanes/transmission", "vehicle.gear"),  # rerun sorts lanes by name: who drives comes first
+    ("lanes/transmission", "vehicle.gear"),
 )
 TAKEOVER_WORDS: Final = ("none", "asked", "escalated")
 _OTHERS: Final = ("x_m", "y_m", "z_m", "yaw_rad", "pitch_rad", "roll_rad")
@@ -93,6 +94,7 @@ NEEDED: Final[tuple[str, ...]] = tuple(
             "arbitration.reason",
             "arbitration.refusal",
             "events.events",
+            "events.ecu_events",
         )
     )
 )
@@ -194,6 +196,8 @@ def lane_words(path: str, value: float) -> str:
     """Return what a lane shows for a value."""
     if path == "lanes/mode":
         return mode_words(value)
+    if path == "lanes/remote":
+        return commander_words(value)
     if path == "lanes/takeover":
         return TAKEOVER_WORDS[int(value)] if value in (0.0, 1.0, 2.0) else f"{value:g}"
     return gear_words(value)
@@ -240,10 +244,11 @@ def _entries(table: dict[str, Array], times_ns: Ticks, seen: dict[str, float] | 
         (index, Entry(int(times_ns[index]), "WARN", reason_words(refusal[index])))
         for index in refused[refusal[refused] != 0.0].tolist()
     )
-    events = table["events.events"]
-    for index in np.flatnonzero(events).tolist():
-        names = ", ".join(str(event.name).lower().replace("_", " ") for event in Event if int(events[index]) & event)
-        found.append((index, Entry(int(times_ns[index]), "INFO", f"event: {names}")))
+    for who, column in (("event", "events.events"), ("event on CAN", "events.ecu_events")):
+        events = table[column]
+        for index in np.flatnonzero(events).tolist():
+            named = (str(event.name).lower().replace("_", " ") for event in Event if int(events[index]) & event)
+            found.append((index, Entry(int(times_ns[index]), "INFO", f"{who}: {', '.join(named)}")))
     yield from (entry for _, entry in sorted(found, key=lambda item: item[0]))
 
 

@@ -22,7 +22,7 @@ Snapshots = Callable[[int], Snapshot]
 
 @pytest.fixture
 def on_bus(profile: CanProfile, tmp_path: Path) -> Iterator[OnBus]:
-    opened = put_on_bus(profile, 250, commanding=True, wheels=None, folder=tmp_path)
+    opened = put_on_bus(profile, 250, wheels=None, folder=tmp_path)
     yield opened
     opened.port.close()
 

@@ -19,7 +19,7 @@ from simconsole.canbus.tools import monitor
 from simconsole.profile_files import to_text
 from simconsole.profiles.can import CanProfile
 from simconsole.recording.bundle import open_bundle
-from simconsole.rows import ARBITRATION_AT, REMOTE_AT, VEHICLE_AT
+from simconsole.rows import ARBITRATION_AT, ECU_AT, VEHICLE_AT
 from simconsole.session_files import load_session, override
 from simconsole.signals import Mode, RemoteCommand, RemoteKind
 
@@ -76,9 +76,9 @@ def test_ecu_drives_the_car_by_can_alone(port: int, tmp_path: Path) -> None:
     assert not rows[: autonomous.argmax(), VEHICLE_AT + 6].any(), "it stood until the ECU had it"
     assert 1.0 < rows[:, VEHICLE_AT + 6].max() < 4.5
     assert rows[-1, VEHICLE_AT + 3] > 0.02, "it turned left"
-    accepted = rows[:, REMOTE_AT + RemoteCommand._fields.index("sequence")]
+    accepted = rows[:, ECU_AT + RemoteCommand._fields.index("sequence")]
     assert accepted[-1] > 50
-    assert set(rows[accepted > 0, REMOTE_AT]) == {float(RemoteKind.ACCELERATION)}
+    assert set(rows[accepted > 0, ECU_AT]) == {float(RemoteKind.ACCELERATION)}
     assert driven["can"]["node"]["refused"] == 0
     frames = {suffix: read_log(bundle / f"can.{suffix}") for suffix in ("blf", "log")}
     assert [frame for _, frame in frames["blf"]] == [frame for _, frame in frames["log"]]

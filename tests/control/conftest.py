@@ -14,9 +14,11 @@ from simconsole.signals import (
     ArbiterMemory,
     Arbitration,
     Button,
+    Commander,
     DriverInput,
     Event,
     EventInput,
+    Link,
     Mode,
     Reason,
     RemoteCommand,
@@ -41,6 +43,7 @@ PERSON = DriverInput(*(0.0,) * len(DriverInput._fields))._replace(
 )
 NOBODY = DriverInput(*(0.0,) * len(DriverInput._fields))
 SILENT = RemoteCommand(*(0.0,) * len(RemoteCommand._fields))._replace(age_ticks=NEVER_TICKS)
+NO_LINK = Link(*(0.0,) * len(Link._fields))
 VEHICLE = VehicleState(*(0.0,) * len(VehicleState._fields))._replace(
     engine_running=1.0, gear=1.0, coast_accel_mps2=-0.3, full_throttle_accel_mps2=3.0, full_brake_accel_mps2=-9.0
 )
@@ -50,13 +53,20 @@ COMMAND = VehicleCommand(*(0.0,) * len(VehicleCommand._fields))
 class Rig:
     """One drive of control/ alone. `vehicle` answers the pedals with what it says they give."""
 
-    def __init__(self, tick_hz: int = HZ, profile: ControlProfile | None = None) -> None:
+    def __init__(
+        self, tick_hz: int = HZ, profile: ControlProfile | None = None, preferred: Commander = Commander.ROS
+    ) -> None:
         self.tick_hz = tick_hz
         self.tick_s = 1.0 / tick_hz
-        self.settings: ControlSettings = settings(profile or ControlProfile(), RATIO, LOCK_RAD, WHEELBASE_M, tick_hz)
+        self.settings: ControlSettings = settings(
+            profile or ControlProfile(), RATIO, LOCK_RAD, WHEELBASE_M, tick_hz, preferred
+        )
         self.driver = PERSON
         self.remote = SILENT
+        self.ecu = SILENT
+        self.ros_link = self.ecu_link = NO_LINK
         self.sending = False
+        self.ecu_sending = False
         self.period_ticks = max(1, tick_hz // 50)
         self.vehicle = VEHICLE
         self.memory = ArbiterMemory(*(0.0,) * len(ArbiterMemory._fields))
@@ -77,21 +87,28 @@ class Rig:
     def refusal(self) -> Reason | None:
         return Reason(int(self.arbitration.refusal)) if self.arbitration.refusal else None
 
-    def tick(self, event: Event | int = 0, edge: Button | int = 0) -> None:
+    def tick(self, event: Event | int = 0, edge: Button | int = 0, ecu_event: Event | int = 0) -> None:
         """Advance by one tick with these edges."""
         self.ticks += 1
         if self.sending and self.ticks % self.period_ticks == 0:
             self.remote = self.remote._replace(sequence=self.remote.sequence + 1.0, age_ticks=0.0)
         elif self.remote.sequence > 0.0:
             self.remote = self.remote._replace(age_ticks=self.remote.age_ticks + 1.0)
+        if self.ecu_sending and self.ticks % self.period_ticks == 0:
+            self.ecu = self.ecu._replace(sequence=self.ecu.sequence + 1.0, age_ticks=0.0)
+        elif self.ecu.sequence > 0.0:
+            self.ecu = self.ecu._replace(age_ticks=self.ecu.age_ticks + 1.0)
         driver = self.driver._replace(edges=float(edge), pressed=float(int(self.driver.pressed) | int(edge)))
-        self.memory, self.arbitration, self.request = arbitrate(
+        self.memory, self.ros_link, self.ecu_link, self.arbitration, self.request = arbitrate(
             Moment(
                 driver,
                 self.remote,
-                EventInput(float(event)),
+                self.ecu,
+                EventInput(float(event), ecu_events=float(ecu_event)),
                 self.vehicle,
                 self.memory,
+                self.ros_link,
+                self.ecu_link,
                 self.arbitration,
                 self.command,
                 0.0,
@@ -100,8 +117,9 @@ class Rig:
                 self.tick_s,
             )
         )
+        remote = self.ecu if self.arbitration.commander == Commander.ECU else self.remote
         self.command = gate(
-            self.request, self.remote, self.arbitration, self.command, self.vehicle, self.settings, self.tick_s
+            self.request, remote, self.arbitration, self.command, self.vehicle, self.settings, self.tick_s
         )
         self._move()
 
@@ -133,6 +151,12 @@ class Rig:
         base = SILENT._replace(age_ticks=0.0, refused=self.remote.refused, direction=1.0)
         self.remote = base._replace(kind=float(kind), sequence=self.remote.sequence + 1.0, **fields)
         self.sending = True
+
+    def send_ecu(self, kind: RemoteKind = RemoteKind.ACCELERATION, **fields: float) -> None:
+        """Let the ECU send at 50 Hz from now on."""
+        base = SILENT._replace(age_ticks=0.0, direction=1.0)
+        self.ecu = base._replace(kind=float(kind), sequence=self.ecu.sequence + 1.0, **fields)
+        self.ecu_sending = True
 
     def refuse(self, count: int = 1) -> None:
         """Let the bridge refuse commands of the controller."""

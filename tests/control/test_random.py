@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from simconsole.compiling import compiled, plain
 from simconsole.control.arbitration import arbitrate
+from simconsole.control.commander import ECU
 from simconsole.control.gate import gate, limits_of
 from simconsole.control.moment import Moment
 from simconsole.control.settings import ControlSettings, settings
@@ -19,9 +20,11 @@ from simconsole.signals import (
     ArbiterMemory,
     Arbitration,
     Button,
+    Commander,
     DriverInput,
     Event,
     EventInput,
+    Link,
     Mode,
     Reason,
     RemoteCommand,
@@ -37,21 +40,29 @@ DRIVER_WIDTH: Final = len(DriverInput._fields)
 REMOTE_WIDTH: Final = len(RemoteCommand._fields)
 VEHICLE_WIDTH: Final = len(VehicleState._fields)
 MEMORY_WIDTH: Final = len(ArbiterMemory._fields)
+LINK_WIDTH: Final = len(Link._fields)
 ARBITRATION_WIDTH: Final = len(Arbitration._fields)
 COMMAND_WIDTH: Final = len(VehicleCommand._fields)
 SETTINGS_WIDTH: Final = len(ControlSettings._fields)
 REMOTE_AT: Final = DRIVER_WIDTH
 VEHICLE_AT: Final = REMOTE_AT + REMOTE_WIDTH
 EVENT_AT: Final = VEHICLE_AT + VEHICLE_WIDTH
-INPUT_WIDTH: Final = EVENT_AT + 1
-ARBITRATION_AT: Final = MEMORY_WIDTH
+ECU_EVENT_AT: Final = EVENT_AT + 1
+ECU_AT: Final = ECU_EVENT_AT + 1
+INPUT_WIDTH: Final = ECU_AT + REMOTE_WIDTH
+ROS_LINK_AT: Final = MEMORY_WIDTH
+ECU_LINK_AT: Final = ROS_LINK_AT + LINK_WIDTH
+ARBITRATION_AT: Final = ECU_LINK_AT + LINK_WIDTH
 COMMAND_AT: Final = ARBITRATION_AT + ARBITRATION_WIDTH
 SPEED_AT: Final = COMMAND_AT + COMMAND_WIDTH
 OUTPUT_WIDTH: Final = SPEED_AT + 1
 VX: Final = VEHICLE_AT + VehicleState._fields.index("vx_mps")
+COLUMNS: Final = (
+    *DriverInput._fields, *RemoteCommand._fields, *VehicleState._fields, "events", "ecu_events",
+    *(f"ecu_{name}" for name in RemoteCommand._fields),
+)  # fmt: skip
 KEEP_SPEED: Final = 12345.0
 """In the column of vx: the speed follows from the pedals. Anything else is what the vehicle reports."""
-
 
 OFTEN: Final = {
     Event.RESET: 6.0,
@@ -74,14 +85,18 @@ def drive(inputs: Row, outputs: Row, row: Row, tick_s: float) -> None:
         if given[VX] == KEEP_SPEED:
             vehicle_row[VX - VEHICLE_AT] = speed
         vehicle = VehicleState(*take(vehicle_row, 0, VEHICLE_WIDTH))
-        remote = RemoteCommand(*take(given, REMOTE_AT, REMOTE_WIDTH))
+        ros = RemoteCommand(*take(given, REMOTE_AT, REMOTE_WIDTH))
+        ecu = RemoteCommand(*take(given, ECU_AT, REMOTE_WIDTH))
         command = VehicleCommand(*take(before, COMMAND_AT, COMMAND_WIDTH))
         now = Moment(
             DriverInput(*take(given, 0, DRIVER_WIDTH)),
-            remote,
-            EventInput(given[EVENT_AT]),
+            ros,
+            ecu,
+            EventInput(given[EVENT_AT], 0.0, given[ECU_EVENT_AT]),
             vehicle,
             ArbiterMemory(*take(before, 0, MEMORY_WIDTH)),
+            Link(*take(before, ROS_LINK_AT, LINK_WIDTH)),
+            Link(*take(before, ECU_LINK_AT, LINK_WIDTH)),
             Arbitration(*take(before, ARBITRATION_AT, ARBITRATION_WIDTH)),
             command,
             0.0,
@@ -89,9 +104,12 @@ def drive(inputs: Row, outputs: Row, row: Row, tick_s: float) -> None:
             s,
             tick_s,
         )
-        memory, arbitration, request = arbitrate(now)
+        memory, ros_link, ecu_link, arbitration, request = arbitrate(now)
+        remote = ecu if arbitration.commander == ECU else ros
         command = gate(request, remote, arbitration, command, vehicle, s, tick_s)
         put(before, 0, memory)
+        put(before, ROS_LINK_AT, ros_link)
+        put(before, ECU_LINK_AT, ecu_link)
         put(before, ARBITRATION_AT, arbitration)
         put(before, COMMAND_AT, command)
         before[SPEED_AT] = speed
@@ -110,7 +128,7 @@ class Drive(NamedTuple):
     outputs: Rows
 
     def given(self, name: str) -> Rows:
-        return self.inputs[:, (*DriverInput._fields, *RemoteCommand._fields, *VehicleState._fields).index(name)]
+        return self.inputs[:, COLUMNS.index(name)]
 
     def of(self, record: type, name: str) -> Rows:
         at = {ArbiterMemory: 0, Arbitration: ARBITRATION_AT, VehicleCommand: COMMAND_AT}[record]
@@ -119,6 +137,20 @@ class Drive(NamedTuple):
     @property
     def events(self) -> NDArray[np.int64]:
         return self.inputs[:, EVENT_AT].astype(np.int64)
+
+    @property
+    def heard(self) -> NDArray[np.int64]:
+        """Events of operators and, as far as they count, of the ECU."""
+        given = np.nan_to_num(self.given("ecu_events"), nan=0.0, posinf=0.0, neginf=0.0)
+        ecu = np.where((given >= 0.0) & (given <= 2147483647.0), given, 0.0).astype(np.int64)
+        heard = np.where(self.of(Arbitration, "commander") == Commander.ECU, -1, Event.EMERGENCY_STOP | Event.MARK)
+        return self.events | (ecu & heard)
+
+    @property
+    def age_ticks(self) -> Rows:
+        """Of the commander's command."""
+        by_ecu = self.of(Arbitration, "commander") == Commander.ECU
+        return np.where(by_ecu, self.given("ecu_age_ticks"), self.given("age_ticks"))
 
     @property
     def modes(self) -> Rows:
@@ -135,10 +167,9 @@ def lasting(rng: np.random.Generator, steps: int, mean_ticks: float, values: Row
 def random_inputs(rng: np.random.Generator, steps: int, stale_ticks: float) -> Rows:
     """Return inputs with long quiet stretches in which modes can last, and nonsense of every kind between them."""
     inputs = np.zeros((steps, INPUT_WIDTH))
-    columns = (*DriverInput._fields, *RemoteCommand._fields, *VehicleState._fields, "events")
 
     def put_column(name: str, values: Rows) -> None:
-        inputs[:, columns.index(name)] = values
+        inputs[:, COLUMNS.index(name)] = values
 
     released = np.array([0.0] * 80 + [0.03, 0.05, 0.3, 1.0])
     put_column("hand_wheel_rad", lasting(rng, steps, 600, rng.normal(0.0, 0.5, 50)))
@@ -153,21 +184,8 @@ def random_inputs(rng: np.random.Generator, steps: int, stale_ticks: float) -> R
     put_column("edges", edges)
     for name in ("wheel_validity", "throttle_validity", "brake_validity"):
         put_column(name, lasting(rng, steps, 150, np.array([2.0] * 60 + [0.0, 1.0, 3.0, 4.0])))
-    put_column("kind", lasting(rng, steps, 500, np.array([1.0, 2.0, 3.0, 4.0, 5.0, 1.0, 2.0, 0.0, 2.5, 9.0])))
-    sent = rng.random(steps) < min(0.6, 5.0 / stale_ticks)
-    put_column("sequence", np.cumsum(sent).astype(float))
-    put_column("refused", np.cumsum(rng.random(steps) < lasting(rng, steps, 300, np.array([0.0] * 5 + [0.3]))))
-    last = np.maximum.accumulate(np.where(sent, np.arange(steps), -1))
-    silent = lasting(rng, steps, 300, np.array([0.0] * 12 + [NEVER_TICKS, 60.0]))
-    put_column("age_ticks", np.where(last < 0, NEVER_TICKS, np.arange(steps) - last) + silent)
-    put_column("road_wheel_rad", lasting(rng, steps, 50, rng.normal(0.0, 0.1, 50)))
-    put_column("speed_mps", lasting(rng, steps, 200, np.array([0.0, 3.0, 8.0, 12.0, -2.0])))
-    put_column("accel_mps2", lasting(rng, steps, 50, rng.normal(0.0, 1.5, 50)))
-    put_column("yaw_rate_radps", lasting(rng, steps, 50, rng.normal(0.0, 0.3, 50)))
-    put_column("direction", lasting(rng, steps, 400, np.array([1.0] * 8 + [0.0, -1.0])))
-    for name in ("x_m", "y_m", "yaw_rad"):
-        # The first of the two columns of this name is the command's, as `index` finds it.
-        put_column(name, lasting(rng, steps, 50, rng.normal(0.0, 3.0, 50)))
+    for name, values in random_commands(rng, steps, stale_ticks).items():
+        put_column(name, values)  # the first of two columns of one name is the command's, as `index` finds it
     inputs[:, VX] = KEEP_SPEED
     put_column("ay_mps2", lasting(rng, steps, 200, np.array([0.0] * 6 + [3.0])))
     put_column("coast_accel_mps2", np.full(steps, -0.2))
@@ -179,7 +197,32 @@ def random_inputs(rng: np.random.Generator, steps: int, stale_ticks: float) -> R
     nasty = np.array([np.nan, np.inf, -np.inf, 1e308, -1e308, -0.0, 5e-324, 1e9, -1.0, 0.5])
     hit = np.flatnonzero(rng.random(steps) < 0.001)
     inputs[hit, rng.integers(EVENT_AT, size=len(hit))] = rng.choice(nasty, len(hit))
+    for name, values in random_commands(rng, steps, stale_ticks).items():
+        put_column(f"ecu_{name}", values)
+    put_column("ecu_events", np.where(rng.random(steps) < 0.01, rng.choice(np.array(list(Event)), steps), 0.0))
+    hit = np.flatnonzero(rng.random(steps) < 0.0005)
+    inputs[hit, rng.integers(ECU_EVENT_AT, INPUT_WIDTH, size=len(hit))] = rng.choice(nasty, len(hit))
     return inputs
+
+
+def random_commands(rng: np.random.Generator, steps: int, stale_ticks: float) -> dict[str, Rows]:
+    """Return the columns of one controller: now fresh, now refused, now silent."""
+    sent = rng.random(steps) < min(0.6, 5.0 / stale_ticks)
+    last = np.maximum.accumulate(np.where(sent, np.arange(steps), -1))
+    silent = lasting(rng, steps, 300, np.array([0.0] * 12 + [NEVER_TICKS, 60.0]))
+    refused = rng.random(steps) < lasting(rng, steps, 300, np.array([0.0] * 5 + [0.3]))
+    return {
+        "kind": lasting(rng, steps, 500, np.array([1.0, 2.0, 3.0, 4.0, 5.0, 1.0, 2.0, 0.0, 2.5, 9.0])),
+        "sequence": np.cumsum(sent).astype(float),
+        "refused": np.cumsum(refused).astype(float),
+        "age_ticks": np.where(last < 0, NEVER_TICKS, np.arange(steps) - last) + silent,
+        "road_wheel_rad": lasting(rng, steps, 50, rng.normal(0.0, 0.1, 50)),
+        "speed_mps": lasting(rng, steps, 200, np.array([0.0, 3.0, 8.0, 12.0, -2.0])),
+        "accel_mps2": lasting(rng, steps, 50, rng.normal(0.0, 1.5, 50)),
+        "yaw_rate_radps": lasting(rng, steps, 50, rng.normal(0.0, 0.3, 50)),
+        "direction": lasting(rng, steps, 400, np.array([1.0] * 8 + [0.0, -1.0])),
+        **{name: lasting(rng, steps, 50, rng.normal(0.0, 3.0, 50)) for name in ("x_m", "y_m", "yaw_rad")},
+    }
 
 
 def random_drive(tick_hz: int, seed: int, steps: int, execution: object = compiled, **profile: object) -> Drive:
@@ -261,7 +304,7 @@ def test_the_brake_beats_the_throttle(long_drive: Drive) -> None:
 
 def asked(long_drive: Drive, event: Event, button: Button | None) -> NDArray[np.bool_]:
     """Return in which ticks a person or an operator asked."""
-    by_event = long_drive.events & int(event) != 0
+    by_event = long_drive.heard & int(event) != 0
     if button is None:
         return by_event
     given = np.nan_to_num(long_drive.given("edges"), nan=0.0, posinf=0.0, neginf=0.0)
@@ -271,7 +314,8 @@ def asked(long_drive: Drive, event: Event, button: Button | None) -> NDArray[np.
 
 def test_emergency_stop_is_obeyed_at_once_and_latches(long_drive: Drive) -> None:
     modes = long_drive.modes
-    emergency = long_drive.events & int(Event.EMERGENCY_STOP) != 0
+    emergency = long_drive.heard & int(Event.EMERGENCY_STOP) != 0
+    assert (long_drive.heard != long_drive.events).any()
     assert emergency.sum() > 100
     assert (modes[emergency] == Mode.EMERGENCY_STOP).all()
     held = long_drive.given("pressed") == Button.EMERGENCY_STOP
@@ -288,14 +332,24 @@ def test_autonomy_is_engaged_by_an_act_only(long_drive: Drive) -> None:
     entered = np.flatnonzero((modes[:-1] != Mode.AUTONOMOUS) & (modes[1:] == Mode.AUTONOMOUS)) + 1
     assert len(entered) > 50
     assert asked(long_drive, Event.REQUEST_AUTONOMOUS, Button.AUTONOMOUS)[entered].all()
-    assert (long_drive.given("age_ticks")[entered] < long_drive.settings.stale_ticks).all()
+    assert (long_drive.age_ticks[entered] < long_drive.settings.stale_ticks).all()
     shared = np.flatnonzero((modes[:-1] != Mode.SHARED) & (modes[1:] == Mode.SHARED)) + 1
     assert asked(long_drive, Event.REQUEST_SHARED, None)[shared].all()
     requested = np.flatnonzero((modes[:-1] != Mode.TAKEOVER_REQUESTED) & (modes[1:] == Mode.TAKEOVER_REQUESTED))
     assert (modes[requested] == Mode.AUTONOMOUS).all()
     driven = np.isin(modes, [Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED, Mode.SHARED])
-    age = long_drive.given("age_ticks")[driven]
+    age = long_drive.age_ticks[driven]
     assert (age < long_drive.settings.stale_ticks).all()
+
+
+def test_the_commander_never_changes_while_the_remote_side_drives(long_drive: Drive) -> None:
+    modes, commander = long_drive.modes, long_drive.of(Arbitration, "commander")
+    held = np.isin(modes[:-1], [Mode.SHARED, Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED, Mode.MINIMAL_RISK])
+    held &= commander[:-1] != Commander.NOBODY
+    assert (commander[1:][held] == commander[:-1][held]).all()
+    driven = np.isin(modes, [Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED, Mode.SHARED])
+    assert set(commander[driven]) == {Commander.ROS, Commander.ECU}
+    assert set(commander) == set(Commander)
 
 
 def test_with_nobody_driving_the_remote_side_has_no_authority_in_manual(long_drive: Drive) -> None:
@@ -318,8 +372,10 @@ def test_from_every_mode_a_person_gets_back_to_manual(long_drive: Drive) -> None
     for mode in Mode:
         for index in rng.choice(np.flatnonzero(long_drive.modes == mode), 5):
             row = long_drive.outputs[index]
+            ros_link = Link(*row[ROS_LINK_AT:ECU_LINK_AT].tolist())
+            ecu_link = Link(*row[ECU_LINK_AT:ARBITRATION_AT].tolist())
             memory, arbitration, command = (
-                ArbiterMemory(*row[:ARBITRATION_AT].tolist()),
+                ArbiterMemory(*row[:ROS_LINK_AT].tolist()),
                 Arbitration(*row[ARBITRATION_AT:COMMAND_AT].tolist()),
                 VehicleCommand(*row[COMMAND_AT:SPEED_AT].tolist()),
             )
@@ -327,9 +383,10 @@ def test_from_every_mode_a_person_gets_back_to_manual(long_drive: Drive) -> None
                 event = Event.REQUEST_MANUAL if tick % 2 else Event.RESET
                 happened = EventInput(float(event))
                 now = Moment(
-                    driver, remote, happened, vehicle, memory, arbitration, command, 0.0, 0.0, s, long_drive.tick_s
-                )
-                memory, arbitration, request = arbitrate(now)
+                    driver, remote, remote, happened, vehicle, memory, ros_link, ecu_link, arbitration, command,
+                    0.0, 0.0, s, long_drive.tick_s,
+                )  # fmt: skip
+                memory, ros_link, ecu_link, arbitration, request = arbitrate(now)
                 command = gate(request, remote, arbitration, command, vehicle, s, long_drive.tick_s)
                 if arbitration.mode == Mode.MANUAL:
                     break

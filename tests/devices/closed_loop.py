@@ -107,7 +107,7 @@ class Loop:
             sample = sample._replace(**raw)
         tick, before = self.snapshot.tick + 1, self.snapshot.row
         remote = self.controller.take(tick, before[DISTANCE_AT])
-        row = advance_row(before, (*sample, *remote, *events), self.console)
+        row = advance_row(before, (*sample, *remote, *events, *NO_COMMAND), self.console)
         self.snapshot = Snapshot(tick, self.tick_hz, row)
         self.motor.publish(self.snapshot)
         return self.snapshot

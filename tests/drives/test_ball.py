@@ -69,7 +69,7 @@ def test_nobody_sits_at_the_wheel_and_the_ros_side_asks_for_control(rolled: Roll
     modes = rolled.table.column("arbitration.mode")
     assert modes[0] == Mode.PARKED
     assert modes[-1] == Mode.AUTONOMOUS
-    assert (rolled.table.column("remote.refused") == 0.0).all()
+    assert (rolled.table.column("ros.refused") == 0.0).all()
 
 
 def test_the_ball_replays_and_is_reported_as_the_car_is(rolled: Rolled) -> None:

@@ -101,9 +101,9 @@ def test_the_drive_never_waited_in_vain_and_ran_faster_than_real_time(demo: Demo
 
 def test_every_command_in_autonomy_was_made_for_the_state_before(demo: Demo) -> None:
     autonomous = demo.table.column("arbitration.mode") == float(Mode.AUTONOMOUS)
-    age = demo.table.column("remote.age_ticks")[autonomous]
+    age = demo.table.column("ros.age_ticks")[autonomous]
     assert age.max() == 4.0, "a command every 20 ms, answered in lockstep, is at most 4 ticks of 4 ms old"
-    assert demo.table.column("remote.refused").max() == 0.0
+    assert demo.table.column("ros.refused").max() == 0.0
 
 
 def test_samples_come_from_the_wheels_own_polarity(demo: Demo) -> None:

@@ -125,9 +125,9 @@ def test_a_malformed_frame_is_answered_and_the_drive_goes_on_as_without_it(
     assert [mode for _, mode, _ in modes(driven.table)][-1] is Mode.AUTONOMOUS
     assert driven.result.summary["unanswered"] == 0
     untouched = drive_with(good, "untouched", duration_s=6)
-    columns = [name for name in driven.table.columns if name not in ("remote.refused", "memory.refused_seen")]
+    columns = [name for name in driven.table.columns if name not in ("ros.refused", "ros_link.refused_seen")]
     unlike = [name for name in columns if not np.array_equal(driven.table.column(name), untouched.table.column(name))]
-    assert set(unlike) <= {"memory.invalid_run", "memory.fresh_ticks"}
+    assert set(unlike) <= {"ros_link.invalid_run", "ros_link.fresh_ticks", "ros_link.state"}
 
 
 @pytest.mark.parametrize(
@@ -145,13 +145,13 @@ def test_a_command_that_is_no_number_is_refused_whole_and_counted(
     drive_with: Callable[..., Driven], spoilt: str
 ) -> None:
     driven = drive_with(with_fault(spoilt), duration_s=6)
-    refused = driven.table.column("remote.refused")
+    refused = driven.table.column("ros.refused")
     assert refused[-1] == 1.0
     at = refused.tolist().index(1.0)
     assert driven.table.ticks[at] == (FAULT_AT - 1) * PERIOD_TICKS + PERIOD_TICKS + 1
     assert any(status["level"] == "error" for status in driven.controller.statuses)
     assert np.isfinite(driven.table.rows).all()
-    assert driven.table.column("remote.accel_mps2").max() <= 1.2
+    assert driven.table.column("ros.accel_mps2").max() <= 1.2
     assert [mode for _, mode, _ in modes(driven.table)][-1] is Mode.AUTONOMOUS, "one bad command is no reason to stop"
 
 
@@ -162,7 +162,7 @@ def test_five_bad_commands_and_no_good_one_end_in_a_safe_stop(drive_with: Callab
     assert [change[1] for change in changes][-3:] == [Mode.AUTONOMOUS, Mode.MINIMAL_RISK, Mode.STOPPED]
     assert changes[-2][0] == FAULT_AT * PERIOD_TICKS + 1, "at once, not when the last good command has grown stale"
     assert changes[-2][2] is Reason.COMMAND_INVALID
-    assert driven.table.column("remote.refused")[changes[-2][0] - 1] == 5.0
+    assert driven.table.column("ros.refused")[changes[-2][0] - 1] == 5.0
 
 
 def test_a_vanished_controller_ends_in_a_recorded_safe_stop(drive_with: Callable[..., Driven]) -> None:
@@ -203,7 +203,7 @@ def test_a_controller_that_speaks_again_is_waited_for_again_but_not_given_the_ca
     driven = drive_with(pausing, duration_s=40)
     assert driven.result.summary["exchanges"] > FAULT_AT + 100
     assert [change[1] for change in modes(driven.table)][-2:] == [Mode.MINIMAL_RISK, Mode.STOPPED]
-    assert driven.table.column("remote.age_ticks")[-1] < PERIOD_TICKS, "it is heard"
+    assert driven.table.column("ros.age_ticks")[-1] < PERIOD_TICKS, "it is heard"
 
 
 def test_ctrl_c_while_waiting_for_a_controller_leaves_nothing(tmp_path: Path) -> None:

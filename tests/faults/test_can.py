@@ -26,9 +26,9 @@ from simconsole.drive import Cast, run
 from simconsole.errors import CanError
 from simconsole.kernels import Row
 from simconsole.pacing import UnpacedPacer
-from simconsole.ports import NobodySeated
+from simconsole.ports import NobodyCommands, NobodySeated
 from simconsole.profiles.can import CanProfile
-from simconsole.rows import ARBITRATION_AT, REMOTE_AT, Snapshot
+from simconsole.rows import ARBITRATION_AT, ECU_AT, Snapshot
 from simconsole.session_files import load_session, override, resolve
 from simconsole.signals import Arbitration, Mode, Reason, RemoteCommand
 
@@ -39,9 +39,9 @@ FAULT = 150
 TICKS = 400
 MODE = ARBITRATION_AT + Arbitration._fields.index("mode")
 REASON = ARBITRATION_AT + Arbitration._fields.index("reason")
-SEQUENCE = REMOTE_AT + RemoteCommand._fields.index("sequence")
-REFUSED = REMOTE_AT + RemoteCommand._fields.index("refused")
-AGE = REMOTE_AT + RemoteCommand._fields.index("age_ticks")
+SEQUENCE = ECU_AT + RemoteCommand._fields.index("sequence")
+REFUSED = ECU_AT + RemoteCommand._fields.index("refused")
+AGE = ECU_AT + RemoteCommand._fields.index("age_ticks")
 
 _channels = itertools.count()
 Fault = Callable[[int, Frame], list[Frame]]
@@ -113,15 +113,16 @@ def drive(codec: Codec, profile: CanProfile) -> Iterator[Callable[..., Driven]]:
         def go(fault: Fault, opener: Any = None, clock: Any = None) -> Driven:
             resolved = resolve(override(load_session("can"), mode={"pacing": "free"}))
             console, state = assemble(resolved, plain)
-            node = CanNode(codec, profile, TICK_HZ, commanding=True)
+            node = CanNode(codec, profile, TICK_HZ)
             options = {} if opener is None else {"opener": opener, "clock_s": clock}
             port = CanPort(profile, node.transmit_ids, node.receive_ids, **options)
             ecu_port = CanPort(profile, codec.ids("ECU"), frozenset())
             stack.callback(port.close)
             stack.callback(ecu_port.close)
-            on_bus, rows = OnBus(node, port, True), Rows()
+            on_bus, rows = OnBus(node, port), Rows()
             link = InlineCan(on_bus)
-            cast = Cast(NobodySeated(), link, rows, (link, EcuSeat(codec, ecu_port, fault)), UnpacedPacer())
+            stations = (link, EcuSeat(codec, ecu_port, fault))
+            cast = Cast(NobodySeated(), NobodyCommands(), rows, stations, UnpacedPacer(), ecu=link)
             run(console, state, cast, TICKS)
             return Driven(np.array(rows.rows), on_bus)
 
@@ -321,7 +322,7 @@ def test_c04_one_old_frame_after_a_silence_commands_nothing(drive: Callable[...,
 
 def test_c05_no_frame_off_the_whitelist_can_leave(profile: CanProfile, codec: Codec) -> None:
     """Every id there is, standard and (a sample of) extended, on the console's own port."""
-    node = CanNode(codec, profile, TICK_HZ, commanding=True)
+    node = CanNode(codec, profile, TICK_HZ)
     port = CanPort(profile, node.transmit_ids, node.receive_ids)
     with can.Bus(interface="virtual", channel=profile.channel) as listener:
         for can_id in (*range(0x800), *range(0, 0x2000_0000, 0x40_0001)):

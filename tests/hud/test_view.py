@@ -85,8 +85,8 @@ def test_the_content_comes_from_the_row() -> None:
         arbitration__mode=Mode.SHARED,
         arbitration__reason=Reason.PERSON_ASKED,
         arbitration__remote_lateral=0.5,
-        remote__sequence=3.0,
-        remote__age_ticks=5.0,
+        ros__sequence=3.0,
+        ros__age_ticks=5.0,
     )
     shown, memory = view(row, 0.0, HudMemory(), HudSettings())
     assert (shown.t_s, shown.shown_kmh, shown.gear) == (2.0, 36, "2")
@@ -101,9 +101,9 @@ def test_the_content_comes_from_the_row() -> None:
 
 
 def test_no_command_ever_is_no_link() -> None:
-    never = snapshot(remote__sequence=0.0, remote__age_ticks=0.0)
+    never = snapshot(ros__sequence=0.0, ros__age_ticks=0.0)
     assert view(never, 0.0, HudMemory(), HudSettings())[0].link_age_s is None
-    gone = snapshot(remote__sequence=4.0, remote__age_ticks=NEVER_TICKS)
+    gone = snapshot(ros__sequence=4.0, ros__age_ticks=NEVER_TICKS)
     assert view(gone, 0.0, HudMemory(), HudSettings())[0].link_age_s is None
 
 

@@ -200,7 +200,7 @@ def test_a_bridge_killed_in_autonomy_ends_in_a_recorded_safe_stop(disturbed: Dis
     assert mode[at - 1] == Mode.AUTONOMOUS
     assert mode[-1] == Mode.STOPPED
     assert tuple(change["mode"] for change in disturbed.results["mode_changes"][-2:]) == ("MINIMAL RISK", "STOPPED")
-    age = disturbed.table.column("remote.age_ticks")
+    age = disturbed.table.column("ros.age_ticks")
     assert age[at] >= 0.2 * TICK_HZ > age[at - 1], "200 ms after the last command, not sooner and not later"
     assert disturbed.table.column("vehicle.vx_mps")[at] > 1.0
     assert abs(disturbed.table.column("vehicle.vx_mps")[-1]) < 0.1

@@ -115,7 +115,10 @@ uint8 mode
 uint8 reason
 string mode_words
 string reason_words
-# Share of the remote controller, 0 to 1; the person has the rest.
+# Why the latest request was refused, shown for a while; 0 and empty: none.
+uint8 refusal
+string refusal_words
+# Share of the remote side, 0 to 1; the person has the rest.
 float64 remote_lateral
 float64 remote_longitudinal
 # What each asks: road wheel in rad, left-positive; pedals 0 to 1.
@@ -126,6 +129,20 @@ float64 remote_road_wheel
 float64 remote_throttle
 float64 remote_brake
 uint8 takeover_stage
+# Whose commands are the remote side's: 0 nobody, 1 ROS, 2 the ECU on CAN.
+uint8 commander
+string commander_words
+Controller ros
+Controller ecu
+================================================================================
+MSG: simconsole_msgs/Controller
+# 0 no command yet, 1 not steady yet, 2 steady, 3 silent, 4 invalid.
+uint8 state
+string state_words
+# What it asks, whether it commands or not.
+float64 road_wheel
+float64 throttle
+float64 brake
 uint64 commands_accepted
 uint64 commands_refused
 # Seconds since the newest accepted command was received; -1 before the first.
