@@ -31,7 +31,8 @@ wheels turn within {ramp} s, then hold. Distances are the largest ones of the ce
 LIMITS = """## Known limits
 
 - Roll and pitch are small angles and end in stops: a car that turns over leans on them and comes back.
-- The ground is a plane with one slope; a wheel meets no kerb, no pothole and no loose surface.
+- The ground is a plane with one slope, and x and y are measured along it; a wheel meets no kerb, no pothole and no
+  loose surface.
 - Tyres have no temperature, wear, pressure or inflation; aligning torque acts on the rack, the turn-slip moment of a
   tyre that is steered on the spot does not exist.
 - Suspension is springs, dampers, bars and stops at each wheel; no compliance steer but the rack's, no bushings.
@@ -100,8 +101,8 @@ def _oracles(found: dict[str, dict[str, float]]) -> str:
             *lines,
             "",
             "The bicycle is the linear single-track model; the car beside it is the validation car made low and stiff,",
-            "with tyres that answer within a few centimetres. What rolls down without losses also sways on its springs",
-            "and turns its engine's side of the gearbox: those parts of its energy are not counted.",
+            "with tyres that answer within a few centimetres. What rolls down without losses is watched until it is",
+            f"{e['end_mps']:.1f} m/s fast.",
             "",
             "- Energy: a sliding car that nobody drives never gains motion; the largest rise is "
             f"{e['largest_rise_share']:.1e} of what it had.",

@@ -146,14 +146,14 @@ def energy() -> dict[str, float]:
         front=replace(profile.front, rolling_resistance=0.0),
         rear=replace(profile.rear, rolling_resistance=0.0),
     )
-    run = Run(free, Ground(1.0, -0.08, 0.0))
-    end = run.hold(10.0, substeps=100)[-1]
-    height = 0.08 * end.x_m
+    slope = 0.08
+    end = Run(free, Ground(1.0, -slope, 0.0)).hold(20.0, substeps=100)[-1]
+    height = end.x_m * slope / math.sqrt(1.0 + slope * slope)  # x is measured along the ground
     gained = _motion(free, end) / (free.body.mass_kg * STANDARD_GRAVITY_MPS2 * height)
     sliding = Run(profile, vx_mps=25.0, vy_mps=6.0, yaw_rate_radps=1.0).hold(10.0)
     values = np.array([_motion(profile, state) for state in sliding])
     rise = float((values - np.minimum.accumulate(values)).max() / values[0])
-    return {"gained_over_height": gained, "error": gained - 1.0, "largest_rise_share": rise}
+    return {"gained_over_height": gained, "end_mps": end.vx_mps, "error": gained - 1.0, "largest_rise_share": rise}
 
 
 def _motion(profile: CarProfile, s: CarState) -> float:
