@@ -33,6 +33,7 @@ from simconsole.kernels import put
 from simconsole.profile_files import load
 from simconsole.profiles.vehicle import CarProfile
 from simconsole.rows import COMMAND_AT, PLATFORM_AT
+from simconsole.signals import VehicleCommand
 from simconsole.vehicle.platform import Ground, Platform, Pose
 from simconsole.vehicle.registry import build
 
@@ -72,8 +73,9 @@ def peers() -> dict[str, Steps]:
     }
 
 
-def command() -> list[float]:
-    return [ROAD_WHEEL_RAD, 0.3, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+def command() -> VehicleCommand:
+    nothing = VehicleCommand(*(0.0,) * len(VehicleCommand._fields))
+    return nothing._replace(road_wheel_rad=ROAD_WHEEL_RAD, throttle=0.3, gear=1.0, automatic=1.0)
 
 
 def rolling(vehicle: Platform) -> list[float]:

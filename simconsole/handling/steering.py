@@ -47,6 +47,9 @@ def steady_circle(spec: SteadyCircle, car: Platform) -> Driving:
         "roll_angle_gradient_deg_per_mps2": _slope(lateral, roll, first, last),
         "steering_wheel_torque_gradient_nm_per_mps2": -_slope(lateral, torque, first, last),
         "highest_lateral_acceleration_mps2": float(lateral.max()),
+        "highest_steering_wheel_torque_nm": float(-torque.min()),
+        # What a driver feels before the front axle lets go: the torque at the rim falls while grip still grows.
+        "share_of_grip_at_highest_torque": float(lateral[int(torque.argmin())] / lateral.max()),
     }
     ends = slice(0, int(np.argmax(lateral)) + 1, 10)
     panels = tuple(
