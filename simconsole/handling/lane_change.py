@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from simconsole.devices.uncalibrate import Intent
-from simconsole.handling.attempt import Attempt, Driving, Line, Panel, Result, part, traces
+from simconsole.handling.attempt import Attempt, Driving, Line, Panel, Result, part, traces, undriven
 from simconsole.handling.pilot import HoldSpeed, RunUp
 from simconsole.profiles.manoeuvre import DoubleLaneChange
 from simconsole.report.table import Array, Drive
@@ -111,9 +111,9 @@ def path_at(course: Course, s_m: float) -> tuple[float, float, float]:
 class LaneChanger:
     """The driver of one attempt, after the run-up."""
 
-    def __init__(self, spec: DoubleLaneChange, car: Platform, speed_kmh: float) -> None:
+    def __init__(self, course: Course, car: Platform, speed_kmh: float) -> None:
         self._car = car
-        self._course = course_of(spec.course, car.width_m)
+        self._course = course
         self._hold = HoldSpeed(speed_kmh * MPS_PER_KMH)
         self._hand = 0.0
         self.first_cone_m: float | None = None
@@ -150,26 +150,24 @@ class LaneChanger:
 
 def lane_change(spec: DoubleLaneChange, car: Platform) -> Driving:
     """Halve the interval between a clean entry speed and one that is not."""
+    course = course_of(spec.course, car.width_m)
     low, high = spec.from_kmh, spec.to_kmh
     best: Drive | None = None
-    while high - low > spec.within_kmh or best is None:
+    while best is None or high - low > spec.within_kmh:
         speed = low if best is None else 0.5 * (low + high)
-        driver = LaneChanger(spec, car, speed)
+        driver = LaneChanger(course, car, speed)
         pilot = RunUp(speed, car.steering_ratio, driver, rolling=False)
         driven = yield Attempt(f"{speed:.1f} km/h", pilot, 180.0)
-        first_cone = driver.first_cone_m
-        clean = pilot.began_tick is not None and first_cone is not None
-        if clean and first_cone is not None and pilot.began_tick is not None:
-            driven = part(driven, pilot.began_tick - driven.first_tick)
-            driven = _from_cone(driven, first_cone)
-            clean = least_room_m(driven, course_of(spec.course, car.width_m), car) > 0.0
-        if clean:
-            low, best = speed, driven
+        if pilot.began_tick is None or driver.first_cone_m is None:
+            return undriven(f"{speed:.1f} km/h", speed)
+        test = _from_cone(part(driven, pilot.began_tick - driven.first_tick), driver.first_cone_m)
+        if least_room_m(test, course, car) > 0.0:
+            low, best = speed, test
         elif best is None:
             return Result({}, (), f"not clean at {speed:g} km/h, the lowest speed asked for")
         else:
             high = speed
-    return _result(spec, car, low, best)
+    return _result(course, car, low, best)
 
 
 def _from_cone(drive: Drive, first_cone_m: float) -> Drive:
@@ -200,8 +198,7 @@ def least_room_m(drive: Drive, course: Course, car: Platform) -> float:
     return least
 
 
-def _result(spec: DoubleLaneChange, car: Platform, speed_kmh: float, drive: Drive) -> Result:
-    course = course_of(spec.course, car.width_m)
+def _result(course: Course, car: Platform, speed_kmh: float, drive: Drive) -> Result:
     x, y = drive.column("vehicle.x_m"), drive.column("vehicle.y_m")
     entry = int(np.argmax(x + car.length_m - car.rear_overhang_m >= 0.0))
     exit_ = min(len(x) - 1, int(np.argmax(x >= course.lanes[-1].to_m)))

@@ -38,7 +38,7 @@ class SineWithDwell(Section, frozen=True, kw_only=True, tag_field="kind", tag="s
     speed_kmh: Kmh = 80.0
     frequency_hz: Annotated[float, Meta(ge=0.1, le=3.0)] = 0.7
     dwell_s: Annotated[float, Meta(ge=0.0, le=2.0)] = 0.5
-    factors: Annotated[tuple[float, ...], Meta(min_length=1, max_length=30)] = (1.5, 2.5, 3.5, 4.5, 5.0, 5.5, 6.0, 6.5)
+    factors: Annotated[tuple[float, ...], Meta(min_length=1, max_length=30)] = tuple(0.5 * n for n in range(3, 14))
     final_hand_wheel_deg: HandDeg = 270.0
     without_factor: Annotated[float, Meta(ge=0.5, le=10.0)] = 6.5
 
