@@ -17,7 +17,7 @@ LEARNING_PER_M: Final = 0.1
 NEAR_MPS: Final = 3.0
 """Only this near to the wanted speed does the foot learn what holds it."""
 
-# The driver of tests/vehicle/test_car_aids.py: towards the line, with the yaw rate against overdoing it.
+# Back to the line: by where the car will be a moment on, its heading, and its yaw rate against overdoing it.
 LINE_GAIN_RADPM: Final = 0.12
 LINE_AHEAD_M: Final = 1.3
 HEADING_GAIN: Final = 0.9
