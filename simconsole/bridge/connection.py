@@ -23,6 +23,8 @@ from simconsole.profiles.bridge import BridgeProfile
 
 UNSENT_BYTES: Final = 262_144
 """Bytes taken out of a session's bounded queues beyond what the system's socket buffer holds."""
+CLOSE_S: Final = 1.0
+"""How long a client may take to answer a good-bye."""
 
 _logger = logging.getLogger("simconsole.bridge.lockstep")
 
@@ -63,6 +65,7 @@ class Connection:
         self._liveness = Liveness(profile.ping_interval_s, profile.dead_after_s)
         self._liveness.begin(time.monotonic())
         self._unsent = bytearray()
+        self._closing_since_s: float | None = None
         self._ending = False
 
     @property
@@ -122,7 +125,11 @@ class Connection:
     def look(self) -> None:
         """Ask a quiet client for a sign of life; close one whose machine is gone."""
         now_s = time.monotonic()
-        if self._liveness.is_dead(now_s) and is_unacknowledged(self.socket):
+        if self._web.close_sent is not None:
+            self._closing_since_s = self._closing_since_s or now_s
+            if now_s - self._closing_since_s > CLOSE_S:
+                self.close()
+        elif self._liveness.is_dead(now_s) and is_unacknowledged(self.socket):
             self.close()
         elif self.is_open and self._liveness.ping_due(now_s):
             self._web.send_ping(b"")
@@ -188,6 +195,8 @@ class Connection:
             if self._ending and not self._unsent:
                 self._ending = False
                 self.socket.shutdown(socket.SHUT_WR)
+            if self._web.close_rcvd is not None and not self._unsent:
+                self.close()  # both have said good-bye: the server ends the connection (RFC 6455, 7.1.1)
         except (BlockingIOError, InterruptedError):
             return
         except OSError:

@@ -68,6 +68,8 @@ class _Peer(ServerConnection):
         """Note the time of whatever comes, pongs too."""
         self.liveness.heard(self._clock_ns() / NS_PER_S)
         super().data_received(data)
+        if self.protocol.close_rcvd is not None:
+            self.transport.close()  # both have said good-bye: the server ends the connection (RFC 6455, 7.1.1)
         if self.transport.get_write_buffer_size() > self._max_unsent_bytes:
             self.transport.abort()  # it sends pings without end and reads no answer
 
@@ -89,6 +91,7 @@ class _Client:
         self.connection = connection
         self.ready = asyncio.Event()
         self.sending_since_ns: int | None = None
+        self.closing_since_ns: int | None = None
 
 
 class BridgeServer:
@@ -175,7 +178,13 @@ class BridgeServer:
         server, self._server = self._server, None
         if server is not None:
             server.close()
-            await server.wait_closed()
+            try:
+                async with asyncio.timeout(2.0 * _CLOSE_S):
+                    await server.wait_closed()
+            except TimeoutError:  # somebody takes nothing, not even a good-bye
+                for client in self._clients.values():
+                    client.connection.transport.abort()
+                await server.wait_closed()
 
     def _join_ros2(self, loop: asyncio.AbstractEventLoop) -> None:
         from simconsole.bridge.ros2 import Ros2Link
@@ -275,6 +284,9 @@ class BridgeServer:
 
     def _why_cut(self, client: _Client, now_ns: int) -> str | None:
         peer, profile = client.connection, self._profile
+        if peer.state is not State.OPEN:
+            client.closing_since_ns = client.closing_since_ns or now_ns
+            return "does not close" if now_ns - client.closing_since_ns > _CLOSE_S * NS_PER_S else None
         overdue = peer.limit.overdue(now_ns)
         if overdue is not None:
             return f"sends too slowly: {overdue}"
@@ -284,7 +296,7 @@ class BridgeServer:
         # A program that is slow to answer is not a machine that is gone, which acknowledges nothing either.
         if peer.liveness.is_dead(now_s) and is_unacknowledged(peer.transport.get_extra_info("socket")):
             return f"has been gone for {profile.dead_after_s:g} s"
-        if peer.liveness.ping_due(now_s) and peer.state is State.OPEN:
+        if peer.liveness.ping_due(now_s):
             peer.protocol.send_ping(b"")
             peer.send_data()
         return None

@@ -23,7 +23,8 @@ ASSEMBLY_NS: Final = 2 * NS_PER_S
 """The longest that one message may be on its way once its first frame is here."""
 _BACKLOG: Final = 64
 _UNACKNOWLEDGED_AT: Final = 24
-"""Offset of tcpi_unacked in Linux' struct tcp_info."""
+_LAST_ACKNOWLEDGED_AT: Final = 56
+"""Offsets of tcpi_unacked and tcpi_last_ack_recv (ms) in Linux' struct tcp_info."""
 _LOGGED_REFUSALS: Final = 10
 _LOGGED_EVERY: Final = 1000
 
@@ -81,21 +82,22 @@ def is_data(frame: Frame) -> bool:
     return frame.opcode is Opcode.TEXT or frame.opcode is Opcode.CONT or frame.opcode is Opcode.BINARY
 
 
-def is_unacknowledged(sock: socket.socket) -> bool:
-    """Return whether segments are on their way that the other machine has not acknowledged.
+def is_unacknowledged(sock: socket.socket, patience_ms: int = 1000) -> bool:
+    """Return whether something was sent and the other machine has acknowledged nothing for `patience_ms`.
 
-    That tells a machine that is gone from a program that is slow, whose system still acknowledges. Where the system
-    does not say (Linux does), nobody who is silent is trusted.
+    That tells a machine that is gone from a program that is slow, whose system still acknowledges (within 200 ms).
+    Where the system does not say (Linux does), nobody who is silent is trusted.
     """
     option = getattr(socket, "TCP_INFO", None)
     if option is None:
         return True
     try:
-        state = sock.getsockopt(socket.IPPROTO_TCP, option, _UNACKNOWLEDGED_AT + 4)
+        state = sock.getsockopt(socket.IPPROTO_TCP, option, _LAST_ACKNOWLEDGED_AT + 4)
     except OSError:
         return True
     (count,) = struct.unpack_from("=I", state, _UNACKNOWLEDGED_AT)
-    return bool(count)
+    (since_ms,) = struct.unpack_from("=I", state, _LAST_ACKNOWLEDGED_AT)
+    return bool(count) and since_ms >= patience_ms
 
 
 def listen(host: str, port: int) -> socket.socket:

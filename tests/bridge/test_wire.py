@@ -66,7 +66,8 @@ def test_what_the_other_machine_has_not_acknowledged_is_known() -> None:
         assert not is_unacknowledged(server)
         go_deaf(client)
         server.sendall(b"x")
-        assert is_unacknowledged(server)
+        assert is_unacknowledged(server, 0)
+        assert not is_unacknowledged(server, 10**9)
     assert is_unacknowledged(server)
 
 

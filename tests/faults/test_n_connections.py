@@ -1,0 +1,306 @@
+"""N01, N04, N05, N06: connections that end, lose, delay, or are read by nobody; the others lose nothing."""
+
+import asyncio
+import json
+import socket
+import threading
+import time
+import tracemalloc
+from collections import deque
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from typing import Any
+
+import pytest
+from websockets.asyncio.client import ClientConnection, connect
+
+from simconsole.bridge.client import BridgeClient
+from simconsole.bridge.server import BridgeServer
+from simconsole.bridge.wire import is_unacknowledged
+from simconsole.profiles.bridge import BridgeLimits, BridgeProfile
+from simconsole.signals import Event
+from tests.bridge.networks import CLOSE, Raw, go_deaf, lose
+
+CONTROL = "/control/command/control_cmd"
+S = 10**9
+MIB = 1 << 20
+
+
+@asynccontextmanager
+async def served(
+    profile: BridgeProfile, clock_ns: Callable[[], int] = time.monotonic_ns
+) -> AsyncIterator[BridgeServer]:
+    server = BridgeServer(profile, clock_ns=clock_ns)
+    await server.start()
+    try:
+        yield server
+    finally:
+        await server.close()
+
+
+async def until(holds: Callable[[], bool]) -> None:
+    """Let the loop turn until something holds; the test's own time limit ends it otherwise."""
+    while not holds():
+        await asyncio.sleep(0.001)
+
+
+async def raw(server: BridgeServer, **options: Any) -> Raw:
+    return await asyncio.to_thread(Raw, server.port, **options)
+
+
+async def say(peer: ClientConnection, **operation: Any) -> None:
+    await peer.send(json.dumps(operation))
+
+
+@pytest.mark.parametrize("how", ["close", "reset", "half", "frame"])
+def test_n01_commander_that_closes_is_an_event_and_the_others_go_on(
+    serving: Callable[..., Any], snapshot: Callable[..., Any], control: Callable[..., Any], how: str
+) -> None:
+    server = serving(lease_ms=10_000.0, rates_hz={"/odom": 250.0})
+    with BridgeClient(server.url) as watcher:
+        watcher.subscribe("/odom", "nav_msgs/Odometry", queue_length=1000)
+        watcher.connect()
+        with Raw(server.port) as commander:
+            commander.say(op="publish", topic=CONTROL, msg=control(0.1))
+            assert server.command().road_wheel_rad == 0.1
+            if how == "reset":
+                commander.vanish()
+            elif how == "half":
+                commander.sock.shutdown(socket.SHUT_WR)
+            elif how == "frame":
+                commander.send(CLOSE, (1000).to_bytes(2))
+            else:
+                commander.sock.close()
+            assert server.events.get(timeout=10.0) == Event.COMMANDER_LOST
+        for tick in range(1, 51):
+            server.snapshots.put(snapshot(tick, x_m=float(tick)))
+            received = watcher.receive(10.0)
+            assert received is not None
+            assert received.message.pose.pose.position.x == tick
+        assert server.commands.empty()  # the last command stays what it was and grows old
+        with Raw(server.port) as successor:
+            successor.say(op="publish", topic=CONTROL, msg=control(0.2))
+            assert server.command().road_wheel_rad == 0.2
+
+
+@pytest.mark.parametrize("subscribed", [False, True])
+def test_n04_client_that_went_without_a_word_is_freed_after_three_seconds(
+    snapshot: Callable[..., Any], control: Callable[..., Any], subscribed: bool
+) -> None:
+    """The clock is ours; what the kernel knows of the other side is real."""
+    now_ns = 0
+
+    async def main() -> None:
+        nonlocal now_ns
+        async with served(BridgeProfile(port=0), lambda: now_ns) as server:
+            half = await raw(server)
+            alive = await connect(server.url)
+            await until(lambda: server.clients == 2)
+            half.say(op="publish", topic=CONTROL, msg=control())
+            if subscribed:
+                half.say(op="subscribe", topic="/odom")
+            await until(lambda: server.console.inputs.command.sequence == 1.0)
+            await until(lambda: not subscribed or server.console.router.wanted("/odom"))
+            await until(lambda: not is_unacknowledged(half.sock, 0))  # or it would go on sending
+            go_deaf(half.sock)
+            for step in range(1, 14):
+                now_ns = step * S // 4
+                server.publish(snapshot(step))
+                server.look()
+                pong = await alive.ping()
+                await pong
+                assert server.clients == 2 or now_ns >= 3 * S
+            while server.clients == 2:  # until the kernel, whose clock is its own, has missed it for a second
+                server.look()
+                await asyncio.sleep(0.01)
+            assert server.console.inputs.take(1)[1].events == 0.0  # its lease had ended long before
+            await alive.close()
+            half.sock.close()
+
+    asyncio.run(main())
+
+
+def test_n04_program_that_is_merely_slow_is_not_cut(control: Callable[..., Any]) -> None:
+    now_ns = 0
+
+    async def main() -> None:
+        nonlocal now_ns
+        async with served(BridgeProfile(port=0), lambda: now_ns) as server:
+            slow = await raw(server)
+            await until(lambda: server.clients == 1)
+            for second in range(1, 60):
+                now_ns = second * S
+                server.look()  # it is pinged, and its kernel has that; it is busy and answers nothing
+                await asyncio.sleep(0)
+            slow.say(op="publish", topic=CONTROL, msg=control())
+            await until(lambda: server.console.inputs.command.sequence == 1.0)
+            slow.sock.close()
+
+    asyncio.run(main())
+
+
+def test_n05_stalled_subscriber_costs_the_others_nothing_and_no_memory(
+    record_property: Callable[[str, object], None],
+) -> None:
+    """A thousand messages of 20 kB: the others get every one, the stalled one's 20 MB are not kept anywhere."""
+    messages, text = 1000, "x" * 20_000
+    limits = BridgeLimits(queued_bytes=MIB)
+
+    async def listen(server: BridgeServer, heard: list[int]) -> None:
+        async with connect(server.url) as peer:
+            await say(peer, op="subscribe", topic="/big", type="std_msgs/String", queue_length=1000)
+            heard.append(-1)
+            async for message in peer:
+                heard.append(int(json.loads(message)["msg"]["data"].split()[0]))
+                if len(heard) > messages:
+                    return
+
+    async def main() -> None:
+        async with served(BridgeProfile(port=0, limits=limits)) as server:
+            stalled = await raw(server, receive_bytes=4096)
+            stalled.say(op="subscribe", topic="/big", type="std_msgs/String", queue_length=1000)
+            heard: list[list[int]] = [[], [], []]
+            listeners = [asyncio.create_task(listen(server, each)) for each in heard]
+            topics = server.console.router.board
+            await until(lambda: (topic := topics.find("/big")) is not None and len(topic.subscribers) == 4)
+            session = server.console.router.sessions[0]
+            tracemalloc.start()
+            before, _ = tracemalloc.get_traced_memory()
+            most_queued = 0
+            async with connect(server.url) as talker:
+                for number in range(messages):
+                    await say(talker, op="publish", topic="/big", msg={"data": f"{number} {text}"})
+                    await until(lambda: all(len(each) > number + 1 for each in heard))  # noqa: B023  (ends here)
+                    most_queued = max(most_queued, session.outgoing.bytes)
+                await asyncio.gather(*listeners)
+                gained = tracemalloc.get_traced_memory()[1] - before
+                tracemalloc.stop()
+            assert heard == [[-1, *range(messages)]] * 3
+            assert most_queued <= MIB
+            dropped = session.outgoing.dropped
+            assert dropped > messages // 2
+            # What waits for it is the newest.
+            assert f'"{messages - 1} '.encode() in session.outlets["/big"].texts[-1]
+            assert gained < 10 * MIB
+            record_property(
+                "stalled subscriber",
+                f"others lost 0 of {messages}, memory grew by {gained / MIB:.1f} MB (bar 10), it lost {dropped}",
+            )
+        # It still read nothing, and the server has ended all the same.
+        stalled.sock.close()
+
+    asyncio.run(main())
+
+
+def test_n05_slow_reader_gets_the_newest(serving: Callable[..., Any]) -> None:
+    server = serving(limits=BridgeLimits(queued_bytes=65_536))
+    with Raw(server.port, receive_bytes=4096) as slow, Raw(server.port) as talker:
+        slow.say(op="subscribe", topic="/big", type="std_msgs/String")
+        slow.say(op="no_such")
+        assert slow.receive() is not None
+        for number in range(2000):
+            talker.say(op="publish", topic="/big", msg={"data": f"{number} " + "x" * 10_000}, type="std_msgs/String")
+        talker.say(op="no_such")
+        assert talker.receive() is not None
+        newest, gaps = -1, 0
+        while newest < 1999:
+            received = slow.receive()
+            assert received is not None
+            operation = json.loads(received[1])
+            if operation["op"] == "publish":
+                number = int(operation["msg"]["data"].split()[0])
+                assert number > newest
+                gaps += number > newest + 1
+                newest = number
+        assert gaps
+
+
+class Chaos:
+    """A wire that takes its time: everything is passed on after a delay, and not faster than a rate."""
+
+    def __init__(self, port: int, delay_s: float, bytes_per_s: float) -> None:
+        self._delay_s, self._bytes_per_s = delay_s, bytes_per_s
+        self._listener = socket.create_server(("127.0.0.1", 0))
+        self.port = int(self._listener.getsockname()[1])
+        self._target = port
+        self._ends: tuple[socket.socket, ...] = ()
+        self._threads = [threading.Thread(target=self._accept)]
+        self._threads[0].start()
+
+    def _accept(self) -> None:
+        near, _ = self._listener.accept()
+        far = socket.create_connection(("127.0.0.1", self._target))
+        self._ends = (near, far)
+        for source, sink in ((near, far), (far, near)):
+            waiting: deque[tuple[float, bytes]] = deque()
+            arrived = threading.Semaphore(0)
+            for work in (self._take, self._pass_on):
+                thread = threading.Thread(target=work, args=(source, sink, waiting, arrived))
+                self._threads.append(thread)
+                thread.start()
+
+    def _take(self, source: socket.socket, sink: socket.socket, waiting: Any, arrived: threading.Semaphore) -> None:
+        data = b"x"
+        while data:
+            try:
+                data = source.recv(1500)
+            except OSError:
+                data = b""
+            waiting.append((time.monotonic() + self._delay_s, data))
+            arrived.release()
+
+    def _pass_on(self, source: socket.socket, sink: socket.socket, waiting: Any, arrived: threading.Semaphore) -> None:
+        while True:
+            arrived.acquire()
+            due_s, data = waiting.popleft()
+            time.sleep(max(0.0, due_s - time.monotonic()) + len(data) / self._bytes_per_s)
+            if not data:
+                sink.close()
+                return
+            try:
+                sink.sendall(data)
+            except OSError:
+                return
+
+    def stop(self) -> None:
+        self._listener.close()
+        for thread in self._threads:
+            thread.join(timeout=10.0)
+            assert not thread.is_alive()
+        for end in self._ends:
+            end.close()
+
+
+@pytest.mark.parametrize("network", ["lossy", "slow"])
+def test_n06_commands_over_a_bad_network_arrive_in_order_or_not_at_all(
+    serving: Callable[..., Any], snapshot: Callable[..., Any], control: Callable[..., Any], network: str
+) -> None:
+    """30 % of the packets to the client lost, acknowledgements too, or 200 ms each way at 1 Mbit/s."""
+    server = serving(rates_hz={"/odom": 250.0}, lease_ms=10_000.0)
+    chaos = Chaos(server.port, 0.2, 125_000.0) if network == "slow" else None
+    with BridgeClient(f"ws://127.0.0.1:{server.port if chaos is None else chaos.port}") as client:
+        client.subscribe("/odom", "nav_msgs/Odometry")
+        client.advertise(CONTROL, "autoware_control_msgs/Control")
+        client.connect()
+        if network == "lossy":
+            assert client._link._socket is not None
+            lose(client._link._socket, 0.3)
+        answered, tick = 0, 0
+        while answered < 10:
+            tick += 1
+            server.snapshots.put(snapshot(tick))
+            received = client.receive(0.05)
+            if received is not None:
+                stamp_ns = received.message.header.stamp.nanosec + received.message.header.stamp.sec * S
+                client.publish(CONTROL, control(answered / 100, stamp_ns=stamp_ns))
+                answered += 1
+        angles, sequences = [], []
+        while not angles or angles[-1] != 0.09:
+            command = server.command()
+            angles.append(command.road_wheel_rad)
+            sequences.append(command.sequence)
+        assert angles == sorted(set(angles))
+        assert sequences == list(range(1, 11))
+        assert client.connections == 1
+    if chaos is not None:
+        chaos.stop()
