@@ -195,6 +195,7 @@ def decide(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
         command_before,
         motor.explained_rad,
         motor.explained_radps,
+        WheelTorque(*take(previous, TORQUE_AT, TORQUE_WIDTH)).human_nm,
         control,
         tick_s,
     )

@@ -234,6 +234,7 @@ class ArbiterMemory(NamedTuple):
     speed_integral_mps2: float
     stop_accel_mps2: float  # deceleration that a safe stop asks for now (<= 0)
     hold_road_wheel_rad: float  # where a safe or emergency stop holds the wheels
+    shared_trade: float  # -1: the person has pushed the controller away, 1: it has its full share
 
 
 class Link(NamedTuple):
@@ -267,6 +268,7 @@ class Arbitration(NamedTuple):
     remote_throttle: float
     remote_brake: float
     takeover_stage: float  # 0 none, 1 asked, 2 escalated
+    remote_guidance: float  # the remote side's authority over the wheel's motor while control is shared, 0 to 1
     commander: float  # `Commander`: whose commands are the remote side's
     ros_road_wheel_rad: float  # what the ROS side asks for, whether it commands or not
     ros_throttle: float

@@ -12,11 +12,13 @@ from simconsole.control.commander import Controllers, look
 from simconsole.control.decision import Decision, decide, takeover_stage
 from simconsole.control.moment import Moment
 from simconsole.control.person import Person, person_of
+from simconsole.control.shared import consent
 from simconsole.control.stops import slow
 from simconsole.control.takeover import WheelWatch, steering_taken, throttle_overrides, watch_wheel
 from simconsole.kernels import kernel
 from simconsole.signals import ArbiterMemory, Arbitration, Link, Mode, Request
 
+_SHARED: Final = float(Mode.SHARED)
 _AUTONOMOUS: Final = float(Mode.AUTONOMOUS)
 _TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)
 _MINIMAL_RISK: Final = float(Mode.MINIMAL_RISK)
@@ -50,11 +52,12 @@ def arbitrate(now: Moment) -> tuple[ArbiterMemory, Link, Link, Arbitration, Requ
         seen.standstill_ticks >= now.settings.standstill_ticks,
     )
     mode_ticks = 0.0 if decision.changed > 0.0 else now.memory.mode_ticks + 1.0
-    shares = shares_of(decision.mode, seen.throttle_override, now.before, now.settings)
+    shared = consent(now, seen.person.road_wheel_rad, controllers.offered.road_wheel_rad)
+    shares = shares_of(decision.mode, seen.throttle_override, shared.lateral, now.before, now.settings)
     side = remote_side(now, decision, shares, controllers.offered, controllers.link, seen.person)
     transmission = transmission_of(now, decision.mode, side.direction)
     return (
-        _remembered(seen, decision, side, mode_ticks),
+        _remembered(seen, decision, side, mode_ticks, shared.trade),
         controllers.ros_link,
         controllers.ecu_link,
         _shown(
@@ -92,7 +95,7 @@ def _see(now: Moment) -> Seen:
 
 
 @kernel
-def _remembered(seen: Seen, decision: Decision, side: RemoteSide, mode_ticks: float) -> ArbiterMemory:
+def _remembered(seen: Seen, decision: Decision, side: RemoteSide, mode_ticks: float, trade: float) -> ArbiterMemory:
     return ArbiterMemory(
         mode_ticks,
         seen.watch.reference_rad,
@@ -103,6 +106,7 @@ def _remembered(seen: Seen, decision: Decision, side: RemoteSide, mode_ticks: fl
         side.speed_integral_mps2,
         side.stop_accel_mps2,
         side.hold_road_wheel_rad,
+        trade if decision.mode == _SHARED else 1.0,
     )
 
 
@@ -123,6 +127,7 @@ def _shown(
         side.throttle,
         side.brake,
         stage,
+        shares.guidance,
         controllers.commander,
         controllers.ros_offered.road_wheel_rad,
         controllers.ros_offered.throttle,

@@ -27,6 +27,7 @@ class Shares(NamedTuple):
 
     lateral: float
     longitudinal: float
+    guidance: float  # over the wheel's motor in SHARED
 
 
 class RemoteSide(NamedTuple):
@@ -50,22 +51,36 @@ class Transmission(NamedTuple):
 
 
 @kernel
-def shares_of(mode: float, throttle_override: float, before: Arbitration, settings: ControlSettings) -> Shares:
-    """Move authority by at most one step of the fade; the console's own stops have it at once: they start bumpless."""
+def shares_of(
+    mode: float, throttle_override: float, shared_lateral: float, before: Arbitration, settings: ControlSettings
+) -> Shares:
+    """Move authority by at most one step of the fade; the console's own stops have it at once: they start bumpless.
+
+    Args:
+        mode: Of this tick.
+        throttle_override: 1 while the person's accelerator overrides.
+        shared_lateral: What the rule for SHARED gives the controller now.
+        before: Authority of the tick before.
+        settings: Of this drive.
+    """
+    guidance = 0.0
     if mode == _MANUAL:
         lateral = 0.0
         longitudinal = 0.0
     elif mode == _SHARED:
-        lateral = settings.shared_lateral
+        lateral = 0.0 if settings.shared_haptic > 0.0 else shared_lateral
+        guidance = shared_lateral
         longitudinal = settings.shared_longitudinal
     elif mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED):
         lateral = 1.0
         longitudinal = 1.0 - throttle_override
     else:
-        return Shares(1.0, 1.0)
+        return Shares(1.0, 1.0, 0.0)
     step = settings.fade_per_tick
     return Shares(
-        approach(before.remote_lateral, lateral, step), approach(before.remote_longitudinal, longitudinal, step)
+        approach(before.remote_lateral, lateral, step),
+        approach(before.remote_longitudinal, longitudinal, step),
+        approach(before.remote_guidance, guidance, step),
     )
 
 

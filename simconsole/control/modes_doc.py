@@ -19,7 +19,7 @@ _AUTHORITY = """## What each mode does
 |---|---|---|---|
 | PARKED | held | brake and handbrake on | neutral |
 | MANUAL | person | person | person; after autonomy the car until the person's clutch is pressed |
-| SHARED | blended, fixed authority | blended, fixed authority | person, or the car if the controller has a share |
+| SHARED | both: blended, or haptic | blended, fixed authority | person, or the car if the controller has a share |
 | AUTONOMOUS | controller | controller; person while the accelerator is pressed | car |
 | TAKEOVER_REQUESTED | as AUTONOMOUS; escalates after 4 s, MINIMAL_RISK after 10 s | as AUTONOMOUS | car |
 | MINIMAL_RISK | last angle, slowly to straight | 2.5 m/s2 reached with 1.5 m/s3, at most 4 m/s2 | car |
@@ -29,6 +29,21 @@ _AUTHORITY = """## What each mode does
 The person's brake counts in full in every mode, and the brake always beats the throttle. Authority moves from one side
 to the other over 0.6 s, starting from the command in force. Every figure is a setting of
 `simconsole/profiles/control.py`, with its source.
+
+## Authority over steering in SHARED
+
+`shared_authority` of the profile says how much the controller has; it never moves faster than the fade.
+
+| rule | authority of the controller |
+|---|---|
+| fixed | `shared_lateral` |
+| line_crossing | `shared_lateral` down to 2 s before the lane would be left, `shared_lateral_urgent` at 0.8 s |
+| traded | `shared_lateral`; none after a second of pushing against it with 1.5 N m, and back in a second of peace |
+
+The time to line crossing is that of the person's steering against the line that the controller steers: two arcs that
+part by `shared_line_margin_m`. `shared_steering` says what authority is over: `blended` weighs the two angles (the
+weights sum to one) and guides the hands through the motor as well; `haptic` acts through the motor alone, and the road
+wheels follow the hand wheel.
 
 ## What the last gate lets pass
 

@@ -30,5 +30,6 @@ class Moment(NamedTuple):
     command_before: VehicleCommand  # what left the gate in the tick before: hand-overs and stops start from it
     explained_rad: float  # how far the wheel's motor alone has moved it since engagement; 0 without a motor
     explained_radps: float  # how fast
+    human_nm: float  # the person's torque at the rim, estimated; 0 without a motor
     settings: ControlSettings
     tick_s: float

@@ -1,11 +1,13 @@
 """The arbitration's settings in SI and ticks, as floats for the kernels; the figures' sources: profiles/control.py."""
 
 import math
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from simconsole.profiles.control import ControlProfile
 from simconsole.signals import Commander
 from simconsole.units import RAD_PER_DEG
+
+SHARED_RULES: Final = ("fixed", "line_crossing", "traded")
 
 
 class ControlSettings(NamedTuple):
@@ -52,7 +54,15 @@ class ControlSettings(NamedTuple):
     engage_road_wheel_deviation_rad: float
     engage_deviation_speed_mps: float
     # Shared control.
+    shared_rule: float  # 0 fixed, 1 by time to line crossing, 2 traded
+    shared_haptic: float  # 1: the controller acts through the wheel's motor alone, 0: its angle is blended too
     shared_lateral: float
+    shared_lateral_most: float
+    shared_line_margin_m: float
+    shared_line_calm_s: float
+    shared_line_urgent_s: float
+    shared_trade_nm: float
+    shared_trade_per_tick: float
     shared_longitudinal: float
     # Speed and acceleration commands to pedals.
     accel_max_mps2: float
@@ -121,6 +131,11 @@ def settings(
         standstill_ticks=_at_least(profile.standstill_s, tick_hz),
         engage_stable_ticks=_at_least(profile.engage_stable_s, tick_hz),
         reengage_stable_ticks=_at_least(profile.reengage_stable_s, tick_hz),
+        shared_rule=float(SHARED_RULES.index(profile.shared_authority)),
+        shared_haptic=float(profile.shared_steering == "haptic"),
+        shared_lateral_most=max(profile.shared_lateral, profile.shared_lateral_urgent),
+        shared_line_calm_s=profile.shared_line_urgent_s + profile.shared_line_span_s,
+        shared_trade_per_tick=2.0 / _at_least(profile.shared_trade_s, tick_hz),
         manual_road_wheel_radps=profile.manual_hand_wheel_rate_degps * RAD_PER_DEG / steering_ratio,
         automatic_road_wheel_rad=min(profile.automatic_road_wheel_max_rad, lock_rad),
         automatic_road_wheel_radps=profile.automatic_road_wheel_rate_radps,

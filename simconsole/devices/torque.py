@@ -217,7 +217,7 @@ def wheel_torque(
     ramp = approach(before.ramp, 1.0, force.ramp_per_tick) if enabled else 0.0
     torque = WheelTorque(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, felt.human_nm, felt.hands_on)
     if enabled:
-        guided = arbitration.remote_lateral if mode == _SHARED else 0.0
+        guided = arbitration.remote_guidance if mode == _SHARED else 0.0
         parts = compose(follows, target, rim, vehicle, asked, guided, force)
         raw_nm = parts.car_nm + parts.servo_nm + parts.guide_nm + parts.feel_nm
         wished_nm = ramp * soft_clip(raw_nm, force)

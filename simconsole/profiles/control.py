@@ -4,7 +4,7 @@ Every default names its source. Abbreviations: R157 is UN Regulation 157 (automa
 vehicle_cmd_gate, operation_mode_transition_manager and autoware_mrm_* parameters, OD is commaai/opendbc's safety layer.
 """
 
-from typing import Annotated, TypeAlias
+from typing import Annotated, Literal, TypeAlias
 
 import msgspec
 
@@ -62,8 +62,18 @@ class ControlProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_f
     engage_road_wheel_deviation_rad: Annotated[float, msgspec.Meta(gt=0.0, le=2.0)] = 0.35
     engage_deviation_speed_mps: Annotated[float, msgspec.Meta(ge=0.0, le=20.0)] = 1.0  # slower: wheels may stand anyhow
 
-    # Shared control with fixed authority of the remote side.
-    shared_lateral: Fraction = 0.5
+    # Shared control: how much authority the remote side has over steering, and what it acts upon.
+    shared_authority: Literal["fixed", "line_crossing", "traded"] = "fixed"
+    shared_steering: Literal["blended", "haptic"] = "blended"  # haptic: by the wheel's motor alone, which it then needs
+    shared_lateral: Fraction = 0.5  # fixed; line_crossing: while calm; traded: while nobody pushes against it
+    shared_lateral_urgent: Fraction = 0.9  # line_crossing: when urgent
+    shared_line_margin_m: Annotated[float, msgspec.Meta(gt=0.0, le=5.0)] = 0.75  # each side: 3.25 m lane, 1.75 m car
+    shared_line_urgent_s: Annotated[float, msgspec.Meta(ge=0.1, le=5.0)] = 0.8  # to crossing; drivers correct at ~1 s
+    shared_line_span_s: Annotated[float, msgspec.Meta(ge=0.1, le=10.0)] = 1.2  # above that: calm from 2 s
+    shared_trade_nm: Annotated[float, msgspec.Meta(ge=0.2, le=10.0)] = (
+        1.5  # pushing against it means it; JOAN: a threshold
+    )
+    shared_trade_s: Annotated[float, msgspec.Meta(ge=0.1, le=10.0)] = 1.0  # from full share to none
     shared_longitudinal: Fraction = 0.0
 
     # Speed and acceleration commands to pedals.

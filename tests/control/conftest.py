@@ -73,6 +73,7 @@ class Rig:
         self.arbitration = Arbitration(*(0.0,) * len(Arbitration._fields))
         self.command = COMMAND
         self.request: Request | None = None
+        self.human_nm = 0.0
         self.ticks = 0
 
     @property
@@ -113,6 +114,7 @@ class Rig:
                 self.command,
                 0.0,
                 0.0,
+                self.human_nm,
                 self.settings,
                 self.tick_s,
             )

@@ -245,16 +245,18 @@ def test_toggling_at_50_hz_never_jumps_and_never_locks_up(make_rig: MakeRig) -> 
     rig.driver = rig.driver._replace(hand_wheel_rad=-1.0)
     rig.run(1.0)
     limit = rig.settings.manual_road_wheel_radps * rig.tick_s
+    pedal = rig.settings.manual_pedal_slew_per_s * rig.tick_s
     seen = set()
-    for count in range(500):
+    for tick in range(2500):
         before = rig.command
-        rig.tick(Event.REQUEST_AUTONOMOUS if count % 2 else Event.REQUEST_MANUAL)
-        assert abs(rig.command.road_wheel_rad - before.road_wheel_rad) <= limit + 1e-12
+        toggle = Event.REQUEST_MANUAL if tick % 10 == 0 else Event.REQUEST_AUTONOMOUS
+        rig.tick(toggle if tick % 5 == 0 else 0)
         seen.add(rig.mode)
-        for _ in range(4):
-            before = rig.command
-            rig.tick()
-            assert abs(rig.command.road_wheel_rad - before.road_wheel_rad) <= limit + 1e-12
+        assert abs(rig.command.road_wheel_rad - before.road_wheel_rad) <= limit + 1e-12
+        for name in ("throttle", "brake", "clutch", "handbrake"):
+            assert abs(getattr(rig.command, name) - getattr(before, name)) <= pedal + 1e-12
+        target_step = rig.settings.target_accel_mps2 * rig.tick_s
+        assert abs(rig.command.target_speed_mps - before.target_speed_mps) <= target_step + 1e-12
     assert seen == {Mode.MANUAL, Mode.AUTONOMOUS}
     rig.tick(Event.REQUEST_MANUAL)
     rig.run(0.7)

@@ -49,7 +49,8 @@ VEHICLE_AT: Final = REMOTE_AT + REMOTE_WIDTH
 EVENT_AT: Final = VEHICLE_AT + VEHICLE_WIDTH
 ECU_EVENT_AT: Final = EVENT_AT + 1
 ECU_AT: Final = ECU_EVENT_AT + 1
-INPUT_WIDTH: Final = ECU_AT + REMOTE_WIDTH
+HUMAN_AT: Final = ECU_AT + REMOTE_WIDTH
+INPUT_WIDTH: Final = HUMAN_AT + 1
 ROS_LINK_AT: Final = MEMORY_WIDTH
 ECU_LINK_AT: Final = ROS_LINK_AT + LINK_WIDTH
 ARBITRATION_AT: Final = ECU_LINK_AT + LINK_WIDTH
@@ -59,7 +60,7 @@ OUTPUT_WIDTH: Final = SPEED_AT + 1
 VX: Final = VEHICLE_AT + VehicleState._fields.index("vx_mps")
 COLUMNS: Final = (
     *DriverInput._fields, *RemoteCommand._fields, *VehicleState._fields, "events", "ecu_events",
-    *(f"ecu_{name}" for name in RemoteCommand._fields),
+    *(f"ecu_{name}" for name in RemoteCommand._fields), "human_nm",
 )  # fmt: skip
 KEEP_SPEED: Final = 12345.0
 """In the column of vx: the speed follows from the pedals. Anything else is what the vehicle reports."""
@@ -101,6 +102,7 @@ def drive(inputs: Row, outputs: Row, row: Row, tick_s: float) -> None:
             command,
             0.0,
             0.0,
+            given[HUMAN_AT],
             s,
             tick_s,
         )
@@ -194,6 +196,7 @@ def random_inputs(rng: np.random.Generator, steps: int, stale_ticks: float) -> R
     weights = np.array([OFTEN.get(event, 1.0) for event in Event])
     bits = rng.choice(np.array(list(Event), dtype=float), steps, p=weights / weights.sum())
     put_column("events", np.where(rng.random(steps) < 0.02, bits, 0.0))
+    put_column("human_nm", lasting(rng, steps, 200, np.array([0.0, 1.0, 3.0, -3.0])))
     nasty = np.array([np.nan, np.inf, -np.inf, 1e308, -1e308, -0.0, 5e-324, 1e9, -1.0, 0.5])
     hit = np.flatnonzero(rng.random(steps) < 0.001)
     inputs[hit, rng.integers(EVENT_AT, size=len(hit))] = rng.choice(nasty, len(hit))
@@ -244,6 +247,8 @@ def long_drive(request: pytest.FixtureRequest) -> Drive:
         "reengage_stable_s": 30 / request.param,
         "fade_s": 60 / request.param,
         "engage_lateral_accel_mps2": 2.0,
+        "shared_authority": {50: "fixed", 250: "line_crossing", 1000: "traded"}[request.param],
+        "shared_steering": "haptic" if request.param == 50 else "blended",
     }
     return random_drive(request.param, SEED + request.param, STEPS, **short)
 
@@ -271,9 +276,21 @@ def test_every_output_is_finite_and_in_its_range(long_drive: Drive) -> None:
     assert set(long_drive.of(VehicleCommand, "gear")) <= {float(gear) for gear in range(-1, 8)}
     assert set(long_drive.of(VehicleCommand, "automatic")) <= {0.0, 1.0}
     assert (np.abs(long_drive.of(VehicleCommand, "target_speed_mps")) <= s.target_speed_max_mps).all()
-    for name in ("remote_lateral", "remote_longitudinal"):
+    for name in ("remote_lateral", "remote_longitudinal", "remote_guidance"):
         share = long_drive.of(Arbitration, name)
         assert ((share >= 0.0) & (share <= 1.0)).all()
+
+
+def test_steering_is_the_weighted_sum_of_both_sides_and_the_weights_sum_to_one(long_drive: Drive) -> None:
+    """Where the gate changes nothing, the command is person + share * (remote - person), in every mode."""
+    free = long_drive.of(VehicleCommand, "gate_active") == 0.0
+    share = long_drive.of(Arbitration, "remote_lateral")
+    person, remote = (long_drive.of(Arbitration, f"{side}_road_wheel_rad") for side in ("person", "remote"))
+    error = long_drive.of(VehicleCommand, "road_wheel_rad") - (person + share * (remote - person))
+    shared = free & (long_drive.modes == Mode.SHARED)
+    assert shared.sum() > 1000
+    assert len(set(long_drive.of(Arbitration, "remote_guidance")[shared])) > 20
+    assert np.abs(error[free]).max() < 1e-12
 
 
 def test_never_more_than_one_rate_step(long_drive: Drive) -> None:
@@ -384,7 +401,7 @@ def test_from_every_mode_a_person_gets_back_to_manual(long_drive: Drive) -> None
                 happened = EventInput(float(event))
                 now = Moment(
                     driver, remote, remote, happened, vehicle, memory, ros_link, ecu_link, arbitration, command,
-                    0.0, 0.0, s, long_drive.tick_s,
+                    0.0, 0.0, 0.0, s, long_drive.tick_s,
                 )  # fmt: skip
                 memory, ros_link, ecu_link, arbitration, request = arbitrate(now)
                 command = gate(request, remote, arbitration, command, vehicle, s, long_drive.tick_s)

@@ -47,7 +47,7 @@ class Motor:
         remote: tuple[float, float] = (0.0, 0.0),
     ) -> WheelTorque:
         arbitration = Arbitration(*(0.0,) * len(Arbitration._fields))._replace(
-            mode=mode, remote_road_wheel_rad=remote[0], remote_lateral=remote[1]
+            mode=mode, remote_road_wheel_rad=remote[0], remote_guidance=remote[1]
         )
         watching = mode in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED, Mode.MINIMAL_RISK)
         for _ in range(ticks):

@@ -1,0 +1,90 @@
+"""How much authority the controller has over steering while control is shared: fixed, by danger, or by consent.
+
+Fixed: the profile's share. By time to line crossing: more, the sooner the person's steering would leave the lane
+(adaptive haptic authority: Zwaan, Petermeijer, Abbink 2019). Traded: less, for as long as the person pushes against the
+controller (traded control after the method of tud-hri/joan: a torque threshold and an integrated, smoothed state).
+"""
+
+import math
+from typing import Final, NamedTuple
+
+from simconsole.control.longitudinal import known
+from simconsole.control.moment import Moment
+from simconsole.control.settings import ControlSettings
+from simconsole.kernels import clip, kernel
+from simconsole.signals import VehicleState
+from simconsole.trigonometry import cos, sin
+
+BY_LINE_CROSSING: Final = 1.0
+TRADED: Final = 2.0
+NEVER_S: Final = 100.0
+_MOST_MPS: Final = 100.0
+_LEAST_CURVATURE_1PM: Final = 1e-6
+_MOST_RAD: Final = 1.5
+_MOST_NM: Final = 100.0
+
+
+class Consent(NamedTuple):
+    """The controller's authority over steering in SHARED, and the state of the trade: -1 the person has it, 1 not."""
+
+    lateral: float
+    trade: float
+
+
+@kernel
+def time_to_crossing(person_rad: float, remote_rad: float, vehicle: VehicleState, settings: ControlSettings) -> float:
+    """Return in how many s the person's steering would leave the lane whose middle the controller follows, at most 100.
+
+    Both as constant curvatures tan(angle) / wheelbase from here: they are 1/2 (difference) speed^2 t^2 apart after t.
+    """
+    speed = clip(known(vehicle.vx_mps, 0.0), -_MOST_MPS, _MOST_MPS)
+    apart = abs(_curvature(person_rad, settings) - _curvature(remote_rad, settings)) * speed * speed
+    if apart <= _LEAST_CURVATURE_1PM:
+        return NEVER_S
+    square = 2.0 * settings.shared_line_margin_m / apart
+    return math.sqrt(square) if square < NEVER_S * NEVER_S else NEVER_S
+
+
+@kernel
+def _curvature(road_wheel_rad: float, settings: ControlSettings) -> float:
+    angle = clip(road_wheel_rad, -_MOST_RAD, _MOST_RAD)
+    return sin(angle) / (cos(angle) * settings.wheelbase_m)
+
+
+@kernel
+def by_line_crossing(crossing_s: float, settings: ControlSettings) -> float:
+    """Return the authority for a time to line crossing: linear between calm (the fixed share) and urgent (the most)."""
+    span = settings.shared_line_calm_s - settings.shared_line_urgent_s
+    urgency = clip((settings.shared_line_calm_s - crossing_s) / span, 0.0, 1.0)
+    return settings.shared_lateral + urgency * (settings.shared_lateral_most - settings.shared_lateral)
+
+
+@kernel
+def traded(trade: float, human_nm: float, person_rad: float, remote_rad: float, settings: ControlSettings) -> float:
+    """Return the state of the trade after a tick: towards the person while they push away from the controller's angle.
+
+    Args:
+        trade: Of the tick before, -1 (the person's) to 1 (the controller's full share).
+        human_nm: The person's torque, estimated, left-positive.
+        person_rad: Where the person has the road wheels ...
+        remote_rad: ... and where the controller wants them.
+        settings: Threshold and rate.
+    """
+    against = human_nm if person_rad > remote_rad else -human_nm
+    step = settings.shared_trade_per_tick
+    return clip(trade - step if against >= settings.shared_trade_nm else trade + step, -1.0, 1.0)
+
+
+@kernel
+def consent(now: Moment, person_rad: float, remote_rad: float) -> Consent:
+    """Return the controller's authority over steering that the profile's rule gives in this tick; finite angles."""
+    settings = now.settings
+    if settings.shared_rule == BY_LINE_CROSSING:
+        crossing_s = time_to_crossing(person_rad, remote_rad, now.vehicle, settings)
+        return Consent(by_line_crossing(crossing_s, settings), 1.0)
+    if settings.shared_rule == TRADED:
+        human_nm = clip(known(now.human_nm, 0.0), -_MOST_NM, _MOST_NM)
+        trade = traded(now.memory.shared_trade, human_nm, person_rad, remote_rad, settings)
+        smooth = 0.5 + trade * (0.75 - 0.25 * trade * trade)
+        return Consent(settings.shared_lateral * smooth, trade)
+    return Consent(settings.shared_lateral, 1.0)
