@@ -11,7 +11,8 @@ import orjson
 from simconsole.bridge.access import Role
 from simconsole.bridge.board import Topic
 from simconsole.bridge.forms import Dialect
-from simconsole.bridge.messages.definition import Definition, FieldType
+from simconsole.bridge.messages.definition import FieldType
+from simconsole.bridge.messages.writing import full_text
 from simconsole.bridge.protocol import Router
 from simconsole.bridge.session import resolve_topic
 from simconsole.errors import BridgeError, RemoteProtocolError
@@ -22,7 +23,6 @@ MAX_PARAMETERS: Final = 256
 MAX_PARAMETER: Final = 16_384
 _DISTRO: Final = "jazzy"
 """The release whose message definitions the console speaks."""
-_RULE: Final = "=" * 80
 
 Fields = dict[str, Any]
 
@@ -75,7 +75,7 @@ class RosApi:
         return {"topics": [name for name, topic in self._router.topics.items() if topic.type == wanted]}
 
     def _topics_and_raw_types(self, args: Fields, dialect: Dialect) -> Fields:
-        texts = [self._full_text(topic.type) for topic in self._router.topics.values()]
+        texts = [full_text(self._registry.with_parts(topic.type)) for topic in self._router.topics.values()]
         return {**self._topics(args, dialect), "typedefs_full_text": texts}
 
     def _topic_type(self, args: Fields, dialect: Dialect) -> Fields:
@@ -166,17 +166,6 @@ class RosApi:
             raise RemoteProtocolError(f"service type {type_name[:80]} is not known here")
         return self._typedefs(full)
 
-    def _used(self, name: str) -> list[Definition]:
-        """Return a definition and all it is made of, each once, itself first."""
-        found: dict[str, Definition] = {}
-        waiting = [name]
-        while waiting:
-            current = waiting.pop(0)
-            if current not in found:
-                found[current] = self._registry.definition(current)
-                waiting += [field.type.base for field in found[current].fields if field.type.is_message]
-        return list(found.values())
-
     def _typedefs(self, name: str) -> list[Fields]:
         return [
             {
@@ -188,13 +177,8 @@ class RosApi:
                 "constnames": list(definition.constants),
                 "constvalues": [str(value) for value in definition.constants.values()],
             }
-            for definition in self._used(name)
+            for definition in self._registry.with_parts(name)
         ]
-
-    def _full_text(self, name: str) -> str:
-        first, *others = self._used(name)
-        parts = [f"{_RULE}\nMSG: {_spelled(other.name, 'ros1')}\n{_text(other)}" for other in others]
-        return "".join([_text(first), *parts])
 
     def _get_param(self, args: Fields, dialect: Dialect) -> Fields:
         return {"value": self._parameters.get(args["name"]) or args["default_value"] or args["default"] or "null"}
@@ -249,22 +233,3 @@ def _example(kind: FieldType) -> str:
     if kind.is_message:
         return "{}"
     return {"bool": "False", "string": "", "wstring": "", "float32": "0.0", "float64": "0.0"}.get(kind.base, "0")
-
-
-def _text(definition: Definition) -> str:
-    """Return a definition as `.msg` text; of a constant only the value is known, its type is the narrowest usual."""
-    lines = [f"{_constant_type(value)} {name}={value}" for name, value in definition.constants.items()]
-    for field in definition.fields:
-        kind = field.type
-        limit = f"<={kind.string_limit}" if kind.string_limit else ""
-        size = {"": "", "fixed": f"[{kind.size}]", "bounded": f"[<={kind.size}]", "unbounded": "[]"}[kind.array]
-        lines.append(f"{_spelled(kind.base, 'ros1')}{limit}{size} {field.name}")
-    return "".join(f"{line}\n" for line in lines)
-
-
-def _constant_type(value: Any) -> str:
-    if isinstance(value, bool):
-        return "bool"
-    if isinstance(value, int):
-        return "uint8" if 0 <= value <= 255 else "int64"
-    return "float64" if isinstance(value, float) else "string"

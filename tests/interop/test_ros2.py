@@ -1,20 +1,14 @@
 """A real ROS 2, rclpy over DDS on loopback, meets the console with no rosbridge_server between."""
 
 import json
-import socket
-import subprocess
-import threading
-import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 import pytest
-from websockets.sync.client import ClientConnection, connect
 
 from simconsole.cli import main
-from tests.interop.ros2 import HERE, environment, needs_ros2, program
+from tests.interop.programs import HERE, Client, client, console, program
+from tests.interop.ros2 import PYTHON, domain, needs_ros2
 
 pytestmark = needs_ros2
 
@@ -46,13 +40,13 @@ SUCCEEDED, CANCELED = 4, 5
 def test_an_rclpy_node_drives_for_a_minute(tmp_path: Path, record_property: Callable[[str, object], None]) -> None:
     profile, bundle = tmp_path / "session.yaml", tmp_path / "bundle"
     profile.write_text(SESSION)
-    around = environment()
-    words = ["-m", "simconsole", "drive", str(profile), "--out", str(bundle), "--json"]
-    with program(around, *words) as console, program(around, str(HERE / "rclpy_driver.py"), "60") as driver:
+    around = domain()
+    words = [PYTHON, "-m", "simconsole", "drive", str(profile), "--out", str(bundle), "--json"]
+    with program(around, *words) as drive, program(around, PYTHON, str(HERE / "rclpy_driver.py"), "60") as driver:
         told, complaint = driver.communicate(timeout=60.0)
         assert driver.returncode == 0, complaint
-        output, complaint = console.communicate(timeout=60.0)
-        assert console.returncode == 0, complaint
+        output, complaint = drive.communicate(timeout=60.0)
+        assert drive.returncode == 0, complaint
     results, seen = json.loads(output.splitlines()[-1]), json.loads(told)
     assert (results["unanswered"], results["exchanges"]) == (0, 3000)
     assert seen["answers"] == 3000
@@ -64,66 +58,13 @@ def test_an_rclpy_node_drives_for_a_minute(tmp_path: Path, record_property: Call
     record_property("rclpy in lockstep", f"60 s driven in {seen['wall_s']:.1f} s, 50 Hz control over DDS")
 
 
-class Client:
-    """A rosbridge client, one text at a time."""
-
-    def __init__(self, web: ClientConnection) -> None:
-        self.web = web
-
-    def say(self, **operation: Any) -> None:
-        self.web.send(json.dumps(operation))
-
-    def hear(self, wanted: Callable[[dict[str, Any]], Any]) -> dict[str, Any]:
-        """The next operation that is wanted."""
-        while True:
-            heard: dict[str, Any] = json.loads(self.web.recv(timeout=20.0))
-            assert heard["op"] != "status", heard
-            if wanted(heard):
-                return heard
-
-    def message(self, topic: str) -> Any:
-        return self.hear(lambda heard: heard.get("topic") == topic)["msg"]
-
-
-def free_port() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        return int(listener.getsockname()[1])
-
-
-@contextmanager
-def serving(around: dict[str, str], *options: str) -> Iterator[tuple[str, "subprocess.Popen[str]"]]:
-    """`simconsole bridge serve --ros2`, and where it listens."""
-    port = free_port()
-    words = ["-m", "simconsole", "bridge", "serve", "--ros2", "--port", str(port), *options]
-    with program(around, *words) as console:
-        assert console.stdout is not None
-        assert str(port) in console.stdout.readline()
-        yield f"ws://127.0.0.1:{port}", console
-
-
-@contextmanager
-def client(url: str) -> Iterator[Client]:
-    """A client, as soon as the bridge listens."""
-    port = int(url.rpartition(":")[2])
-    pause = threading.Event()
-    deadline_s = time.monotonic() + 20.0
-    while True:
-        with socket.socket() as probe:
-            if not probe.connect_ex(("127.0.0.1", port)):
-                break
-        assert time.monotonic() < deadline_s, "the bridge does not listen"
-        pause.wait(0.05)
-    with connect(url, close_timeout=0.1) as web:
-        yield Client(web)
-
-
 @pytest.fixture(scope="module")
 def met() -> Iterator[Client]:
     """A rosbridge client of a console that has joined a graph with a peer in it."""
-    around = environment()
+    around = domain()
     with (
-        serving(around) as (url, _),
-        program(around, str(HERE / "rclpy_peer.py")) as peer,
+        console(PYTHON, around, "--ros2") as url,
+        program(around, PYTHON, str(HERE / "rclpy_peer.py")) as peer,
         client(url) as made,
     ):
         made.say(op="subscribe", topic="/ros/says", type="std_msgs/String", queue_length=100)
@@ -205,11 +146,11 @@ def test_services_and_actions_of_clients(met: Client) -> None:
 
 
 def test_a_node_commands_in_real_time_and_vanishes() -> None:
-    around = environment()
+    around = domain()
     with (
-        serving(around) as (url, _),
+        console(PYTHON, around, "--ros2") as url,
         client(url) as watcher,
-        program(around, str(HERE / "rclpy_driver.py"), "1e9") as driver,
+        program(around, PYTHON, str(HERE / "rclpy_driver.py"), "1e9") as driver,
     ):
         watcher.say(op="subscribe", topic="/vehicle/status/velocity_status")
         watcher.hear(lambda heard: heard["msg"]["longitudinal_velocity"] > 3.0)

@@ -71,11 +71,13 @@ class Field(NamedTuple):
 
 
 class Definition(NamedTuple):
-    """One message type: full name, fields in order, constants."""
+    """One message type: full name, fields in order, constants, and how each constant was written: type and text."""
 
     name: str
     fields: tuple[Field, ...]
     constants: dict[str, Any]
+    written: tuple[tuple[str, str, str], ...] = ()
+    """Type, name and value of each constant as in the text: what ROS 1 takes its hash of."""
 
 
 def full_name(name: str) -> str:
@@ -117,24 +119,33 @@ def parse(name: str, text: str) -> Definition:
     package = name.partition("/")[0]
     fields: list[Field] = []
     constants: dict[str, Any] = {}
+    written: list[tuple[str, str, str]] = []
     for number, line in enumerate(text.splitlines(), start=1):
         content = line.strip()
         if not content or content.startswith("#"):
             continue
         try:
-            _read_line(content, package, fields, constants)
+            _read_line(content, package, fields, constants, written)
         except ValueError as error:
             raise BridgeError(f"{name}: line {number}: {error}: {content[:80]!r}") from None
-    return Definition(name, tuple(fields), constants)
+    return Definition(name, tuple(fields), constants, tuple(written))
 
 
-def _read_line(content: str, package: str, fields: list[Field], constants: dict[str, Any]) -> None:
+def _read_line(
+    content: str,
+    package: str,
+    fields: list[Field],
+    constants: dict[str, Any],
+    written: list[tuple[str, str, str]],
+) -> None:
     match = _FIELD.fullmatch(content)
     if match is None:
         raise ValueError("not a field or constant")
     base, field_name, rest = match["base"], match["name"], match["rest"]
     if rest.startswith("=") and not match["array"]:
-        constants[field_name] = _value(base, rest[1:].strip())
+        text = rest[1:].strip()
+        constants[field_name] = _value(base, text)
+        written.append((base, field_name, text if base in STRINGS else text.partition("#")[0].strip()))
         return
     if any(field.name == field_name for field in fields):
         raise ValueError("field given twice")

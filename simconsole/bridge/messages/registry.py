@@ -102,6 +102,17 @@ class Registry:
         """Return the definition of a type. Raises BridgeError as `resolve`."""
         return self._definitions[self.resolve(name)]
 
+    def with_parts(self, name: str) -> list[Definition]:
+        """Return a definition and all it is made of, each once, itself first. Raises BridgeError as `resolve`."""
+        found: dict[str, Definition] = {}
+        waiting = [self.resolve(name)]
+        while waiting:
+            current = waiting.pop(0)
+            if current not in found:
+                found[current] = self.definition(current)
+                waiting += [field.type.base for field in found[current].fields if field.type.is_message]
+        return list(found.values())
+
     def struct(self, name: str) -> Any:
         """Return the generated class of a type; constants of the definition are class attributes.
 

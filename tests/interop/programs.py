@@ -1,0 +1,89 @@
+"""Programs beside a test: a console that serves rosbridge, a client of it, and whatever else takes part."""
+
+import json
+import os
+import socket
+import subprocess
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from websockets.sync.client import ClientConnection, connect
+
+HERE = Path(__file__).parent
+ROOT = HERE.parents[1]
+PATIENCE_S = 20.0
+
+
+def environment(**more: str) -> dict[str, str]:
+    """This one, with the package of this tree."""
+    return {**os.environ, "PYTHONPATH": str(ROOT), **more}
+
+
+@contextmanager
+def program(around: Mapping[str, str], *words: str) -> Iterator["subprocess.Popen[str]"]:
+    """A program; its end is the test's at the latest."""
+    with subprocess.Popen(
+        words, env=around, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as process:
+        try:
+            yield process
+        finally:
+            process.kill()
+            print(process.communicate()[1])  # pytest shows it where a test fails
+
+
+def free_port() -> int:
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        return int(listener.getsockname()[1])
+
+
+def wait_for_port(port: int) -> None:
+    """Wait until somebody listens there."""
+    pause = threading.Event()
+    deadline_s = time.monotonic() + PATIENCE_S
+    while True:
+        with socket.socket() as probe:
+            if not probe.connect_ex(("127.0.0.1", port)):
+                return
+        assert time.monotonic() < deadline_s, f"nobody listens on port {port}"
+        pause.wait(0.05)
+
+
+@contextmanager
+def console(python: str, around: Mapping[str, str], *options: str) -> Iterator[str]:
+    """`simconsole bridge serve`: where it listens."""
+    port = free_port()
+    with program(around, python, "-m", "simconsole", "bridge", "serve", "--port", str(port), *options):
+        wait_for_port(port)
+        yield f"ws://127.0.0.1:{port}"
+
+
+class Client:
+    """A rosbridge client, one text at a time."""
+
+    def __init__(self, web: ClientConnection) -> None:
+        self.web = web
+
+    def say(self, **operation: Any) -> None:
+        self.web.send(json.dumps(operation))
+
+    def hear(self, wanted: Callable[[dict[str, Any]], Any]) -> dict[str, Any]:
+        """The next operation that is wanted."""
+        while True:
+            heard: dict[str, Any] = json.loads(self.web.recv(timeout=PATIENCE_S))
+            assert heard["op"] != "status", heard
+            if wanted(heard):
+                return heard
+
+    def message(self, topic: str) -> Any:
+        return self.hear(lambda heard: heard.get("topic") == topic)["msg"]
+
+
+@contextmanager
+def client(url: str) -> Iterator[Client]:
+    with connect(url, close_timeout=0.1) as web:  # it may have stopped reading, and the server then waits to say bye
+        yield Client(web)
