@@ -10,11 +10,11 @@ from typing import Any
 
 sys.path.insert(0, sys.argv[1])
 
-import rospy  # noqa: E402  # found only now
-from ackermann_msgs.msg import AckermannDriveStamped  # noqa: E402
-from nav_msgs.msg import Odometry  # noqa: E402
-from std_msgs.msg import String  # noqa: E402
-from std_srvs.srv import SetBool, SetBoolResponse  # noqa: E402
+import rospy  # found only now
+from ackermann_msgs.msg import AckermannDriveStamped
+from nav_msgs.msg import Odometry
+from std_msgs.msg import String
+from std_srvs.srv import SetBool, SetBoolResponse
 
 seen: dict = {"odometry": 0}
 fast = threading.Event()

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.interop.ros1_packages import PYTHON, make_packages
 from tests.interop.programs import HERE, client, console, environment, free_port, program, wait_for_port
+from tests.interop.ros1_packages import PYTHON, make_packages
 
 TABLE = {
     "out": {"/odom": "nav_msgs/Odometry", "/clock": "rosgraph_msgs/Clock"},

@@ -9,39 +9,18 @@ import pytest
 from simconsole.cli import main
 from tests.interop.programs import HERE, Client, client, console, program
 from tests.interop.ros2 import PYTHON, domain, needs_ros2
+from tests.interop.sessions import lockstep_session
 
 pytestmark = needs_ros2
 
 FIBONACCI = "test_msgs/action/Fibonacci"
-SESSION = """
-schema: 1
-title: Driven by a ROS 2 node
-scenario:
-  vehicle: hatchback
-  duration_s: 60
-features:
-  control:
-    person_required: false
-outputs:
-  bridge:
-    port: 0
-    ros2: {}
-  hud: null
-  scene: null
-  report: false
-devices:
-  driver: none
-mode:
-  pacing: lockstep
-"""
 SUCCEEDED, CANCELED = 4, 5
 
 
 def test_an_rclpy_node_drives_for_a_minute(tmp_path: Path, record_property: Callable[[str, object], None]) -> None:
-    profile, bundle = tmp_path / "session.yaml", tmp_path / "bundle"
-    profile.write_text(SESSION)
+    bundle = tmp_path / "bundle"
     around = domain()
-    words = [PYTHON, "-m", "simconsole", "drive", str(profile), "--out", str(bundle), "--json"]
+    words = [PYTHON, "-m", "simconsole", "drive", lockstep_session(tmp_path, 0, ros2=True), "--out", str(bundle), "--json"]
     with program(around, *words) as drive, program(around, PYTHON, str(HERE / "rclpy_driver.py"), "60") as driver:
         told, complaint = driver.communicate(timeout=60.0)
         assert driver.returncode == 0, complaint

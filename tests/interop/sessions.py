@@ -1,0 +1,32 @@
+"""A session in which whoever answers the odometry drives a minute, as fast as it goes."""
+
+from pathlib import Path
+
+SESSION = """
+schema: 1
+title: Driven from outside
+scenario:
+  vehicle: hatchback
+  duration_s: 60
+features:
+  control:
+    person_required: false
+outputs:
+  bridge:
+    port: {port}
+    ros2: {ros2}
+  hud: null
+  scene: null
+  report: false
+devices:
+  driver: none
+mode:
+  pacing: lockstep
+"""
+
+
+def lockstep_session(folder: Path, port: int, ros2: bool = False) -> str:
+    """Write the session's profile; return its path."""
+    path = folder / "session.yaml"
+    path.write_text(SESSION.format(port=port, ros2="{}" if ros2 else "null"))
+    return str(path)

@@ -1,0 +1,92 @@
+"""Stock roslib 2.1.0 from npm, under Node, uses every kind of operation and drives the car for a minute."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from simconsole.cli import main
+from tests.interop.programs import HERE, ROOT, environment, free_port, program, wait_for_port
+from tests.interop.sessions import lockstep_session
+
+VERSION = "2.1.0"
+CACHE = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "simconsole-tests" / f"roslib-{VERSION}"
+TOKEN = "a-token-of-enough-letters"
+PROGRAM = str(HERE / "roslib_program.mjs")
+NODE = shutil.which("node")
+
+pytestmark = pytest.mark.skipif(NODE is None or shutil.which("npm") is None, reason="no Node.js with npm")
+
+
+@pytest.fixture(scope="module")
+def node() -> Callable[..., tuple[str, ...]]:
+    """The words of a Node program with roslib, which npm fetches once."""
+    library = CACHE / "node_modules/roslib"
+    if not library.exists():
+        CACHE.mkdir(parents=True, exist_ok=True)
+        words = ["npm", "install", "--prefix", str(CACHE), "--no-save", "--no-package-lock", "--ignore-scripts"]
+        subprocess.run([*words, "--no-audit", "--no-fund", f"roslib@{VERSION}"], check=True, capture_output=True)
+    assert json.loads((library / "package.json").read_text())["version"] == VERSION
+    return lambda *words: (str(NODE), PROGRAM, str(library / "dist/RosLib.js"), *words)
+
+
+def told(process: "subprocess.Popen[str]") -> dict[str, Any]:
+    """The next line a program says."""
+    assert process.stdout is not None
+    line = process.stdout.readline()
+    assert line, "the program ended"
+    seen: dict[str, Any] = json.loads(line)
+    return seen
+
+
+def test_every_kind_of_operation_and_a_restart(node: Callable[..., tuple[str, ...]], tmp_path: Path) -> None:
+    port, tokens = free_port(), tmp_path / "tokens"
+    tokens.write_text(f"control {TOKEN}\n")
+    serve = [sys.executable, "-m", "simconsole", "bridge", "serve", "--port", str(port), "--tokens", str(tokens)]
+    with program(environment(), *serve) as first:
+        wait_for_port(port)
+        with program(dict(os.environ), *node("talk", f"ws://127.0.0.1:{port}", TOKEN)) as talker:
+            assert told(talker) == {
+                "stranger": "turned away",
+                "none": ["odom", 36, "Array"],
+                "png": ["odom", 36, "Array"],
+                "cbor": ["odom", 36, "Float64Array"],
+                "chatter": "hello",
+                "sum": 5,
+                "failed": "/none: nobody provides this service",
+                "feedback": [[0, 1]],
+                "result": {"sequence": [0, 1, 1, 2]},
+                "cancelled": {"sequence": [0]},
+                "param": 0.8,
+                "topics": True,
+                "type": "nav_msgs/msg/Odometry",
+            }
+            first.terminate()
+            first.wait(20.0)
+            with program(environment(), *serve):
+                assert told(talker) == {"returned": "odometry is back"}
+
+
+def test_roslib_drives_for_a_minute(
+    node: Callable[..., tuple[str, ...]], tmp_path: Path, record_property: Callable[[str, object], None]
+) -> None:
+    port, bundle = free_port(), tmp_path / "bundle"
+    words = ["-m", "simconsole", "drive", lockstep_session(tmp_path, port), "--out", str(bundle), "--json"]
+    with program(environment(), sys.executable, *words) as drive:
+        wait_for_port(port)
+        with program(dict(os.environ), *node("drive", f"ws://127.0.0.1:{port}", "60")) as driver:
+            seen = told(driver)
+            output, complaint = drive.communicate(timeout=60.0)
+    assert drive.returncode == 0, complaint
+    results = json.loads(output.splitlines()[-1])
+    assert (results["unanswered"], results["exchanges"], seen["answers"]) == (0, 3000, 3000)
+    assert results["distance_m"] > 400.0
+    assert 1.0 < seen["y_m"] < 5.0  # it steered there, from 0
+    assert main(["replay", str(bundle)]) == 0
+    record_property("roslib in lockstep", f"60 s driven in {seen['wall_s']:.1f} s, 50 Hz control from Node")
