@@ -156,6 +156,13 @@ class Calls:
                 self._result(session, name, operation)
         return name
 
+    def turn_away(self, session: Session, operation: CallService | SendActionGoal, reason: str) -> None:
+        """Answer a call or goal of a client that may not make any: it would wait for ever."""
+        if isinstance(operation, CallService):
+            _Caller(session, operation.id, operation.service, None, "none").respond(reason, False)
+        else:
+            _Caller(session, operation.id, operation.action, None, "none").end(reason, ABORTED, False)
+
     def expire(self, now_ns: int) -> None:
         """End the calls whose time is over; cheap when there are none."""
         if self._next_deadline_ns is None or now_ns < self._next_deadline_ns:

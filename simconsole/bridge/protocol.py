@@ -24,6 +24,7 @@ from simconsole.bridge.operations import (
     Fragment,
     Operation,
     Publish,
+    SendActionGoal,
     SetLevel,
     Status,
     Subscribe,
@@ -205,7 +206,13 @@ class Router:
             session.role = self.access.admit(operation)
             return Outcome("done", "", "")
         needed = Role.VIEW if isinstance(operation, Subscribe | Unsubscribe | CallService) else Role.PUBLISH
-        self._require(session, needed)
+        try:
+            self._require(session, needed)
+        except RemoteProtocolError as error:
+            outcome = self._refuse(session, document.fields, str(error), now_ns)
+            if isinstance(operation, CallService | SendActionGoal):
+                self.calls.turn_away(session, operation, str(error))
+            return outcome
         if isinstance(operation, CallOperation):
             return Outcome("done", self.calls.apply(session, operation, now_ns), "")
         assert not isinstance(operation, Fragment)

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from simconsole.bridge.access import Role
 from simconsole.bridge.console import ConsoleBridge
 from simconsole.bridge.documents import Binary
 from simconsole.errors import RemoteProtocolError
@@ -306,3 +307,22 @@ def test_answers_come_in_the_form_that_was_asked_for(
         assert answered["values"]["octets"] == b"\x01\x02"
     else:
         assert answered["values"] == values
+
+
+@pytest.mark.parametrize(
+    ("operation", "answer"),
+    [
+        ({"op": "call_service", "service": "/add"}, "service_response"),
+        ({"op": "send_action_goal", "action": "/go"}, "action_result"),
+    ],
+)
+def test_who_may_not_call_is_answered_too(
+    bridge: ConsoleBridge, join: Callable[..., Any], operation: dict[str, str], answer: str
+) -> None:
+    peer = join(bridge)
+    peer.session.role = Role.NONE
+    peer.send(id="mine", **operation)
+    status, response = peer.heard()
+    assert status["op"] == "status"
+    assert (response["op"], response["id"], response["result"]) == (answer, "mine", False)
+    assert "you have no token" in response["values"]

@@ -60,7 +60,7 @@ async function talk() {
   seen.chatter = (await heard).data;
 
   const add = new Service({ ros, name: "/add", serviceType: "example_interfaces/AddTwoInts" });
-  add.advertise((request, response) => {
+  await add.advertise((request, response) => {
     response.sum = request.a + request.b;
     return true;
   });
@@ -86,7 +86,7 @@ async function talk() {
     client.sendGoal({ order: 3 }, done, (feedback) => seen.feedback.push(feedback.sequence), fail),
   );
   seen.cancelled = await later((done) => {
-    const id = client.sendGoal({ order: 99 }, done, () => client.cancelGoal(id), done);
+    const id = client.sendGoal({ order: 99 }, done, () => client.cancelGoal(id), (error) => done(String(error)));
   });
 
   const param = new Param({ ros, name: "/friction" });

@@ -20,7 +20,16 @@ SUCCEEDED, CANCELED = 4, 5
 def test_an_rclpy_node_drives_for_a_minute(tmp_path: Path, record_property: Callable[[str, object], None]) -> None:
     bundle = tmp_path / "bundle"
     around = domain()
-    words = [PYTHON, "-m", "simconsole", "drive", lockstep_session(tmp_path, 0, ros2=True), "--out", str(bundle), "--json"]
+    words = [
+        PYTHON,
+        "-m",
+        "simconsole",
+        "drive",
+        lockstep_session(tmp_path, 0, ros2=True),
+        "--out",
+        str(bundle),
+        "--json",
+    ]
     with program(around, *words) as drive, program(around, PYTHON, str(HERE / "rclpy_driver.py"), "60") as driver:
         told, complaint = driver.communicate(timeout=60.0)
         assert driver.returncode == 0, complaint

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from simconsole.cli import main
-from tests.interop.programs import HERE, ROOT, environment, free_port, program, wait_for_port
+from tests.interop.programs import HERE, environment, free_port, program, wait_for_port
 from tests.interop.sessions import lockstep_session
 
 VERSION = "2.1.0"
@@ -62,7 +62,7 @@ def test_every_kind_of_operation_and_a_restart(node: Callable[..., tuple[str, ..
                 "failed": "/none: nobody provides this service",
                 "feedback": [[0, 1]],
                 "result": {"sequence": [0, 1, 1, 2]},
-                "cancelled": {"sequence": [0]},
+                "cancelled": 'GoalError: Action was canceled: {"sequence":[0]}',
                 "param": 0.8,
                 "topics": True,
                 "type": "nav_msgs/msg/Odometry",
@@ -87,6 +87,6 @@ def test_roslib_drives_for_a_minute(
     results = json.loads(output.splitlines()[-1])
     assert (results["unanswered"], results["exchanges"], seen["answers"]) == (0, 3000, 3000)
     assert results["distance_m"] > 400.0
-    assert 1.0 < seen["y_m"] < 5.0  # it steered there, from 0
+    assert 1.0 < seen["y_m"] < 6.0  # it steered towards 3, from 0
     assert main(["replay", str(bundle)]) == 0
     record_property("roslib in lockstep", f"60 s driven in {seen['wall_s']:.1f} s, 50 Hz control from Node")
