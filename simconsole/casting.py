@@ -12,6 +12,7 @@ from simconsole.drive import Cast, Recorder
 from simconsole.errors import BridgeError, ProfileError
 from simconsole.faulting import with_faults
 from simconsole.inline import LockstepLink, end_program, start_autopilot
+from simconsole.ledger import Ledger
 from simconsole.pacing import Pacer, UnpacedPacer, realtime_hints
 from simconsole.pipeline import Console
 from simconsole.ports import CommandSource, NobodyCommands, Station
@@ -22,6 +23,8 @@ from simconsole.seating import open_seating
 from simconsole.shared_memory import make_run_folder, remove_run_folder
 from simconsole.stations import Supervisor
 
+LOOKED_AT = 16
+"""In a drive that is not paced, hops are timed in each 16th tick."""
 LOOK_S = 0.2
 """How often a wait for somebody else asks whether it shall go on."""
 
@@ -71,8 +74,13 @@ def open_headless(
     seating = open_seating(resolved, console, stack)
     outputs = (*seating.stations, *stations)
     cast = Cast(seating.devices, commands, recorder, outputs, pace, seating.seat, ecu=can or NobodyCommands())
-    cast = with_faults(cast, resolved, console.tick_hz)
-    return Opened(cast, seating.finished, lambda: {**pace.summary(), **counters(), **can_summary()})
+    ledger = Ledger(time.monotonic_ns, console.tick_hz, every=LOOKED_AT)
+    cast = with_faults(cast, resolved, console.tick_hz)._replace(ledger=ledger)
+
+    def summary() -> dict[str, Any]:
+        return {**pace.summary(), **counters(), **can_summary(), "latency_us": ledger.summary_us()}
+
+    return Opened(cast, seating.finished, summary)
 
 
 def open_realtime(
@@ -99,6 +107,7 @@ def open_realtime(
         bridge_address,
         can_summary,
         make_memory,
+        station_latencies,
         station_specs,
         wait_for_can,
     )
@@ -132,11 +141,13 @@ def open_realtime(
     pace = Pacer(console.tick_hz)
     outputs = (*seating.stations, ring, supervisor)
     cast = Cast(seating.devices, port, recorder, outputs, pace, seating.seat, ecu=ecu)
-    cast = with_faults(cast, resolved, console.tick_hz)
+    ledger = Ledger(time.monotonic_ns, console.tick_hz)
+    cast = with_faults(cast, resolved, console.tick_hz)._replace(ledger=ledger)
 
     def summary() -> dict[str, Any]:
         stations = {"station_restarts": supervisor.counters(), **can_summary(folder)}
-        return {**pace.summary(), **stations, "not_granted": missing}
+        latency = {**ledger.summary_us(), **station_latencies(folder)}
+        return {**pace.summary(), **stations, "latency_us": latency, "not_granted": missing}
 
     return Opened(cast, seating.finished, summary)
 

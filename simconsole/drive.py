@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import NamedTuple, Protocol
 
+from simconsole.ledger import Hop, Ledger, unheard
 from simconsole.pipeline import Console, ConsoleState, advance
 from simconsole.ports import CommandSource, DeviceSource, NobodyCommands, Seat, Station
 from simconsole.rows import Snapshot, TickInputs
@@ -41,6 +42,7 @@ class Cast(NamedTuple):
     seat: Seat | None = None
     faults: Faults | None = None
     ecu: CommandSource = NobodyCommands()
+    ledger: Ledger | None = None
 
 
 def run(
@@ -56,19 +58,27 @@ def run(
     `advance` is in the row that the recorder keeps, so that the drive replays.
     """
     snapshot = Snapshot(state.tick, console.tick_hz, state.row)
-    end = state.tick + ticks
+    end, ledger = state.tick + ticks, cast.ledger
+    stations = [(station, getattr(station, "hop", Hop.OTHERS)) for station in cast.stations]
     while state.tick < end and not finished(snapshot):
         raised = cast.pace.wait()
         if cast.seat is not None:
             cast.seat.act(snapshot)
         coming = state.tick + 1
+        mark = unheard if ledger is None else ledger.begin(coming)
         faults = 0.0 if cast.faults is None else cast.faults.turn(coming, snapshot)
         sample = cast.devices.poll(coming)
+        if ledger is not None:
+            ledger.sample(sample)
+        mark(Hop.READ)
         ros, events = cast.commands.take(coming)
         ecu, ecu_events = cast.ecu.take(coming)
+        mark(Hop.TAKE)
         edges = EventInput(float(int(events.events) | raised), faults, ecu_events.events)
-        state, snapshot = advance(state, TickInputs(sample, ros, edges, ecu), console)
+        state, snapshot = advance(state, TickInputs(sample, ros, edges, ecu), console, mark)
         cast.recorder.write(snapshot)
-        for station in cast.stations:
+        mark(Hop.RECORD)
+        for station, hop in stations:
             station.publish(snapshot)
+            mark(hop)
     return state

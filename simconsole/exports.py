@@ -106,6 +106,7 @@ def _report(
             _facts(resolved, summary),
             first_tick=first_tick,
             faults=faults,
+            latency_us=summary.get("latency_us"),
         )
     return metrics(drive_of(table.rows, table.columns, table.tick_hz, first_tick), course, None, faults)
 

@@ -4,6 +4,7 @@ import subprocess
 import sys
 from typing import Protocol
 
+from simconsole.ledger import Hop
 from simconsole.rows import Snapshot
 from simconsole.signals import Event, EventInput, RemoteCommand
 
@@ -33,6 +34,8 @@ class LockstepLink:
     After a missing answer (an event in the log) it does not wait again until the controller has spoken: the command
     grows stale in simulated time and the arbiter stops the car.
     """
+
+    hop = Hop.EXCHANGE
 
     def __init__(self, bridge: LockstepServer, period_ticks: int, timeout_s: float) -> None:
         self._bridge = bridge

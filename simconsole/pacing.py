@@ -6,15 +6,13 @@ wall by that much, and is counted). dt never stretches.
 """
 
 import gc
-import math
 import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, Final
 
-import numpy as np
-
+from simconsole.ledger import Histogram
 from simconsole.signals import Event
 from simconsole.units import NS_PER_S
 
@@ -25,47 +23,6 @@ STALL_NS: Final = 100_000_000
 _PR_SET_TIMERSLACK: Final = 29  # linux/prctl.h
 _MCL_CURRENT: Final = 1  # sys/mman.h; not what comes later: a log of hours must not be locked
 _PRIORITY: Final = 50
-
-_BINS_PER_DECADE: Final = 20
-_DECADES: Final = 7  # 100 ns to 1 s
-_FLOOR_NS: Final = 100.0
-
-
-class Histogram:
-    """Times in logarithmic bins: percentiles of any length of drive in constant memory, to 12 %."""
-
-    def __init__(self) -> None:
-        self._bins = [0] * (_BINS_PER_DECADE * _DECADES + 1)
-        self._edges = _FLOOR_NS * 10.0 ** (np.arange(len(self._bins)) / _BINS_PER_DECADE)
-        self.count = 0
-        self.max_ns = 0
-
-    def add(self, time_ns: int) -> None:
-        """Count one time, negative ones as zero."""
-        index = 0
-        if time_ns > _FLOOR_NS:  # logarithm and ceiling: a tenth of the price of a search in the edges
-            index = min(math.ceil(_BINS_PER_DECADE * math.log10(time_ns / _FLOOR_NS)), len(self._bins) - 1)
-        self._bins[index] += 1
-        self.count += 1
-        self.max_ns = max(self.max_ns, time_ns)
-
-    def percentile_ns(self, percent: float) -> float:
-        """Return the upper edge of the bin that holds this percentile, at most the largest time; 0 without times."""
-        if not self.count:
-            return 0.0
-        passed = np.cumsum(self._bins)
-        index = int(np.searchsorted(passed, percent / 100.0 * self.count))
-        if index == len(self._bins) - 1:
-            return float(self.max_ns)  # the last bin has no upper edge
-        return min(float(self._edges[index]), float(self.max_ns))
-
-    def summary_us(self) -> dict[str, float]:
-        """Return p50, p99 and maximum in us."""
-        return {
-            "p50": self.percentile_ns(50.0) / 1e3,
-            "p99": self.percentile_ns(99.0) / 1e3,
-            "max": self.max_ns / 1e3,
-        }
 
 
 class Pacer:

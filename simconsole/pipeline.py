@@ -19,6 +19,7 @@ from simconsole.devices.cockpit import CockpitSettings
 from simconsole.devices.force_settings import NO_FORCE, ForceSettings
 from simconsole.devices.torque import wheel_torque
 from simconsole.kernels import Row, kernel, put, take
+from simconsole.ledger import Hop, Mark, unheard
 from simconsole.rows import (
     ARBITRATION_AT,
     ARBITRATION_WIDTH,
@@ -145,23 +146,28 @@ def initial_state(console: Console) -> ConsoleState:
     return ConsoleState(0, row)
 
 
-def advance(state: ConsoleState, inputs: TickInputs, console: Console) -> tuple[ConsoleState, Snapshot]:
-    """Advance the console by one tick. Neither `state` nor its row is changed."""
-    row = advance_row(state.row, (*inputs.sample, *inputs.ros, *inputs.events, *inputs.ecu), console)
+def advance(
+    state: ConsoleState, inputs: TickInputs, console: Console, mark: Mark = unheard
+) -> tuple[ConsoleState, Snapshot]:
+    """Advance the console by one tick. Neither `state` nor its row is changed; `mark` is told which stage has ended."""
+    row = advance_row(state.row, (*inputs.sample, *inputs.ros, *inputs.events, *inputs.ecu), console, mark)
     tick = state.tick + 1
     return ConsoleState(tick, row), Snapshot(tick, console.tick_hz, row)
 
 
-def advance_row(previous: Row, inputs: Row | tuple[float, ...], console: Console) -> Row:
+def advance_row(previous: Row, inputs: Row | tuple[float, ...], console: Console, mark: Mark = unheard) -> Row:
     """Return the row after `previous` for the INPUT_WIDTH values `inputs`: `advance` as a replay wants it."""
     row = np.empty(console.width)
     row[:INPUT_WIDTH] = inputs
     console.decide(previous, row, console.settings, console.tick_s)
+    mark(Hop.DECIDE)
     console.step(previous, row, console.platform.parameters, console.substeps)
+    mark(Hop.STEP)
     if console.feel is None:
         row[TORQUE_AT:PLATFORM_AT] = 0.0
     else:
         console.feel(previous, row, console.settings, console.tick_s)
+        mark(Hop.FEEL)
     return row
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from simconsole.assembly import ResolvedSession
 from simconsole.errors import BridgeError, CanError
 from simconsole.exports import LIVE_SCENE, scene_job
+from simconsole.ledger import Hop
 from simconsole.pipeline import Console
 from simconsole.ports import CommandSource, NobodyCommands
 from simconsole.rows import REMOTE_WIDTH, Snapshot
@@ -24,6 +25,7 @@ from simconsole.station_programs import (
     COMMAND,
     EVENTS,
     KEYS,
+    LATENCY,
     SCENE_JOB,
     SLOT_CAPACITY,
     SNAPSHOT_CAPACITY,
@@ -39,12 +41,14 @@ START_PATIENCE_S = 20.0
 class RingStation:
     """Publishes every tick into the ring: the only thing the core does for all stations together."""
 
+    hop = Hop.PUBLISH
+
     def __init__(self, ring: Ring) -> None:
         self._ring = ring
 
     def publish(self, snapshot: Snapshot) -> None:
-        """Copy one row."""
-        self._ring.write(snapshot.row, snapshot.tick)
+        """Copy one row; its second stamp tells when, for the ledger."""
+        self._ring.write(snapshot.row, snapshot.tick, time.monotonic_ns())
 
 
 class CommandPort:
@@ -175,6 +179,18 @@ def wait_for_can(folder: Path, alive: Callable[[], bool], patience_s: float = ST
             return
         time.sleep(0.02)
     raise CanError("the CAN bus is not open; the station's own message stands above")
+
+
+def station_latencies(folder: Path) -> dict[str, Any]:
+    """Return what the stations last said of their hops, at most a second old: `receive, hud`."""
+    found = {}
+    for name in ("bridge", "canbus", "hud"):
+        try:
+            pages = msgspec.json.decode((folder / f"{LATENCY}.{name}.json").read_bytes(), type=dict[str, Any])
+        except (OSError, msgspec.DecodeError):
+            continue
+        found.update({f"{hop}, {name}": page for hop, page in pages.items()})
+    return found
 
 
 def can_summary(folder: Path) -> dict[str, Any]:

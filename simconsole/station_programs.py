@@ -3,6 +3,7 @@
 Every function takes (folder, arguments, stop) as `simconsole.stations` calls it, and waits for nothing but its room.
 """
 
+import contextlib
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -12,6 +13,7 @@ import msgspec
 import numpy as np
 
 from simconsole.kernels import Row
+from simconsole.ledger import Hop, Ledger
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.can import CanProfile
 from simconsole.profiles.control import ControlProfile
@@ -19,6 +21,7 @@ from simconsole.profiles.view import HudProfile
 from simconsole.rows import REMOTE_WIDTH, Snapshot
 from simconsole.shared_memory import EventCounters, Record, Ring
 from simconsole.signals import RemoteCommand
+from simconsole.units import NS_PER_S
 
 SNAPSHOTS: Final = "snapshots"
 COMMAND: Final = "bridge.command"
@@ -28,6 +31,7 @@ ADDRESS: Final = "bridge.address"
 CAN_COMMAND: Final = "can.command"
 CAN_EVENTS: Final = "can.events"
 CAN_STATUS: Final = "can.json"
+LATENCY: Final = "latency"
 SCENE_JOB: Final = "scene.npz"
 SNAPSHOT_CAPACITY: Final = 1024
 SLOT_CAPACITY: Final = 4
@@ -40,7 +44,8 @@ def bridge(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) ->
     from simconsole.bridge.wire import address_url
 
     profile = msgspec.convert(arguments["profile"], BridgeProfile)
-    snapshots = NewestOnce(Ring.open(folder / SNAPSHOTS), int(arguments["tick_hz"]))
+    receipts = Receipts(folder / f"{LATENCY}.bridge.json")
+    snapshots = NewestOnce(Ring.open(folder / SNAPSHOTS), int(arguments["tick_hz"]), receipts.received)
     slot = Ring.open(folder / COMMAND, writable=True)
     events = EventCounters.open(folder / EVENTS, writable=True)
 
@@ -62,7 +67,8 @@ def canbus(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) ->
     """
     from simconsole.canbus.station import put_on_bus, serve
 
-    snapshots = NewestOnce(Ring.open(folder / SNAPSHOTS), int(arguments["tick_hz"]))
+    receipts = Receipts(folder / f"{LATENCY}.canbus.json")
+    snapshots = NewestOnce(Ring.open(folder / SNAPSHOTS), int(arguments["tick_hz"]), receipts.received)
     slot = Ring.open(folder / CAN_COMMAND, writable=True)
     events = EventCounters.open(folder / CAN_EVENTS, writable=True)
     wheels = arguments["wheels"]
@@ -96,16 +102,20 @@ def hud(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> No
     control = msgspec.convert(arguments["control"], ControlProfile)
     ring, tick_hz = Ring.open(folder / SNAPSHOTS), int(arguments["tick_hz"])
     keys = Ring.open(folder / KEYS, writable=True)
+    receipts = Receipts(folder / f"{LATENCY}.hud.json")
 
     def latest() -> Snapshot | None:
         record = ring.latest()
-        return None if record is None else snapshot_of(record, tick_hz)
+        if record is None:
+            return None
+        receipts.received(record)
+        return snapshot_of(record, tick_hz)
 
     def report_keys(mask: int) -> None:
         keys.write(np.array([float(mask)]), time.monotonic_ns())
 
     can = CanWatch(folder / CAN_STATUS, time.time, time.monotonic) if arguments["can"] else lambda: None
-    run(Ports(latest, report_keys, stop, can), profile, settings_of(profile, control))
+    run(Ports(latest, report_keys, stop, can, receipts.drawn), profile, settings_of(profile, control))
 
 
 def scene(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> None:
@@ -156,11 +166,50 @@ class CanWatch:
         return bool(status.get("up")) and silent_s < self.SILENT_S
 
 
-class NewestOnce:
-    """Returns the newest snapshot, or None when it was returned before."""
+class Receipts:
+    """A station's pages of the latency ledger, written out once a second."""
 
-    def __init__(self, ring: Ring, tick_hz: int) -> None:
+    SAVE_NS: Final = NS_PER_S
+
+    def __init__(self, path: Path, clock_ns: Callable[[], int] = time.monotonic_ns) -> None:
+        self._path = path
+        self._clock_ns = clock_ns
+        self._ledger = Ledger(clock_ns)
+        self._number = 0
+        self._fresh = False
+        self._saved_ns = clock_ns()
+
+    def received(self, record: Record) -> None:
+        """Note a record; one that was seen before is none."""
+        self._fresh = record.number != self._number
+        if self._fresh:
+            self._number = record.number
+            self._ledger.received(record.second_stamp)
+            self._save()
+
+    def drawn(self) -> None:
+        """Note that the picture of the record received last is on the screen."""
+        if self._fresh:
+            self._fresh = False
+            self._ledger.mark(Hop.DRAW)
+
+    def _save(self) -> None:
+        now_ns = self._clock_ns()
+        if now_ns - self._saved_ns < self.SAVE_NS:
+            return
+        self._saved_ns = now_ns
+        part = self._path.with_suffix(".part")
+        with contextlib.suppress(OSError):  # the run folder is gone: the core has ended
+            part.write_bytes(msgspec.json.encode(self._ledger.summary_us()))
+            part.replace(self._path)
+
+
+class NewestOnce:
+    """Returns the newest snapshot, or None when it was returned before; `received` sees its record first."""
+
+    def __init__(self, ring: Ring, tick_hz: int, received: Callable[[Record], None] | None = None) -> None:
         self._ring = ring
+        self._received = received
         self._tick_hz = tick_hz
         self._seen = 0
 
@@ -172,6 +221,8 @@ class NewestOnce:
         if record is None or record.number == self._seen:
             return None
         self._seen = record.number
+        if self._received is not None:
+            self._received(record)
         return snapshot_of(record, self._tick_hz)
 
 

@@ -9,6 +9,7 @@ from typing import Final, NamedTuple, Protocol
 
 from simconsole.devices.simulated_wheel import SimulatedWheel
 from simconsole.errors import DeviceError
+from simconsole.ledger import Hop
 from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.rows import Snapshot
 from simconsole.signals import DeviceSample
@@ -111,6 +112,8 @@ class SimulatedWheelPort:
 
 class WheelMotor:
     """A `Station` that turns the row's torque into the device's effect."""
+
+    hop = Hop.TORQUE
 
     def __init__(
         self,

@@ -48,6 +48,7 @@ class Ports(NamedTuple):
     report_keys: Callable[[int], None]  # takes a `Key` mask at every frame: its silence means the keyboard is gone
     stop: Callable[[], bool]  # True ends the window
     can_up: Callable[[], bool | None] = lambda: None  # whether the CAN bus is up; None where there is none
+    drawn: Callable[[], None] = lambda: None  # told after every frame
 
 
 class Freshness:
@@ -141,6 +142,7 @@ def run(ports: Ports, profile: HudProfile, settings: HudSettings) -> None:
                 break
             ports.report_keys(held_keys())
             window.frame(ports.latest(), time.monotonic(), ports.can_up())
+            ports.drawn()
             clock.tick(profile.rate_hz)
     finally:
         ports.report_keys(0)

@@ -55,6 +55,7 @@ def write_report(
     *,
     first_tick: int = 1,
     faults: Sequence[str] = (),
+    latency_us: Mapping[str, Mapping[str, float]] | None = None,
 ) -> dict[str, Any]:
     """Write the report of a drive and return its metrics (report/metrics.py).
 
@@ -69,6 +70,8 @@ def write_report(
             reports of one drive are to be equal.
         first_tick: number of the first row's tick.
         faults: names of the scenario's faults, in their order.
+        latency_us: p50, p99, max and count of each hop, as the ledger sums it up; not among the metrics, it differs
+            between equal drives.
 
     Raises:
         RecordingError: an empty drive, rows that do not fit the columns, or a file that cannot be written.
@@ -79,13 +82,19 @@ def write_report(
     changes = mode_changes(drive, way)
     svgs = map_svg(drive, way, changes, course), traces_svg(drive, way, changes, course)
     try:
-        path.write_text(page(title, found, svgs, extra or {}), encoding="utf-8", newline="\n")
+        path.write_text(page(title, found, svgs, extra or {}, latency_us or {}), encoding="utf-8", newline="\n")
     except OSError as error:
         raise RecordingError(f"{path}: cannot be written: {error.strerror}") from error
     return found
 
 
-def page(title: str, found: Mapping[str, Any], svgs: Sequence[str], extra: Mapping[str, object]) -> str:
+def page(
+    title: str,
+    found: Mapping[str, Any],
+    svgs: Sequence[str],
+    extra: Mapping[str, object],
+    latency_us: Mapping[str, Mapping[str, float]],
+) -> str:
     """Return the page's HTML."""
     parts = [
         "<!DOCTYPE html>",
@@ -102,6 +111,7 @@ def page(title: str, found: Mapping[str, Any], svgs: Sequence[str], extra: Mappi
         "<h2>Mode changes</h2>",
         _changes_table(found),
         *(("<h2>Faults</h2>", _faults_table(found)) if found["faults"] else ()),
+        *(("<h2>Latency</h2>", _latency_table(latency_us)) if latency_us else ()),
         *(("<h2>Drive</h2>", _extra_table(extra)) if extra else ()),
         "</body></html>",
         "",
@@ -155,6 +165,17 @@ def _faults_table(found: Mapping[str, Any]) -> str:
     )
     head = "<table><tr><th>fault</th><th class=n>from</th><th class=n>to</th></tr>"
     return "\n".join((head, *lines, "</table>"))
+
+
+def _latency_table(latency_us: Mapping[str, Mapping[str, float]]) -> str:
+    lines = (
+        f"<tr><td>{escape(hop)}</td>"
+        + "".join(f"<td class=n>{page[key]:.1f}</td>" for key in ("p50", "p99", "max"))
+        + f"<td class=n>{page['count']:.0f}</td></tr>"
+        for hop, page in latency_us.items()
+    )
+    names = "".join(f"<th class=n>{name}</th>" for name in ("p50, µs", "p99, µs", "max, µs", "times"))
+    return "\n".join((f"<table><tr><th>hop</th>{names}</tr>", *lines, "</table>"))
 
 
 def _extra_table(extra: Mapping[str, object]) -> str:

@@ -47,6 +47,13 @@ def test_a_script_drives_for_as_long_as_asked(short: Path) -> None:
     assert (short / "scene.rrd").exists()
 
 
+def test_every_bundle_and_report_tells_the_latency_of_each_hop(short: Path) -> None:
+    hops = open_bundle(short).manifest.summary["latency_us"]
+    assert list(hops)[:6] == ["device", "read", "take", "decide", "step", "feel"]
+    assert {hop["count"] for hop in hops.values()} == {750 // 16}
+    assert "<h2>Latency</h2>" in (short / "report.html").read_text()
+
+
 def test_a_recorded_cockpit_gives_the_same_samples_again(plain: Path, tmp_path: Path) -> None:
     trace = tmp_path / "trace.csv"
     recorded = simconsole("devices", "record", "--virtual", "--for", 2, "--out", trace, "--json")

@@ -26,6 +26,14 @@ class Outside(HTMLParser):
                 self.fetched.append(value)
 
 
+def test_latency_of_each_hop_stands_in_the_page_only(tmp_path: Path, sample: Any) -> None:
+    hops = {"read": {"p50": 35.5, "p99": 56.25, "max": 113.0, "count": 1000}}
+    found = write_report(tmp_path / "r.html", *sample, None, "title", latency_us=hops)
+    row = "<tr><td>read</td><td class=n>35.5</td><td class=n>56.2</td><td class=n>113.0</td><td class=n>1000</td></tr>"
+    assert row in (tmp_path / "r.html").read_text("utf-8")
+    assert "latency_us" not in found
+
+
 def test_page_is_whole_and_needs_nothing_else(tmp_path: Path, sample: Any, course: Course) -> None:
     path = tmp_path / "report.html"
     found = write_report(path, *sample, course, "Drive <1> & more", {"Vehicle": "hatchback", "Note": "a < b"})

@@ -216,6 +216,14 @@ def test_ctrl_c_leaves_a_whole_bundle_and_code_130(disturbed: Disturbed) -> None
     assert found.equal, str(found.difference)
 
 
+def test_the_bundle_tells_the_latency_of_each_hop_in_all_processes(disturbed: Disturbed) -> None:
+    hops = open_bundle(disturbed.bundle).manifest.summary["latency_us"]
+    chain = ["device", "read", "take", "decide", "step", "feel", "record", "publish", "others"]
+    assert list(hops)[: len(chain)] == chain
+    assert {"receive, bridge", "receive, hud", "draw, hud"} <= set(hops)
+    assert all(hop["count"] > 0 and hop["p50"] <= hop["p99"] <= hop["max"] for hop in hops.values())
+
+
 def test_nothing_outlives_a_drive_that_was_interrupted(disturbed: Disturbed) -> None:
     assert len(disturbed.family) >= 5, "warden, three stations, autopilot"
     wait_until(lambda: not disturbed.family & set(processes()), "the end of every process")

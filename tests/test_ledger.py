@@ -1,0 +1,248 @@
+"""The latency ledger: an injected delay is found at its own hop and nowhere else. Every clock here is made up."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from simconsole.assembly import assemble
+from simconsole.compiling import plain
+from simconsole.drive import Cast, run
+from simconsole.inline import LockstepLink
+from simconsole.ledger import Histogram, Hop, Ledger
+from simconsole.pacing import UnpacedPacer
+from simconsole.pipeline import Console, ConsoleState
+from simconsole.ports import NobodyCommands, NobodySeated
+from simconsole.profiles.session import Devices, ModeSection, Scenario, SessionProfile
+from simconsole.realtime import RingStation, station_latencies
+from simconsole.rows import PLATFORM_AT, TORQUE_AT, Snapshot
+from simconsole.session_files import resolve
+from simconsole.shared_memory import Record, Ring
+from simconsole.signals import NO_SAMPLE, DeviceSample, EventInput, RemoteCommand
+from simconsole.station_programs import LATENCY, NewestOnce, Receipts
+
+TICKS = 40
+USUAL_NS = {
+    Hop.READ: 20_000,
+    Hop.TAKE: 3_000,
+    Hop.DECIDE: 5_000,
+    Hop.STEP: 9_000,
+    Hop.FEEL: 2_000,
+    Hop.RECORD: 4_000,
+    Hop.TORQUE: 50_000,
+    Hop.PUBLISH: 1_000,
+    Hop.OTHERS: 700,
+}
+DELAY_NS = 7_000_000
+
+
+class Clock:
+    """Time passes only where a hop spends it."""
+
+    def __init__(self, spent_ns: dict[Hop, int]) -> None:
+        self.now_ns = 12_345
+        self._spent_ns = spent_ns
+
+    def spend(self, hop: Hop) -> None:
+        self.now_ns += self._spent_ns.get(hop, 0)
+
+    def read(self) -> int:
+        return self.now_ns
+
+
+class Wheel(NobodySeated):
+    def __init__(self, clock: Clock, age_ticks: float = 0.0) -> None:
+        self._clock, self._sample = clock, NO_SAMPLE._replace(wheel_age_ticks=age_ticks)
+
+    def poll(self, tick: int) -> DeviceSample:
+        self._clock.spend(Hop.READ)
+        return self._sample
+
+
+class Commands(NobodyCommands):
+    def __init__(self, clock: Clock) -> None:
+        self._clock = clock
+
+    def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
+        self._clock.spend(Hop.TAKE)
+        return super().take(tick)
+
+
+class Recorder:
+    def __init__(self, clock: Clock) -> None:
+        self._clock = clock
+        self.rows: list[bytes] = []
+
+    def write(self, snapshot: Snapshot) -> None:
+        self._clock.spend(Hop.RECORD)
+        self.rows.append(snapshot.row.tobytes())
+
+
+class Reader:
+    """A station; one of the class below has a hop of its own."""
+
+    def __init__(self, clock: Clock, hop: Hop) -> None:
+        self._clock, self._hop = clock, hop
+
+    def publish(self, snapshot: Snapshot) -> None:
+        self._clock.spend(self._hop)
+
+
+class Named(Reader):
+    def __init__(self, clock: Clock, hop: Hop) -> None:
+        super().__init__(clock, hop)
+        self.hop = hop
+
+
+@pytest.fixture(scope="module")
+def built() -> tuple[Console, ConsoleState]:
+    session = SessionProfile(
+        schema=1, scenario=Scenario(vehicle="ball"), devices=Devices(driver="none"), mode=ModeSection(tick_hz=100)
+    )
+    return assemble(resolve(session), plain)
+
+
+def driven(
+    built: tuple[Console, ConsoleState], spent_ns: dict[Hop, int], age_ticks: float = 0.0, every: int = 1
+) -> tuple[Ledger, list[bytes]]:
+    console, state = built
+    clock = Clock(spent_ns)
+
+    def late(function: Callable[..., None], hop: Hop) -> Callable[..., None]:
+        def run_late(*arguments: Any) -> None:
+            clock.spend(hop)
+            function(*arguments)
+
+        return run_late
+
+    console = console._replace(
+        decide=late(console.decide, Hop.DECIDE),
+        step=late(console.step, Hop.STEP),
+        feel=late(lambda previous, row, settings, tick_s: row[TORQUE_AT:PLATFORM_AT].fill(0.0), Hop.FEEL),
+    )
+    ledger = Ledger(clock.read, console.tick_hz, every)
+    readers = (Named(clock, Hop.TORQUE), Named(clock, Hop.PUBLISH), Reader(clock, Hop.OTHERS))
+    recorder = Recorder(clock)
+    cast = Cast(Wheel(clock, age_ticks), Commands(clock), recorder, readers, UnpacedPacer(), ledger=ledger)
+    run(console, state, cast, TICKS)
+    return ledger, recorder.rows
+
+
+def test_every_hop_of_a_tick_is_counted_by_itself(built: tuple[Console, ConsoleState]) -> None:
+    summary = driven(built, USUAL_NS)[0].summary_us()
+    assert list(summary) == ["device", *map(str, USUAL_NS)], "in the order of a tick"
+    for hop, spent_ns in USUAL_NS.items():
+        assert summary[hop]["max"] == spent_ns / 1e3
+        assert summary[hop]["count"] == TICKS
+
+
+@pytest.mark.parametrize("hop", list(USUAL_NS))
+def test_an_injected_delay_is_found_at_its_own_hop(built: tuple[Console, ConsoleState], hop: Hop) -> None:
+    usual = driven(built, USUAL_NS)[0].summary_us()
+    delayed = driven(built, {**USUAL_NS, hop: USUAL_NS[hop] + DELAY_NS})[0].summary_us()
+    later = {name: delayed[name]["p50"] - usual[name]["p50"] for name in usual}
+    assert later.pop(hop) == pytest.approx(DELAY_NS / 1e3, rel=0.15), "to a bin of the histogram"
+    assert set(later.values()) == {0.0}
+
+
+def test_a_device_that_is_late_is_found_at_the_device(built: tuple[Console, ConsoleState]) -> None:
+    summary = driven(built, USUAL_NS, age_ticks=3.0)[0].summary_us()
+    assert summary[Hop.DEVICE]["p50"] == pytest.approx(30_000.0)
+    assert summary[Hop.READ]["max"] == USUAL_NS[Hop.READ] / 1e3
+
+
+def test_a_cockpit_that_is_not_there_has_no_age() -> None:
+    ledger = Ledger(lambda: 0)
+    ledger.sample(NO_SAMPLE)
+    assert ledger.summary_us() == {}
+    ledger.sample(NO_SAMPLE._replace(pedals_age_ticks=2.0))
+    assert list(ledger.summary_us()) == ["device"]
+
+
+def test_the_clock_leaves_no_trace_in_the_rows(built: tuple[Console, ConsoleState]) -> None:
+    slow, quick = driven(built, {**USUAL_NS, Hop.STEP: DELAY_NS})[1], driven(built, {})[1]
+    assert slow == quick
+
+
+def test_a_drive_that_is_not_paced_is_looked_at_now_and_then(built: tuple[Console, ConsoleState]) -> None:
+    summary = driven(built, USUAL_NS, every=16)[0].summary_us()
+    assert {hop["count"] for hop in summary.values()} == {TICKS // 16}
+
+
+def test_in_lockstep_the_answer_is_waited_for_at_the_exchange() -> None:
+    assert LockstepLink.hop is Hop.EXCHANGE
+
+
+def record(number: int, published_ns: int) -> Record:
+    return Record(number, number, published_ns, np.zeros(1))
+
+
+@pytest.mark.parametrize(
+    ("receive_ns", "draw_ns"), [(400_000, 2_000_000), (7_400_000, 2_000_000), (400_000, 9_000_000)]
+)
+def test_a_station_that_is_late_is_found_at_receive_or_at_draw(tmp_path: Path, receive_ns: int, draw_ns: int) -> None:
+    clock = Clock({})
+    receipts = Receipts(tmp_path / f"{LATENCY}.hud.json", clock.read)
+    for number in range(1, 200):
+        published_ns = clock.now_ns
+        clock.now_ns += receive_ns
+        receipts.received(record(number, published_ns))
+        clock.now_ns += draw_ns
+        receipts.drawn()
+        receipts.received(record(number, published_ns))  # the same again: neither received nor drawn
+        receipts.drawn()
+        clock.now_ns += 10_000_000
+    found = station_latencies(tmp_path)
+    assert list(found) == ["receive, hud", "draw, hud"]
+    assert found["receive, hud"]["max"] == receive_ns / 1e3
+    assert found["draw, hud"]["max"] == draw_ns / 1e3
+    assert 80 < found["draw, hud"]["count"] < 200, "saved once a second, each picture once"
+
+
+def test_stations_that_said_nothing_have_no_pages(tmp_path: Path) -> None:
+    (tmp_path / f"{LATENCY}.bridge.json").write_text("{")
+    assert station_latencies(tmp_path) == {}
+
+
+def test_the_ring_tells_a_station_when_it_was_published(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("simconsole.realtime.time.monotonic_ns", lambda: 987_654_321)
+    ring = Ring.create(tmp_path / "ring", 3, 4)
+    RingStation(ring).publish(Snapshot(7, 250, np.array([1.0, 2.0, 3.0])))
+    seen: list[Record] = []
+    newest = NewestOnce(Ring.open(tmp_path / "ring"), 250, seen.append)
+    snapshot = newest()
+    assert snapshot is not None
+    assert (snapshot.tick, seen[0].second_stamp) == (7, 987_654_321)
+    assert newest() is None
+    assert len(seen) == 1
+
+
+def test_a_full_disk_of_the_run_folder_harms_no_station(tmp_path: Path) -> None:
+    clock = Clock({})
+    receipts = Receipts(tmp_path / "gone" / "latency.hud.json", clock.read)
+    clock.now_ns += 2_000_000_000
+    receipts.received(record(1, clock.now_ns))
+
+
+def test_percentiles_hold_to_one_bin() -> None:
+    seed = 20261121
+    print("seed", seed)
+    times_ns = np.random.default_rng(seed).lognormal(10.0, 2.0, 5000).astype(np.int64) + 200
+    histogram = Histogram()
+    for time_ns in times_ns.tolist():
+        histogram.add(time_ns)
+    for percent in (1.0, 50.0, 99.0, 99.9):
+        true = float(np.percentile(times_ns, percent, method="inverted_cdf"))
+        assert true * 0.999 <= histogram.percentile_ns(percent) <= true * 10 ** (1 / 20) * 1.001
+    assert histogram.percentile_ns(100.0) == histogram.max_ns == times_ns.max()
+
+
+@pytest.mark.parametrize("time_ns", [-5, 0, 1, 99, 100, 101, 999_999_999, 1_000_000_000, 60_000_000_000])
+def test_any_time_can_be_counted(time_ns: int) -> None:
+    histogram = Histogram()
+    assert histogram.percentile_ns(50.0) == 0.0
+    histogram.add(time_ns)
+    assert histogram.count == 1
+    assert histogram.percentile_ns(99.0) == pytest.approx(max(0, time_ns))
