@@ -35,7 +35,7 @@ class TenMessages(CanNode):
 
     def __init__(self, profile: CanProfile, count: int) -> None:
         codec = load_codec()
-        super().__init__(codec, profile, TICK_HZ, wheels=(0, 1))
+        super().__init__(codec, profile, TICK_HZ, wheels=(0, 1, 2, 3))
         infos = (codec.sent_by(CONSOLE) * 2)[:count]
         assert {info.name for info in infos} <= set(BUILDERS)
         self._messages = infos
@@ -95,11 +95,13 @@ def main() -> None:
         for name, count in (("idle", 0), ("ten_messages", MESSAGES)):
             other = subprocess.Popen(ecu, stdout=subprocess.DEVNULL) if options.interface == "udp_multicast" else None
             time.sleep(1.0)  # the ECU's start-up is not ours
-            results[name] = measure(profile, count, options.duration_s, Path(folder))
+            try:
+                results[name] = measure(profile, count, options.duration_s, Path(folder))
+            finally:
+                if other is not None:
+                    other.terminate()
+                    other.wait()
             print(name, results[name], flush=True)
-            if other is not None:
-                other.terminate()
-                other.wait()
     print(json.dumps({"interface": options.interface, **results}))
 
 

@@ -6,15 +6,14 @@ nothing and receiving returns nothing, so no loop stands still for it.
 """
 
 import logging
-import os
-import socket
 import struct
 import time
 import zlib
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, cast
 
 from simconsole.canbus.codec import Frame
+from simconsole.canbus.multicast import LoopbackBus
 from simconsole.canbus.recovery import Recovery
 from simconsole.errors import CanError
 from simconsole.profiles.can import CanProfile
@@ -28,7 +27,6 @@ if TYPE_CHECKING:
 LOG_FILES: Final = {"blf": "can.blf", "candump": "can.log"}
 _BUS_OFF: Final = 0x40  # linux/can/error.h: CAN_ERR_BUSOFF, a bit of an error frame's id
 _FULL: Final = (11, 105)  # EAGAIN, ENOBUFS: the send queue is full, which is no fault of the bus
-_IP_MULTICAST_ALL: Final = 49  # linux/in.h
 _UNDERWAY_MAX: Final = 256
 """Frames looked at in one call at most: a flood of others' frames ends a call, not the caller's cycle."""
 
@@ -218,17 +216,15 @@ def open_bus(profile: CanProfile, receive_ids: frozenset[int]) -> "can.BusABC":
     import can
 
     options: dict[str, Any] = {}
-    if profile.interface == "udp_multicast":
-        options = {"port": profile.port, "hop_limit": 0}
     if profile.bitrate_bps is not None:
         options["bitrate"] = profile.bitrate_bps
     filters: list[Any] | None = None
     if profile.interface == "socketcan":  # in the kernel; error frames pass. Elsewhere `receive` does it.
         filters = [{"can_id": number, "can_mask": 0x7FF, "extended": False} for number in sorted(receive_ids)]
     try:
-        bus = can.Bus(channel=profile.channel, interface=profile.interface, can_filters=filters, **options)
         if profile.interface == "udp_multicast":
-            _keep_on_this_machine(bus.fileno(), profile.channel)
+            return _loopback(profile)
+        bus = can.Bus(channel=profile.channel, interface=profile.interface, can_filters=filters, **options)
     except (can.CanError, OSError, ValueError, NotImplementedError, ImportError) as error:
         where = f"{profile.interface} {profile.channel}"
         raise CanError(f"CAN {where}: cannot be opened: {' '.join(str(error).split())}") from None
@@ -284,17 +280,15 @@ def read_log(path: "Path") -> list[tuple[float, Frame]]:
     ]
 
 
-def _keep_on_this_machine(descriptor: int, group: str) -> None:
-    """Leave the group on the default interface and join it on loopback: frames neither leave nor come in."""
-    packed, anywhere, loopback = (socket.inet_aton(address) for address in (group, "0.0.0.0", "127.0.0.1"))
-    with socket.socket(fileno=os.dup(descriptor)) as same:
-        same.setsockopt(socket.IPPROTO_IP, socket.IP_DROP_MEMBERSHIP, packed + anywhere)
-        same.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, packed + loopback)
-        same.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, loopback)
-        try:
-            same.setsockopt(socket.IPPROTO_IP, _IP_MULTICAST_ALL, 0)
-        except OSError:
-            return  # not Linux: other systems never deliver groups that this socket has not joined
+def _loopback(profile: CanProfile) -> "can.BusABC":
+    from can.interfaces.udp_multicast import utils
+
+    utils.is_msgpack_installed()
+
+    def unpack(data: bytes, now_s: float) -> "can.Message":
+        return utils.unpack_message(data, replace={"timestamp": now_s}, check=True)
+
+    return cast("can.BusABC", LoopbackBus(profile.channel, profile.port, utils.pack_message, unpack))
 
 
 def _error_number(error: Exception) -> int | None:

@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 
 from simconsole.canbus.codec import ECU, Codec
+from simconsole.canbus.multicast import LoopbackBus
 from simconsole.canbus.port import CanPort, read_log
 from simconsole.canbus.tools import monitor
 from simconsole.profile_files import to_text
@@ -120,10 +121,10 @@ def test_frames_stay_on_this_machine(port: int) -> None:
     """The group is joined on loopback only: what comes in on another interface is another group's business."""
     can_port = CanPort(CanProfile(port=port), frozenset({0x100}), frozenset({0x200}))
     bus = can_port._bus
-    assert bus is not None
-    with socket.socket(fileno=os.dup(bus.fileno())) as same:
-        assert same.getsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL) == 0
-        assert same.getsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, 4) == socket.inet_aton("127.0.0.1")
+    assert isinstance(bus, LoopbackBus)
+    same = bus._out
+    assert same.getsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL) == 0
+    assert same.getsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, 4) == socket.inet_aton("127.0.0.1")
     members = [
         line.split()
         for line in Path("/proc/net/igmp").read_text().splitlines()  # group addresses under each interface
