@@ -15,6 +15,8 @@ from websockets.sync.client import ClientConnection, connect
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
+CACHE = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "simconsole-tests"
+"""What was fetched once from a package index."""
 PATIENCE_S = 20.0
 
 
