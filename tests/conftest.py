@@ -5,6 +5,7 @@ A test that measures something keeps it with `record_property(NAME, TEXT)`; the 
 
 import os
 import signal
+from pathlib import Path
 
 import pytest
 
@@ -15,6 +16,20 @@ __all__ = ["script", "short"]
 # A shell starts background jobs with SIGINT ignored, and every program a test starts would inherit that: a Ctrl-C sent
 # to it would be lost, however the tests themselves were started.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+HARDWARE = Path(__file__).parent / "hardware"
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the option without which the tests that need a real wheel and a person are not even collected."""
+    parser.addoption("--hardware", metavar="COCKPIT", help="also test this cockpit's real devices (docs/hardware.md)")
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Leave tests/hardware out unless asked for."""
+    wanted = config.getoption("--hardware") is not None
+    return True if collection_path.is_relative_to(HARDWARE) and not wanted else None
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
