@@ -2,13 +2,22 @@
 
 from functools import cache
 
+from simconsole.bridge.messages import (
+    autoware_text,
+    auv_text,
+    geographic_text,
+    geometry_text,
+    nav_text,
+    sensor_text,
+    std_text,
+    vehicle_text,
+    vision_text,
+)
 from simconsole.bridge.messages.definition import Definition, FieldType, full_name, parse, parse_all
 from simconsole.bridge.messages.registry import Registry, is_stamped
-from simconsole.bridge.messages.ros_text import TEXT as ROS_TEXT
 from simconsole.bridge.messages.rosapi_text import SERVICES as ROSAPI_SERVICES
 from simconsole.bridge.messages.rosapi_text import TYPE_DEF
 from simconsole.bridge.messages.service_text import ACTIONS, SERVICES
-from simconsole.bridge.messages.vehicle_text import TEXT as VEHICLE_TEXT
 
 __all__ = [
     "Definition",
@@ -22,6 +31,19 @@ __all__ = [
 ]
 
 
+_PACKAGES = (
+    std_text,
+    geometry_text,
+    sensor_text,
+    nav_text,
+    geographic_text,
+    auv_text,
+    vision_text,
+    autoware_text,
+    vehicle_text,
+)
+
+
 def standard_registry() -> Registry:
     """Return a new registry with the packages the console speaks; add your own definitions to it."""
     registry = Registry()
@@ -33,8 +55,9 @@ def standard_registry() -> Registry:
 @cache
 def _standard_definitions() -> tuple[Definition, ...]:
     registry = Registry()
-    for text in (ROS_TEXT, VEHICLE_TEXT, TYPE_DEF):
-        registry.add_all(text)
+    for package in _PACKAGES:
+        registry.add_all(package.TEXT)
+    registry.add_all(TYPE_DEF)
     for name, text in {**SERVICES, **ROSAPI_SERVICES}.items():
         registry.add_service(name, text)
     for name, text in ACTIONS.items():

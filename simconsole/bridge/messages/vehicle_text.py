@@ -1,22 +1,8 @@
-"""Interfaces of driving: ackermann_msgs, Autoware's control and vehicle packages, and the console's own."""
+"""Interfaces of driving: ackermann_msgs and the console's own; Autoware's stand in autoware_text.py."""
 
 from typing import Final
 
-_GEARS: Final = "\n".join(
-    (
-        "uint8 NONE = 0",
-        "uint8 NEUTRAL = 1",
-        "uint8 DRIVE = 2",
-        *(f"uint8 DRIVE_{gear} = {gear + 1}" for gear in range(2, 19)),
-        "uint8 REVERSE = 20",
-        "uint8 REVERSE_2 = 21",
-        "uint8 PARK = 22",
-        "uint8 LOW = 23",
-        "uint8 LOW_2 = 24",
-    )
-)
-
-TEXT: Final = f"""
+TEXT: Final = """
 MSG: ackermann_msgs/AckermannDrive
 float32 steering_angle
 float32 steering_angle_velocity
@@ -27,87 +13,6 @@ float32 jerk
 MSG: ackermann_msgs/AckermannDriveStamped
 std_msgs/Header header
 AckermannDrive drive
-===
-MSG: autoware_control_msgs/Lateral
-builtin_interfaces/Time stamp
-builtin_interfaces/Time control_time
-float32 steering_tire_angle
-float32 steering_tire_rotation_rate
-bool is_defined_steering_tire_rotation_rate
-===
-MSG: autoware_control_msgs/Longitudinal
-builtin_interfaces/Time stamp
-builtin_interfaces/Time control_time
-float32 velocity
-float32 acceleration
-float32 jerk
-bool is_defined_acceleration
-bool is_defined_jerk
-===
-MSG: autoware_control_msgs/Control
-builtin_interfaces/Time stamp
-builtin_interfaces/Time control_time
-Lateral lateral
-Longitudinal longitudinal
-===
-MSG: autoware_vehicle_msgs/ControlModeReport
-uint8 NO_COMMAND = 0
-uint8 AUTONOMOUS = 1
-uint8 AUTONOMOUS_STEER_ONLY = 2
-uint8 AUTONOMOUS_VELOCITY_ONLY = 3
-uint8 MANUAL = 4
-uint8 DISENGAGED = 5
-uint8 NOT_READY = 6
-builtin_interfaces/Time stamp
-uint8 mode
-===
-MSG: autoware_vehicle_msgs/GearCommand
-{_GEARS}
-builtin_interfaces/Time stamp
-uint8 command
-===
-MSG: autoware_vehicle_msgs/GearReport
-{_GEARS}
-builtin_interfaces/Time stamp
-uint8 report
-===
-MSG: autoware_vehicle_msgs/HazardLightsCommand
-uint8 NO_COMMAND = 0
-uint8 DISABLE = 1
-uint8 ENABLE = 2
-builtin_interfaces/Time stamp
-uint8 command
-===
-MSG: autoware_vehicle_msgs/HazardLightsReport
-uint8 DISABLE = 1
-uint8 ENABLE = 2
-builtin_interfaces/Time stamp
-uint8 report
-===
-MSG: autoware_vehicle_msgs/SteeringReport
-builtin_interfaces/Time stamp
-float32 steering_tire_angle
-===
-MSG: autoware_vehicle_msgs/TurnIndicatorsCommand
-uint8 NO_COMMAND = 0
-uint8 DISABLE = 1
-uint8 ENABLE_LEFT = 2
-uint8 ENABLE_RIGHT = 3
-builtin_interfaces/Time stamp
-uint8 command
-===
-MSG: autoware_vehicle_msgs/TurnIndicatorsReport
-uint8 DISABLE = 1
-uint8 ENABLE_LEFT = 2
-uint8 ENABLE_RIGHT = 3
-builtin_interfaces/Time stamp
-uint8 report
-===
-MSG: autoware_vehicle_msgs/VelocityReport
-std_msgs/Header header
-float32 longitudinal_velocity
-float32 lateral_velocity
-float32 heading_rate
 ===
 MSG: simconsole_msgs/Arbitration
 std_msgs/Header header
