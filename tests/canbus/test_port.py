@@ -6,7 +6,7 @@ import logging
 import socket
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import can
 import pytest
@@ -14,7 +14,7 @@ import pytest
 from simconsole.canbus.codec import ECU, Codec, Frame
 from simconsole.canbus.port import CanPort, open_bus, read_log
 from simconsole.errors import CanError
-from simconsole.profiles.can import CanProfile
+from simconsole.profiles.can import CanProfile, Interface
 
 ROOT = Path(__file__).resolve().parents[2]
 DATA = bytes(range(8))
@@ -261,3 +261,18 @@ def test_closing_twice_is_harmless(profile: CanProfile) -> None:
     port = CanPort(profile, frozenset(), frozenset())
     port.close()
     port.close()
+
+
+def test_every_interface_of_a_profile_is_one_of_python_can() -> None:
+    assert set(get_args(Interface)) <= set(can.VALID_INTERFACES)
+
+
+@pytest.mark.parametrize("interface", ["pcan", "vector", "kvaser", "socketcan"])
+def test_interfaces_of_vendors_get_what_the_profile_says(interface: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: dict[str, Any] = {}
+    monkeypatch.setattr(can, "Bus", lambda **options: asked.update(options))
+    open_bus(CanProfile(interface=interface, channel="can7", bitrate_bps=250_000), frozenset({0x200}))
+    assert (asked["interface"], asked["channel"], asked["bitrate"]) == (interface, "can7", 250_000)
+    assert asked["can_filters"] == (
+        [{"can_id": 0x200, "can_mask": 0x7FF, "extended": False}] if interface == "socketcan" else None
+    )

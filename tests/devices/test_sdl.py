@@ -1,16 +1,19 @@
 """The cockpit through pygame's joysticks: identity, unplugging, boot mode. Every case with virtual devices."""
 
+import random
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 
+from simconsole.devices import sdl as sdl_module
 from simconsole.devices import sdl_runtime
 from simconsole.devices.calibration import CockpitSettings, settings
 from simconsole.devices.sdl import SdlSource, identity
 from simconsole.devices.uncalibrate import Intent, uncalibrate
 from simconsole.devices.validity import LIVE, LOST, UNKNOWN
 from simconsole.devices.virtual_cockpit import VirtualCockpit
-from simconsole.devices.virtual_sdl import VirtualDevice, VirtualSpec
+from simconsole.devices.virtual_sdl import VirtualDevice, VirtualSpec, specs
 from simconsole.errors import DeviceError, DeviceModeError, DeviceNotFound
 from simconsole.profile_files import load
 from simconsole.profiles.device import CockpitProfile
@@ -64,6 +67,42 @@ def test_every_role_reaches_the_person_in_any_enumeration_order(drive: Drive) ->
     assert (driver.throttle, driver.brake, driver.clutch) == pytest.approx((0.2, 0.4, 0.6), abs=1e-4)
     assert driver.gear == 5.0
     assert drive.do(Intent(gear=-1)).gear == -1.0
+
+
+def test_roles_are_the_same_in_a_thousand_shuffled_enumerations(
+    sdl: None, t500: CockpitProfile, plug: Plug, monkeypatch: pytest.MonkeyPatch, record_property: Callable[..., None]
+) -> None:
+    """Among other joysticks, some of which look like a wheel or a shifter; in any order of enumeration."""
+    seed = 20261121
+    print("seed", seed)
+    dice, real = random.Random(seed), sdl_module.found
+    others = [
+        spec for name in ("g29", "t300rs_th8a", "gamepad") for spec in specs(load("devices", name, CockpitProfile))
+    ]
+    for spec in others:
+        plug(spec)
+    cockpit = VirtualCockpit(t500)
+
+    def shuffled(pygame: Any) -> list[Any]:
+        joysticks = real(pygame)
+        dice.shuffle(joysticks)
+        return joysticks
+
+    monkeypatch.setattr(sdl_module, "found", shuffled)
+    bound, orders = set(), set()
+    for _ in range(1000):
+        orders.add(tuple(entry.instance_id for entry, _ in shuffled(sdl_runtime.acquire())))
+        sdl_runtime.release()
+        source = SdlSource(t500)
+        bound.add(tuple(source.instance_id(role) for role in ("wheel", "pedals", "shifter")))
+        source.close()
+    names = {entry.instance_id: entry.product_id for entry, _ in real(sdl_runtime.acquire())}
+    sdl_runtime.release()
+    cockpit.close()
+    assert len(orders) > 500
+    ((wheel, pedals, shifter),) = bound
+    assert (names[wheel], names[pedals], names[shifter]) == (0xB65E, 0xB65E, 0xB660)
+    record_property("enumeration", f"{len(orders)} orders of {len(names)} joysticks in 1,000 trials, the same roles")
 
 
 @pytest.mark.parametrize("name", ["t300rs_th8a", "g29", "gamepad"])

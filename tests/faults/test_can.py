@@ -6,12 +6,14 @@ The drives are headless and in simulated time; only C03's flood and C02's reopen
 import errno
 import itertools
 import os
+import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import can
+import msgspec
 import numpy as np
 import pytest
 
@@ -24,6 +26,10 @@ from simconsole.canbus.station import InlineCan, OnBus, load_codec
 from simconsole.compiling import plain
 from simconsole.drive import Cast, run
 from simconsole.errors import CanError
+from simconsole.hud.draw import Text
+from simconsole.hud.layout import layout
+from simconsole.hud.screen import Screen
+from simconsole.hud.view import HudView
 from simconsole.kernels import Row
 from simconsole.pacing import UnpacedPacer
 from simconsole.ports import NobodyCommands, NobodySeated
@@ -31,6 +37,7 @@ from simconsole.profiles.can import CanProfile
 from simconsole.rows import ARBITRATION_AT, ECU_AT, Snapshot
 from simconsole.session_files import load_session, override, resolve
 from simconsole.signals import Arbitration, Mode, Reason, RemoteCommand
+from simconsole.station_programs import CanWatch
 
 TICK_HZ = 250
 STALE_TICKS = 50  # 200 ms
@@ -258,6 +265,31 @@ def test_c02_bus_off_is_reported_and_the_drive_goes_on(drive: Callable[..., Driv
     reasons = set(driven.rows[:, REASON].tolist())
     assert Reason.COMMANDER_LOST in reasons, "the person is told at once, not after the commands have grown stale"
     assert driven.mode(TICKS) in (Mode.MINIMAL_RISK, Mode.STOPPED)
+
+
+def test_c02_state_of_the_bus_stands_on_the_drivers_cluster(profile: CanProfile, codec: Codec, tmp_path: Path) -> None:
+    """From the station's own word over its file to the lamp in the draw list: up, off, up again."""
+    yard = FallingYard("send", 1, down_s=20.0)
+    port = CanPort(profile, codec.ids("CONSOLE"), codec.ids("ECU"), clock_s=lambda: yard.now_s, opener=yard.open)
+    on_bus = OnBus(CanNode(codec, profile, 250), port)
+    file, now = tmp_path / "can.json", [time.time()]
+    watch = CanWatch(file, time.time, lambda: now[0])
+
+    def lamp() -> str:
+        file.write_bytes(msgspec.json.encode(on_bus.status(0)))
+        now[0] += 1.0
+        items = layout(HudView(can_up=watch()), Screen(1400, 1050, 1.6, 2.2))
+        return next(item.text for item in items if isinstance(item, Text) and item.role == "status.can.words")
+
+    shown = [lamp()]
+    port.send(Frame(0x100, bytes(8)))
+    shown.append(lamp())
+    for _ in range(400):
+        yard.now_s += 0.1
+        port.send(Frame(0x100, bytes(8)))
+    shown.append(lamp())
+    port.close()
+    assert shown == ["on", "down", "on"]
 
 
 def test_c02_tries_again_with_growing_waits_and_sends_again(profile: CanProfile) -> None:
