@@ -69,6 +69,7 @@ def _say(line: str) -> None:
 def _with_motor(devices: DeviceSource, cockpit: CockpitProfile, force: ForceFeedback, stack: ExitStack) -> Seating:
     """Add the wheel's motor; without one everything else works, and the person is told."""
     from simconsole.devices.back_ends import open_motor
+    from simconsole.devices.kernel_limits import notes, problems, wheel_limits
     from simconsole.devices.motor import MotorisedSource, NoHaptics, WheelMotor
     from simconsole.devices.sdl import SdlSource
     from simconsole.devices.watched import open_watchdog, watched
@@ -76,6 +77,9 @@ def _with_motor(devices: DeviceSource, cockpit: CockpitProfile, force: ForceFeed
     assert isinstance(devices, SdlSource)
     wheel = {"id": devices.instance_id("wheel")}
     identity = next((role.vendor_id, role.product_id) for role in cockpit.roles if role.role == "wheel")
+    limits = wheel_limits(cockpit)
+    for line in (*problems(limits, cockpit), *notes(limits)):
+        _say(line)
     watchdog = open_watchdog(identity, _say)
     if watchdog is not None:
         stack.callback(watchdog.close)

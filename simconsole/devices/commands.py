@@ -6,8 +6,9 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any, Final, Self
 
-from simconsole.devices import sdl_runtime
+from simconsole.devices import kernel_limits, sdl_runtime
 from simconsole.devices.bars import lines
+from simconsole.devices.kernel_limits import KernelLimits, wheel_limits
 from simconsole.devices.record import TraceWriter
 from simconsole.devices.script import ScriptSource
 from simconsole.devices.sdl import SdlSource, found
@@ -88,6 +89,7 @@ def check_devices(
     Raises:
         DeviceError: a device is missing or cannot drive.
     """
+    limits = KernelLimits() if virtual else wheel_limits(cockpit)
     watch = Watch(cockpit, tick_hz)
     lock_rad = 0.5 * cockpit.wheel.lock_to_lock_deg * RAD_PER_DEG
     with _Cockpit(cockpit, virtual, tick_hz) as opened:
@@ -102,6 +104,10 @@ def check_devices(
 
         opened.poll(ticks, pace or realtime(tick_hz), take)
     results = watch.results()
+    if not virtual:
+        results["problems"] += kernel_limits.problems(limits, cockpit)
+        results["notes"] += kernel_limits.notes(limits)
+        results |= {"ok": not results["problems"], "kernel": limits._asdict()}
     for name, ends in results["pedals"].items():
         say(f"{name}: {ends['least']:.0%} to {ends['most']:.0%}")
     say(f"hand wheel: {results['wheel_deg']['least']:.0f} to {results['wheel_deg']['most']:.0f} deg")

@@ -26,8 +26,17 @@ _IDENTITY: Final = request(READ, 0x02, 8)
 _SLOTS: Final = request(READ, 0x84, 4)
 
 
-def open_node(identity: tuple[int, int], *, writable: bool = True) -> int:
-    """Return a descriptor of the event device with this USB vendor and product id.
+def open_node(identity: tuple[int, int]) -> int:
+    """Return a descriptor, to read and write, of the event device with this USB vendor and product id.
+
+    Raises:
+        DeviceError: as `find_node`.
+    """
+    return find_node(identity, writable=True)[1]
+
+
+def find_node(identity: tuple[int, int], *, writable: bool) -> tuple[Path, int]:
+    """Return the event device with this USB vendor and product id, and a descriptor of it.
 
     Raises:
         DeviceError: no such device, it may not be opened, or this is no Linux.
@@ -50,7 +59,7 @@ def open_node(identity: tuple[int, int], *, writable: bool = True) -> int:
         except OSError:
             found = bytearray(8)
         if struct.unpack("<4H", found)[1:3] == identity:
-            return descriptor
+            return node, descriptor
         os.close(descriptor)
     wanted = f"{identity[0]:04x}:{identity[1]:04x}"
     may = "written" if writable else "read"

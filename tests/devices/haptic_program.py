@@ -1,7 +1,7 @@
 """Runs behind the mocked kernel: the console's own motor on SDL's own driver, 250 ticks a second.
 
 python haptic_program.py HOW [BACK_END [watched]]      HOW: drive, hang (SIGSTOP to itself), kill (SIGKILL to itself),
-contract (port_contract.py) or motion (read what the kernel plays)
+contract (port_contract.py), motion (read what the kernel plays) or limits (what it says of the axes)
 """
 
 import json
@@ -15,6 +15,7 @@ import numpy as np
 
 from simconsole.devices import sdl_runtime
 from simconsole.devices.back_ends import open_motor
+from simconsole.devices.kernel_limits import notes, problems, read_limits
 from simconsole.devices.motor import WheelMotor
 from simconsole.devices.sdl import SdlSource, found
 from simconsole.devices.watched import Watchdog, watched
@@ -89,8 +90,17 @@ def main(how: str) -> None:
     sdl_runtime.release()
 
 
+def limits() -> None:
+    """Print what the kernel says of the wheel."""
+    cockpit = load("devices", "t500rs_th8rs", CockpitProfile)
+    found = read_limits((0x044F, 0xB65E))
+    print(json.dumps([found._asdict(), problems(found, cockpit), notes(found)]), flush=True)
+
+
 if __name__ == "__main__":
     if sys.argv[1] == "motion":
         motion()
+    elif sys.argv[1] == "limits":
+        limits()
     else:
         main(sys.argv[1])

@@ -34,6 +34,7 @@ E: PRODUCT=3/44f/b65e/111
 E: NAME="Thrustmaster TRS Racing wheel"
 E: ID_INPUT=1
 E: ID_INPUT_JOYSTICK=1
+A: range=900
 
 P: {PARENT}/event5
 N: input/event5
@@ -50,6 +51,7 @@ E: ID_MODEL_ID=b65e
 NAME = b"Thrustmaster TRS Racing wheel\0"
 ABS_X, ABS_Y, ABS_RZ, ABS_THROTTLE = 0, 1, 5, 6
 AXES = {ABS_X: (32768, 0, 65535), ABS_Y: (1023, 0, 1023), ABS_RZ: (1023, 0, 1023), ABS_THROTTLE: (1023, 0, 1023)}
+FUZZ_FLAT = {ABS_X: (255, 128)}
 HATS = {0x10: (0, -1, 1), 0x11: (0, -1, 1)}
 BUTTONS = range(288, 301)
 EV_KEY, EV_ABS, EV_FF = 1, 3, 0x15
@@ -141,7 +143,7 @@ class Kernel(UMockdev.IoctlBase):  # type: ignore[misc]  # its bindings have no 
             }.get(number - 0x20, bytes(size))
         if 0x40 <= number < 0x80:
             axis = {**AXES, **HATS}.get(number - 0x40)
-            return None if axis is None else struct.pack("<6i", *axis, 0, 0, 0)
+            return None if axis is None else struct.pack("<6i", *axis, *FUZZ_FLAT.get(number - 0x40, (0, 0)), 0)
         return None
 
     def do_handle_read(self, client: Any) -> bool:

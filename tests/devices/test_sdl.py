@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from msgspec.structs import replace
 
 from simconsole.devices import sdl as sdl_module
 from simconsole.devices import sdl_runtime
@@ -132,6 +133,40 @@ def test_every_shipped_cockpit_works_as_virtual_devices(name: str, sdl: None) ->
 def test_every_button_reaches_the_person(button: Button, drive: Drive) -> None:
     assert drive.do(Intent(pressed=int(button))).edges == float(button)
     assert drive.do().pressed == 0.0
+
+
+def test_shuffled_enumeration_gives_the_same_roles_in_1000_trials(sdl: None, t500: CockpitProfile) -> None:
+    """Wheel, pedals and shifter on three plugs, among two devices that are none of them, in any order."""
+    dice = random.Random(20261121)
+    print("seed 20261121")
+    pedals = replace(t500.roles[1], vendor_id=0x044F, product_id=0xB371, name="Pedals", axes=4, buttons=0, hats=0)
+    cockpit = replace(t500, roles=[t500.roles[0], pedals, t500.roles[2]])
+    plugs = [
+        VirtualSpec("Wheel", 0x044F, 0xB65E, 4, 13, 1, (0.25, 0.9, 0.9, 0.9)),
+        VirtualSpec("Pedals", 0x044F, 0xB371, 4, 0, 0, (0.1, 0.5, 0.75, 0.125)),
+        VirtualSpec("Shifter", 0x044F, 0xB660, 2, 10, 0, (-0.7, -0.7)),
+        VirtualSpec("Pad", 0x045E, 0x028E, 6, 11, 1, (-1.0,) * 6),
+        VirtualSpec("Throttle quadrant", 0x068E, 0x00FA, 8, 24, 0, (-1.0,) * 8),
+    ]
+    orders = set()
+    sdl_runtime.acquire()
+    try:
+        for _ in range(1000):
+            dice.shuffle(plugs)
+            orders.add(tuple(spec.name for spec in plugs))
+            devices = {spec.name: VirtualDevice(spec) for spec in plugs}
+            devices["Shifter"].set_button(3, True)
+            source = SdlSource(cockpit)
+            sample = source.poll(1)
+            source.close()
+            for device in devices.values():
+                device.close()
+            axes = (sample.wheel_axis, sample.throttle_axis, sample.brake_axis, sample.clutch_axis)
+            assert axes == pytest.approx((0.25, 0.75, 0.5, 0.125), abs=1e-4), orders
+            assert (sample.wheel_buttons, sample.shifter_buttons) == (0.0, 8.0)
+    finally:
+        sdl_runtime.release()
+    assert len(orders) == 120, "every order there is"
 
 
 def test_axes_of_the_shifter_steer_nothing(plug: Plug, t500: CockpitProfile, drive: Drive) -> None:
