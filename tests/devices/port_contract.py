@@ -1,9 +1,17 @@
 """What every motor must do, whatever stands behind it: run in a test for some, in the mocked program for others."""
 
+from collections.abc import Callable
+
+import numpy as np
 import pytest
 
-from simconsole.devices.motor import HapticPort
+from simconsole.devices.motor import HapticPort, WheelMotor
 from simconsole.errors import DeviceError
+from simconsole.profiles.force_feedback import ForceFeedback
+from simconsole.rows import MOTOR_AT, PLATFORM_AT, TORQUE_AT, Snapshot
+from simconsole.signals import NO_TORQUE
+
+Check = Callable[[HapticPort], None]
 
 
 def takes_every_level_in_any_order(port: HapticPort) -> None:
@@ -26,3 +34,20 @@ def closes_twice_and_then_has_no_force(port: HapticPort) -> None:
     if had_force:
         with pytest.raises(DeviceError):
             port.write(0.5)
+
+
+def works_behind_the_motor(port: HapticPort) -> None:
+    motor = WheelMotor(port, ForceFeedback(max_torque_nm=4.0), lambda snapshot: snapshot.t_s)
+    for tick in range(20):
+        row = np.zeros(PLATFORM_AT)
+        row[TORQUE_AT:MOTOR_AT] = NO_TORQUE._replace(torque_nm=tick - 10.0, enabled=float(tick % 7 > 0))
+        motor.publish(Snapshot(tick, 250, row))
+    assert motor.failure is None
+    motor.close()
+    assert not motor.obeys
+
+
+CHECKS: dict[str, Check] = {
+    check.__name__: check
+    for check in (takes_every_level_in_any_order, closes_twice_and_then_has_no_force, works_behind_the_motor)
+}

@@ -84,13 +84,6 @@ def test_after_closing_nothing_plays(driven: list[dict[str, Any]]) -> None:
     assert driven[-1] == {**driven[-1], "what": "end", "code": 0}
 
 
-@pytest.mark.parametrize("back_end", ["sdl", "evdev"])
-def test_back_end_keeps_the_contract_of_every_motor(back_end: str, tmp_path: Path) -> None:
-    done = start(tmp_path / "calls.jsonl", "contract", back_end)
-    out, err = done.communicate(timeout=60.0)
-    assert done.returncode == 0, out + err
-
-
 def test_recorded_motion_of_a_t500_arrives_as_a_person(tmp_path: Path, t500: CockpitProfile) -> None:
     """The kernel's events of a wheel, a pedal and a paddle, through SDL's own evdev driver, calibrated."""
     done = start(tmp_path / "calls.jsonl", "motion", motion=Path(__file__).with_name("t500_motion.txt"))

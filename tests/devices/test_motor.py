@@ -1,9 +1,7 @@
 """The effect on the device: written on change and at its rate, started again only while ticks come.
 
-No wheel and the simulated one stand behind one contract here; SDL's port is tested in test_haptics.py.
+What every port must do stands in test_every_motor.py.
 """
-
-from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -22,8 +20,6 @@ from simconsole.errors import DeviceError
 from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.rows import MOTOR_AT, PLATFORM_AT, TORQUE_AT, Snapshot
 from simconsole.signals import NO_SAMPLE, NO_TORQUE, DeviceSample
-
-from .port_contract import closes_twice_and_then_has_no_force, takes_every_level_in_any_order
 
 FORCE = ForceFeedback(max_torque_nm=4.0)
 HZ = 250
@@ -151,28 +147,6 @@ def test_wheel_that_is_gone_has_no_motor() -> None:
     source._source.sample = NO_SAMPLE  # type: ignore[attr-defined]
     assert source.poll(1).wheel_motor == 0.0
     assert MotorisedSource(Still(), motor(NoHaptics()), lambda: None).poll(1).wheel_motor == 0.0
-
-
-def simulated() -> HapticPort:
-    return SimulatedWheelPort(SimulatedWheel(FORCE, 1080.0, tick_hz=HZ))
-
-
-@pytest.mark.parametrize("make", [NoHaptics, simulated], ids=["none", "simulated"])
-class TestContract:
-    """What every port must do; SDL's and evdev's take the same in test_haptics.py, behind a mocked kernel."""
-
-    def test_takes_every_level_in_any_order(self, make: Callable[[], HapticPort]) -> None:
-        takes_every_level_in_any_order(make())
-
-    def test_closes_twice_and_then_has_no_force(self, make: Callable[[], HapticPort]) -> None:
-        closes_twice_and_then_has_no_force(make())
-
-    def test_works_behind_the_motor(self, make: Callable[[], HapticPort]) -> None:
-        wheel = motor(make())
-        for tick in range(20):
-            wheel.publish(shot(tick, 1.0, enabled=float(tick % 7 > 0)))
-        wheel.close()
-        assert wheel.failure is None
 
 
 def test_simulated_effect_ends_by_itself() -> None:

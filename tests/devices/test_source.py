@@ -1,5 +1,6 @@
 """What every source promises, and how they are found."""
 
+import math
 import subprocess
 import sys
 from collections.abc import Callable
@@ -8,7 +9,10 @@ from pathlib import Path
 import pytest
 
 from simconsole.devices.calibration import CockpitSettings, settings
+from simconsole.devices.faults import FaultyDevices
+from simconsole.devices.motor import MotorisedSource, SimulatedWheelPort, WheelMotor
 from simconsole.devices.record import TraceWriter
+from simconsole.devices.simulated_wheel import SimulatedWheel
 from simconsole.devices.source import open_source
 from simconsole.devices.trace import TraceHeader
 from simconsole.devices.uncalibrate import Intent, uncalibrate
@@ -18,6 +22,8 @@ from simconsole.keys import Key
 from simconsole.ports import DeviceSource
 from simconsole.profile_files import load
 from simconsole.profiles.device import CockpitProfile
+from simconsole.profiles.faults import Stuck
+from simconsole.profiles.force_feedback import ForceFeedback
 
 from .people import Seat
 
@@ -42,7 +48,7 @@ def _trace(path: Path, cockpit: CockpitSettings) -> str:
     return f"trace:{path}"
 
 
-@pytest.fixture(params=["sdl", "trace", "script", "keyboard"])
+@pytest.fixture(params=["sdl", "trace", "script", "keyboard", "motorised", "faulty"])
 def opened(
     request: pytest.FixtureRequest, tmp_path: Path, t500: CockpitProfile, t500_settings: CockpitSettings
 ) -> Opened:
@@ -59,10 +65,18 @@ def opened(
         return Opened(open_source("sdl", t500, tick_hz=HZ), t500, work)
     if request.param == "trace":
         return Opened(open_source(_trace(tmp_path / "t.csv", t500_settings), t500, tick_hz=HZ), t500, nothing)
-    if request.param == "script":
+    if request.param in ("script", "motorised", "faulty"):
         path = tmp_path / "script.yaml"
         path.write_text(SCRIPT)
-        return Opened(open_source(f"script:{path}", t500, tick_hz=HZ), t500, nothing)
+        source = open_source(f"script:{path}", t500, tick_hz=HZ)
+        if request.param == "motorised":
+            force = ForceFeedback(max_torque_nm=4.0)
+            port = SimulatedWheelPort(SimulatedWheel(force, 1080.0, tick_hz=HZ))
+            motor = WheelMotor(port, force, lambda snapshot: snapshot.t_s)
+            source = MotorisedSource(source, motor, lambda: None)
+        if request.param == "faulty":
+            source = FaultyDevices(source, [(Stuck(axis="wheel", at_s=9.0), Never())], t500, t500_settings, HZ)
+        return Opened(source, t500, nothing)
     keyboard = load("devices", "keyboard", CockpitProfile)
     held = [Key(0)]
 
@@ -81,8 +95,30 @@ def plugged_once(sdl: None, t500: CockpitProfile) -> object:
     cockpit.close()
 
 
+class Never:
+    """The switch of a fault that never comes."""
+
+    ticks = 0
+
+
 class TestEverySource:
     """The contract."""
+
+    def test_the_first_sample_is_there_and_commands_nothing(self, opened: Opened) -> None:
+        opened.before(1)
+        sample = opened.source.poll(1)
+        assert all(math.isfinite(value) for value in sample)
+        driver = Seat(opened.settings).feel(sample)
+        assert (driver.throttle, driver.brake, driver.gear, driver.pressed, driver.edges) == (0.0,) * 5
+        opened.source.close()
+
+    def test_hat_and_motor_are_flags(self, opened: Opened) -> None:
+        for tick in range(1, 20):
+            opened.before(tick)
+            sample = opened.source.poll(tick)
+            assert {sample.hat_x, sample.hat_y} <= {-1.0, 0.0, 1.0}
+            assert sample.wheel_motor in (0.0, 1.0)
+        opened.source.close()
 
     def test_samples_are_raw_fresh_and_drive_the_person(self, opened: Opened) -> None:
         seat = Seat(opened.settings)

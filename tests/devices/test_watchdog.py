@@ -19,8 +19,6 @@ from simconsole.devices.watched import Watchdog, WatchedPort, open_watchdog, wat
 from simconsole.errors import DeviceError
 from simconsole.profiles.force_feedback import ForceFeedback
 
-from .port_contract import closes_twice_and_then_has_no_force, takes_every_level_in_any_order
-
 NOBODY = (0xFFFF, 0xFFFF)
 
 
@@ -67,11 +65,6 @@ def test_every_start_is_a_beat_and_stop_and_close_say_that_nothing_is_left() -> 
     motor.stop()
     motor.close()
     assert words.beats == [True, True, False, False]
-
-
-def test_watched_motor_keeps_the_contract_of_every_motor() -> None:
-    takes_every_level_in_any_order(port(Words()))
-    closes_twice_and_then_has_no_force(port(Words()))
 
 
 def test_motor_without_force_is_not_watched() -> None:
