@@ -8,10 +8,11 @@ from subprocess import Popen
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from simconsole.assembly import ResolvedSession
-from simconsole.drive import Cast, Recorder
+from simconsole.bridge.operate import told
+from simconsole.drive import Cast, Recorder, Standby
 from simconsole.errors import BridgeError, ProfileError
 from simconsole.faulting import with_faults
-from simconsole.inline import LockstepLink, end_program, start_autopilot
+from simconsole.inline import STAND_S, LockstepLink, end_program, start_autopilot
 from simconsole.ledger import Ledger
 from simconsole.pacing import Pacer, UnpacedPacer, realtime_hints
 from simconsole.pipeline import Console
@@ -61,11 +62,13 @@ def open_headless(
     commands: CommandSource = NobodyCommands()
     stations: tuple[Station, ...] = ()
     pace = UnpacedPacer()
+    standby: tuple[Standby, ...] = (_idle,)
     counters: Callable[[], dict[str, Any]] = dict
     can_summary: Callable[[], dict[str, Any]] = dict
+    acts: Callable[[], list[dict[str, Any]]] = list
     if resolved.session.mode.pacing == "lockstep":
         link = _open_lockstep(resolved, console, check, stack)
-        commands, stations, counters = link, (link,), link.counters
+        commands, stations, counters, acts, standby = link, (link,), link.counters, link.acts, (link.stand,)
     elif resolved.session.features.autopilot is not None:
         raise ProfileError("mode.pacing: value free: lockstep or realtime, where features.autopilot drives")
     can = _open_can(resolved, console, bundle, stack)
@@ -73,12 +76,16 @@ def open_headless(
         stations, can_summary = (*stations, can), can.summary
     seating = open_seating(resolved, console, stack)
     outputs = (*seating.stations, *stations)
-    cast = Cast(seating.devices, commands, recorder, outputs, pace, seating.seat, ecu=can or NobodyCommands())
+    cast = Cast(
+        seating.devices, commands, recorder, outputs, pace, seating.seat, ecu=can or NobodyCommands(),
+        standby=(*standby, *(() if can is None else (can.listen,))),
+    )  # fmt: skip
     ledger = Ledger(time.monotonic_ns, console.tick_hz, every=LOOKED_AT)
     cast = with_faults(cast, resolved, console.tick_hz)._replace(ledger=ledger)
 
     def summary() -> dict[str, Any]:
-        return {**pace.summary(), **counters(), **can_summary(), "latency_us": ledger.summary_us()}
+        own = {**counters(), **can_summary(), **told(acts())}
+        return {**pace.summary(), **own, "latency_us": ledger.summary_us()}
 
     return Opened(cast, seating.finished, summary)
 
@@ -103,6 +110,8 @@ def open_realtime(
         DeviceError: a device is missing.
     """
     from simconsole.realtime import (
+        CommandPort,
+        acts_summary,
         add_can_memory,
         bridge_address,
         can_summary,
@@ -140,12 +149,13 @@ def open_realtime(
     missing = stack.enter_context(realtime_hints())
     pace = Pacer(console.tick_hz)
     outputs = (*seating.stations, ring, supervisor)
-    cast = Cast(seating.devices, port, recorder, outputs, pace, seating.seat, ecu=ecu)
+    standby = (supervisor.publish, port.stand, *((ecu.stand,) if isinstance(ecu, CommandPort) else ()))
+    cast = Cast(seating.devices, port, recorder, outputs, pace, seating.seat, ecu=ecu, standby=standby)
     ledger = Ledger(time.monotonic_ns, console.tick_hz)
     cast = with_faults(cast, resolved, console.tick_hz)._replace(ledger=ledger)
 
     def summary() -> dict[str, Any]:
-        stations = {"station_restarts": supervisor.counters(), **can_summary(folder)}
+        stations = {"station_restarts": supervisor.counters(), **can_summary(folder), **acts_summary(folder)}
         latency = {**ledger.summary_us(), **station_latencies(folder)}
         return {**pace.summary(), **stations, "latency_us": latency, "not_granted": missing}
 
@@ -159,6 +169,11 @@ def _check_address(profile: BridgeProfile) -> None:
 
     check(profile)
     listen(profile.host, profile.port).close()
+
+
+def _idle(snapshot: Snapshot) -> None:
+    """Leave the processor to others while simulated time stands and nobody else waits."""
+    time.sleep(STAND_S)
 
 
 def _end_programs(programs: list[Popen[bytes]]) -> None:

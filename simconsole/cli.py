@@ -82,6 +82,28 @@ def _driving(commands: Any) -> None:
     check.add_argument("--junit", metavar="FILE", help="write a JUnit report")
     check.add_argument("--update-golden", action="store_true", help="accept what was driven as the new golden")
 
+    operate = _command(commands, "operate", "operate:operate", "an operator's act in a running drive")
+    acts = (
+        "start",
+        "pause",
+        "restart",
+        "autonomous",
+        "manual",
+        "shared",
+        "takeover",
+        "fault",
+        "mark",
+        "reset",
+        "estop",
+    )
+    operate.add_argument("act", choices=acts, metavar="ACT", help=", ".join(acts))
+    operate.add_argument("--note", default="", metavar="TEXT", help="kept with the drive")
+    operate.add_argument("--participant", default="", metavar="ID")
+    operate.add_argument("--trial", default="", metavar="ID")
+    operate.add_argument("--url", default="ws://127.0.0.1:9090", metavar="URL", help="the console's rosbridge server")
+    operate.add_argument("--namespace", default="", metavar="NS", help="of the console's topics")
+    operate.add_argument("--token", metavar="T", help="of role control, where the server asks for one")
+
     autopilot = _command(commands, "autopilot", "remote:autopilot", "the path tracker, as a ROS-side program")
     autopilot.add_argument("--url", default="ws://127.0.0.1:9090", metavar="URL")
     autopilot.add_argument("--course", default="urban", metavar="WORLD")

@@ -1,13 +1,13 @@
 """The loop of one drive: inputs in, one tick, outputs out. It opens and closes nothing (session.py does)."""
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple, Protocol
+from typing import Final, NamedTuple, Protocol
 
 from simconsole.ledger import Hop, Ledger, unheard
 from simconsole.pipeline import Console, ConsoleState, advance
 from simconsole.ports import CommandSource, DeviceSource, NobodyCommands, Seat, Station
 from simconsole.rows import Snapshot, TickInputs
-from simconsole.signals import EventInput
+from simconsole.signals import NO_EVENTS, Button, Event, EventInput
 
 
 class Recorder(Protocol):
@@ -31,6 +31,15 @@ class Faults(Protocol):
         """Decide which faults are on in the coming `tick`; return them as a mask."""
 
 
+Standby = Callable[[Snapshot], None]
+"""Serves, listens or rests for a moment, with the last snapshot."""
+
+_PAUSE: Final = int(Event.PAUSE)
+_START: Final = int(Event.START)
+_BUTTON_PAUSE: Final = int(Button.PAUSE)
+_BUTTON_EMERGENCY: Final = int(Button.EMERGENCY_STOP)
+
+
 class Cast(NamedTuple):
     """Everyone who takes part in a drive."""
 
@@ -43,6 +52,7 @@ class Cast(NamedTuple):
     faults: Faults | None = None
     ecu: CommandSource = NobodyCommands()
     ledger: Ledger | None = None
+    standby: Sequence[Standby] = ()  # called again and again while simulated time stands
 
 
 def run(
@@ -51,12 +61,16 @@ def run(
     cast: Cast,
     ticks: int,
     finished: Callable[[Snapshot], bool] = lambda snapshot: False,
+    on_request: bool = False,
 ) -> ConsoleState:
     """Drive until `ticks` have passed or `finished` says so; return the last state.
 
     The order is fixed: pace, seat, faults, devices, commands, advance, recorder, stations. Everything that enters
-    `advance` is in the row that the recorder keeps, so that the drive replays.
+    `advance` is in the row that the recorder keeps, so that the drive replays. A tick with the event PAUSE is the last
+    one before simulated time stands; the one with START goes on after it. With `on_request` the first tick pauses.
     """
+    carried = _PAUSE if on_request else 0
+    carried_ecu = 0
     snapshot = Snapshot(state.tick, console.tick_hz, state.row)
     end, ledger = state.tick + ticks, cast.ledger
     stations = [(station, getattr(station, "hop", Hop.OTHERS)) for station in cast.stations]
@@ -74,11 +88,48 @@ def run(
         ros, events = cast.commands.take(coming)
         ecu, ecu_events = cast.ecu.take(coming)
         mark(Hop.TAKE)
-        edges = EventInput(float(int(events.events) | raised), faults, ecu_events.events)
+        carried |= int(events.events) | raised
+        if carried & _START:
+            carried &= ~_PAUSE
+        edges = EventInput(float(carried), faults, float(int(ecu_events.events) | carried_ecu))
         state, snapshot = advance(state, TickInputs(sample, ros, edges, ecu), console, mark)
         cast.recorder.write(snapshot)
         mark(Hop.RECORD)
         for station, hop in stations:
             station.publish(snapshot)
             mark(hop)
+        carried_ecu = 0
+        if carried & _PAUSE:
+            carried, carried_ecu = _stand(console, state, cast, snapshot, finished)
+        else:
+            carried = _PAUSE if int(snapshot.driver.edges) & _BUTTON_PAUSE else 0
     return state
+
+
+def _stand(
+    console: Console, state: ConsoleState, cast: Cast, snapshot: Snapshot, finished: Callable[[Snapshot], bool]
+) -> tuple[int, int]:
+    """Let simulated time stand until somebody starts it; return the edges for the next tick, of ROS and of the ECU.
+
+    Devices and controllers go on being read, so that nothing grows stale, but no tick happens. What is asked for
+    meanwhile, an emergency stop above all, acts in the first tick after it.
+    """
+    held, collected, collected_ecu = int(snapshot.driver.pressed), 0, 0
+    while not finished(snapshot):
+        cast.pace.wait()  # a loop that stands cannot stall
+        for stand in cast.standby:
+            stand(snapshot)
+        coming = state.tick + 1
+        sample = cast.devices.poll(coming)
+        ros, events = cast.commands.take(coming)
+        ecu, ecu_events = cast.ecu.take(coming)
+        collected |= int(events.events)
+        collected_ecu |= int(ecu_events.events)
+        seen = advance(state, TickInputs(sample, ros, NO_EVENTS, ecu), console)[1]  # only to read the buttons
+        pressed = int(seen.driver.pressed)
+        edges, held = pressed & ~held, pressed
+        if edges & _BUTTON_EMERGENCY:
+            collected |= int(Event.EMERGENCY_STOP)
+        if collected & _START or edges & _BUTTON_PAUSE:
+            return collected & ~_PAUSE | _START, collected_ecu
+    return collected, collected_ecu

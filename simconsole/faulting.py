@@ -15,7 +15,7 @@ from simconsole.drive import Cast
 from simconsole.profiles import faults as kinds
 from simconsole.profiles.faults import Fault, Onset
 from simconsole.rows import Snapshot
-from simconsole.signals import Event, Mode
+from simconsole.signals import Button, Event, Mode
 
 
 class Armed(NamedTuple):
@@ -54,7 +54,8 @@ class Switch:
         if onset.on_mode is not None:
             return before.arbitration.mode == float(Mode[onset.on_mode.upper()])
         if onset.on_event is not None:
-            return bool(int(before.events.events) & Event[onset.on_event.upper()])
+            pressed = int(before.driver.edges) & Button.FAULT and onset.on_event == "fault"
+            return bool(int(before.events.events) & Event[onset.on_event.upper()] or pressed)
         return False
 
 

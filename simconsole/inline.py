@@ -2,13 +2,14 @@
 
 import subprocess
 import sys
-from typing import Protocol
+from typing import Any, Protocol
 
 from simconsole.ledger import Hop
 from simconsole.rows import Snapshot
 from simconsole.signals import Event, EventInput, RemoteCommand
 
 PROGRAM_END_S = 5.0
+STAND_S = 0.02
 
 
 class LockstepServer(Protocol):
@@ -23,9 +24,15 @@ class LockstepServer(Protocol):
     def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
         """Return the newest command and the events."""
 
+    def stand(self, timeout_s: float) -> None:
+        """Serve for a moment without publishing anything."""
+
     @property
     def clients(self) -> int:
         """Connected clients."""
+
+    def acts(self) -> list[dict[str, Any]]:
+        """What operators have done."""
 
 
 class LockstepLink:
@@ -61,6 +68,14 @@ class LockstepLink:
             self.unanswered += 1
             self._silent_at = self._sequence
             self._raised = int(Event.NO_ANSWER)
+
+    def stand(self, snapshot: Snapshot) -> None:
+        """Serve the clients while simulated time stands."""
+        self._bridge.stand(STAND_S)
+
+    def acts(self) -> list[dict[str, Any]]:
+        """Return what operators have done, as plain values."""
+        return self._bridge.acts()
 
     def counters(self) -> dict[str, int]:
         """Return how often the drive waited for the controller, and how often in vain."""

@@ -13,6 +13,8 @@ from simconsole.control.arbitration import arbitrate, watched
 from simconsole.control.commander import ECU
 from simconsole.control.gate import gate
 from simconsole.control.moment import Moment
+from simconsole.control.person import mask, person_of
+from simconsole.control.restart import GRANTED, NOT_ASKED, restart_refusal
 from simconsole.control.settings import ControlSettings
 from simconsole.devices.calibration import calibrate
 from simconsole.devices.cockpit import CockpitSettings
@@ -77,6 +79,9 @@ CONTROL_AT: Final = COCKPIT_WIDTH
 CONTROL_WIDTH: Final = len(ControlSettings._fields)
 FORCE_AT: Final = CONTROL_AT + CONTROL_WIDTH
 FORCE_WIDTH: Final = len(ForceSettings._fields)
+_RESTARTED_AT: Final = ARBITRATION_AT + Arbitration._fields.index("restarted")
+_REFUSAL_AT: Final = ARBITRATION_AT + Arbitration._fields.index("refusal")
+_REFUSAL_TICKS_AT: Final = MEMORY_AT + ArbiterMemory._fields.index("refusal_ticks")
 PHYSICS_HZ: Final = 1000
 """The vehicle integrates at a fixed 1 ms whatever the tick."""
 
@@ -160,6 +165,9 @@ def advance_row(previous: Row, inputs: Row | tuple[float, ...], console: Console
     row = np.empty(console.width)
     row[:INPUT_WIDTH] = inputs
     console.decide(previous, row, console.settings, console.tick_s)
+    if row[_RESTARTED_AT] > 0.0:
+        previous = _start_again(previous, console)
+        console.decide(previous, row, console.settings, console.tick_s)
     mark(Hop.DECIDE)
     console.step(previous, row, console.platform.parameters, console.substeps)
     mark(Hop.STEP)
@@ -168,6 +176,14 @@ def advance_row(previous: Row, inputs: Row | tuple[float, ...], console: Console
     else:
         console.feel(previous, row, console.settings, console.tick_s)
         mark(Hop.FEEL)
+    return row
+
+
+def _start_again(previous: Row, console: Console) -> Row:
+    """Return the row before the first tick, with the devices as they are."""
+    row = initial_state(console).row
+    row[SAMPLE_AT:ROS_AT] = previous[SAMPLE_AT:ROS_AT]
+    row[DRIVER_AT:MEMORY_AT] = previous[DRIVER_AT:MEMORY_AT]
     return row
 
 
@@ -205,6 +221,9 @@ def decide(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
         control,
         tick_s,
     )
+    restart = restart_refusal(
+        now.before.mode, driver, person_of(driver, 0.0, control), mask(now.events.events), control
+    )
     memory, ros_link, ecu_link, arbitration, request = arbitrate(now)
     remote = ecu if arbitration.commander == ECU else ros
     command = gate(request, remote, arbitration, command_before, vehicle, control, tick_s)
@@ -214,6 +233,11 @@ def decide(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
     put(row, ECU_LINK_AT, ecu_link)
     put(row, ARBITRATION_AT, arbitration)
     put(row, COMMAND_AT, command)
+    if restart == GRANTED:
+        row[_RESTARTED_AT] = 1.0
+    elif restart != NOT_ASKED:
+        row[_REFUSAL_AT] = restart
+        row[_REFUSAL_TICKS_AT] = 0.0
 
 
 @kernel

@@ -9,6 +9,7 @@ import msgspec
 import numpy as np
 
 from simconsole.assembly import ResolvedSession
+from simconsole.bridge.operate import told
 from simconsole.errors import BridgeError, CanError
 from simconsole.exports import LIVE_SCENE, scene_job
 from simconsole.ledger import Hop
@@ -18,6 +19,7 @@ from simconsole.rows import REMOTE_WIDTH, Snapshot
 from simconsole.shared_memory import EventCounters, Ring
 from simconsole.signals import NEVER_TICKS, NO_COMMAND, EventInput, RemoteCommand
 from simconsole.station_programs import (
+    ACTS,
     ADDRESS,
     CAN_COMMAND,
     CAN_EVENTS,
@@ -61,6 +63,14 @@ class CommandPort:
         self._seen = 0
         self._command = NO_COMMAND
         self._receipt_ns = -1
+        self._stood_at_tick = self._stood_from_ns = self._stood_until_ns = -1
+
+    def stand(self, snapshot: Snapshot) -> None:
+        """Note that simulated time stands: what stands does not grow old."""
+        now_ns = time.monotonic_ns()
+        if snapshot.tick != self._stood_at_tick:
+            self._stood_at_tick, self._stood_from_ns = snapshot.tick, now_ns
+        self._stood_until_ns = now_ns
 
     def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
         """Return the newest command and all edges since the last call."""
@@ -71,7 +81,8 @@ class CommandPort:
                 self._command = command_of(record.values)
         age_ticks = NEVER_TICKS
         if self._receipt_ns >= 0:
-            age_ns = max(0, time.monotonic_ns() - self._receipt_ns)
+            stood_ns = max(0, self._stood_until_ns - max(self._stood_from_ns, self._receipt_ns))
+            age_ns = max(0, time.monotonic_ns() - self._receipt_ns - stood_ns)
             age_ticks = float(age_ns * self._tick_hz // NS_PER_S)
         return self._command._replace(age_ticks=age_ticks), EventInput(events=float(self._events.take()))
 
@@ -191,6 +202,15 @@ def station_latencies(folder: Path) -> dict[str, Any]:
             continue
         found.update({f"{hop}, {name}": page for hop, page in pages.items()})
     return found
+
+
+def acts_summary(folder: Path) -> dict[str, Any]:
+    """Return the operator's acts that the bridge's process has kept; empty without any."""
+    try:
+        lines = (folder / ACTS).read_bytes().splitlines()
+    except OSError:
+        return {}
+    return told([msgspec.json.decode(line) for line in lines])
 
 
 def can_summary(folder: Path) -> dict[str, Any]:

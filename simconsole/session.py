@@ -64,6 +64,7 @@ def drive(
             opened.cast,
             ticks,
             lambda snapshot: interrupt.raised or watch(snapshot) or opened.finished(snapshot),
+            resolved.session.mode.start == "on_request",
         )
         wall_s = time.monotonic() - began_s
         summary = {

@@ -67,6 +67,8 @@ class Reason(IntEnum):
     REFUSED_MOVING = 29
     REFUSED_NOT_STABLE = 30
     REFUSED_NOT_COMMANDER = 31
+    REFUSED_WHEEL_NOT_CENTRED = 32
+    REFUSED_PEDAL_PRESSED = 33
 
 
 class Commander(IntEnum):
@@ -111,6 +113,10 @@ class Event(IntFlag):
     MARK = 128
     LOOP_STALL = 256
     NO_ANSWER = 512
+    PAUSE = 1024
+    START = 2048
+    RESTART = 4096
+    FAULT = 8192
 
 
 class Button(IntFlag):
@@ -125,6 +131,11 @@ class Button(IntFlag):
     INDICATOR_LEFT = 64
     INDICATOR_RIGHT = 128
     MARK = 256
+    PAUSE = 512  # and start again
+    RESTART = 1024
+    TAKEOVER = 2048
+    SHARED = 4096
+    FAULT = 8192
 
 
 class GateLimit(IntFlag):
@@ -276,6 +287,7 @@ class Arbitration(NamedTuple):
     ecu_road_wheel_rad: float  # and the ECU
     ecu_throttle: float
     ecu_brake: float
+    restarted: float  # 1: back to the start in this tick
 
 
 class VehicleCommand(NamedTuple):

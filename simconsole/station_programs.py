@@ -28,6 +28,7 @@ COMMAND: Final = "bridge.command"
 EVENTS: Final = "bridge.events"
 KEYS: Final = "hud.keys"
 ADDRESS: Final = "bridge.address"
+ACTS: Final = "operator.jsonl"
 CAN_COMMAND: Final = "can.command"
 CAN_EVENTS: Final = "can.events"
 CAN_STATUS: Final = "can.json"
@@ -40,6 +41,7 @@ NO_RECEIPT: Final = -1
 
 def bridge(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> None:
     """Serve rosbridge. Arguments: `profile` (BridgeProfile), `tick_hz`."""
+    from simconsole.bridge.operate import Act
     from simconsole.bridge.server import serve
     from simconsole.bridge.wire import address_url
 
@@ -52,12 +54,16 @@ def bridge(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) ->
     def write_command(command: RemoteCommand, receipt_ns: int | None) -> None:
         slot.write(np.array(command), NO_RECEIPT if receipt_ns is None else receipt_ns)
 
+    def keep_act(act: Act) -> None:
+        with (folder / ACTS).open("ab") as file:
+            file.write(msgspec.json.encode(act) + b"\n")
+
     def ready(port: int) -> None:
         part = folder / f"{ADDRESS}.part"
         part.write_text(address_url(profile.host, port, profile.certificate is not None), "utf-8")
         part.replace(folder / ADDRESS)
 
-    serve(profile, snapshots, write_command, events.raise_events, stop, on_ready=ready)
+    serve(profile, snapshots, write_command, events.raise_events, stop, on_ready=ready, on_act=keep_act)
 
 
 def canbus(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> None:

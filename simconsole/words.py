@@ -48,6 +48,8 @@ _REASONS: Final[dict[float, str]] = {
     Reason.REFUSED_MOVING: "refused: car is moving",
     Reason.REFUSED_NOT_STABLE: "refused: autopilot not steady yet",
     Reason.REFUSED_NOT_COMMANDER: "refused: the ECU does not command",
+    Reason.REFUSED_WHEEL_NOT_CENTRED: "refused: wheel is not centred",
+    Reason.REFUSED_PEDAL_PRESSED: "refused: a pedal is pressed",
 }
 
 _COMMANDERS: Final[dict[float, str]] = {Commander.NOBODY: "none", Commander.ROS: "ROS", Commander.ECU: "CAN"}

@@ -39,7 +39,7 @@ UNITLESS = {
     *("wheel_buttons", "shifter_buttons", "pressed", "edges", "events", "faults", "gate_active", "throttle_override"),
     *("wheel_motor", "ramp", "clipped", "enabled", "hands_on", "live", "ecu_events", "fresh", "invalid", "lever_fault"),
     # members of an enumeration
-    *("kind", "mode", "reason", "refusal", "gear", "direction", "takeover_stage", "commander", "state"),
+    *("kind", "mode", "reason", "refusal", "gear", "direction", "takeover_stage", "commander", "state", "restarted"),
     *("wheel_validity", "throttle_validity", "brake_validity", "clutch_validity", "shifter_validity"),
 }  # fmt: skip
 

@@ -33,6 +33,10 @@ REQUESTS: Final[dict[str, Event]] = {
     "estop": Event.EMERGENCY_STOP,
     "reset": Event.RESET,
     "mark": Event.MARK,
+    "pause": Event.PAUSE,
+    "start": Event.START,
+    "restart": Event.RESTART,
+    "fault": Event.FAULT,
 }
 # autoware_vehicle_msgs/GearCommand: NEUTRAL 1, DRIVE 2 to DRIVE_18 19, REVERSE 20 and 21, PARK 22, LOW 23 and 24.
 DIRECTIONS: Final[dict[int, float]] = {

@@ -3,9 +3,11 @@
 from collections.abc import Callable
 from typing import Any
 
+from simconsole.bridge.access import Role
 from simconsole.bridge.commands import CommandIntake
 from simconsole.bridge.inputs import BridgeInputs, OnCommand, OnEvents
 from simconsole.bridge.messages import Registry, standard_registry
+from simconsole.bridge.operate import OPERATE, OPERATE_TYPE, Act, OnAct, Operator
 from simconsole.bridge.protocol import Outcome, Router
 from simconsole.bridge.rosapi import RosApi
 from simconsole.bridge.session import Session
@@ -36,6 +38,7 @@ class ConsoleBridge:
         registry: Registry | None = None,
         on_command: OnCommand | None = None,
         on_events: OnEvents | None = None,
+        on_act: OnAct | None = None,
     ) -> None:
         """Build the topics of `profile`.
 
@@ -44,6 +47,7 @@ class ConsoleBridge:
             registry: message types; the standard ones without.
             on_command: sees each change of the command at once (`BridgeInputs`).
             on_events: sees each event at once.
+            on_act: sees each act of an operator at once; without, they are kept in `acts`.
 
         Raises:
             ProfileError: the profile renames or rates a topic that does not exist, or gives two topics one name.
@@ -57,6 +61,9 @@ class ConsoleBridge:
             self.inputs.refuse,
         )
         RosApi(self.router)
+        self.acts: list[Act] = []
+        self.operator = Operator(self.inputs.raise_events, on_act or self.acts.append)
+        self.router.calls.add_builtin(profile.namespace + OPERATE, OPERATE_TYPE, self.operator.operate, Role.CONTROL)
         self._intake = CommandIntake(self.inputs, profile)
         self.router.on_new_commander = self._intake.forget_stamps
         self._out = Outputs(self.router.registry, profile)
@@ -75,6 +82,7 @@ class ConsoleBridge:
 
     def publish(self, snapshot: Snapshot, now_ns: int, *, odometry: bool = False) -> None:
         """Queue every message of `snapshot` that is due and wanted; with `odometry`, that in any case."""
+        self.operator.tick = snapshot.tick
         self.router.ros_time_ns = self._intake.ros_time_ns = snapshot.t_ns
         self.router.calls.expire(now_ns)
         moment: Moment | None = None

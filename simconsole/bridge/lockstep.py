@@ -10,7 +10,7 @@ import socket
 import time
 from contextlib import suppress
 from types import TracebackType
-from typing import TYPE_CHECKING, Final, Self
+from typing import TYPE_CHECKING, Any, Final, Self
 
 import msgspec
 
@@ -108,6 +108,10 @@ class LockstepBridge:
         """How many clients are connected."""
         return len(self.console.router.sessions)
 
+    def acts(self) -> list[dict[str, Any]]:
+        """Return what operators have done, as plain values."""
+        return [msgspec.to_builtins(act) for act in self.console.acts]
+
     def wait_for_client(self, timeout_s: float) -> bool:
         """Serve until a client has subscribed to odometry; False when none did in time (wall time)."""
         odometry = self.console.names[ODOMETRY]
@@ -125,6 +129,12 @@ class LockstepBridge:
         self.console.inputs.tick = snapshot.tick
         self._serve(0.0)
         self.console.publish(snapshot, self._now_ns)
+        self._pump_ros2()
+        self._flush()
+
+    def stand(self, timeout_s: float) -> None:
+        """Serve what arrives within `timeout_s`, while simulated time stands; nothing new is published."""
+        self._serve(timeout_s)
         self._pump_ros2()
         self._flush()
 

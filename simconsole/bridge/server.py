@@ -26,6 +26,7 @@ from simconsole.bridge.documents import Binary
 from simconsole.bridge.handshake import FORBIDDEN, FULL, UNKNOWN, dialect_of, is_host_allowed, origins, role_at
 from simconsole.bridge.inputs import OnCommand, OnEvents
 from simconsole.bridge.messages import Registry
+from simconsole.bridge.operate import OnAct
 from simconsole.bridge.session import Session
 from simconsole.bridge.wire import (
     FragmentLimit,
@@ -104,10 +105,11 @@ class BridgeServer:
         registry: Registry | None = None,
         on_command: OnCommand | None = None,
         on_events: OnEvents | None = None,
+        on_act: OnAct | None = None,
         clock_ns: Callable[[], int] = time.monotonic_ns,
     ) -> None:
         """Build the bridge; `start` opens it. Arguments and errors as `ConsoleBridge`; `clock_ns` is its clock."""
-        self.console = ConsoleBridge(profile, registry, on_command, on_events)
+        self.console = ConsoleBridge(profile, registry, on_command, on_events, on_act)
         self._profile = profile
         self._access = self.console.router.access = load_access(profile)
         self._tls = load_tls(profile)
@@ -310,6 +312,7 @@ def serve(
     stop: Callable[[], bool],
     *,
     on_ready: Callable[[int], None] = lambda port: None,
+    on_act: OnAct | None = None,
     registry: Registry | None = None,
 ) -> None:
     """Run a bridge server until `stop()` says so; for a process of its own.
@@ -321,6 +324,7 @@ def serve(
         write_events: gets each mask of events, at once.
         stop: asked every millisecond.
         on_ready: gets the port when the server listens.
+        on_act: gets each act of an operator, at once.
         registry: message types; the standard ones without.
 
     Raises:
@@ -329,7 +333,9 @@ def serve(
     """
 
     async def main() -> None:
-        server = BridgeServer(profile, registry=registry, on_command=write_command, on_events=write_events)
+        server = BridgeServer(
+            profile, registry=registry, on_command=write_command, on_events=write_events, on_act=on_act
+        )
         await server.start()
         on_ready(server.port)
         try:

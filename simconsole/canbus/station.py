@@ -134,6 +134,11 @@ class InlineCan:
 
     def publish(self, snapshot: Snapshot) -> None:
         """Take the frames that are there, then send what is due."""
+        self.listen(snapshot)
+        self._on_bus.send(snapshot, snapshot.t_ns)
+
+    def listen(self, snapshot: Snapshot) -> None:
+        """Take the frames that are there: all that is done while simulated time stands."""
         self._tick, self._now_ns = snapshot.tick, snapshot.t_ns
         node = self._on_bus.node
         before = node.command.sequence
@@ -144,7 +149,6 @@ class InlineCan:
                 break
         if node.command.sequence != before:
             self._receipt_tick = snapshot.tick
-        self._on_bus.send(snapshot, snapshot.t_ns)
 
     def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
         """Return the newest command, its age in ticks, and the edges since the last call."""

@@ -135,4 +135,5 @@ def _shown(
         controllers.ecu_offered.road_wheel_rad,
         controllers.ecu_offered.throttle,
         controllers.ecu_offered.brake,
+        0.0,
     )

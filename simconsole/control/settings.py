@@ -45,6 +45,7 @@ class ControlSettings(NamedTuple):
     hold_brake: float
     standstill_speed_mps: float
     standstill_ticks: float
+    restart_wheel_rad: float
     # Engaging autonomy.
     engage_stable_ticks: float
     reengage_stable_ticks: float
@@ -128,6 +129,7 @@ def settings(
         escalation_ticks=_at_least(profile.escalation_s, tick_hz),
         minimal_risk_ticks=_at_least(profile.minimal_risk_after_s, tick_hz),
         refusal_ticks=_at_least(profile.refusal_shown_s, tick_hz),
+        restart_wheel_rad=profile.restart_wheel_deg * RAD_PER_DEG,
         standstill_ticks=_at_least(profile.standstill_s, tick_hz),
         engage_stable_ticks=_at_least(profile.engage_stable_s, tick_hz),
         reengage_stable_ticks=_at_least(profile.reengage_stable_s, tick_hz),

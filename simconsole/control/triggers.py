@@ -30,6 +30,8 @@ _BUTTON_EMERGENCY: Final = int(Button.EMERGENCY_STOP)
 _BUTTON_RESET: Final = int(Button.RESET)
 _BUTTON_MANUAL: Final = int(Button.MANUAL)
 _BUTTON_AUTONOMOUS: Final = int(Button.AUTONOMOUS)
+_BUTTON_TAKEOVER: Final = int(Button.TAKEOVER)
+_BUTTON_SHARED: Final = int(Button.SHARED)
 
 _EMERGENCY: Final = 1 << int(Trigger.EMERGENCY)
 _BRAKE: Final = 1 << int(Trigger.BRAKE)
@@ -82,9 +84,9 @@ def asked_of(driver: DriverInput, events: int) -> Asked:
         _flag(reset),
         _flag(manual),
         _flag(autonomous),
-        _flag(events & _EVENT_TAKEOVER),
-        _flag(events & _EVENT_SHARED),
-        _flag(edges & (_BUTTON_MANUAL | _BUTTON_AUTONOMOUS)),
+        _flag((events & _EVENT_TAKEOVER) | (edges & _BUTTON_TAKEOVER)),
+        _flag((events & _EVENT_SHARED) | (edges & _BUTTON_SHARED)),
+        _flag(edges & (_BUTTON_MANUAL | _BUTTON_AUTONOMOUS | _BUTTON_SHARED)),
     )
 
 

@@ -52,6 +52,11 @@ class CockpitSettings(NamedTuple):
     indicator_left_mask: float
     indicator_right_mask: float
     mark_mask: float
+    pause_mask: float
+    restart_mask: float
+    takeover_mask: float
+    shared_mask: float
+    fault_mask: float
 
 
 NOBODY: Final = DriverInput(*(0.0,) * len(DriverInput._fields))

@@ -30,6 +30,11 @@ def held_roles(wheel_buttons: float, shifter_buttons: float, settings: CockpitSe
         settings.indicator_left_mask,
         settings.indicator_right_mask,
         settings.mark_mask,
+        settings.pause_mask,
+        settings.restart_mask,
+        settings.takeover_mask,
+        settings.shared_mask,
+        settings.fault_mask,
     ):
         if held & int(mask) != 0:
             roles |= bit

@@ -19,7 +19,7 @@ _MANUAL: Final = float(Mode.MANUAL)
 _SHARED: Final = float(Mode.SHARED)
 _AUTONOMOUS: Final = float(Mode.AUTONOMOUS)
 _TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)
-_LOOP_STALL: Final = int(Event.LOOP_STALL)
+_STANDING: Final = int(Event.LOOP_STALL | Event.PAUSE)
 
 FRICTION_RADPS: Final = 1.0
 """Rate over which simulated friction gets its sign: steeper, it would chatter through the motor's delay."""
@@ -213,7 +213,7 @@ def wheel_torque(
         target_rad = clip(wanted_rad, -lock, lock)
         target = Rim(target_rad, (target_rad - memory.target_rad) / tick_s if memory.live > 0.0 else 0.0)
     driven = follows or mode in (_MANUAL, _SHARED)
-    enabled = live and finite and driven and int(events) & _LOOP_STALL == 0
+    enabled = live and finite and driven and int(events) & _STANDING == 0
     ramp = approach(before.ramp, 1.0, force.ramp_per_tick) if enabled else 0.0
     torque = WheelTorque(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, felt.human_nm, felt.hands_on)
     if enabled:

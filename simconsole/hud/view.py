@@ -5,7 +5,7 @@ from typing import Final, NamedTuple
 from simconsole.profiles.control import ControlProfile
 from simconsole.profiles.view import HudProfile
 from simconsole.rows import MEMORY_AT, MEMORY_WIDTH, Snapshot
-from simconsole.signals import NEVER_TICKS, ArbiterMemory, GateLimit, Mode
+from simconsole.signals import NEVER_TICKS, ArbiterMemory, Event, GateLimit, Mode
 from simconsole.units import KMH_PER_MPS, RPM_PER_RADPS
 from simconsole.words import commander_words, gear_words, mode_words, reason_words
 
@@ -118,10 +118,11 @@ def view(
     kmh, shown_s = shown_speed(vehicle.vx_mps, snapshot.t_s, memory)
     force, motor_seen, clipped_s = force_words(snapshot, memory)
     asked = arbitration.mode == Mode.TAKEOVER_REQUESTED
+    paused = bool(int(snapshot.events.events) & Event.PAUSE)
     waited_s = arbiter.mode_ticks / snapshot.tick_hz
     shown = HudView(
         t_s=snapshot.t_s,
-        stale=age_s > STALE_S,
+        stale=age_s > STALE_S and not paused,
         shown_kmh=kmh,
         rpm=max(0.0, vehicle.engine_radps * RPM_PER_RADPS),
         rpm_max=settings.rpm_max,
@@ -130,7 +131,7 @@ def view(
         gear=gear_words(vehicle.gear),
         automatic=command.automatic != 0.0,
         mode=arbitration.mode,
-        mode_words=mode_words(arbitration.mode),
+        mode_words="PAUSED" if paused else mode_words(arbitration.mode),
         reason_words=reason_words(arbitration.reason),
         refusal_words=reason_words(arbitration.refusal) if arbitration.refusal else "",
         takeover_stage=int(arbitration.takeover_stage),

@@ -53,6 +53,8 @@ class ControlProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_f
     standstill_speed_mps: Annotated[float, msgspec.Meta(gt=0.0, le=0.5)] = 0.1
     standstill_s: Annotated[float, msgspec.Meta(ge=0.0, le=5.0)] = 0.3
 
+    restart_wheel_deg: Annotated[float, msgspec.Meta(ge=1.0, le=90.0)] = 5.0  # off the centre, at most; as rearm_deg
+
     # Engaging autonomy. AW engage_acceptable_limits where named.
     engage_stable_s: Seconds = 0.1  # AW stable_check.duration
     reengage_stable_s: Seconds = 1.0  # after a fault: a second without one invalid command

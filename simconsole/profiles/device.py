@@ -112,6 +112,11 @@ class Buttons(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     indicator_left: ButtonBinding | None = None
     indicator_right: ButtonBinding | None = None
     mark: ButtonBinding | None = None
+    pause: ButtonBinding | None = None  # and start again
+    restart: ButtonBinding | None = None
+    takeover: ButtonBinding | None = None
+    shared: ButtonBinding | None = None
+    fault: ButtonBinding | None = None
 
 
 class Limits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -190,6 +195,11 @@ ButtonName: TypeAlias = Literal[
     "indicator_left",
     "indicator_right",
     "mark",
+    "pause",
+    "restart",
+    "takeover",
+    "shared",
+    "fault",
 ]
 
 

@@ -28,6 +28,7 @@ EdgeName: TypeAlias = Literal[
     "mark",
     "loop_stall",
     "no_answer",
+    "fault",
 ]
 
 MAX_FAULTS = 48

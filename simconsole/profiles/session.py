@@ -90,6 +90,8 @@ class ModeSection(Section, frozen=True, kw_only=True):
 
     tick_hz: Literal[50, 100, 125, 200, 250, 500, 1000] = 250
     pacing: Literal["realtime", "free", "lockstep"] = "realtime"
+    start: Literal["at_once", "on_request"] = "at_once"
+    """On request: simulated time stands until an operator starts it, or the wheel's pause button does."""
     control_period_ms: Annotated[int, Meta(ge=1, le=1000)] = 20
     wait_for_controller_s: Annotated[float, Meta(gt=0.0, le=3600.0)] = 60.0
     answer_timeout_s: Annotated[float, Meta(gt=0.0, le=60.0)] = 2.0

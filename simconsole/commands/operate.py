@@ -1,0 +1,35 @@
+"""`simconsole operate`: an operator's act in a running drive, over its rosbridge server."""
+
+import time
+from argparse import Namespace
+from typing import Any
+
+from simconsole.commands.outcome import Outcome
+from simconsole.errors import BridgeError
+
+_PATIENCE_S = 5.0
+
+
+def operate(words: Namespace) -> Outcome:
+    """Ask the console at `words.url` for one act; 1 if it does not take it.
+
+    Raises:
+        BridgeError: nobody listens there, or nobody answers.
+    """
+    from simconsole.bridge.client import BridgeClient
+    from simconsole.bridge.operate import OPERATE
+
+    args = {"act": words.act, "note": words.note, "participant": words.participant, "trial": words.trial}
+    answers: list[tuple[Any, bool]] = []
+    with BridgeClient(words.url, token=words.token, comes_back=False) as client:
+        client.connect()
+        client.call_service(words.namespace + OPERATE, args, lambda values, good: answers.append((values, good)))
+        deadline_s = time.monotonic() + _PATIENCE_S
+        while not answers and time.monotonic() < deadline_s:
+            client.receive(0.05)
+    if not answers:
+        raise BridgeError(f"{words.url}: no answer within {_PATIENCE_S:g} s")
+    values, good = answers[0]
+    if not good:
+        return Outcome(1, {"accepted": False, "reason": str(values)}, f"refused: {values}")
+    return Outcome(0, dict(values), f"{words.act}: after tick {values['tick']}")

@@ -1,0 +1,56 @@
+"""An operator at work: `simconsole operate` in a paced drive, and the bundle that is left of it."""
+
+import socket
+from pathlib import Path
+
+import numpy as np
+
+from simconsole.recording.bundle import open_bundle
+from simconsole.signals import Event, Mode
+
+from .console import Running, results, simconsole, wait_until
+
+SESSION = """schema: 1
+scenario: {vehicle: hatchback, duration_s: 4}
+features: {control: {person_required: false}}
+outputs: {bridge: {port: PORT}, hud: null, scene: null, report: false}
+devices: {driver: none}
+mode: {pacing: realtime, start: on_request}
+"""
+
+
+def test_acts_of_an_operator_are_in_the_drive_and_in_its_bundle(tmp_path: Path) -> None:
+    session, bundle = tmp_path / "session.yaml", tmp_path / "bundle"
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    session.write_text(SESSION.replace("PORT", str(port)))
+
+    def operate(*arguments: str) -> int:
+        done = simconsole("operate", *arguments, "--url", f"ws://127.0.0.1:{port}", "--json")
+        return int(results(done)["tick"]) if done.returncode == 0 else -1
+
+    with Running(tmp_path / "output", "drive", session, "--out", bundle) as drive:
+        wait_until(lambda: operate("mark") == 1, "the first tick")
+        assert operate("start", "--participant", "P07", "--trial", "B-3") == 1, "simulated time stood until now"
+        paused = operate("pause", "--note", "phone rang")
+        assert 0 <= operate("mark", "--note", "while time stands") - paused < 100
+        operate("start")
+        operate("estop")
+        assert drive.end().returncode == 0, drive.end().stderr
+    opened = open_bundle(bundle)
+    acts = opened.manifest.summary["acts"]
+    assert [entry["act"] for entry in acts][-5:] == ["start", "pause", "mark", "start", "estop"]
+    assert [entry.get("note") for entry in acts][-4:-2] == ["phone rang", "while time stands"]
+    assert (opened.manifest.summary["participant"], opened.manifest.summary["trial"]) == ("P07", "B-3")
+    table = opened.log.table()
+    events = table.column("events.events").astype(int)
+    pauses = np.flatnonzero(events & Event.PAUSE)
+    assert pauses.tolist()[0] == 0, "the first tick waits for its start"
+    assert len(pauses) == 2
+    assert (events[pauses + 1] & Event.START).all()
+    assert events[pauses[1] + 1] & Event.MARK, "asked for while time stood"
+    assert len(events) == 1000, "four seconds were driven, whatever the clock on the wall said"
+    stopped = np.flatnonzero(events & Event.EMERGENCY_STOP)
+    assert table.column("arbitration.mode")[stopped[0]] == Mode.EMERGENCY_STOP
+    assert simconsole("replay", bundle).returncode == 0

@@ -1,0 +1,158 @@
+"""The loop while simulated time stands, and a drive that begins anew: recorded, and replayed bit for bit."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from simconsole.assembly import assemble
+from simconsole.compiling import compiled
+from simconsole.devices.script import ScriptSource
+from simconsole.devices.settings import settings
+from simconsole.drive import Cast, run
+from simconsole.memory import MemoryRecorder
+from simconsole.pacing import UnpacedPacer
+from simconsole.pipeline import Console, advance_row
+from simconsole.profile_files import parse
+from simconsole.profiles.device import ScriptProfile
+from simconsole.profiles.session import SessionProfile
+from simconsole.rows import INPUT_WIDTH, Snapshot
+from simconsole.session_files import resolve
+from simconsole.signals import NO_COMMAND, DeviceSample, Event, EventInput, Mode, Reason, RemoteCommand, RemoteKind
+
+HZ = 250
+SESSION = "schema: 1\nscenario: {vehicle: hatchback}\ndevices: {driver: none}\n"
+REST = "{time_s: 0.0, throttle: 0, brake: 0, clutch: 0, hand_wheel_deg: 0, gear: 0}"
+
+
+class Operator:
+    """A controller that always asks for 1 m/s2, and an operator with a plan: (tick, looks at that tick) -> event."""
+
+    def __init__(self, plan: dict[tuple[int, int], Event]) -> None:
+        self.plan = plan
+        self.looks: dict[int, int] = {}
+
+    def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
+        look = self.looks[tick] = self.looks.get(tick, 0) + 1
+        command = NO_COMMAND._replace(kind=float(RemoteKind.ACCELERATION), sequence=float(tick), accel_mps2=1.0)
+        return command._replace(age_ticks=0.0), EventInput(float(self.plan.get((tick, look), 0)))
+
+
+class Driven:
+    def __init__(self, console: Console, recorder: MemoryRecorder, first: np.ndarray, looks: dict[int, int]) -> None:
+        self.console, self.rows, self.first, self.looks = console, recorder.rows[: recorder.ticks], first, looks
+
+    def at(self, tick: int) -> Snapshot:
+        return Snapshot(tick, HZ, self.rows[tick - 1])
+
+    def column(self, name: str) -> np.ndarray:
+        return self.rows[:, self.console.columns.index(name)]
+
+    def replayed(self) -> bool:
+        """Whether a replay from the recorded inputs gives the same bytes."""
+        row = self.first
+        for recorded in self.rows:
+            row = advance_row(row, recorded[:INPUT_WIDTH], self.console)
+            if row.tobytes() != recorded.tobytes():
+                return False
+        return True
+
+
+@pytest.fixture(scope="module")
+def go() -> Callable[..., Driven]:
+    resolved = resolve(parse(SESSION, SessionProfile, "session"))
+    console, state = assemble(resolved, compiled)
+
+    def drive(
+        plan: dict[tuple[int, int], Event], points: str = "", seconds: float = 8.0, on_request: bool = False
+    ) -> Driven:
+        script = parse(f"points:\n  - {REST}\n{points}", ScriptProfile, "script")
+        devices = ScriptSource(script, settings(resolved.cockpit, HZ), tick_hz=HZ)
+        recorder, operator = MemoryRecorder(round(seconds * HZ), console.width), Operator(plan)
+        stood: list[Snapshot] = []
+        cast = Cast(devices, operator, recorder, (), UnpacedPacer(), standby=(stood.append,))
+        run(console, state, cast, round(seconds * HZ), lambda snapshot: len(stood) > 1000, on_request)
+        return Driven(console, recorder, state.row, operator.looks)
+
+    return drive
+
+
+ENGAGE = {(250, 1): Event.REQUEST_AUTONOMOUS}
+
+
+def test_paused_time_stands_and_nothing_grows_old(go: Callable[..., Driven]) -> None:
+    plain = go(ENGAGE)
+    paused = go({**ENGAGE, (1000, 1): Event.PAUSE, (1001, 500): Event.START})
+    assert paused.looks[1001] == 501, "looked 500 times while it stood, once for its tick"
+    assert paused.at(1000).events.events == Event.PAUSE
+    assert paused.at(1001).events.events == Event.START
+    assert paused.at(1001).vehicle.vx_mps - paused.at(1000).vehicle.vx_mps < 0.01
+    rest = [name for name in plain.console.columns if not name.startswith(("events.", "torque.", "motor."))]
+    unlike = [name for name in rest if not np.array_equal(paused.column(name), plain.column(name))]
+    assert not unlike, "as if there had been no pause"
+    assert paused.replayed()
+
+
+def test_a_pause_without_a_start_ends_with_the_drive(go: Callable[..., Driven]) -> None:
+    paused = go({(100, 1): Event.PAUSE})
+    assert len(paused.rows) == 100
+
+
+def test_what_is_asked_for_while_time_stands_acts_in_the_next_tick(go: Callable[..., Driven]) -> None:
+    plan = {**ENGAGE, (1000, 1): Event.PAUSE, (1001, 5): Event.EMERGENCY_STOP, (1001, 9): Event.START}
+    driven = go(plan)
+    assert driven.at(1001).arbitration.mode == Mode.EMERGENCY_STOP
+    assert driven.at(1001).events.events == Event.START | Event.EMERGENCY_STOP
+
+
+def test_a_drive_can_wait_for_its_start(go: Callable[..., Driven]) -> None:
+    driven = go({(2, 30): Event.START}, on_request=True)
+    assert driven.at(1).events.events == Event.PAUSE
+    assert driven.at(2).events.events == Event.START
+    assert driven.looks[2] == 31
+
+
+def test_the_wheels_button_pauses_and_starts(go: Callable[..., Driven]) -> None:
+    driven = go({(1002, 7): Event.START}, "  - {time_s: 4.0, press: [pause]}\n")
+    assert driven.at(1001).events.events == Event.PAUSE, "the tick after the press is the last one"
+    assert driven.at(1002).events.events == Event.START
+
+
+def test_back_to_the_start_from_speed_and_on_again(go: Callable[..., Driven]) -> None:
+    driven = go({**ENGAGE, (1000, 1): Event.RESTART, (1300, 1): Event.REQUEST_AUTONOMOUS})
+    before, after = driven.at(999), driven.at(1000)
+    assert before.vehicle.vx_mps > 0.5
+    assert after.arbitration.restarted == 1.0
+    assert (after.vehicle.x_m, after.vehicle.vx_mps, after.vehicle.distance_m) == (0.0, 0.0, 0.0)
+    assert after.arbitration.mode in (Mode.PARKED, Mode.MANUAL)
+    assert (after.command.throttle, driven.at(1001).arbitration.restarted) == (0.0, 0.0)
+    assert driven.at(1300).arbitration.mode == Mode.AUTONOMOUS
+    assert driven.at(2000).vehicle.x_m > 0.5
+    assert driven.replayed()
+
+
+@pytest.mark.parametrize(
+    ("points", "plan", "reason"),
+    [
+        ("  - {time_s: 2.0, hand_wheel_deg: 0}\n  - {time_s: 3.0, hand_wheel_deg: 6}\n", {}, "WHEEL_NOT_CENTRED"),
+        ("  - {time_s: 2.0, brake: 0}\n  - {time_s: 3.0, brake: 0.1}\n", {}, "PEDAL_PRESSED"),
+        ("  - {time_s: 2.0, throttle: 0}\n  - {time_s: 3.0, throttle: 0.1}\n", {}, "PEDAL_PRESSED"),
+        ("  - {time_s: 2.0, clutch: 0}\n  - {time_s: 3.0, clutch: 0.1}\n", {}, "PEDAL_PRESSED"),
+        ("", {(900, 1): Event.EMERGENCY_STOP}, "EMERGENCY"),
+    ],
+)
+def test_the_wheel_is_centred_and_the_pedals_are_released_first(
+    go: Callable[..., Driven], points: str, plan: dict[tuple[int, int], Event], reason: str
+) -> None:
+    driven = go({(1000, 1): Event.RESTART, **plan}, points, seconds=4.5)
+    after = driven.at(1000)
+    assert after.arbitration.restarted == 0.0
+    assert Reason(int(after.arbitration.refusal)) is Reason[f"REFUSED_{reason}"]
+    assert driven.at(1010).arbitration.refusal == after.arbitration.refusal, "shown for a while"
+    assert driven.replayed()
+
+
+def test_devices_read_while_time_stands_are_no_ticks(go: Callable[..., Driven]) -> None:
+    driven = go({(100, 1): Event.PAUSE, (101, 50): Event.START}, seconds=1.0)
+    assert len(driven.rows) == HZ
+    assert isinstance(driven.at(101).sample, DeviceSample)
