@@ -1,5 +1,6 @@
 """Which way to the wheel's motor: SDL first, evdev where SDL finds none, or the one that the profile names."""
 
+from simconsole.devices.driver_files import Restoring, settings
 from simconsole.devices.evdev_haptics import open_evdev
 from simconsole.devices.haptics import open_haptics
 from simconsole.devices.motor import HapticPort
@@ -9,11 +10,20 @@ from simconsole.profiles.force_feedback import ForceFeedback
 def open_motor(instance_id: int, identity: tuple[int, int], force: ForceFeedback) -> HapticPort:
     """Open the motor of a wheel; the port says why where there is no force.
 
+    Where its driver tells gain and autocentre, they are put back as they were when the motor is closed; where not, it
+    is left as the profile says.
+
     Args:
         instance_id: SDL's, of the wheel's open joystick.
         identity: Its USB vendor and product id.
         force: The cockpit's; its `back_end` may name one.
     """
+    before = settings(identity)
+    port = _opened(instance_id, identity, force)
+    return Restoring(port, before) if before and port.capability.constant else port
+
+
+def _opened(instance_id: int, identity: tuple[int, int], force: ForceFeedback) -> HapticPort:
     if force.back_end == "evdev":
         return open_evdev(identity, force)
     port = open_haptics(instance_id, force)
