@@ -8,6 +8,7 @@ import numpy as np
 
 from simconsole.report.faults import plain_spans
 from simconsole.report.table import Array, Drive
+from simconsole.report.takeovers import takeovers
 from simconsole.signals import Mode
 from simconsole.units import KMH_PER_MPS
 from simconsole.words import mode_words, reason_words
@@ -103,6 +104,7 @@ def metrics(
         "max_lateral_accel_mps2": float(np.abs(drive.column("vehicle.ay_mps2")).max()),
         "autonomous": _autonomous(drive, way),
         "time_in_mode_s": _time_in_mode(drive),
+        "takeovers": takeovers(drive, way.lateral_m),
         "mode_changes": [
             {
                 "tick": change.tick,

@@ -29,6 +29,14 @@ ul.tiles span{color:#5f6368;font-size:.85rem}
 figure{margin:1rem 0}svg{width:100%;height:auto}
 """
 
+_TAKEOVER: Final = (
+    ("first_steer_s", "first steering, s"),
+    ("first_brake_s", "first brake, s"),
+    ("first_throttle_s", "first accelerator, s"),
+    ("authority_s", "authority, s"),
+    ("peak_deviation_m", "largest deviation, m"),
+    ("peak_lateral_jerk_mps3", "largest lateral jerk, m/s3"),
+)
 _LABELS: Final[tuple[tuple[str, str, str], ...]] = (
     ("duration_s", "Duration", "{:.1f} s"),
     ("distance_m", "Distance", "{:.1f} m"),
@@ -110,6 +118,7 @@ def page(
         _metrics_table(found),
         "<h2>Mode changes</h2>",
         _changes_table(found),
+        *(("<h2>Take-overs</h2>", _takeovers_table(found)) if found["takeovers"] else ()),
         *(("<h2>Faults</h2>", _faults_table(found)) if found["faults"] else ()),
         *(("<h2>Latency</h2>", _latency_table(latency_us)) if latency_us else ()),
         *(("<h2>Drive</h2>", _extra_table(extra)) if extra else ()),
@@ -117,6 +126,17 @@ def page(
         "",
     ]
     return "\n".join(parts)
+
+
+def _takeovers_table(found: Mapping[str, Any]) -> str:
+    heads = "".join(f"<th class=n>{label}</th>" for _, label in _TAKEOVER)
+    lines = [f"<table><tr><th class=n>tick</th><th>reason</th><th>asked</th>{heads}</tr>"]
+    for record in found["takeovers"]:
+        values = [record[key] for key, _ in _TAKEOVER]
+        cells = "".join(f"<td class=n>{'-' if value is None else f'{value:.2f}'}</td>" for value in values)
+        facts = f"<td>{escape(record['reason'])}</td><td>{'yes' if record['asked'] else 'no'}</td>"
+        lines.append(f"<tr><td class=n>{record['tick']}</td>{facts}{cells}</tr>")
+    return "\n".join((*lines, "</table>"))
 
 
 def _tiles(found: Mapping[str, Any]) -> str:

@@ -27,7 +27,7 @@ def test_an_angle_is_free_without_limit_or_speed(control: ControlSettings) -> No
     assert gentle_angle(0.5, 0.0, at(30.0), control) == 0.5
     assert gentle_angle(0.5, 0.001, at(control.standstill_speed_mps), control) == 0.5
     assert gentle_angle(0.5, 0.001, at(control.standstill_speed_mps * 1.01), control) < 0.5
-    assert gentle_angle(0.5, 5.0, at(math.nan), control) == 0.5
+    assert gentle_angle(0.5, 0.1, at(math.nan), control) == 0.5
     assert gentle_angle(1.0, 5.0, at(math.inf), control) == 1.0
 
 
@@ -52,4 +52,4 @@ def test_a_step_is_never_longer_than_the_rate_allows(control: ControlSettings) -
     assert gentle_step(0.0, 0.002, 0.0, at(30.0), control, 0.004) == 0.002
     assert gentle_step(0.0, 1.0, 0.001, at(control.standstill_speed_mps), control, 0.004) == 1.0
     assert gentle_step(0.0, 1.0, 0.001, at(control.standstill_speed_mps * 1.01), control, 0.004) < 1.0
-    assert gentle_step(0.0, 1.0, 7.0, at(math.nan), control, 0.004) == 1.0
+    assert gentle_step(0.0, 1.0, 0.001, at(math.nan), control, 0.004) == 1.0

@@ -79,6 +79,19 @@ def test_only_commands_of_a_speed_are_compared_in_speed(control: ControlSettings
         assert (refusal(control, remote=REMOTE._replace(kind=float(kind)), vehicle=fast) is not None) == refused
 
 
+def test_limits_themselves_are_still_good(control: ControlSettings) -> None:
+    remote = REMOTE._replace(speed_mps=20.0)
+    assert refusal(control, remote=remote, vehicle=VEHICLE._replace(vx_mps=25.0)) is None
+    assert refusal(control, remote=remote, vehicle=VEHICLE._replace(vx_mps=-25.0)) is Reason.REFUSED_DEVIATION
+    slow = VEHICLE._replace(vx_mps=control.engage_deviation_speed_mps)
+    assert refusal(control, offered_rad=0.36, vehicle=slow) is Reason.REFUSED_DEVIATION
+
+
+def test_the_commands_angle_is_compared_with_the_one_in_force(control: ControlSettings) -> None:
+    for offered, in_force, reason in ((0.3, 0.3, 0.0), (0.3, -0.3, float(Reason.REFUSED_DEVIATION))):
+        assert engage_refusal(float(Mode.MANUAL), PERSON, LINK, REMOTE, offered, in_force, VEHICLE, control) == reason
+
+
 def test_the_wheels_must_agree_unless_nearly_standing(control: ControlSettings) -> None:
     for angle in (0.36, -0.36):
         assert refusal(control, offered_rad=angle) is Reason.REFUSED_DEVIATION

@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from simconsole.control.longitudinal import Pedals, integrate, known, pedals_for
+from simconsole.control.longitudinal import Pedals, brake_for, integrate, known, pedals_for
 from simconsole.control.settings import ControlSettings
 from simconsole.signals import VehicleState
 
@@ -65,6 +65,25 @@ def test_the_integral_is_bounded(control: ControlSettings) -> None:
     for _ in range(10_000):
         integral = integrate(integral, -3.0, control, 0.004)
     assert integral == -control.integral_max_mps2
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+def test_a_coasting_that_is_no_number_counts_as_none(bad: float, control: ControlSettings) -> None:
+    assert pedals_for(1.0, 1.0, vehicle(coast=bad), control).throttle == pytest.approx(1.0 / 3.0)
+    assert brake_for(-4.5, 1.0, vehicle(coast=bad), control) == pytest.approx(0.5)
+
+
+def test_the_least_and_the_greatest_statement_that_is_usable(control: ControlSettings) -> None:
+    assert pedals_for(0.1, 1.0, vehicle(coast=0.0, throttle=0.2), control).throttle == 0.5
+    assert pedals_for(25.0, 1.0, vehicle(coast=0.0, throttle=50.0), control).throttle == 0.5
+    assert brake_for(-0.1, 1.0, vehicle(coast=0.0, brake=-0.2), control) == 0.5
+    assert brake_for(-25.0, 1.0, vehicle(coast=0.0, brake=-50.0), control) == 0.5
+
+
+def test_the_coasting_band_ends_where_braking_begins(control: ControlSettings) -> None:
+    edge = -0.5 - control.coast_band_mps2
+    assert pedals_for(edge, 1.0, vehicle(coast=-0.5), control).brake == pytest.approx(0.1 / 8.5)
+    assert pedals_for(edge + 1e-9, 1.0, vehicle(coast=-0.5), control) == Pedals(0.0, 0.0)
 
 
 def test_known_replaces_only_what_is_not_finite() -> None:

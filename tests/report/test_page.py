@@ -7,7 +7,9 @@ from typing import Any
 import pytest
 
 from simconsole.errors import RecordingError
-from simconsole.report.page import write_report
+from simconsole.report.metrics import metrics
+from simconsole.report.page import page, write_report
+from simconsole.report.table import drive_of
 from simconsole.world.course import Course
 
 
@@ -71,3 +73,12 @@ def test_unwritable_file_is_one_line(tmp_path: Path, sample: Any) -> None:
 def test_importing_the_report_loads_no_matplotlib() -> None:
     code = "import simconsole.report.page, sys; raise SystemExit('matplotlib' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_take_overs_are_listed(sample: Any, course: Course) -> None:
+    drive = drive_of(sample.rows, sample.columns, sample.tick_hz)
+    html = page("t", metrics(drive, course), (), {})
+    assert "<h2>Take-overs</h2>" in html
+    row = html.partition("<h2>Take-overs</h2>")[2].partition("</table>")[0]
+    assert "<td class=n>1251</td><td>driver turned the wheel</td><td>no</td>" in row
+    assert "first steering, s" in row
