@@ -40,6 +40,8 @@ class Opened(NamedTuple):
     cast: Cast
     finished: Callable[[Snapshot], bool]
     summary: Callable[[], dict[str, Any]]
+    bridge_url: str | None = None
+    """Where the bridge listens, of a paced drive."""
 
 
 def open_headless(
@@ -114,6 +116,7 @@ def open_realtime(
         acts_summary,
         add_can_memory,
         bridge_address,
+        bridge_summary,
         can_summary,
         make_memory,
         station_latencies,
@@ -138,7 +141,7 @@ def open_realtime(
         check()
         return supervisor.alive()
 
-    session = resolved.session
+    session, address = resolved.session, None
     if session.outputs.bridge is not None:
         address = bridge_address(folder, alive)
         if session.features.autopilot is not None:
@@ -155,11 +158,12 @@ def open_realtime(
     cast = with_faults(cast, resolved, console.tick_hz)._replace(ledger=ledger)
 
     def summary() -> dict[str, Any]:
-        stations = {"station_restarts": supervisor.counters(), **can_summary(folder), **acts_summary(folder)}
+        kept = {**bridge_summary(folder), **can_summary(folder), **acts_summary(folder)}
+        stations = {"station_restarts": supervisor.counters(), **kept}
         latency = {**ledger.summary_us(), **station_latencies(folder)}
         return {**pace.summary(), **stations, "latency_us": latency, "not_granted": missing}
 
-    return Opened(cast, seating.finished, summary)
+    return Opened(cast, seating.finished, summary, address)
 
 
 def _check_address(profile: BridgeProfile) -> None:

@@ -27,6 +27,9 @@ class LockstepServer(Protocol):
     def stand(self, timeout_s: float) -> None:
         """Serve for a moment without publishing anything."""
 
+    def counts(self) -> dict[str, int]:
+        """Return how many messages went to and from all clients."""
+
     @property
     def clients(self) -> int:
         """Connected clients."""
@@ -77,9 +80,9 @@ class LockstepLink:
         """Return what operators have done, as plain values."""
         return self._bridge.acts()
 
-    def counters(self) -> dict[str, int]:
-        """Return how often the drive waited for the controller, and how often in vain."""
-        return {"exchanges": self.exchanges, "unanswered": self.unanswered}
+    def counters(self) -> dict[str, Any]:
+        """Return how often the drive waited for the controller, how often in vain, and what the bridge counted."""
+        return {"exchanges": self.exchanges, "unanswered": self.unanswered, "bridge": self._bridge.counts()}
 
     def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
         """Return the newest command, its age in ticks, and the edges, a missing answer among them."""

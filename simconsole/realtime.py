@@ -25,6 +25,7 @@ from simconsole.station_programs import (
     CAN_EVENTS,
     CAN_STATUS,
     COMMAND,
+    COUNTS,
     EVENTS,
     KEYS,
     LATENCY,
@@ -211,6 +212,14 @@ def acts_summary(folder: Path) -> dict[str, Any]:
     except OSError:
         return {}
     return told([msgspec.json.decode(line) for line in lines])
+
+
+def bridge_summary(folder: Path) -> dict[str, Any]:
+    """Return what the bridge station last counted, at most a second old; empty without one."""
+    try:
+        return {"bridge": msgspec.json.decode((folder / COUNTS).read_bytes())}
+    except (OSError, msgspec.DecodeError):
+        return {}
 
 
 def can_summary(folder: Path) -> dict[str, Any]:

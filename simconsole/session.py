@@ -41,8 +41,11 @@ def drive(
     resolved: ResolvedSession,
     folder: Path,
     watch: Callable[[Snapshot], bool] = lambda snapshot: False,
+    on_bridge: Callable[[str], None] = lambda url: None,
 ) -> DriveResult:
     """Drive a session into a new bundle in `folder`. `watch` sees every tick; True ends the drive.
+
+    `on_bridge` is told where the bridge of a paced drive listens, once it does.
 
     SIGINT and SIGTERM end it in order: torque off, devices closed, the bundle finished.
 
@@ -57,6 +60,8 @@ def drive(
         bundle = stack.enter_context(_bundle(resolved, console, folder))
         interrupt = stack.enter_context(Interrupt())
         opened = _open(resolved, console, bundle, interrupt.check, stack)
+        if opened.bridge_url is not None:
+            on_bridge(opened.bridge_url)
         began_s = time.monotonic()
         state = run(
             console,

@@ -29,6 +29,7 @@ EVENTS: Final = "bridge.events"
 KEYS: Final = "hud.keys"
 ADDRESS: Final = "bridge.address"
 ACTS: Final = "operator.jsonl"
+COUNTS: Final = "bridge.json"
 CAN_COMMAND: Final = "can.command"
 CAN_EVENTS: Final = "can.events"
 CAN_STATUS: Final = "can.json"
@@ -63,7 +64,15 @@ def bridge(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) ->
         part.write_text(address_url(profile.host, port, profile.certificate is not None), "utf-8")
         part.replace(folder / ADDRESS)
 
-    serve(profile, snapshots, write_command, events.raise_events, stop, on_ready=ready, on_act=keep_act)
+    def write_counts(counts: dict[str, int]) -> None:
+        part = folder / f"{COUNTS}.part"
+        part.write_bytes(msgspec.json.encode(counts))
+        part.replace(folder / COUNTS)
+
+    serve(
+        profile, snapshots, write_command, events.raise_events, stop,
+        on_ready=ready, on_act=keep_act, on_counts=write_counts,
+    )  # fmt: skip
 
 
 def canbus(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> None:

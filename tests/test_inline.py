@@ -24,6 +24,9 @@ class Server:
         self.sequence += self.answers
         return self.answers
 
+    def counts(self) -> dict[str, int]:
+        return {"sent": len(self.published)}
+
     def publish(self, snapshot: Snapshot) -> None:
         self.published.append(snapshot.tick)
 
@@ -51,7 +54,7 @@ def test_the_drive_waits_once_in_each_period_and_never_in_between(server: Server
     assert drive(link, 1, 20) == [0] * 20
     assert server.exchanged == [5, 10, 15, 20]
     assert server.published == []
-    assert link.counters() == {"exchanges": 4, "unanswered": 0}
+    assert link.counters() == {"exchanges": 4, "unanswered": 0, "bridge": {"sent": 0}}
 
 
 def test_a_missing_answer_is_one_event_in_the_next_tick_and_is_not_waited_for_again(server: Server) -> None:
@@ -62,7 +65,7 @@ def test_a_missing_answer_is_one_event_in_the_next_tick_and_is_not_waited_for_ag
     assert events[5] == Event.NO_ANSWER
     assert server.exchanged == [5]
     assert server.published == [10, 15, 20, 25, 30]
-    assert link.counters() == {"exchanges": 1, "unanswered": 1}
+    assert link.counters() == {"exchanges": 1, "unanswered": 1, "bridge": server.counts()}
 
 
 def test_a_controller_that_spoke_again_is_waited_for_again(server: Server) -> None:

@@ -2,6 +2,7 @@
 
 import logging
 import socket
+import ssl
 import time
 from typing import Any, Final, Protocol, cast
 
@@ -23,6 +24,7 @@ from simconsole.profiles.bridge import BridgeProfile
 
 UNSENT_BYTES: Final = 262_144
 """Bytes taken out of a session's bounded queues beyond what the system's socket buffer holds."""
+_LATER: Final = (BlockingIOError, InterruptedError, ssl.SSLWantReadError, ssl.SSLWantWriteError)
 CLOSE_S: Final = 1.0
 """How long a client may take to answer a good-bye."""
 
@@ -82,7 +84,9 @@ class Connection:
         """Read once and hand on what arrived: a session at the handshake, then texts."""
         try:
             data = self.socket.recv(RECEIVE_BYTES)
-        except (BlockingIOError, InterruptedError):
+            while isinstance(self.socket, ssl.SSLSocket) and self.socket.pending():
+                data += self.socket.recv(RECEIVE_BYTES)  # a selector does not see what TLS has read already
+        except _LATER:
             return
         except OSError:
             self.close()
@@ -194,10 +198,11 @@ class Connection:
                 del self._unsent[: self.socket.send(self._unsent)]
             if self._ending and not self._unsent:
                 self._ending = False
-                self.socket.shutdown(socket.SHUT_WR)
+                if not isinstance(self.socket, ssl.SSLSocket):  # half a TLS connection cannot be closed
+                    self.socket.shutdown(socket.SHUT_WR)
             if self._web.close_rcvd is not None and not self._unsent:
                 self.close()  # both have said good-bye: the server ends the connection (RFC 6455, 7.1.1)
-        except (BlockingIOError, InterruptedError):
+        except _LATER:
             return
         except OSError:
             self.close()

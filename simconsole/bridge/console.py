@@ -5,6 +5,7 @@ from typing import Any
 
 from simconsole.bridge.access import Role
 from simconsole.bridge.commands import CommandIntake
+from simconsole.bridge.counters import counted, summed
 from simconsole.bridge.inputs import BridgeInputs, OnCommand, OnEvents
 from simconsole.bridge.messages import Registry, standard_registry
 from simconsole.bridge.operate import OPERATE, OPERATE_TYPE, Act, OnAct, Operator
@@ -66,7 +67,8 @@ class ConsoleBridge:
         self.router.calls.add_builtin(profile.namespace + OPERATE, OPERATE_TYPE, self.operator.operate, Role.CONTROL)
         self._intake = CommandIntake(self.inputs, profile)
         self.router.on_new_commander = self._intake.forget_stamps
-        self._out = Outputs(self.router.registry, profile)
+        self._now_ns = 0
+        self._out = Outputs(self.router.registry, profile, lambda: counted(self.router, self._now_ns))
         outputs, commands = self._out.topics(), self._intake.topics()
         self.names = _names(profile, [*(topic.name for topic in outputs), *(topic.name for topic in commands)])
         _check_known("rates_hz", profile.rates_hz, [topic.name for topic in outputs])
@@ -85,6 +87,7 @@ class ConsoleBridge:
         self.operator.tick = snapshot.tick
         self.router.ros_time_ns = self._intake.ros_time_ns = snapshot.t_ns
         self.router.calls.expire(now_ns)
+        self._now_ns = now_ns
         moment: Moment | None = None
         for output in self._outputs:
             due = is_due(snapshot.tick, output.last_tick, snapshot.tick_hz, output.rate_hz)
@@ -94,6 +97,10 @@ class ConsoleBridge:
             if self.router.wanted(output.name):
                 moment = moment or self._out.moment(snapshot)
                 self.router.publish(output.name, output.build(moment), now_ns)
+
+    def counts(self) -> dict[str, int]:
+        """Return how many messages went to and from all clients."""
+        return summed(self.router)
 
     def receive(self, session: Session, text: bytes, now_ns: int) -> Outcome:
         """Apply one text of a client."""

@@ -22,8 +22,7 @@ from simconsole.bridge.handshake import role_at
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.session import Session
 from simconsole.bridge.topics import ODOMETRY
-from simconsole.bridge.wire import RECEIVE_BYTES, address_url, listen, load_access, log_outcome
-from simconsole.errors import ProfileError
+from simconsole.bridge.wire import RECEIVE_BYTES, address_url, listen, load_access, load_tls, log_outcome
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.rows import Snapshot
 from simconsole.signals import EventInput, RemoteCommand
@@ -54,19 +53,16 @@ class LockstepBridge:
 
         Raises:
             BridgeError: the address cannot be listened on.
-            ProfileError: as `ConsoleBridge`.
+            ProfileError: as `ConsoleBridge`, or its certificate or tokens cannot be used.
         """
         if odometry_hz is not None:
             commands_hz = max(profile.limits.commands_hz, _ANSWERS * odometry_hz)
             limits = msgspec.structs.replace(profile.limits, commands_hz=commands_hz)
             rates_hz = {**profile.rates_hz, ODOMETRY: odometry_hz}
             profile = msgspec.structs.replace(profile, rates_hz=rates_hz, limits=limits)
-        if profile.certificate is not None:
-            raise ProfileError(
-                "outputs.bridge.certificate: a headless drive's bridge speaks no TLS; drive in real time"
-            )
         self.console = ConsoleBridge(profile, registry)
         self.console.router.access = load_access(profile)
+        self._tls = load_tls(profile)
         self._profile = profile
         self._now_ns = 0
         self._lost_at: float | None = None
@@ -101,7 +97,7 @@ class LockstepBridge:
     @property
     def url(self) -> str:
         """Where clients connect."""
-        return address_url(self._profile.host, self.port)
+        return address_url(self._profile.host, self.port, self._tls is not None)
 
     @property
     def clients(self) -> int:
@@ -162,6 +158,10 @@ class LockstepBridge:
             if left_s <= 0.0 or inputs.command.sequence == self._lost_at or not self.clients:
                 return False
             self._serve(left_s)
+
+    def counts(self) -> dict[str, int]:
+        """Return how many messages went to and from all clients."""
+        return self.console.counts()
 
     def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
         """Return the newest command with its age for the coming `tick`, and all edges since the last call."""
@@ -249,6 +249,10 @@ class LockstepBridge:
             sock, address = self._listener.accept()
         except OSError:
             return  # the client was gone before it was let in
+        if self._tls is not None:
+            # Its handshake happens with the first bytes read; it must not make the tick loop wait.
+            sock.setblocking(False)
+            sock = self._tls.wrap_socket(sock, server_side=True, do_handshake_on_connect=False)
         now_s = time.monotonic()
         self._sweep(now_s)
         is_full = len(self._connections) >= self._profile.limits.clients

@@ -49,6 +49,7 @@ _HANDSHAKE_S: Final = 5.0
 _CLOSE_S: Final = 1.0
 _WATCH_S: Final = 0.25
 _POLL_S: Final = 0.001
+_COUNT_S: Final = 1.0
 
 _logger = logging.getLogger("simconsole.bridge.server")
 
@@ -313,6 +314,7 @@ def serve(
     *,
     on_ready: Callable[[int], None] = lambda port: None,
     on_act: OnAct | None = None,
+    on_counts: Callable[[dict[str, int]], None] = lambda counts: None,
     registry: Registry | None = None,
 ) -> None:
     """Run a bridge server until `stop()` says so; for a process of its own.
@@ -325,6 +327,7 @@ def serve(
         stop: asked every millisecond.
         on_ready: gets the port when the server listens.
         on_act: gets each act of an operator, at once.
+        on_counts: gets what was counted, once a second and at the end.
         registry: message types; the standard ones without.
 
     Raises:
@@ -338,13 +341,18 @@ def serve(
         )
         await server.start()
         on_ready(server.port)
+        next_count_s = 0.0
         try:
             while not stop():
+                if time.monotonic() >= next_count_s:
+                    next_count_s = time.monotonic() + _COUNT_S
+                    on_counts(server.console.counts())
                 snapshot = read_snapshot()
                 if snapshot is not None:
                     server.publish(snapshot)
                 await asyncio.sleep(_POLL_S)
         finally:
+            on_counts(server.console.counts())
             await server.close()
 
     asyncio.run(main())

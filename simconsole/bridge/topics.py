@@ -22,6 +22,7 @@ ODOMETRY: Final = "/odom"
 GROUND_TRUTH: Final = "/ground_truth/odom"
 JOY: Final = "/console/joy"
 ARBITRATION: Final = "/console/arbitration"
+BRIDGE: Final = "/console/bridge"
 VELOCITY: Final = "/vehicle/status/velocity_status"
 STEERING: Final = "/vehicle/status/steering_status"
 GEAR_STATUS: Final = "/vehicle/status/gear_status"
@@ -43,7 +44,7 @@ geometry_msgs/TransformStamped geometry_msgs/Transform geometry_msgs/Vector3 geo
 geometry_msgs/Quaternion geometry_msgs/Pose geometry_msgs/PoseWithCovariance geometry_msgs/Twist
 geometry_msgs/TwistWithCovariance autoware_vehicle_msgs/VelocityReport autoware_vehicle_msgs/SteeringReport
 autoware_vehicle_msgs/GearReport autoware_vehicle_msgs/ControlModeReport simconsole_msgs/Arbitration
-simconsole_msgs/Controller
+simconsole_msgs/Controller simconsole_msgs/Bridge simconsole_msgs/BridgeClient
 """
 _NO_COVARIANCE: Final = [0.0] * 36
 # Numbers of autoware_vehicle_msgs/ControlModeReport.
@@ -98,8 +99,9 @@ class Moment:
 class Outputs:
     """Builds the messages of the output topics."""
 
-    def __init__(self, registry: Registry, profile: BridgeProfile) -> None:
-        """Generate the classes of all output topics."""
+    def __init__(self, registry: Registry, profile: BridgeProfile, counts: Callable[[], dict[str, Any]] = dict) -> None:
+        """Generate the classes of all output topics; `counts` tells what /console/bridge says (`counters.counted`)."""
+        self._counts = counts
         self._odometry_frame = profile.odometry_frame
         names = _TYPES.split()
         self._types: dict[str, Any] = {name.partition("/")[2]: registry.struct(name) for name in names}
@@ -116,6 +118,7 @@ class Outputs:
             OutputTopic(GEAR_STATUS, "autoware_vehicle_msgs/GearReport", 30.0, self._gear),
             OutputTopic(CONTROL_MODE, "autoware_vehicle_msgs/ControlModeReport", 30.0, self._control_mode),
             OutputTopic(ARBITRATION, "simconsole_msgs/Arbitration", 50.0, self._arbitration),
+            OutputTopic(BRIDGE, "simconsole_msgs/Bridge", 1.0, self._bridge),
             OutputTopic(GROUND_TRUTH, "nav_msgs/Odometry", 50.0, lambda moment: self._odometry(moment, MAP_FRAME)),
             OutputTopic(
                 ODOMETRY, "nav_msgs/Odometry", 50.0, lambda moment: self._odometry(moment, self._odometry_frame)
@@ -183,6 +186,11 @@ class Outputs:
         if mode is None:
             mode = _shared_mode(arbitration.remote_lateral > 0.0, arbitration.remote_longitudinal > 0.0)
         return self._types["ControlModeReport"](moment.stamp, mode)
+
+    def _bridge(self, moment: Moment) -> Any:
+        counts = self._counts()
+        clients = [self._types["BridgeClient"](**client) for client in counts.pop("clients", ())]
+        return self._types["Bridge"](header=moment.header(""), clients=clients, **counts)
 
     def _arbitration(self, moment: Moment) -> Any:
         snapshot = moment.snapshot

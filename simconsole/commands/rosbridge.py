@@ -16,7 +16,7 @@ def bridge(words: Namespace) -> Outcome:
 def serve(words: Namespace) -> Outcome:
     """Serve rosbridge on a standing car that nobody sits in, in real time, until interrupted; nothing is kept."""
     from simconsole.bridge.ros2 import check as check_ros2
-    from simconsole.bridge.wire import address_url, load_access, load_tls
+    from simconsole.bridge.wire import load_access, load_tls
     from simconsole.session import drive
     from simconsole.session_files import load_session, override, resolve
 
@@ -38,9 +38,8 @@ def serve(words: Namespace) -> Outcome:
         load_access(session.outputs.bridge)
         load_tls(session.outputs.bridge)
         check_ros2(session.outputs.bridge)
-    print(f"rosbridge at {address_url(words.host, words.port, certificate is not None)}", flush=True)
     with tempfile.TemporaryDirectory(prefix="simconsole-bridge-") as folder:
-        result = drive(resolve(session), Path(folder))
+        result = drive(resolve(session), Path(folder), on_bridge=lambda url: print(f"rosbridge at {url}", flush=True))
     code = INTERRUPTED if result.interrupted else 0
     return Outcome(code, result.summary, f"served {result.ticks} ticks, lateness {result.summary['lateness']}")
 

@@ -1,5 +1,6 @@
 """Tokens and TLS over real sockets, on both servers and from our own client."""
 
+import socket
 import ssl
 import threading
 from collections.abc import Callable
@@ -88,9 +89,48 @@ def test_lockstep_asks_for_the_token_too(files: dict[str, str]) -> None:
         thread.join(timeout=10.0)
 
 
+def test_lockstep_is_encrypted_too(
+    files: dict[str, str], snapshot: Callable[..., Any], control: Callable[..., Any]
+) -> None:
+    """Long messages both ways, so that several records are on their way at a time."""
+    answered = 40
+    with LockstepBridge(BridgeProfile(port=0, **files)) as bridge:
+        assert bridge.url.startswith("wss://")
+
+        def drive() -> None:
+            with BridgeClient(bridge.url, token=TOKEN, certificate=files["certificate"]) as client:
+                client.subscribe("/odom", "nav_msgs/Odometry")
+                client.subscribe("/echo", "std_msgs/String")
+                client.advertise("/echo", "std_msgs/String")
+                client.advertise("/control/command/control_cmd", "autoware_control_msgs/Control")
+                client.connect()
+                echoed = 0
+                while echoed < answered:
+                    received = client.receive(10.0)
+                    assert received is not None
+                    if received.topic == "/echo":
+                        assert received.message.data == "x" * 100_000
+                        echoed += 1
+                        continue
+                    stamp = received.message.header.stamp
+                    client.publish("/echo", {"data": "x" * 100_000})
+                    client.publish("/control/command/control_cmd", control(0.2, stamp_ns=stamp.nanosec))
+
+        program = threading.Thread(target=drive)
+        program.start()
+        with socket.create_connection(("127.0.0.1", bridge.port)) as stranger:
+            stranger.sendall(b"GET / HTTP/1.1\r\n\r\n")  # speaks no TLS, and harms nobody
+            assert bridge.wait_for_client(10.0)
+            for tick in range(5, 5 * answered + 1, 5):
+                assert bridge.exchange(snapshot(tick), 10.0)
+            assert bridge.take(tick + 1)[0].sequence == answered
+            while bridge.clients:
+                bridge.publish(snapshot(tick))
+        program.join(timeout=10.0)
+        assert not program.is_alive()
+
+
 def test_profiles_that_cannot_be_served(files: dict[str, str], tmp_path: Path) -> None:
-    with pytest.raises(ProfileError, match="speaks no TLS"):
-        LockstepBridge(BridgeProfile(port=0, **files))
     with pytest.raises(ProfileError, match="can be reached from other machines"):
         BridgeServer(BridgeProfile(host="0.0.0.0"))
     with pytest.raises(ProfileError, match=r"outputs\.bridge\.tokens"):

@@ -19,6 +19,10 @@ def test_a_controller_reads_and_commands_a_standing_car(tmp_path: Path) -> None:
         controller.join(30.0)
     assert done.returncode == 130
     assert results(done)["interrupted"] is True
+    counts = results(done)["bridge"]
+    assert counts["connections"] == 1
+    assert counts["received"] >= controller.odometry - 1
+    assert counts["sent"] >= controller.odometry
     assert controller.failure is None
     assert not [status for status in controller.statuses if status["level"] == "error"]
     assert "Traceback" not in done.stderr
@@ -29,6 +33,18 @@ def test_it_ends_by_itself_when_told_so() -> None:
     done = simconsole("bridge", "serve", "--port", free_port(), "--for", 0.5, "--json")
     assert done.returncode == 0, done.stderr
     assert results(done)["interrupted"] is False
+
+
+def test_port_of_the_system_s_choice_is_said(tmp_path: Path) -> None:
+    with Running(tmp_path, "bridge", "serve", "--port", 0, "--json") as server:
+        wait_until(lambda: "rosbridge at" in server.out.read_text(), "the address")
+        port = int(server.out.read_text().split("rosbridge at ws://127.0.0.1:")[1].split()[0])
+        controller = Controller(port, lambda count, stamp: [])
+        controller.start()
+        wait_until(lambda: controller.odometry > 0, "odometry")
+        server.process.send_signal(signal.SIGINT)
+        server.end()
+        controller.join(30.0)
 
 
 def test_a_port_that_is_none_is_one_line() -> None:

@@ -52,4 +52,32 @@ uint64 commands_accepted
 uint64 commands_refused
 # Seconds since the newest accepted command was received; -1 before the first.
 float64 command_age
+================================================================================
+MSG: simconsole_msgs/Bridge
+std_msgs/Header header
+# Who holds the commander's lease; empty: nobody.
+string commander
+# How many clients there have been, and messages of all of them, also of those that are gone.
+uint64 connections
+uint64 received
+uint64 refused
+# Commands passed over because a client sent too many.
+uint64 throttled
+uint64 sent
+# Lost because a client was too slow.
+uint64 dropped
+BridgeClient[] clients
+================================================================================
+MSG: simconsole_msgs/BridgeClient
+string peer
+string role
+uint64 received
+uint64 refused
+uint64 throttled
+uint64 sent
+uint64 dropped
+uint64 waiting_bytes
+# What it is subscribed to, and how many messages of each it has lost.
+string[] topics
+uint64[] topics_dropped
 """

@@ -1,0 +1,34 @@
+"""What passed between a server and its clients, as it is published on a topic and reported at a drive's end."""
+
+from typing import Any
+
+from simconsole.bridge.protocol import Router
+from simconsole.bridge.session import Session
+
+
+def counted(router: Router, now_ns: int) -> dict[str, Any]:
+    """Return the counts of all clients, present and gone, and of each that is there, by the topic's field names."""
+    holder = router.lease.holder(now_ns)
+    sessions = router.sessions
+    return {
+        "commander": next((session.peer for session in sessions if session.number == holder), ""),
+        "connections": router.connections,
+        **router.counts()._asdict(),
+        "clients": [_of(session) for session in sessions],
+    }
+
+
+def summed(router: Router) -> dict[str, int]:
+    """Return the counts of all clients together."""
+    return {"connections": router.connections, **router.counts()._asdict()}
+
+
+def _of(session: Session) -> dict[str, Any]:
+    return {
+        "peer": session.peer,
+        "role": session.role.name.lower(),
+        **session.counts()._asdict(),
+        "waiting_bytes": session.outgoing.bytes,
+        "topics": list(session.outlets),
+        "topics_dropped": [outlet.dropped for outlet in session.outlets.values()],
+    }
