@@ -20,6 +20,7 @@ _QUIET_S: Final = 0.4
 """How long nothing more may come for something to count as not sent."""
 _OPEN_S: Final = 5.0
 _ODOMETRY: Final = "nav_msgs/msg/Odometry"
+_POINT: Final = "geometry_msgs/msg/PointStamped"
 
 
 class Row(NamedTuple):
@@ -134,6 +135,78 @@ def _both_stamps(talk: _Talk) -> None:
         _expect(list(header["stamp"].values()) == [5, 6], f"{stamp} came back as {header['stamp']}")
 
 
+def _is_stamped(content: dict[str, Any]) -> bool:
+    return any(content["header"]["stamp"].values())
+
+
+def _now(talk: _Talk) -> None:
+    _expect(_is_stamped(talk.echo(_POINT, {"header": {"stamp": "now"}})), 'the stamp "now" came back as 0')
+
+
+def _header_without_stamp(talk: _Talk) -> None:
+    _expect(_is_stamped(talk.echo(_POINT, {"header": {"frame_id": "a"}})), "the stamp is 0")
+
+
+def _no_header(talk: _Talk) -> None:
+    _expect(_is_stamped(talk.echo(_POINT, {"point": {"x": 1.0}})), "the stamp is 0")
+
+
+def _sequence(talk: _Talk) -> None:
+    frame = talk.echo(_POINT, {"header": {"seq": 7, "frame_id": "a"}})["header"]["frame_id"]
+    _expect(frame == "a", f"frame_id a came back as {frame}")
+
+
+def _octets_in_base64(talk: _Talk) -> None:
+    data = talk.echo("std_msgs/msg/UInt8MultiArray", {"data": "AQL/"})["data"]
+    _expect(data == "AQL/", f"AQL/ came back as {data}")
+
+
+def _long_integer(talk: _Talk) -> None:
+    data = talk.echo("std_msgs/msg/Int64", {"data": 2**53 + 1})["data"]
+    _expect(data == 2**53 + 1, f"2^53 + 1 came back as {data!r}")
+
+
+def _slashes(talk: _Talk) -> None:
+    data = talk.echo("std_msgs/msg/String", {"data": "a/b\\c"})["data"]
+    _expect(data == "a/b\\c", f"a/b\\c came back as {data!r}")
+
+
+def _missing_fields(talk: _Talk) -> None:
+    point = talk.echo("geometry_msgs/msg/Point", {"x": 1.0})
+    _expect(point == {"x": 1.0, "y": 0.0, "z": 0.0}, f"came back as {point}")
+
+
+def _unknown_field(talk: _Talk) -> None:
+    talk.pair("geometry_msgs/msg/Point")
+    talk.send(op="publish", topic=talk.topic, msg={"x": 1.0, "w": 2.0}, id="field")
+    status = talk.want("status")
+    _expect(status.get("id") == "field" and "w" in str(status.get("msg")), f"status {status}"[:200])
+
+
+def _other_type(talk: _Talk) -> None:
+    talk.pair("std_msgs/msg/String")
+    talk.send(op="advertise", topic=talk.topic, type="std_msgs/msg/Bool", id="type")
+    _expect(talk.want("status").get("id") == "type", "status without the id")
+
+
+def _fragments_in(talk: _Talk) -> None:
+    talk.pair("std_msgs/msg/String")
+    text = json.dumps({"op": "publish", "topic": talk.topic, "msg": {"data": "in pieces"}})
+    half = len(text) // 2
+    # The total as rosbridge_suite itself writes it, and the second piece first.
+    for number, piece in ((1, text[half:]), (0, text[:half])):
+        talk.send(op="fragment", id="f", num=number, total=1.7, data=piece)
+    data = talk.want("publish")["msg"]["data"]
+    _expect(data == "in pieces", f"came as {data}")
+
+
+def _latch(talk: _Talk) -> None:
+    talk.send(op="advertise", topic=talk.topic, type="std_msgs/msg/String", latch=True)
+    talk.send(op="publish", topic=talk.topic, msg={"data": "kept"}, latch=True)
+    talk.send(op="subscribe", topic=talk.topic, type="std_msgs/msg/String")
+    _expect(talk.want("publish")["msg"]["data"] == "kept", "another message came")
+
+
 def _both_names(talk: _Talk) -> None:
     for kind in ("std_msgs/String", "std_msgs/msg/String"):
         _expect(talk.echo(kind, {"data": kind})["data"] == kind, f"{kind} did not work")
@@ -203,6 +276,18 @@ ROWS: Final[dict[str, Callable[[_Talk], None]]] = {
     "octets go out as base64, a list is taken": _octets,
     "value out of range has a status with id and field": _out_of_range,
     "stamps are taken in both spellings": _both_stamps,
+    'the stamp "now" is the present': _now,
+    "header without a stamp is stamped now": _header_without_stamp,
+    "message without a header is stamped now": _no_header,
+    "header's seq is passed over": _sequence,
+    "octets are taken in base64": _octets_in_base64,
+    "integers above 2^53 come back whole": _long_integer,
+    "slashes come back whole": _slashes,
+    "missing fields get their defaults": _missing_fields,
+    "unknown field has a status with id and field": _unknown_field,
+    "advertising with another type has a status with id": _other_type,
+    "latched message is for late subscribers": _latch,
+    "fragments are taken in any order": _fragments_in,
     "type names are taken in two and three parts": _both_names,
     "malformed JSON does not spoil the next message": _survives_garbage,
     "malformed JSON has a status": _garbage_has_status,

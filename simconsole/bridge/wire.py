@@ -77,6 +77,17 @@ class MessageAssembler:
         return Binary(whole) if self._binary else whole
 
 
+def frame_head(message: bytes) -> bytes:
+    """Return what stands before a message in a server's frame: final, unmasked, binary or text (RFC 6455, 5.2)."""
+    opcode = 0x82 if isinstance(message, Binary) else 0x81
+    length = len(message)
+    if length < 126:
+        return bytes((opcode, length))
+    if length < 65_536:
+        return bytes((opcode, 126)) + length.to_bytes(2)
+    return bytes((opcode, 127)) + length.to_bytes(8)
+
+
 def is_data(frame: Frame) -> bool:
     """Return whether a frame carries part of a message, and is not ping, pong or close."""
     return frame.opcode is Opcode.TEXT or frame.opcode is Opcode.CONT or frame.opcode is Opcode.BINARY

@@ -12,6 +12,7 @@ from simconsole.bridge.wire import (
     FragmentLimit,
     MessageAssembler,
     address_url,
+    frame_head,
     is_data,
     is_unacknowledged,
     listen,
@@ -75,6 +76,14 @@ def test_where_the_system_does_not_say_nobody_is_trusted(monkeypatch: pytest.Mon
     monkeypatch.delattr("socket.TCP_INFO")
     with socket.socket() as unconnected:
         assert is_unacknowledged(unconnected)
+
+
+@pytest.mark.parametrize("length", [0, 1, 125, 126, 65_535, 65_536, 300_000])
+@pytest.mark.parametrize("kind", [bytes, Binary])
+def test_frames_are_the_library_s_own(length: int, kind: type[bytes]) -> None:
+    message = kind(b"x" * length)
+    opcode = Opcode.BINARY if kind is Binary else Opcode.TEXT
+    assert frame_head(message) + message == Frame(opcode, message).serialize(mask=False)
 
 
 def test_control_frames_carry_no_message() -> None:

@@ -13,7 +13,7 @@ def test_a_controller_reads_and_commands_a_standing_car(tmp_path: Path) -> None:
     with Running(tmp_path, "bridge", "serve", "--port", port, "--json") as server:
         controller = Controller(port, lambda count, stamp: [json.dumps(command(stamp))])
         controller.start()
-        wait_until(lambda: controller.odometry > 10, "odometry")
+        wait_until(lambda: controller.odometry > 125, "odometry of more than two seconds")
         server.process.send_signal(signal.SIGINT)
         done = server.end()
         controller.join(30.0)
@@ -21,8 +21,9 @@ def test_a_controller_reads_and_commands_a_standing_car(tmp_path: Path) -> None:
     assert results(done)["interrupted"] is True
     counts = results(done)["bridge"]
     assert counts["connections"] == 1
-    assert counts["received"] >= controller.odometry - 1
-    assert counts["sent"] >= controller.odometry
+    # As of the last second.
+    assert counts["received"] > 50
+    assert counts["sent"] > 50
     assert controller.failure is None
     assert not [status for status in controller.statuses if status["level"] == "error"]
     assert "Traceback" not in done.stderr
