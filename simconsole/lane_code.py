@@ -12,10 +12,14 @@ import math
 import textwrap
 from collections.abc import Callable, Sequence
 from functools import cache
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from simconsole.kernels import is_kernel, put, take
 from simconsole.lane_values import LaneWriter, Names, Value
+
+
+HEAVY: Final = 11
+"""Operations from which one side of a choice is worth a jump over it: a mispredicted jump costs about as much."""
 
 
 class Branch(NamedTuple):
@@ -94,8 +98,8 @@ class _Walk:
         if isinstance(test, bool):
             return self.block(body if test else orelse, names, live)
         lanes.conditional(1)
-        yes = self.block(body, dict(names), lanes.both(live, test))
-        no = self.block(orelse, dict(names), lanes.both(live, lanes.opposite(test)))
+        yes = self._side(lanes.both(live, test), body, names)
+        no = self._side(lanes.both(live, lanes.opposite(test)), orelse, names)
         lanes.conditional(-1)
         if yes.live is False or no.live is False:
             return no if yes.live is False else yes
@@ -103,6 +107,32 @@ class _Walk:
         for name in yes.names.keys() & no.names.keys():
             merged[name] = lanes.select(test, yes.names[name], no.names[name])
         return Branch(merged, lanes.either(yes.live, no.live))
+
+    def _side(self, live: Value, statements: list[ast.stmt], names: Names) -> Branch:
+        """Return one side of a choice; a long one is jumped over where no lane takes it."""
+        if sum(self._weight(statement) for statement in statements) < HEAVY:
+            return self.block(statements, dict(names), live)
+        kept = len(self._returned)
+
+        def compute() -> Value:
+            branch = self.block(statements, dict(names), live)
+            changed = {name: value for name, value in branch.names.items() if names.get(name) is not value}
+            returned = tuple(self._returned[kept:])
+            del self._returned[kept:]
+            return tuple(changed), tuple(changed.values()), branch.live, returned
+
+        changed, values, still, returned = self._lanes.guarded(live, compute)
+        self._returned.extend(returned)
+        return Branch({**names, **dict(zip(changed, values, strict=True))}, still)
+
+    def _weight(self, node: ast.AST) -> int:
+        """Return how many operations a statement or expression has, those of the kernels that it calls included."""
+        weight = 0
+        for part in ast.walk(node):
+            weight += isinstance(part, ast.BinOp | ast.Compare)
+            if isinstance(part, ast.Call) and isinstance(part.func, ast.Name):
+                weight += _weight_of(self._globals.get(part.func.id))
+        return weight
 
     def _loop(self, loop: ast.For | ast.While, names: Names, live: Value) -> Names:
         """Return the names after a loop. A lane ends it for good with its condition: no return, break or continue."""
@@ -169,12 +199,19 @@ class _Walk:
                 chosen = lanes.mask(self._value(test, names))
                 if isinstance(chosen, bool):
                     return self._value(body if chosen else orelse, names)
-                return lanes.select(chosen, self._value(body, names), self._value(orelse, names))
+                yes = self._part(chosen, body, names)
+                return lanes.select(chosen, yes, self._part(lanes.opposite(chosen), orelse, names))
             case ast.Tuple(elts=parts):
                 return tuple(self._value(part, names) for part in parts)
             case ast.Call():
                 return self._call(node, names)
         raise self._unknown(node)
+
+    def _part(self, wanted: Value, node: ast.expr, names: Names) -> Value:
+        """Return one side of a conditional expression."""
+        if self._weight(node) < HEAVY:
+            return self._value(node, names)
+        return self._lanes.guarded(wanted, lambda: self._value(node, names))
 
     def _call(self, node: ast.Call, names: Names) -> Value:
         lanes = self._lanes
@@ -218,6 +255,15 @@ class _Walk:
     def _unknown(self, node: ast.AST) -> TypeError:
         where = f"{self._function.__module__}.{self._function.__qualname__}"
         return TypeError(f"{where}: lanes have no way for `{ast.unparse(node)}`")
+
+
+@cache
+def _weight_of(function: object) -> int:
+    if not callable(function) or not is_kernel(function):
+        return 0
+    walk = _Walk.__new__(_Walk)
+    walk._globals = function.__globals__
+    return sum(walk._weight(statement) for statement in _body(function))
 
 
 @cache

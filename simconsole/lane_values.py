@@ -34,6 +34,18 @@ class Columns(NamedTuple):
     pointer: Any
     first: int
     stride: int  # LANES, or 1 where all lanes share one row
+    constant: bool = False  # nothing is written here: a column is read where it is needed, each time anew
+
+
+class Constant:
+    """A column of constants that has not been read yet.
+
+    There are some two hundred of them and 32 registers: read in advance, each would be stored and read again.
+    """
+
+    def __init__(self, row: Columns, column: int) -> None:
+        self.row = row
+        self.column = column
 
 
 class LaneWriter:
@@ -48,11 +60,16 @@ class LaneWriter:
         self._doubles = ir.VectorType(ir.DoubleType(), LANES)
         self._bits = ir.VectorType(ir.IntType(1), LANES)
         self._conditions = 0  # around the present statement: nothing may be stored inside one
+        self._zero: Any = None  # of the present turn: 0, but the compiler does not know
 
     def load(self, row: Columns, column: int) -> Value:
         """Return one column."""
+        return Constant(row, column) if row.constant else self._read(row, column)
+
+    def _read(self, row: Columns, column: int) -> Any:
         ir, builder = self._ir, self._builder
-        at = builder.gep(row.pointer, [ir.Constant(ir.IntType(64), (column - row.first) * row.stride)])
+        pointer = builder.gep(row.pointer, [self._zero]) if row.constant and self._zero is not None else row.pointer
+        at = builder.gep(pointer, [ir.Constant(ir.IntType(64), (column - row.first) * row.stride)])
         if row.stride == 1:
             one = builder.load(at)
             empty = ir.Constant(self._doubles, ir.Undefined)
@@ -76,15 +93,17 @@ class LaneWriter:
         """Return a number, a vector or a mask as a vector of doubles."""
         if isinstance(value, bool | int | float):
             return self._ir.Constant(self._doubles, [float(value)] * LANES)
+        if isinstance(value, Constant):
+            return self._read(value.row, value.column)
         return self.select(value, 1.0, 0.0) if value.type == self._bits else value
 
     def mask(self, value: Value) -> Any:
         """Return the truth of a value: a bool where all lanes are known to agree, else a mask."""
         if isinstance(value, bool | int | float):
             return bool(value)
-        if value.type == self._bits:
+        if getattr(value, "type", None) == self._bits:
             return value
-        return self._builder.fcmp_unordered("!=", value, self.vector(0.0))
+        return self._builder.fcmp_unordered("!=", self.vector(value), self.vector(0.0))
 
     def select(self, condition: Value, chosen: Value, other: Value) -> Value:
         """Return `chosen` in the lanes where `condition` holds."""
@@ -198,13 +217,52 @@ class LaneWriter:
         def counted(seen: Names, _: Any) -> Names:
             number = builder.load(place)
             builder.store(builder.add(number, ir.Constant(whole, 1)), place)
-            return turn(seen, number)
+            before, self._zero = self._zero, self._unknown_zero()
+            done = turn(seen, number)
+            self._zero = before
+            return done
 
         return self.repeat(names, changed, counted, again)
+
+    def _unknown_zero(self) -> Any:
+        """Return 0 by an empty piece of assembly: an address with it in is another one in each turn of a loop.
+
+        Otherwise the compiler reads all constants before the loop, and has no registers to keep them in.
+        """
+        whole = self._ir.IntType(64)
+        kind = self._ir.FunctionType(whole, [whole])
+        return self._builder.asm(kind, "", "=r,0", [self._ir.Constant(whole, 0)], True)
+
+    def guarded(self, wanted: Value, compute: Callable[[], Value]) -> Value:
+        """Write `compute` so that it is jumped over where no lane wants it; its values are then zeros nobody sees."""
+        if getattr(wanted, "type", None) != self._bits:
+            return compute()
+        builder = self._builder
+        head = builder.block
+        inside, after = builder.append_basic_block("inside"), builder.append_basic_block("after")
+        builder.cbranch(self._any(wanted), inside, after)
+        builder.position_at_end(inside)
+        value = compute()
+        tail = builder.block
+        builder.branch(after)
+        builder.position_at_end(after)
+        return self._joined(value, head, tail)
 
     def conditional(self, change: int) -> None:
         """Enter (1) or leave (-1) a condition."""
         self._conditions += change
+
+    def _joined(self, value: Value, head: Any, tail: Any) -> Value:
+        """Return what was computed in `tail` as seen after the jump from `head` too."""
+        if isinstance(value, tuple):
+            parts = [self._joined(part, head, tail) for part in value]
+            return type(value)(*parts) if hasattr(value, "_fields") else tuple(parts)
+        if value is None or isinstance(value, bool | int | float | str | Constant):
+            return value
+        joined = self._builder.phi(value.type)
+        joined.add_incoming(value, tail)
+        joined.add_incoming(self._ir.Constant(value.type, None), head)
+        return joined
 
     def _any(self, going: Any) -> Any:
         if getattr(going, "type", None) != self._bits:
