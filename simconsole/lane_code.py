@@ -1,9 +1,9 @@
-"""Kernels as straight-line vector code: one value of a kernel becomes LANES of them, every branch a selection.
+"""Kernels as vector code: one value of a kernel becomes LANES of them, every branch a selection.
 
 The source text of a kernel is walked once, as an interpreter would, with vectors of LLVM for its floats. Both sides of
-an `if` are computed and each lane keeps what its own condition chooses; an early `return` ends only the lanes that take
-it. Every operation is IEEE 754 in the order in which the text has it, so a lane holds the bits that the plain function
-gives. Whatever the walk does not know is refused; nothing is guessed.
+an `if` are computed and each lane keeps what its own condition chooses (a long side that no lane takes is jumped over);
+an early `return` ends only the lanes that take it. Every operation is IEEE 754 in the order in which the text has it,
+so a lane holds the bits that the plain function gives. Whatever the walk does not know is refused; nothing is guessed.
 """
 
 import ast
@@ -12,14 +12,14 @@ import math
 import textwrap
 from collections.abc import Callable, Sequence
 from functools import cache
+from types import FunctionType
 from typing import Final, NamedTuple
 
 from simconsole.kernels import is_kernel, put, take
 from simconsole.lane_values import LaneWriter, Names, Value
 
-
 HEAVY: Final = 11
-"""Operations from which one side of a choice is worth a jump over it: a mispredicted jump costs about as much."""
+"""Operations from which one side of a choice is worth a jump over it: measured with benchmarks/vehicle_step.py."""
 
 
 class Branch(NamedTuple):
@@ -110,7 +110,7 @@ class _Walk:
 
     def _side(self, live: Value, statements: list[ast.stmt], names: Names) -> Branch:
         """Return one side of a choice; a long one is jumped over where no lane takes it."""
-        if sum(self._weight(statement) for statement in statements) < HEAVY:
+        if sum(_weight(statement, self._globals) for statement in statements) < HEAVY:
             return self.block(statements, dict(names), live)
         kept = len(self._returned)
 
@@ -124,15 +124,6 @@ class _Walk:
         changed, values, still, returned = self._lanes.guarded(live, compute)
         self._returned.extend(returned)
         return Branch({**names, **dict(zip(changed, values, strict=True))}, still)
-
-    def _weight(self, node: ast.AST) -> int:
-        """Return how many operations a statement or expression has, those of the kernels that it calls included."""
-        weight = 0
-        for part in ast.walk(node):
-            weight += isinstance(part, ast.BinOp | ast.Compare)
-            if isinstance(part, ast.Call) and isinstance(part.func, ast.Name):
-                weight += _weight_of(self._globals.get(part.func.id))
-        return weight
 
     def _loop(self, loop: ast.For | ast.While, names: Names, live: Value) -> Names:
         """Return the names after a loop. A lane ends it for good with its condition: no return, break or continue."""
@@ -209,7 +200,7 @@ class _Walk:
 
     def _part(self, wanted: Value, node: ast.expr, names: Names) -> Value:
         """Return one side of a conditional expression."""
-        if self._weight(node) < HEAVY:
+        if _weight(node, self._globals) < HEAVY:
             return self._value(node, names)
         return self._lanes.guarded(wanted, lambda: self._value(node, names))
 
@@ -259,11 +250,19 @@ class _Walk:
 
 @cache
 def _weight_of(function: object) -> int:
-    if not callable(function) or not is_kernel(function):
+    if not isinstance(function, FunctionType) or not is_kernel(function):
         return 0
-    walk = _Walk.__new__(_Walk)
-    walk._globals = function.__globals__
-    return sum(walk._weight(statement) for statement in _body(function))
+    return sum(_weight(statement, function.__globals__) for statement in _body(function))
+
+
+def _weight(node: ast.AST, names: Names) -> int:
+    """Return how many operations a statement or expression has, those of the kernels that it calls included."""
+    weight = 0
+    for part in ast.walk(node):
+        weight += isinstance(part, ast.BinOp | ast.Compare)
+        if isinstance(part, ast.Call) and isinstance(part.func, ast.Name):
+            weight += _weight_of(names.get(part.func.id))
+    return weight
 
 
 @cache

@@ -78,7 +78,11 @@ def _code(step: Callable[..., Any], first: int, width: int, parameters: int, sha
         at = builder.gep(rows, [builder.mul(number, ir.Constant(whole, width * LANES))])
         row = Columns(at, first, LANES)
         own = builder.gep(constants, [builder.mul(number, ir.Constant(whole, parameters * LANES))])
-        write_call(lanes, step, (row, row, Columns(constants, 0, 1, True) if shared else Columns(own, 0, LANES, True), substeps))
+        write_call(
+            lanes,
+            step,
+            (row, row, Columns(constants, 0, 1, True) if shared else Columns(own, 0, LANES, True), substeps),
+        )
         return {}
 
     lanes.count({}, (), block, blocks)
