@@ -2,7 +2,8 @@
 
     /usr/bin/python3 mock_kernel.py LOG MOTION COMMAND...
 
-MOTION is a recorded motion, lines of `SECONDS TYPE CODE VALUE` from the first read on; `-` where nothing moves.
+MOTION is a recorded motion, lines of `SECONDS TYPE CODE VALUE`; `-` where nothing moves. Whoever reads the device until
+it has nothing more gets one report of it, however late: the seconds are only the stamps of the events.
 
 Runs under the system's own Python (it has umockdev's bindings) and apart from the command: the bindings answer from a
 thread, and a command that waits for its own answer would never get it. Every force-feedback call becomes a line of JSON
@@ -71,11 +72,11 @@ def bits(numbers: Any, size: int) -> bytes:
 class Kernel(UMockdev.IoctlBase):  # type: ignore[misc]  # its bindings have no types
     """Answers ioctls; notes what has to do with force."""
 
-    def __init__(self, log: TextIO, motion: list[tuple[float, int, int, int]]) -> None:
+    def __init__(self, log: TextIO, motion: list[list[tuple[float, int, int, int]]]) -> None:
         super().__init__()
         self.log = log
         self.motion = motion
-        self.start_s: float | None = None
+        self.turn = True
         self.lock = threading.Lock()
         self.effects: dict[int, int] = {}
 
@@ -147,23 +148,13 @@ class Kernel(UMockdev.IoctlBase):  # type: ignore[misc]  # its bindings have no 
         return None
 
     def do_handle_read(self, client: Any) -> bool:
-        now_s = time.monotonic()
-        if self.start_s is None:
-            self.start_s = now_s
-        place = client.get_arg()
-        room = len(bytes(place.retrieve())) // 24
-        due = 0
-        while due < min(room, len(self.motion)) and self.motion[due][0] <= now_s - self.start_s:
-            due += 1
-        if not due:
-            client.complete(-1, 11)  # EAGAIN: nothing moves
+        self.turn = not self.turn
+        if self.turn or not self.motion:
+            client.complete(-1, 11)  # EAGAIN: nothing more for now
             return True
-        stamp_s = time.time()
-        data = b"".join(
-            struct.pack("<qqHHi", int(stamp_s), int(stamp_s % 1.0 * 1e6), *event) for _, *event in self.motion[:due]
-        )
-        self.motion = self.motion[due:]
-        place.update(0, data)
+        report, self.motion = self.motion[0], self.motion[1:]
+        data = b"".join(struct.pack("<qqHHi", int(at_s), round(at_s % 1.0 * 1e6), *event) for at_s, *event in report)
+        client.get_arg().update(0, data)
         client.complete(len(data), 0)
         return True
 
@@ -178,9 +169,16 @@ class Kernel(UMockdev.IoctlBase):  # type: ignore[misc]  # its bindings have no 
         return True
 
 
-def recorded(path: Path) -> list[tuple[float, int, int, int]]:
-    lines = [line.split() for line in path.read_text().splitlines() if line and not line.startswith("#")]
-    return [(float(at_s), int(kind), int(code), int(value)) for at_s, kind, code, value in lines]
+def recorded(path: Path) -> list[list[tuple[float, int, int, int]]]:
+    """Return the reports of a recorded motion; each ends with its SYN_REPORT."""
+    reports: list[list[tuple[float, int, int, int]]] = [[]]
+    for line in path.read_text().splitlines():
+        if line and not line.startswith("#"):
+            at_s, kind, code, value = line.split()
+            reports[-1].append((float(at_s), int(kind), int(code), int(value)))
+            if kind == "0":
+                reports.append([])
+    return reports[:-1]
 
 
 def main() -> int:

@@ -27,12 +27,17 @@ def need_umockdev() -> None:
 
 def start(log: Path, *how: str, motion: Path | None = None) -> "subprocess.Popen[str]":
     """Start haptic_program.py behind the mock, which plays a recorded motion."""
+    return run_behind(log, str(HERE / "haptic_program.py"), *how, motion=motion)
+
+
+def run_behind(log: Path, *words: str, motion: Path | None = None) -> "subprocess.Popen[str]":
+    """Start Python with these words behind the mock; its standard input is a pipe."""
     need_umockdev()
     environment = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
     environment |= {"SDL_VIDEODRIVER": "dummy", "PYTHONPATH": str(ROOT)}
-    program = [sys.executable, str(HERE / "haptic_program.py"), *how]
     return subprocess.Popen(
-        [SYSTEM_PYTHON, str(HERE / "mock_kernel.py"), str(log), str(motion or "-"), *program],
+        [SYSTEM_PYTHON, str(HERE / "mock_kernel.py"), str(log), str(motion or "-"), sys.executable, *words],
+        stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

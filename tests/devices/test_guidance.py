@@ -13,7 +13,7 @@ from simconsole.compiling import compiled
 from simconsole.devices.force_settings import ForceSettings, force_settings
 from simconsole.devices.guidance import Wanted, guidance, wanted
 from simconsole.devices.rim import Rim
-from simconsole.devices.simulated_wheel import FIRM, HANDS_OFF, Arm
+from simconsole.devices.simulated_wheel import FIRM, HANDS_OFF, RELAXED, Arm
 from simconsole.profile_files import load
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.force_feedback import Guidance
@@ -129,3 +129,19 @@ def test_guidance_is_only_in_shared_control() -> None:
     loop.engage()
     for _ in loop.seconds(8.0):
         assert loop.tick(HANDS_OFF).torque.guide_nm == 0.0
+
+
+@pytest.mark.parametrize("arm", [HANDS_OFF, RELAXED, FIRM], ids=["off", "relaxed", "firm"])
+def test_persons_torque_is_estimated_while_guided(arm: Arm, record_property: Callable[[str, object], None]) -> None:
+    """Where it matters most: motor and hands at the same wheel. `FIRM` hands steer the bends a little aside."""
+    loop = shared_loop()
+    squares, count = 0.0, 0
+    for _ in loop.seconds(20.0):
+        aside = math.radians(4.0) * math.sin(3.0 * loop.snapshot.t_s)
+        target = RATIO * loop.snapshot.arbitration.remote_road_wheel_rad + aside if arm is FIRM else None
+        shot = drive_on(loop, arm, target)
+        squares += (shot.torque.human_nm - loop.wheel.state.human_nm) ** 2
+        count += 1
+    rms_nm = math.sqrt(squares / count)
+    record_property("human torque estimate while guided", f"{rms_nm:.3f} N m RMS")
+    assert rms_nm <= 0.3
