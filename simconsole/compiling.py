@@ -117,7 +117,7 @@ def _entry(function: Callable[..., Any]) -> Any:
 
 @cache
 def _inner(function: Callable[..., Any]) -> Any:
-    return _numba().njit(fastmath=False)(_twin(function))
+    return _numba().njit(fastmath=False, forceinline=True)(_twin(function))
 
 
 def _twin(function: Callable[..., Any]) -> types.FunctionType:

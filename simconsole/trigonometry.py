@@ -9,7 +9,7 @@ Bounds, tested against 60-digit values (tests/test_trigonometry.py): sin and cos
 1e-15 for abs(x) <= 1e6; atan and atan2 3 units in the last place, everywhere. NaN in gives NaN out, nothing raises.
 """
 
-from typing import Final
+from typing import Final, NamedTuple
 
 from simconsole.kernels import kernel
 
@@ -76,6 +76,30 @@ def cos(angle_rad: float) -> float:
     turns = nearest(angle * _TWO_OVER_PI)
     rest = ((angle - turns * _PART_1) - turns * _PART_2) - turns * _PART_3
     return _quadrant(turns + 1.0 - 4.0 * nearest(0.25 * (turns + 1.0)), rest)
+
+
+class Direction(NamedTuple):
+    """Cosine and sine of one angle."""
+
+    cos: float
+    sin: float
+
+
+@kernel
+def direction(angle_rad: float) -> Direction:
+    """Return cosine and sine of an angle in rad at less than the price of both: the same bits as `cos` and `sin`."""
+    turns = nearest(angle_rad * _TWO_OVER_PI)
+    rest = ((angle_rad - turns * _PART_1) - turns * _PART_2) - turns * _PART_3
+    quarter = turns - 4.0 * nearest(0.25 * turns)
+    s = _sine_series(rest)
+    c = _cosine_series(rest)
+    if quarter == 0.0:
+        return Direction(c, s)
+    if quarter == 1.0:
+        return Direction(-s, c)
+    if quarter == -1.0:
+        return Direction(s, -c)
+    return Direction(-c, -s)
 
 
 @kernel

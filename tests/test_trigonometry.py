@@ -4,6 +4,7 @@ import math
 import random
 from collections.abc import Callable
 from decimal import Decimal, localcontext
+from typing import Any
 
 import pytest
 
@@ -141,3 +142,11 @@ def test_compiled_atan2_has_equal_bits() -> None:
     pairs += [(rng.gauss(0.0, 1.0), rng.gauss(0.0, 1.0)) for _ in range(3000)]
     for y, x in pairs:
         assert trig.atan2(y, x) == fast(y, x)
+
+
+@pytest.mark.parametrize("execution", [lambda f: f, compiled])
+def test_direction_is_cosine_and_sine_to_the_last_bit(execution: Callable[..., Any]) -> None:
+    both = execution(trig.direction)
+    quarters = [0.25 * k * math.pi for k in range(-40, 41)]
+    for angle in [*quarters, *angles(1e4, 5000)]:
+        assert tuple(both(angle)) == (trig.cos(angle), trig.sin(angle)), angle

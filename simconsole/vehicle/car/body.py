@@ -4,7 +4,7 @@ from math import sqrt
 from typing import NamedTuple
 
 from simconsole.kernels import clip, kernel
-from simconsole.trigonometry import cos, sin, wrap_angle
+from simconsole.trigonometry import direction, wrap_angle
 from simconsole.vehicle.car.axles import Axles, Contact
 from simconsole.vehicle.car.parameters import AxleParameters, CarParameters
 from simconsole.vehicle.car.state import BodyState, Car, Wheel
@@ -51,7 +51,7 @@ def move_axle(
     """Return the wheels' vertical motion one step later. The links load them with the side force directly."""
     left_n = strut(axle, struts.left_m, struts.left_mps, struts.right_m)
     right_n = strut(axle, struts.right_m, struts.right_mps, struts.left_m)
-    lifted = (on_left.force_y_n + on_right.force_y_n) * axle.link_arm_m / (2.0 * axle.half_track_m)
+    lifted = (on_left.force_y_n + on_right.force_y_n) * (axle.link_arm_m * (0.5 / axle.half_track_m))
     share = step_s / axle.wheel_mass_kg
     left_mps = left.lift_mps + share * (on_left.load_n - axle.static_n - left_n + lifted)
     right_mps = right.lift_mps + share * (on_right.load_n - axle.static_n - right_n - lifted)
@@ -74,28 +74,30 @@ def move(car: Car, p: CarParameters, axles: Axles, step_s: float) -> Motion:
     body = p.body
     front = move_axle(p.front, travel(p.front, before, car.fl, car.fr), car.fl, car.fr, axles.fl, axles.fr, step_s)
     rear = move_axle(p.rear, travel(p.rear, before, car.rl, car.rr), car.rl, car.rr, axles.rl, axles.rr, step_s)
-    c = cos(before.yaw_rad)
-    s = sin(before.yaw_rad)
+    ahead = direction(before.yaw_rad)
+    c = ahead.cos
+    s = ahead.sin
     speed = sqrt(before.vx_mps * before.vx_mps + before.vy_mps * before.vy_mps)
     air = body.drag_nsspmm * speed
     gravity = body.gravity_plane_mps2
-    ax = (axles.force_x_n - air * before.vx_mps) / body.mass_kg - gravity * (body.slope_x * c + body.slope_y * s)
+    per_kg = 1.0 / body.mass_kg
+    ax = (axles.force_x_n - air * before.vx_mps) * per_kg - gravity * (body.slope_x * c + body.slope_y * s)
     side_n = axles.front_y_n + axles.rear_y_n
-    ay = (side_n - air * before.vy_mps) / body.mass_kg - gravity * (body.slope_y * c - body.slope_x * s)
+    ay = (side_n - air * before.vy_mps) * per_kg - gravity * (body.slope_y * c - body.slope_x * s)
     # One after the other, not both from the old values: turning the body then neither adds nor takes energy.
     vx = before.vx_mps + step_s * (ax + before.yaw_rate_radps * before.vy_mps)
     vy = before.vy_mps + step_s * (ay - before.yaw_rate_radps * vx)
-    yaw_rate = before.yaw_rate_radps + step_s * (axles.moment_nm + axles.aligning_nm) / body.yaw_inertia_kgm2
+    yaw_rate = before.yaw_rate_radps + (axles.moment_nm + axles.aligning_nm) * (step_s / body.yaw_inertia_kgm2)
     front_lift = body.front_lift_nsspmm * speed * speed
     rear_lift = body.rear_lift_nsspmm * speed * speed
-    heave_mps = before.heave_mps + step_s * (front.force_n + rear.force_n + front_lift + rear_lift) / body.sprung_kg
+    heave_mps = before.heave_mps + (front.force_n + rear.force_n + front_lift + rear_lift) * (step_s / body.sprung_kg)
     rolling = (
         p.front.roll_arm_m * axles.front_y_n + p.rear.roll_arm_m * axles.rear_y_n + body.sway_npm * before.roll_rad
     )
-    roll_radps = before.roll_radps + step_s * (front.moment_nm + rear.moment_nm + rolling) / body.roll_inertia_kgm2
+    roll_radps = before.roll_radps + (front.moment_nm + rear.moment_nm + rolling) * (step_s / body.roll_inertia_kgm2)
     pitching = p.front.ahead_m * (front.force_n + front_lift) + p.rear.ahead_m * (rear.force_n + rear_lift)
     pitching += body.cg_height_m * axles.force_x_n
-    pitch_radps = before.pitch_radps - step_s * pitching / body.pitch_inertia_kgm2
+    pitch_radps = before.pitch_radps - pitching * (step_s / body.pitch_inertia_kgm2)
     # base_link lies on the ground: it does not go along when the body rocks above standing tyres.
     on_ground_x = vx - body.cg_height_m * pitch_radps
     rocking = p.rear.roll_arm_m * roll_radps + p.rear.link_arm_m * axle_roll(p.rear, rear.left_mps, rear.right_mps)

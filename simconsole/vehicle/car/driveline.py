@@ -38,14 +38,14 @@ def clutch_torque(engine_radps: float, car: CarParameters, box: Gearbox) -> floa
     torque = bite(car.gears, box.clutch) * car.gears.clutch_nm
     if box.lever_adopted != 0.0:
         return torque
-    turning = engine_radps / car.engine.idle_radps
-    return torque * clip((turning - ANTI_STALL_FROM) / (ANTI_STALL_TO - ANTI_STALL_FROM), 0.0, 1.0)
+    turning = engine_radps * (1.0 / car.engine.idle_radps)
+    return torque * clip((turning - ANTI_STALL_FROM) * (1.0 / (ANTI_STALL_TO - ANTI_STALL_FROM)), 0.0, 1.0)
 
 
 @kernel
 def spun(axle: AxleParameters, wheel: Wheel, on_ground: Contact, step_s: float) -> float:
     """Return the spin of a wheel after its tyre's force, before its brake."""
-    return wheel.radps - step_s * on_ground.tyre.force_x_n * axle.radius_m / axle.wheel_inertia_kgm2
+    return wheel.radps - on_ground.tyre.force_x_n * (step_s * axle.radius_m / axle.wheel_inertia_kgm2)
 
 
 @kernel
@@ -127,7 +127,7 @@ def turn_driven(
     s = car.shafts
     inertia = p.rear.wheel_inertia_kgm2 if p.gears.rear_driven != 0.0 else p.front.wheel_inertia_kgm2
     speeds = Shafts(
-        s.engine_radps + step_s * drive.torque_nm / p.engine.inertia_kgm2,
+        s.engine_radps + drive.torque_nm * (step_s / p.engine.inertia_kgm2),
         left_radps,
         right_radps,
         s.engine_impulse_nms,

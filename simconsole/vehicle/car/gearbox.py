@@ -39,7 +39,7 @@ def gear_ratio(p: GearParameters, gear: float) -> float:
 @kernel
 def bite(p: GearParameters, clutch: float) -> float:
     """Return the share of its torque that the clutch can transmit at a pedal position."""
-    share = clip((p.bite_open - clutch) / (p.bite_open - p.bite_closed), 0.0, 1.0)
+    share = clip((p.bite_open - clutch) * (1.0 / (p.bite_open - p.bite_closed)), 0.0, 1.0)
     return share * share
 
 
@@ -95,9 +95,9 @@ def automatic_clutch(p: GearParameters, box: Gearbox, engine_radps: float, wheel
     """
     closed = 0.0
     if box.shift_left_s <= 0.0 and box.gear != 0.0:
-        launch = (engine_radps - p.launch_from_radps) / (p.launch_to_radps - p.launch_from_radps)
+        launch = (engine_radps - p.launch_from_radps) * (1.0 / (p.launch_to_radps - p.launch_from_radps))
         speed = gear_ratio(p, box.gear) * wheel_radps
-        lock = (speed - p.lock_from_radps) / (p.lock_to_radps - p.lock_from_radps)
+        lock = (speed - p.lock_from_radps) * (1.0 / (p.lock_to_radps - p.lock_from_radps))
         closed = clip(launch if launch > lock else lock, 0.0, 1.0)
     target = p.bite_open - closed * (p.bite_open - p.bite_closed)
     if closed == 1.0:
@@ -121,7 +121,7 @@ def matched_throttle(
     coming = gear_ratio(p, box.wanted_gear if shifting else box.gear) * wheel_radps
     if coming < p.lock_from_radps:
         return asked
-    blip = clip((coming - engine_radps) / BLIP_BAND_RADPS, 0.0, BLIP_MOST)
+    blip = clip((coming - engine_radps) * (1.0 / BLIP_BAND_RADPS), 0.0, BLIP_MOST)
     return blip if blip > asked else asked
 
 

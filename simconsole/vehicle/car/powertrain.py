@@ -50,36 +50,42 @@ def solve_shafts(
         wheel_inertia_kgm2: one driven wheel.
         most: the capacities.
     """
+    # Divided once: the sweeps below wait for every result of the one before.
+    per_engine = 1.0 / engine_inertia_kgm2
+    per_wheel = 1.0 / wheel_inertia_kgm2
     half = 0.5 * ratio
-    clutch_inertia = 1.0 / (1.0 / engine_inertia_kgm2 + 2.0 * half * half / wheel_inertia_kgm2)
+    half_per_wheel = half * per_wheel
+    half_inertia = 0.5 * wheel_inertia_kgm2
+    clutch_inertia = 1.0 / (per_engine + 2.0 * half * half * per_wheel)
     friction = clip(before.engine_impulse_nms, -most.engine_nms, most.engine_nms)
     clutch = clip(before.clutch_impulse_nms, -most.clutch_nms, most.clutch_nms)
     left_brake = clip(before.left_impulse_nms, -most.left_nms, most.left_nms)
     right_brake = clip(before.right_impulse_nms, -most.right_nms, most.right_nms)
     bound = most.lock_nms + most.lock_share * abs(ratio * clutch)
     lock = clip(before.lock_impulse_nms, -bound, bound)
-    engine = before.engine_radps - (friction + clutch) / engine_inertia_kgm2
-    left = before.left_radps + (half * clutch - left_brake + lock) / wheel_inertia_kgm2
-    right = before.right_radps + (half * clutch - right_brake - lock) / wheel_inertia_kgm2
+    engine = before.engine_radps - (friction + clutch) * per_engine
+    left = before.left_radps + (half * clutch - left_brake + lock) * per_wheel
+    right = before.right_radps + (half * clutch - right_brake - lock) * per_wheel
     for _ in range(4):
         new = clip(friction + engine * engine_inertia_kgm2, -most.engine_nms, most.engine_nms)
-        engine = engine - (new - friction) / engine_inertia_kgm2
+        engine = engine - (new - friction) * per_engine
         friction = new
         new = clip(clutch + (engine - half * (left + right)) * clutch_inertia, -most.clutch_nms, most.clutch_nms)
-        engine = engine - (new - clutch) / engine_inertia_kgm2
-        left = left + half * (new - clutch) / wheel_inertia_kgm2
-        right = right + half * (new - clutch) / wheel_inertia_kgm2
+        engine = engine - (new - clutch) * per_engine
+        left = left + (new - clutch) * half_per_wheel
+        right = right + (new - clutch) * half_per_wheel
         clutch = new
         bound = most.lock_nms + most.lock_share * abs(ratio * clutch)
-        new = clip(lock - 0.5 * (left - right) * wheel_inertia_kgm2, -bound, bound)
-        left = left + (new - lock) / wheel_inertia_kgm2
-        right = right - (new - lock) / wheel_inertia_kgm2
-        lock = new
+        if bound > 0.0:
+            new = clip(lock - (left - right) * half_inertia, -bound, bound)
+            left = left + (new - lock) * per_wheel
+            right = right - (new - lock) * per_wheel
+            lock = new
         new = clip(left_brake + left * wheel_inertia_kgm2, -most.left_nms, most.left_nms)
-        left = left - (new - left_brake) / wheel_inertia_kgm2
+        left = left - (new - left_brake) * per_wheel
         left_brake = new
         new = clip(right_brake + right * wheel_inertia_kgm2, -most.right_nms, most.right_nms)
-        right = right - (new - right_brake) / wheel_inertia_kgm2
+        right = right - (new - right_brake) * per_wheel
         right_brake = new
     # The brake holds: what rounding left is not motion, and the tyre asks whether its wheel is held.
     if abs(left_brake) < most.left_nms:
@@ -92,4 +98,4 @@ def solve_shafts(
 @kernel
 def braked(wheel_radps: float, inertia_kgm2: float, capacity_nms: float) -> float:
     """Return the speed of a free-running wheel after its brake: at most to exactly 0."""
-    return approach(wheel_radps, 0.0, capacity_nms / inertia_kgm2)
+    return approach(wheel_radps, 0.0, capacity_nms * (1.0 / inertia_kgm2))

@@ -4,7 +4,7 @@ from math import sqrt
 from typing import NamedTuple
 
 from simconsole.kernels import approach, clip, kernel
-from simconsole.trigonometry import cos, sin
+from simconsole.trigonometry import direction
 from simconsole.vehicle.car.parameters import SteeringParameters
 from simconsole.vehicle.car.state import SteeringState
 
@@ -32,21 +32,22 @@ def steer(p: SteeringParameters, rack: SteeringState, command_rad: float, moment
     """
     target = clip(command_rad + p.compliance_radpnm * moment_nm, -p.max_road_wheel_rad, p.max_road_wheel_rad)
     pull = step_s * p.natural_radps * p.natural_radps
-    stiffness = 1.0 + 2.0 * step_s * p.natural_radps + step_s * pull
-    rate = (rack.road_wheel_radps + pull * (target - rack.road_wheel_rad)) / stiffness
-    return clip(approach(rate, 0.0, pull * p.friction_rad / stiffness), -p.rate_radps, p.rate_radps)
+    ease = 1.0 / (1.0 + 2.0 * step_s * p.natural_radps + step_s * pull)
+    rate = (rack.road_wheel_radps + pull * (target - rack.road_wheel_rad)) * ease
+    return clip(approach(rate, 0.0, pull * p.friction_rad * ease), -p.rate_radps, p.rate_radps)
 
 
 @kernel
 def heading(p: SteeringParameters, mean_rad: float) -> Heading:
     """Return where the front wheels point: the inner one further, cot(left) - cot(right) = -track / wheelbase."""
-    c = cos(mean_rad)
-    s = sin(mean_rad)
+    mean = direction(mean_rad)
+    c = mean.cos
+    s = mean.sin
     left = c - p.ackermann * s
     right = c + p.ackermann * s
-    left_size = sqrt(left * left + s * s)
-    right_size = sqrt(right * right + s * s)
-    return Heading(left / left_size, s / left_size, right / right_size, s / right_size)
+    per_left = 1.0 / sqrt(left * left + s * s)
+    per_right = 1.0 / sqrt(right * right + s * s)
+    return Heading(left * per_left, s * per_left, right * per_right, s * per_right)
 
 
 @kernel
@@ -56,7 +57,7 @@ def aligning_moment(p: SteeringParameters, force_y_n: float, demand: float, roll
     The pneumatic trail shrinks as the contact patch slides, which is what a driver feels before the front axle lets
     go, and lies on the other side when reversing.
     """
-    pneumatic = p.pneumatic_trail_m * clip(1.0 - demand / p.trail_end, 0.0, 1.0)
+    pneumatic = p.pneumatic_trail_m * clip(1.0 - demand * (1.0 / p.trail_end), 0.0, 1.0)
     return -force_y_n * (p.caster_trail_m + pneumatic * rolling_mps / (abs(rolling_mps) + ROLLING_MPS))
 
 
@@ -64,6 +65,6 @@ def aligning_moment(p: SteeringParameters, force_y_n: float, demand: float, roll
 def hand_wheel_torque(p: SteeringParameters, moment_nm: float, road_wheel_radps: float, speed_mps: float) -> float:
     """Return the torque at the rim in N m, left-positive: the assistance leaves less of it the more there is."""
     carried = (p.hand_torque_gain + p.hand_torque_gain_spm * clip(abs(speed_mps), 0.0, 50.0)) * moment_nm
-    bent = carried / (1.0 + abs(carried) / p.hand_torque_most_nm)
+    bent = carried / (1.0 + abs(carried) * (1.0 / p.hand_torque_most_nm))
     dry = p.hand_friction_nm * road_wheel_radps / (abs(road_wheel_radps) + SLOW_RADPS)
     return bent - p.hand_damping_nms * road_wheel_radps - dry

@@ -70,15 +70,16 @@ def tyre(
         lean -= axle.camber_offset
     x = (deflection_x_m - step_s * slip_x_mps) / (1.0 + rolled * axle.decay_x_per_m)
     y = (deflection_y_m - step_s * slip_y_mps + rolled * lean) / (1.0 + rolled * axle.decay_y_per_m)
-    over = clip(load_n / axle.static_n, 0.0, 4.0) - 1.0
+    over = clip(load_n * (1.0 / axle.static_n), 0.0, 4.0) - 1.0
     grip = friction * falling(axle.friction_fall, over)
     firm = falling(axle.stiffness_fall, over)
     stiffness_x = axle.stiffness_x_per_m * firm
     stiffness_y = axle.stiffness_y_per_m * firm
     demand = sqrt(stiffness_x * x * (stiffness_x * x) + stiffness_y * y * (stiffness_y * y)) / grip
     if demand > axle.slide_demand:
-        x = x * (axle.slide_demand / demand)
-        y = y * (axle.slide_demand / demand)
+        share = axle.slide_demand / demand
+        x = x * share
+        y = y * share
         demand = axle.slide_demand
     elastic = load_n / (1.0 + 0.25 * demand * demand)
     # The damping of a rolling tyre's carcass fades with grip: sliding rubber does not store. A wheel that the brake
@@ -88,12 +89,13 @@ def tyre(
     if wheel_radps != 0.0:
         held = clip(1.0 - demand / PEAK_DEMAND, 0.0, 1.0)
         damping = axle.damping_nspm * held * held
-    rate = damping * (1.0 + over) / step_s
+    rate = damping * (1.0 + over) * (1.0 / step_s)
     force_x = stiffness_x * x * elastic + rate * (x - deflection_x_m)
     force_y = stiffness_y * y * elastic + rate * (y - deflection_y_m)
     force = sqrt(force_x * force_x + force_y * force_y)
     limit = grip * load_n
     if force > limit:
-        force_x = force_x * (limit / force)
-        force_y = force_y * (limit / force)
+        share = limit / force
+        force_x = force_x * share
+        force_y = force_y * share
     return Tyre(force_x, force_y, x, y, demand)
