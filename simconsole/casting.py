@@ -69,7 +69,7 @@ def open_headless(
     can_summary: Callable[[], dict[str, Any]] = dict
     acts: Callable[[], list[dict[str, Any]]] = list
     if resolved.session.mode.pacing == "lockstep":
-        link = _open_lockstep(resolved, console, check, stack)
+        link = _open_lockstep(resolved, console, bundle, check, stack)
         commands, stations, counters, acts, standby = link, (link,), link.counters, link.acts, (link.stand,)
     elif resolved.session.features.autopilot is not None:
         raise ProfileError("mode.pacing: value free: lockstep or realtime, where features.autopilot drives")
@@ -168,9 +168,11 @@ def open_realtime(
 
 def _check_address(profile: BridgeProfile) -> None:
     """Listen for a moment where the bridge will: a taken port is one line now, not a station that dies and dies."""
+    from simconsole.bridge.message_files import load_registry
     from simconsole.bridge.ros2 import check
     from simconsole.bridge.wire import listen
 
+    load_registry(profile)
     check(profile)
     listen(profile.host, profile.port).close()
 
@@ -186,7 +188,7 @@ def _end_programs(programs: list[Popen[bytes]]) -> None:
 
 
 def _open_lockstep(
-    resolved: ResolvedSession, console: Console, check: Callable[[], None], stack: ExitStack
+    resolved: ResolvedSession, console: Console, folder: Path, check: Callable[[], None], stack: ExitStack
 ) -> LockstepLink:
     from simconsole.bridge.lockstep import LockstepBridge
 
@@ -194,7 +196,7 @@ def _open_lockstep(
     if session.outputs.bridge is None:
         raise ProfileError("outputs.bridge: value missing: a bridge, where mode.pacing is lockstep")
     period_ticks = max(1, session.mode.control_period_ms * console.tick_hz // 1000)
-    bridge = LockstepBridge(session.outputs.bridge, odometry_hz=console.tick_hz / period_ticks)
+    bridge = LockstepBridge(session.outputs.bridge, odometry_hz=console.tick_hz / period_ticks, folder=folder)
     course = session.features.autopilot
     program = None
     if course is not None:

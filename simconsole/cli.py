@@ -161,6 +161,7 @@ def _tools(commands: Any) -> None:
     bridge.add_argument("--for", dest="duration_s", type=float, metavar="S")
     bridge.add_argument("--tokens", metavar="FILE", help="lines of `ROLE TOKEN`: view, publish or control")
     bridge.add_argument("--certificate", metavar="FILE", help="speak TLS only; its key stands beside it as .key")
+    bridge.add_argument("--messages", metavar="DIR", help="own types: PACKAGE/msg/NAME.msg, .srv, .action")
     bridge.add_argument("--ros2", action="store_true", help="join the ROS 2 graph of this machine too (needs rclpy)")
     bridge.add_argument("--trust-network", action="store_true", help="other machines need no token and no TLS")
     bridge.add_argument("--out", metavar="DIR", default=".", help="where `cert` writes")

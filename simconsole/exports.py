@@ -26,7 +26,8 @@ Ticks = NDArray[np.int64]
 
 REPORT: Final = "report.html"
 SCENE: Final = "scene.rrd"
-CAN_LOGS: Final = ("can.blf", "can.log")
+STATION_LOGS: Final = ("can.blf", "can.log", "topics.mcap")
+"""What stations recorded beside the log."""
 LIVE_SCENE: Final = "scene.live.rrd"
 """What a paced drive's scene station records; the whole scene, made from the log, takes its place."""
 
@@ -47,7 +48,7 @@ def write_exports(folder: Path, report: bool = True, scene: bool = True) -> dict
         metrics = _report(folder, resolved, table, bundle.manifest.summary, report)
         if pending is not None:
             pending.result()
-    made = ((name, (folder / name).exists()) for name in CAN_LOGS)
+    made = ((name, (folder / name).exists()) for name in STATION_LOGS)
     for name, wanted in ((REPORT, report), (SCENE, scene), *made):
         if wanted:
             add_export(folder, name)

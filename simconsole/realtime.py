@@ -135,7 +135,11 @@ def station_specs(resolved: ResolvedSession, console: Console, folder: Path, bun
     tick_hz = console.tick_hz
     specs = []
     if outputs.bridge is not None:
-        arguments = {"profile": msgspec.to_builtins(outputs.bridge), "tick_hz": tick_hz}
+        arguments = {
+            "profile": msgspec.to_builtins(outputs.bridge),
+            "tick_hz": tick_hz,
+            "bundle": str(bundle.absolute()),
+        }
         specs.append(StationSpec(name="bridge", target="simconsole.station_programs:bridge", arguments=arguments))
     if outputs.can is not None:
         from simconsole.canbus.messages import wheel_columns

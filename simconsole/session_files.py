@@ -31,12 +31,12 @@ def resolve(session: SessionProfile, cockpit: str | None = None) -> ResolvedSess
 
 
 def load_session(name_or_path: str) -> SessionProfile:
-    """Return the session profile of that name or file; a script or trace that it names lies beside it.
+    """Return the session profile of that name or file; a script or trace that they name lies beside it.
 
     Raises:
         ProfileError: missing or wrong, or its script or trace lies outside its folder.
     """
-    return _driver_beside(load("sessions", name_or_path, SessionProfile), find("sessions", name_or_path))
+    return _files_beside(load("sessions", name_or_path, SessionProfile), find("sessions", name_or_path))
 
 
 def load_scenario(name_or_path: str) -> tuple[ScenarioProfile, Path]:
@@ -69,13 +69,24 @@ def override(session: SessionProfile, **sections: dict[str, object]) -> SessionP
     return convert(plain, SessionProfile, "command line")
 
 
-def _driver_beside(session: SessionProfile, path: Path) -> SessionProfile:
-    """Return `session` with the whole path of its script or trace: a profile opens nothing outside its own folder."""
+def _files_beside(session: SessionProfile, path: Path) -> SessionProfile:
+    """Return `session` with whole paths of its script or trace and its message types."""
     kind, _, name = session.devices.driver.partition(":")
-    if not name:
-        return session
+    if name:
+        beside = _beside(path, "devices.driver", session.devices.driver, name)
+        session = override(session, devices={"driver": f"{kind}:{beside}"})
+    bridge = session.outputs.bridge
+    if bridge is not None and bridge.messages is not None:
+        beside = _beside(path, "outputs.bridge.messages", bridge.messages, bridge.messages)
+        changed = {**msgspec.to_builtins(bridge), "messages": str(beside)}
+        session = override(session, outputs={"bridge": changed})
+    return session
+
+
+def _beside(path: Path, key: str, value: str, name: str) -> Path:
+    """Return the whole path of what a profile names; a profile opens nothing outside its own folder."""
     folder = path.parent.resolve()
     beside = (folder / name).resolve()
     if not beside.is_relative_to(folder):
-        raise ProfileError(f'{path}: devices.driver: value "{session.devices.driver}": a file inside {path.parent}')
-    return override(session, devices={"driver": f"{kind}:{beside}"})
+        raise ProfileError(f'{path}: {key}: value "{value}": a file inside {path.parent}')
+    return beside

@@ -41,7 +41,7 @@ NO_RECEIPT: Final = -1
 
 
 def bridge(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> None:
-    """Serve rosbridge. Arguments: `profile` (BridgeProfile), `tick_hz`."""
+    """Serve rosbridge. Arguments: `profile` (BridgeProfile), `tick_hz`, `bundle` (for recorded topics)."""
     from simconsole.bridge.operate import Act
     from simconsole.bridge.server import serve
     from simconsole.bridge.wire import address_url
@@ -71,7 +71,7 @@ def bridge(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) ->
 
     serve(
         profile, snapshots, write_command, events.raise_events, stop,
-        on_ready=ready, on_act=keep_act, on_counts=write_counts,
+        on_ready=ready, on_act=keep_act, on_counts=write_counts, folder=Path(arguments["bundle"]),
     )  # fmt: skip
 
 

@@ -67,6 +67,16 @@ def test_script_and_trace_of_a_session_lie_beside_it(tmp_path: Path) -> None:
         assert load_session(path).devices.driver == whole
 
 
+def test_message_types_of_a_session_lie_beside_it(tmp_path: Path) -> None:
+    path = write(tmp_path / "session.yaml", "schema: 1\noutputs: {bridge: {messages: types}}\n")
+    bridge = load_session(path).outputs.bridge
+    assert bridge is not None
+    assert bridge.messages == str(tmp_path / "types")
+    path = write(tmp_path / "session.yaml", "schema: 1\noutputs: {bridge: {messages: ../types}}\n")
+    with pytest.raises(ProfileError, match=r'outputs\.bridge\.messages: value "\.\./types": a file inside'):
+        load_session(path)
+
+
 def test_a_link_does_not_lead_a_session_out_of_its_folder(tmp_path: Path) -> None:
     inside = tmp_path / "inside"
     inside.mkdir()

@@ -9,6 +9,7 @@ import selectors
 import socket
 import time
 from contextlib import suppress
+from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Final, Self
 
@@ -19,7 +20,9 @@ from simconsole.bridge.connection import Connection
 from simconsole.bridge.console import ConsoleBridge
 from simconsole.bridge.forms import Dialect
 from simconsole.bridge.handshake import role_at
+from simconsole.bridge.message_files import load_registry
 from simconsole.bridge.messages import Registry
+from simconsole.bridge.record import open_recorder
 from simconsole.bridge.session import Session
 from simconsole.bridge.topics import ODOMETRY
 from simconsole.bridge.wire import RECEIVE_BYTES, address_url, listen, load_access, load_tls, log_outcome
@@ -42,13 +45,19 @@ class LockstepBridge:
     """A rosbridge server that lives inside the tick loop. Its clock is the simulated time of the last snapshot."""
 
     def __init__(
-        self, profile: BridgeProfile, *, registry: Registry | None = None, odometry_hz: float | None = None
+        self,
+        profile: BridgeProfile,
+        *,
+        registry: Registry | None = None,
+        odometry_hz: float | None = None,
+        folder: Path | None = None,
     ) -> None:
         """Listen on the profile's host and port.
 
         Args:
             profile: names, rates, limits.
-            registry: message types; the standard ones without.
+            registry: message types; without, the standard ones and those of the profile's folder.
+            folder: where topics are recorded if the profile says so.
             odometry_hz: rate of /odom in place of the profile's: the control rate, so that every answer is waited for.
 
         Raises:
@@ -60,7 +69,7 @@ class LockstepBridge:
             limits = msgspec.structs.replace(profile.limits, commands_hz=commands_hz)
             rates_hz = {**profile.rates_hz, ODOMETRY: odometry_hz}
             profile = msgspec.structs.replace(profile, rates_hz=rates_hz, limits=limits)
-        self.console = ConsoleBridge(profile, registry)
+        self.console = ConsoleBridge(profile, load_registry(profile) if registry is None else registry)
         self.console.router.access = load_access(profile)
         self._tls = load_tls(profile)
         self._profile = profile
@@ -74,6 +83,7 @@ class LockstepBridge:
         self._listener = listen(profile.host, profile.port)
         self._selector = selectors.DefaultSelector()
         self._selector.register(self._listener, selectors.EVENT_READ, None)
+        self._recorder = open_recorder(self.console, profile, folder)
         self._ros2: Ros2Link | None = None
         self._bell: tuple[socket.socket, ...] = ()
         if profile.ros2 is not None:
@@ -124,6 +134,7 @@ class LockstepBridge:
         self._now_ns = snapshot.t_ns
         self.console.inputs.tick = snapshot.tick
         self._serve(0.0)
+        self._record()
         self.console.publish(snapshot, self._now_ns)
         self._pump_ros2()
         self._flush()
@@ -146,6 +157,7 @@ class LockstepBridge:
         inputs = self.console.inputs
         self._now_ns = snapshot.t_ns
         inputs.tick = snapshot.tick
+        self._record()
         self.console.publish(snapshot, self._now_ns, odometry=True)
         self._pump_ros2()
         self._flush()
@@ -187,6 +199,8 @@ class LockstepBridge:
             self._forget(connection)
         self._selector.close()
         self._listener.close()
+        if self._recorder is not None:
+            self._recorder.close()
         for end in self._bell:
             end.close()
 
@@ -220,6 +234,10 @@ class LockstepBridge:
             # What one client published may wait for another.
             if connection.session is not None and connection.session.due_ns() is not None:
                 self._settle(connection)
+
+    def _record(self) -> None:
+        if self._recorder is not None:
+            self._recorder.look(self._now_ns)
 
     def _join_ros2(self) -> None:
         from simconsole.bridge.ros2 import Ros2Link

@@ -10,6 +10,7 @@ import socket
 import time
 from collections.abc import Callable
 from http import HTTPStatus
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, cast
 
 from websockets.asyncio.server import Server, ServerConnection
@@ -25,8 +26,10 @@ from simconsole.bridge.console import ConsoleBridge
 from simconsole.bridge.documents import Binary
 from simconsole.bridge.handshake import FORBIDDEN, FULL, UNKNOWN, dialect_of, is_host_allowed, origins, role_at
 from simconsole.bridge.inputs import OnCommand, OnEvents
+from simconsole.bridge.message_files import load_registry
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.operate import OnAct
+from simconsole.bridge.record import TopicRecorder, open_recorder
 from simconsole.bridge.session import Session
 from simconsole.bridge.wire import (
     FragmentLimit,
@@ -110,9 +113,16 @@ class BridgeServer:
         on_events: OnEvents | None = None,
         on_act: OnAct | None = None,
         clock_ns: Callable[[], int] = time.monotonic_ns,
+        folder: Path | None = None,
     ) -> None:
-        """Build the bridge; `start` opens it. Arguments and errors as `ConsoleBridge`; `clock_ns` is its clock."""
+        """Build the bridge; `start` opens it.
+
+        Arguments and errors as `ConsoleBridge`; `clock_ns` is its clock, `folder` where topics are recorded.
+        """
+        registry = load_registry(profile) if registry is None else registry
         self.console = ConsoleBridge(profile, registry, on_command, on_events, on_act)
+        self._folder = folder
+        self._recorder: TopicRecorder | None = None
         self._profile = profile
         self._access = self.console.router.access = load_access(profile)
         self._tls = load_tls(profile)
@@ -163,12 +173,16 @@ class BridgeServer:
             logger=_logger,
         )
         self._watcher = asyncio.create_task(self._watch())
+        self._recorder = open_recorder(self.console, self._profile, self._folder)
         if self._profile.ros2 is not None:
             self._join_ros2(asyncio.get_running_loop())
 
     def publish(self, snapshot: Snapshot) -> None:
         """Queue what is due of a snapshot; the clients' tasks send it."""
-        self.console.publish(snapshot, self._clock_ns())
+        now_ns = self._clock_ns()
+        if self._recorder is not None:
+            self._recorder.look(now_ns)
+        self.console.publish(snapshot, now_ns)
         if self._ros2 is not None:
             self._ros2.check()
 
@@ -177,6 +191,8 @@ class BridgeServer:
         if self._ros2 is not None:
             self._ros2.close()
             self._ros2 = None
+        if self._recorder is not None:
+            self._recorder.close()
         if self._watcher is not None:
             self._watcher.cancel()
             self._watcher = None
@@ -330,6 +346,7 @@ def serve(
     on_act: OnAct | None = None,
     on_counts: Callable[[dict[str, int]], None] = lambda counts: None,
     registry: Registry | None = None,
+    folder: Path | None = None,
 ) -> None:
     """Run a bridge server until `stop()` says so; for a process of its own.
 
@@ -342,7 +359,8 @@ def serve(
         on_ready: gets the port when the server listens.
         on_act: gets each act of an operator, at once.
         on_counts: gets what was counted, once a second and at the end.
-        registry: message types; the standard ones without.
+        registry: message types; without, the standard ones and those of the profile's folder.
+        folder: where topics are recorded if the profile says so.
 
     Raises:
         BridgeError: the address cannot be listened on.
@@ -351,7 +369,12 @@ def serve(
 
     async def main() -> None:
         server = BridgeServer(
-            profile, registry=registry, on_command=write_command, on_events=write_events, on_act=on_act
+            profile,
+            registry=registry,
+            on_command=write_command,
+            on_events=write_events,
+            on_act=on_act,
+            folder=folder,
         )
         await server.start()
         on_ready(server.port)

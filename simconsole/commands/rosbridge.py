@@ -15,6 +15,7 @@ def bridge(words: Namespace) -> Outcome:
 
 def serve(words: Namespace) -> Outcome:
     """Serve rosbridge on a standing car that nobody sits in, in real time, until interrupted; nothing is kept."""
+    from simconsole.bridge.message_files import load_registry
     from simconsole.bridge.ros2 import check as check_ros2
     from simconsole.bridge.wire import load_access, load_tls
     from simconsole.session import drive
@@ -29,6 +30,7 @@ def serve(words: Namespace) -> Outcome:
         "certificate_key": None if certificate is None else str(Path(certificate).with_suffix(".key")),
         "trust_network": words.trust_network,
         "ros2": {} if words.ros2 else None,
+        "messages": words.messages,
     }
     session = override(load_session("bridge"), outputs={"bridge": section})
     if words.duration_s is not None:
@@ -38,6 +40,7 @@ def serve(words: Namespace) -> Outcome:
         load_access(session.outputs.bridge)
         load_tls(session.outputs.bridge)
         check_ros2(session.outputs.bridge)
+        load_registry(session.outputs.bridge)
     with tempfile.TemporaryDirectory(prefix="simconsole-bridge-") as folder:
         result = drive(resolve(session), Path(folder), on_bridge=lambda url: print(f"rosbridge at {url}", flush=True))
     code = INTERRUPTED if result.interrupted else 0

@@ -80,6 +80,10 @@ class BridgeProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """PEM files; with them the server speaks TLS only (wss://)."""
     trust_network: bool = False
     """Listen on an address others can reach without token and TLS."""
+    messages: Path | None = None
+    """A folder of own message types, PACKAGE/msg/NAME.msg, .srv and .action, inside that of the session's profile."""
+    record: tuple[Annotated[str, Meta(min_length=1, max_length=256)], ...] = ()
+    """Names of topics, * and ? as in file names, that are recorded into topics.mcap in the bundle."""
     ros2: Ros2Profile | None = None
     """Join a live ROS 2 graph as well; needs rclpy (extra `ros2`)."""
     sender_clock: Literal["own", "console"] = "own"

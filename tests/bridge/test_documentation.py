@@ -72,8 +72,9 @@ def test_own_message_type() -> None:
 
 
 def test_session_section() -> None:
-    (text,) = blocks("yaml")
-    profile = parse(text.replace("outputs:\n", ""), OutputsSection, "docs/rosbridge.md").bridge
+    texts = [text.replace("outputs:\n", "") for text in blocks("yaml")]
+    profile, recorded = (parse(text, OutputsSection, "docs/rosbridge.md").bridge for text in texts)
+    assert (recorded.messages, recorded.record) == ("messages", ("/odom", "/grip*"))
     names = ConsoleBridge(profile).names
     assert (names["/odom"], names["/cmd_vel"]) == ("/localization/kinematic_state", "/ego/cmd_vel")
     assert profile.rates_hz["/tf"] == 0.0

@@ -15,6 +15,7 @@ outputs:
   bridge:
     port: {port}
     ros2: {ros2}
+    record: [/odom]
   hud: null
   scene: null
   report: false

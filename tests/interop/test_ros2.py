@@ -1,13 +1,14 @@
 """A real ROS 2, rclpy over DDS on loopback, meets the console with no rosbridge_server between."""
 
 import json
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
 from simconsole.cli import main
-from tests.interop.programs import HERE, Client, client, console, program
+from tests.interop.programs import HERE, ROOT, Client, client, console, program
 from tests.interop.ros2 import PYTHON, domain, needs_ros2
 from tests.interop.sessions import lockstep_session
 
@@ -144,6 +145,21 @@ def test_a_node_commands_in_real_time_and_vanishes() -> None:
         watcher.hear(lambda heard: heard["msg"]["longitudinal_velocity"] > 3.0)
         driver.kill()
         watcher.hear(lambda heard: heard["msg"]["longitudinal_velocity"] < 0.1)
+
+
+def test_the_node_in_the_documentation_drives(tmp_path: Path) -> None:
+    page = (ROOT / "docs/ros2.md").read_text()
+    (example,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    path = tmp_path / "driver.py"
+    path.write_text(example)
+    around = domain()
+    with (
+        console(PYTHON, around, "--ros2") as url,
+        client(url) as watcher,
+        program(around, PYTHON, str(path)),
+    ):
+        watcher.say(op="subscribe", topic="/cmd_vel")  # accepted commands go to who watches them
+        assert watcher.message("/cmd_vel")["linear"]["x"] == 5.0
 
 
 def test_without_rclpy_it_says_so_at_once(capsys: pytest.CaptureFixture[str]) -> None:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from mcap.reader import make_reader
 
 from simconsole.cli import main
 from tests.interop.programs import CACHE, HERE, environment, free_port, program, wait_for_port
@@ -90,5 +91,11 @@ def test_roslib_drives_for_a_minute(
     assert (results["unanswered"], results["exchanges"], seen["answers"]) == (0, 3000, 3000)
     assert results["distance_m"] > 400.0
     assert 1.0 < seen["y_m"] < 6.0  # it steered towards 3, from 0
+    with (bundle / "topics.mcap").open("rb") as file:
+        recorded = make_reader(file).get_summary()
+    assert recorded is not None
+    assert recorded.statistics is not None
+    assert recorded.statistics.message_count == 3000
+    assert main(["verify", str(bundle)]) == 0
     assert main(["replay", str(bundle)]) == 0
     record_property("roslib in lockstep", f"60 s driven in {seen['wall_s']:.1f} s, 50 Hz control from Node")
