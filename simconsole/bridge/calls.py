@@ -152,7 +152,7 @@ class Calls:
                 self._cancel(session, name, operation)
             case ActionFeedback():
                 self._feedback(session, name, operation)
-            case ActionResult():
+            case _:
                 self._result(session, name, operation)
         return name
 

@@ -326,3 +326,18 @@ def test_who_may_not_call_is_answered_too(
     assert status["op"] == "status"
     assert (response["op"], response["id"], response["result"]) == (answer, "mine", False)
     assert "you have no token" in response["values"]
+
+
+def test_what_ends_leaves_the_calls_of_others_alone(
+    bridge: ConsoleBridge, join: Callable[..., Any], pair: tuple[Any, Any]
+) -> None:
+    provider, caller = pair
+    other = join(bridge)
+    other.send(op="advertise_service", service="/other", type="std_srvs/Empty")
+    caller.send(op="call_service", service="/add", id="kept")
+    other.send(op="unadvertise_service", service="/other")
+    bridge.disconnect(other.session, 0)
+    assert bridge.router.calls.open == 1
+    asked = request(provider)
+    provider.send(op="service_response", service="/add", id=asked["id"], values={"sum": 1})
+    assert answer(caller)["id"] == "kept"

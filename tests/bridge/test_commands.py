@@ -212,3 +212,11 @@ def test_value_that_is_not_finite_is_refused_whoever_brings_it(bridge: ConsoleBr
     for value in (math.nan, math.inf, -math.inf):
         with pytest.raises(RemoteProtocolError, match="not finite"):
             topic.accept({"data": value}, bridge.router.registry.struct(topic.type)(value), 0)
+
+
+@pytest.mark.parametrize("frame", ["base_link", "/base_link", ""])
+def test_command_in_the_car_s_own_frame(peer: Any, frame: str) -> None:
+    message = {"header": {"frame_id": frame}, "drive": {"steering_angle": 0.1, "speed": 1.0}}
+    assert peer.publish("/ackermann_cmd", message).kind == "command"
+    message["header"] = {"frame_id": f"{frame}_elsewhere"}
+    assert "is not base_link - at `$.header.frame_id`" in peer.publish("/ackermann_cmd", message).text

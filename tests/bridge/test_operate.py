@@ -77,4 +77,6 @@ def test_a_flood_of_notes_is_not_kept_without_bound(bridge: ConsoleBridge, peer:
 def test_summary_names_the_last_participant_and_trial() -> None:
     acts = [{"tick": 1, "act": "mark", "participant": "P1", "trial": "1"}, {"tick": 2, "act": "mark", "trial": "2"}]
     assert told(acts) == {"participant": "P1", "trial": "2", "acts": acts}
+    unnamed = [{"tick": 1, "act": "mark"}]
+    assert told(unnamed) == {"acts": unnamed}
     assert told([]) == {}

@@ -1,7 +1,9 @@
 import json
+import math
 from collections.abc import Callable
 from typing import Any
 
+import cbor2
 import pytest
 
 from simconsole.bridge.console import ConsoleBridge
@@ -371,3 +373,13 @@ def test_each_subscriber_has_its_own_form(bridge: ConsoleBridge, join: Callable[
     assert [piece["num"] for piece in first] == list(range(first[0]["total"]))
     whole = "".join(piece["data"] for piece in second)
     assert json.loads(whole) == {"op": "publish", "topic": "/p", "msg": {"header": new_header, "point": point}}
+
+
+def test_binary_command_is_checked_for_what_json_cannot_say(peer: Any, control: Callable[..., Any]) -> None:
+    message = {**control(), "control_time": {"sec": 1}}
+    for jerk, kind in ((math.nan, "refused"), (math.inf, "refused"), (0.5, "command")):
+        message["longitudinal"]["jerk"] = jerk
+        data = cbor2.dumps({"op": "publish", "topic": "/control/command/control_cmd", "msg": message})
+        assert peer.send(Binary(data)).kind == kind
+    listed = {"op": "publish", "topic": "/ball/desired_speed", "msg": {"data": [1.0, math.nan]}}
+    assert "no command" in peer.send(Binary(cbor2.dumps(listed))).text

@@ -23,7 +23,8 @@ def ask(peer: Any, service: str, /, **args: Any) -> Any:
 
 def test_every_service_has_its_type(peer: Any) -> None:
     services = peer.bridge.router.calls.services()
-    assert sorted(services.values()) == sorted(SERVICES)
+    assert sorted(services.values()) == sorted([*SERVICES, "simconsole_msgs/Operate"])
+    assert ask(peer, "services") == {"services": list(services)}
     for name, kind in services.items():
         assert ask(peer, "service_type", service=name) == {"type": kind}
 

@@ -1,0 +1,58 @@
+"""The bridge's cores: each has its own test file; these make no socket, and take every line and branch."""
+
+import json
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+ROOM = ROOT / "simconsole" / "bridge"
+TESTS = ROOT / "tests" / "bridge"
+WITHOUT_CODE = ("_text.py", "__init__.py")
+"""Definitions and re-exports: tested with whatever reads them."""
+
+
+def cores() -> list[str]:
+    """The modules of the bridge that the contract of pure floors names, its packages' modules one by one."""
+    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
+    (pure,) = (contract["source_modules"] for contract in contracts if contract["type"] == "forbidden")
+    names = [name.rpartition(".")[2] for name in pure if name.startswith("simconsole.bridge.")]
+    found = []
+    for name in names:
+        package = ROOM / name
+        found += sorted(package.glob("*.py")) if package.is_dir() else [package.with_suffix(".py")]
+    return [str(path.relative_to(ROOM)) for path in found]
+
+
+def file_of(core: str) -> Path:
+    """The test file of a core."""
+    return TESTS / Path(core).parent / f"test_{Path(core).name}"
+
+
+@pytest.mark.parametrize("core", [core for core in cores() if not core.endswith(WITHOUT_CODE)])
+def test_core_has_its_own_test_file(core: str) -> None:
+    assert file_of(core).exists()
+
+
+def test_every_line_and_branch_is_taken_without_a_socket(tmp_path: Path) -> None:
+    files = sorted(path for path in map(file_of, cores()) if path.exists())
+    environment = {"COVERAGE_FILE": str(tmp_path / "coverage"), "PYTHONPATH": str(ROOT), "PATH": ""}
+    run = [sys.executable, "-m", "coverage"]
+    measure = [*run, "run", "--branch", "--source", str(ROOM), "-m", "pytest", "-q", "-p", "no:cacheprovider"]
+    done = subprocess.run(
+        [*measure, "-p", "tests.bridge.no_sockets", *map(str, files)],
+        cwd=ROOT, env=environment, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-1000:]
+    report = tmp_path / "report.json"
+    subprocess.run([*run, "json", "-q", "-o", report], cwd=ROOT, env=environment, check=True)
+    measured = json.loads(report.read_text())["files"]
+    missed = {}
+    for core in cores():
+        page = measured[f"simconsole/bridge/{core}"]
+        if page["missing_lines"] or page["missing_branches"]:
+            missed[core] = (page["missing_lines"], page["missing_branches"])
+    assert missed == {}
