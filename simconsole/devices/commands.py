@@ -55,7 +55,12 @@ def list_devices(cockpit: CockpitProfile, *, say: Say, virtual: bool = False) ->
         devices = []
         for entry, _ in found(pygame):
             ids = (entry.vendor_id, entry.product_id)
-            roles = [binding.role for binding in cockpit.roles if (binding.vendor_id, binding.product_id) == ids]
+            roles = [
+                binding.role
+                for binding in cockpit.roles
+                if (binding.vendor_id, binding.product_id) == ids
+                or any((other.vendor_id, other.product_id) == ids for other in binding.others)
+            ]
             boots = [mode.cure for mode in cockpit.boot_modes if (mode.vendor_id, mode.product_id) == ids]
             usb_id = f"{entry.vendor_id:04x}:{entry.product_id:04x}"
             use = ", ".join(roles) or (f"in boot mode: {boots[0]}" if boots else "not used")

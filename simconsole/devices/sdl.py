@@ -10,7 +10,7 @@ from typing import Any, Final, NamedTuple
 from simconsole.devices import sdl_runtime
 from simconsole.devices.calibration import travel
 from simconsole.errors import DeviceError, DeviceModeError, DeviceNotFound
-from simconsole.profiles.device import CockpitProfile, RoleBinding, RoleName
+from simconsole.profiles.device import CockpitProfile, OtherDevice, RoleBinding, RoleName
 from simconsole.signals import NEVER_TICKS, DeviceSample
 
 INVERTED_SHARE: Final = 0.95
@@ -185,6 +185,15 @@ class SdlSource:
             key = (entry.vendor_id, entry.product_id)
             if key in wanted and key not in self._bound and _fits(entry, wanted[key]):
                 self._bound[key] = _Bound(joystick)
+        for key, binding in wanted.items():
+            for other in binding.others if key not in self._bound else ():
+                self._bind_other(key, other)
+
+    def _bind_other(self, key: tuple[int, int], other: OtherDevice) -> None:
+        for entry, joystick in found(self._pygame):
+            same = (entry.vendor_id, entry.product_id) == (other.vendor_id, other.product_id)
+            if same and key not in self._bound and _fits(entry, other):
+                self._bound[key] = _Bound(joystick)
 
     def _readable(self, role: RoleName) -> _Bound | None:
         bound = self._bound.get(self._keys[role])
@@ -227,7 +236,7 @@ class SdlSource:
             )
 
 
-def _fits(entry: Found, binding: RoleBinding) -> bool:
+def _fits(entry: Found, binding: RoleBinding | OtherDevice) -> bool:
     return entry.axes >= binding.axes and entry.buttons >= binding.buttons
 
 

@@ -20,6 +20,16 @@ MIN_TRAVEL_RAW = 0.2
 """A pedal whose ends lie closer together than this cannot be told from its own noise."""
 
 
+class OtherDevice(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A device that plays the same role with the same numbers, used where the first one is not there."""
+
+    vendor_id: UsbId
+    product_id: UsbId
+    name: Title
+    axes: Annotated[int, Meta(ge=0, le=32)]  # at least
+    buttons: Annotated[int, Meta(ge=0, le=24)]
+
+
 class RoleBinding(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """One role and the device that plays it, found by its USB identity, never by its number or name."""
 
@@ -30,6 +40,16 @@ class RoleBinding(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     axes: Annotated[int, Meta(ge=0, le=32)]
     buttons: Annotated[int, Meta(ge=0, le=24)]
     hats: Annotated[int, Meta(ge=0, le=4)] = 0
+    others: Annotated[list[OtherDevice], Meta(max_length=8)] = []  # of a shifter only
+
+    def __post_init__(self) -> None:
+        """Refuse another device for a role whose motor and limits are asked for by its one identity.
+
+        Raises:
+            ValueError: names the role.
+        """
+        if self.others and self.role != "shifter":
+            raise ValueError(f"others must be empty where role is {self.role}: only a shifter may be another")
 
 
 class BootMode(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

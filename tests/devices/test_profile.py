@@ -80,6 +80,7 @@ def test_what_nobody_has_measured_is_marked_unverified() -> None:
         ("shifter.reverse", 10, "must be below 10"),
         ("buttons.reset.button", 13, "buttons.reset.button 13 must be below 13"),
         ("roles", [], None),
+        ("roles.0.others", [{"vendor_id": 1, "product_id": 2, "name": "x", "axes": 9, "buttons": 9}], "only a shifter"),
         ("limits.stale_s", 0.0, "limits.stale_s"),
         ("pedals.throtle", {}, "did you mean"),
     ],

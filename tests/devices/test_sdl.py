@@ -25,6 +25,11 @@ from .people import Seat
 Plug = Callable[[VirtualSpec], VirtualDevice]
 
 
+def bound_buttons(cockpit: CockpitProfile) -> list[Button]:
+    """The roles that have a button."""
+    return [button for button in Button if getattr(cockpit.buttons, str(button.name).lower()) is not None]
+
+
 class Drive:
     """Intents in, through SDL, calibrated out."""
 
@@ -121,7 +126,7 @@ def test_every_shipped_cockpit_works_as_virtual_devices(name: str, sdl: None) ->
             assert [drive.do(Intent(gear=gear)).gear for gear in (1, 6, -1)] == [1.0, 6.0, -1.0]
         else:
             assert [drive.do(Intent(pressed=held)).gear for held in (16, 0, 16)] == [1, 1, 2]
-        for button in Button:
+        for button in bound_buttons(cockpit):
             drive.do()
             assert drive.do(Intent(pressed=int(button))).edges == float(button)
     finally:
@@ -129,7 +134,7 @@ def test_every_shipped_cockpit_works_as_virtual_devices(name: str, sdl: None) ->
         plugged.close()
 
 
-@pytest.mark.parametrize("button", list(Button))
+@pytest.mark.parametrize("button", bound_buttons(load("devices", "t500rs_th8rs", CockpitProfile)))
 def test_every_button_reaches_the_person(button: Button, drive: Drive) -> None:
     assert drive.do(Intent(pressed=int(button))).edges == float(button)
     assert drive.do().pressed == 0.0
@@ -245,6 +250,41 @@ def test_another_joystick_that_comes_and_goes_changes_nothing(drive: Drive, plug
     pad.close()
     assert driver == drive.poll(3)._replace(neutral_ticks=driver.neutral_ticks)
     assert driver.throttle_validity == LIVE
+
+
+TH8A = VirtualSpec("Thrustmaster TH8A", 0x044F, 0xB65C, 1, 8, is_wheel=False)
+
+
+def test_other_shifter_plays_the_role_where_the_first_is_not_there(
+    sdl: None, t500: CockpitProfile, t500_settings: CockpitSettings, plug: Plug
+) -> None:
+    plugged = VirtualCockpit(t500)
+    plugged.unplug("shifter")
+    th8a = plug(TH8A)
+    source = SdlSource(t500)
+    try:
+        drive = Drive(plugged, source, t500_settings)
+        drive.do(ticks=2)
+        th8a.set_button(2, True)
+        assert drive.poll().gear == 3.0
+        th8a.set_button(2, False)
+        assert source.instance_id("shifter") == th8a.instance_id
+        th8a.detach()
+        assert drive.poll(2).shifter_validity == LOST
+        plugged.plug("shifter")
+        assert drive.poll(3).shifter_validity == LIVE, "and the first one takes it again"
+    finally:
+        source.close()
+        plugged.close()
+
+
+def test_first_shifter_is_bound_with_the_other_beside_it(
+    plugged: VirtualCockpit, plug: Plug, t500: CockpitProfile
+) -> None:
+    th8a = plug(TH8A)
+    source = SdlSource(t500)
+    assert source.instance_id("shifter") not in (None, th8a.instance_id)
+    source.close()
 
 
 def test_twin_of_a_bound_device_is_not_listened_to(drive: Drive, plug: Plug) -> None:
