@@ -48,6 +48,12 @@ class RosApi:
             ("service_providers", "ServiceProviders", self._service_providers, Role.VIEW),
             ("service_node", "ServiceNode", self._service_node, Role.VIEW),
             ("action_servers", "GetActionServers", self._action_servers, Role.VIEW),
+            ("service_host", "ServiceHost", self._service_host, Role.VIEW),
+            ("action_type", "ActionType", self._action_type, Role.VIEW),
+            ("action_goal_details", "ActionGoalDetails", self._goal_details, Role.VIEW),
+            ("action_result_details", "ActionResultDetails", self._result_details, Role.VIEW),
+            ("action_feedback_details", "ActionFeedbackDetails", self._feedback_details, Role.VIEW),
+            ("interfaces", "Interfaces", self._interfaces, Role.VIEW),
             ("nodes", "Nodes", self._nodes, Role.VIEW),
             ("node_details", "NodeDetails", self._node_details, Role.VIEW),
             ("message_details", "MessageDetails", self._message_details, Role.VIEW),
@@ -56,6 +62,7 @@ class RosApi:
             ("get_param", "GetParam", self._get_param, Role.VIEW),
             ("has_param", "HasParam", self._has_param, Role.VIEW),
             ("get_param_names", "GetParamNames", self._get_param_names, Role.VIEW),
+            ("search_param", "SearchParam", self._search_param, Role.VIEW),
             ("set_param", "SetParam", self._set_param, Role.PUBLISH),
             ("delete_param", "DeleteParam", self._delete_param, Role.PUBLISH),
             ("get_time", "GetTime", self._get_time, Role.VIEW),
@@ -126,6 +133,25 @@ class RosApi:
     def _action_servers(self, args: Fields, dialect: Dialect) -> Fields:
         return {"action_servers": list(self._router.calls.actions())}
 
+    def _service_host(self, args: Fields, dialect: Dialect) -> Fields:
+        known = resolve_topic(args["service"]) in self._router.calls.services()
+        return {"host": "localhost" if known else ""}
+
+    def _action_type(self, args: Fields, dialect: Dialect) -> Fields:
+        return {"type": self._router.calls.actions().get(resolve_topic(args["action"]), "")}
+
+    def _goal_details(self, args: Fields, dialect: Dialect) -> Fields:
+        return {"typedefs": self._part(args["type"], "Goal")}
+
+    def _result_details(self, args: Fields, dialect: Dialect) -> Fields:
+        return {"typedefs": self._part(args["type"], "Result")}
+
+    def _feedback_details(self, args: Fields, dialect: Dialect) -> Fields:
+        return {"typedefs": self._part(args["type"], "Feedback")}
+
+    def _interfaces(self, args: Fields, dialect: Dialect) -> Fields:
+        return {"interfaces": [_spelled(name, dialect) for name in self._registry.names()]}
+
     def _node_names(self) -> list[str]:
         return [NODE, *(f"/client_{session.number}" for session in self._router.sessions)]
 
@@ -163,7 +189,7 @@ class RosApi:
     def _part(self, type_name: str, part: str) -> list[Fields]:
         full = self._registry.part(type_name, part)
         if full is None:
-            raise RemoteProtocolError(f"service type {type_name[:80]} is not known here")
+            raise RemoteProtocolError(f"type {type_name[:80]} is not known here")
         return self._typedefs(full)
 
     def _typedefs(self, name: str) -> list[Fields]:
@@ -188,6 +214,12 @@ class RosApi:
 
     def _get_param_names(self, args: Fields, dialect: Dialect) -> Fields:
         return {"names": sorted(self._parameters)}
+
+    def _search_param(self, args: Fields, dialect: Dialect) -> Fields:
+        # ROS 1 looks upwards through the namespaces of the asking node; all nodes here stand at the root.
+        name = args["name"]
+        found = next((known for known in (name, f"/{name}") if known in self._parameters), "")
+        return {"global_name": found}
 
     def _set_param(self, args: Fields, dialect: Dialect) -> Fields:
         name, value = args["name"], args["value"]

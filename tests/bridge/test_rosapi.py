@@ -67,6 +67,10 @@ def test_services_and_actions(bridge: ConsoleBridge, join: Callable[..., Any]) -
     for wanted in (ADD["type"], "/add"):
         assert ask(peer, "service_providers", service=wanted) == {"providers": [node]}
     assert ask(peer, "action_servers") == {"action_servers": ["/go"]}
+    assert ask(peer, "action_type", action="/go") == {"type": "demo/Go"}
+    assert ask(peer, "action_type", action="/none") == {"type": ""}
+    assert ask(peer, "service_host", service="/add") == {"host": "localhost"}
+    assert ask(peer, "service_host", service="/none") == {"host": ""}
 
 
 def test_nodes(bridge: ConsoleBridge, join: Callable[..., Any]) -> None:
@@ -104,6 +108,13 @@ def test_details_of_types(peer: Any) -> None:
     assert (request[0]["fieldnames"], request[0]["examples"]) == (["data"], ["False"])
     response = ask(peer, "service_response_details", type="std_srvs/SetBool")["typedefs"]
     assert response[0]["fieldnames"] == ["success", "message"]
+    goal = ask(peer, "action_goal_details", type="example_interfaces/action/Fibonacci")["typedefs"]
+    assert (goal[0]["fieldnames"], goal[0]["fieldtypes"]) == (["order"], ["int32"])
+    for part in ("result", "feedback"):
+        found = ask(peer, f"action_{part}_details", type="example_interfaces/Fibonacci")["typedefs"]
+        assert (found[0]["fieldnames"], found[0]["fieldarraylen"]) == (["sequence"], [0])
+    assert "nav_msgs/msg/Odometry" in ask(peer, "interfaces")["interfaces"]
+    assert "not known" in ask(peer, "action_goal_details", type="demo/None")
     assert "not known" in ask(peer, "message_details", type="demo/None")
     assert "not known" in ask(peer, "service_request_details", type="demo/None")
 
@@ -115,6 +126,8 @@ def test_parameters(peer: Any) -> None:
     assert ask(peer, "get_param", name="a") == {"value": "[1]"}
     assert ask(peer, "has_param", name="a") == {"exists": True}
     assert ask(peer, "get_param_names") == {"names": ["a"]}
+    assert ask(peer, "search_param", name="a") == {"global_name": "a"}
+    assert ask(peer, "search_param", name="b") == {"global_name": ""}
     assert ask(peer, "delete_param", name="a") == {}
     assert ask(peer, "delete_param", name="a") == {}
     assert ask(peer, "has_param", name="a") == {"exists": False}
