@@ -9,7 +9,7 @@ from typing import Any, Final
 import msgspec
 import yaml
 
-from simconsole.devices.commands import Pace, Say, realtime
+from simconsole.devices.commands import Pace, Say, answer, realtime
 from simconsole.devices.learning import Moment, hold
 from simconsole.devices.raw_sdl import RawDevices
 from simconsole.devices.settings import settings
@@ -66,10 +66,7 @@ def calibrate_devices(
         def put(step: str, text: str) -> str:
             if hands is not None:
                 hands.do(step)
-            try:
-                return ask(f"{text} ")
-            except EOFError:
-                raise DeviceError("calibrate: value end of input: an answer to every step") from None
+            return answer(ask, f"{text} ")
 
         def look() -> Moment:
             wait = pace(LOOK_HZ)

@@ -16,6 +16,7 @@ from simconsole.devices.settings import settings
 from simconsole.devices.trace import TraceHeader
 from simconsole.devices.virtual_cockpit import VirtualCockpit
 from simconsole.devices.watch import Watch
+from simconsole.errors import DeviceError
 from simconsole.profiles.device import Buttons, CockpitProfile, ScriptPoint, ScriptProfile
 from simconsole.signals import DeviceSample
 from simconsole.units import RAD_PER_DEG
@@ -26,6 +27,18 @@ Pace = Callable[[int], None]
 
 TICK_HZ: Final = 250
 SHOW_HZ: Final = 10
+
+
+def answer(ask: Callable[[str], str], question: str) -> str:
+    """Put a question and return what was typed.
+
+    Raises:
+        DeviceError: nobody is there to answer.
+    """
+    try:
+        return ask(question)
+    except EOFError:
+        raise DeviceError("standard input: value at its end: an answer to every question") from None
 
 
 def realtime(tick_hz: int) -> Pace:

@@ -8,7 +8,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from simconsole.devices.back_ends import open_motor
-from simconsole.devices.commands import Pace, Say, realtime
+from simconsole.devices.commands import Pace, Say, answer, realtime
 from simconsole.devices.motor import HapticPort, SimulatedWheelPort, WheelMotor
 from simconsole.devices.sdl import SdlSource
 from simconsole.devices.settings import settings
@@ -110,10 +110,10 @@ def _judge(kind: Force, turned_deg: float, ask: Callable[[str], str], say: Say, 
         ok = turned_deg * kind.turns > 0.0
         how = f"turned {abs(turned_deg):.0f} deg to the {'left' if turned_deg > 0.0 else 'right'}"
     elif kind.name == "sign":
-        typed = ask(f"{kind.question} [l]eft, [r]ight, [n]ot at all: ").strip().lower()[:1]
+        typed = answer(ask, f"{kind.question} [l]eft, [r]ight, [n]ot at all: ").strip().lower()[:1]
         ok, how = typed == "l", {"l": "left", "r": "right"}.get(typed, "not at all")
     else:
-        ok = ask(f"{kind.name}: {kind.question} [y/n]: ").strip().lower()[:1] == "y"
+        ok = answer(ask, f"{kind.name}: {kind.question} [y/n]: ").strip().lower()[:1] == "y"
         how = "felt" if ok else "not felt"
     say(f"{kind.name}: {how}: {'good' if ok else 'WRONG'}")
     if kind.name == "sign" and not ok and how != "not at all":

@@ -122,6 +122,14 @@ def test_giving_up_writes_nothing_and_an_old_profile_is_spared(sdl: None, tmp_pa
     assert path.read_text() == "old"
 
 
+def test_nobody_there_to_answer_is_one_line(sdl: None, tmp_path: Path, t500: CockpitProfile) -> None:
+    def nobody(text: str) -> str:
+        raise EOFError
+
+    with pytest.raises(DeviceError, match="an answer to every question"):
+        calibrate_devices(t500, tmp_path / "x.yaml", say=quiet, ask=nobody, virtual=t500, pace=at_once)
+
+
 def test_no_devices_is_said(sdl: None, tmp_path: Path, t500: CockpitProfile) -> None:
     with pytest.raises(DeviceError, match="none connected"):
         calibrate_devices(t500, tmp_path / "x.yaml", say=quiet, ask=answers(), pace=at_once)

@@ -79,3 +79,11 @@ def test_wheel_without_a_motor_is_said(t500: CockpitProfile) -> None:
         feel_devices(load("devices", "gamepad", CockpitProfile), say=quiet, virtual=True)
     with pytest.raises(DeviceError, match=r"0\.05 to 0\.6"):
         feel_devices(t500, say=quiet, virtual=True, strength=0.9)
+
+
+def test_nobody_there_to_answer_is_one_line_and_leaves_no_force(t500: CockpitProfile) -> None:
+    def nobody(question: str) -> str:
+        raise EOFError
+
+    with pytest.raises(DeviceError, match="an answer to every question"):
+        feel_devices(t500, say=quiet, ask=nobody, virtual=True, pace=at_once)
