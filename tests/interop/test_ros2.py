@@ -74,6 +74,11 @@ def test_topics_of_the_graph(met: Client) -> None:
     met.say(op="unsubscribe", topic="/ros/latched")
 
 
+def test_time_and_odometry_reach_the_graph(met: Client) -> None:
+    said(met, "saw clock")  # by a best-effort subscriber
+    said(met, "saw odometry")
+
+
 def test_topics_of_clients(met: Client) -> None:
     met.say(op="advertise", topic="/web/talk", type="std_msgs/String")
     met.say(op="subscribe", topic="/web/talk")
