@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, cast
 
 from simconsole.canbus.codec import Frame
 from simconsole.canbus.multicast import LoopbackBus
-from simconsole.canbus.recovery import Recovery
+from simconsole.canbus.recovery import BUS_OFF, Recovery, Seldom, error_words
 from simconsole.errors import CanError
 from simconsole.profiles.can import CanProfile
 
@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from can.io.generic import MessageWriter
 
 LOG_FILES: Final = {"blf": "can.blf", "candump": "can.log"}
-_BUS_OFF: Final = 0x40  # linux/can/error.h: CAN_ERR_BUSOFF, a bit of an error frame's id
+_TOLD_S: Final = 10.0
+"""Error frames come in floods: they are counted, and told at most so often."""
 _FULL: Final = (11, 105)  # EAGAIN, ENOBUFS: the send queue is full, which is no fault of the bus
 _UNDERWAY_MAX: Final = 256
 """Frames looked at in one call at most: a flood of others' frames ends a call, not the caller's cycle."""
@@ -76,6 +77,7 @@ class CanPort:
         self._opener = opener or open_bus
         self._bus: can.BusABC | None = self._opener(profile, receive_ids)
         self._writers = open_logs(logs)
+        self._may_tell = Seldom(_TOLD_S)
         self.recovery = Recovery(profile.retry_first_s, profile.retry_last_s)
         self._sent = self._received = self._filtered = self._dropped = self._error_frames = 0
 
@@ -161,7 +163,10 @@ class CanPort:
     def _frame(self, message: "can.Message") -> Frame | None:
         if message.is_error_frame:
             self._error_frames += 1
-            if message.arbitration_id & _BUS_OFF:
+            if self._may_tell(self._clock_s()):
+                words = error_words(message.arbitration_id)
+                _logger.warning("CAN %s: error frame: %s (%d so far)", self._profile.channel, words, self._error_frames)
+            if message.arbitration_id & BUS_OFF:
                 self._down("bus-off")
             return None
         plain = not (message.is_extended_id or message.is_remote_frame or message.is_fd)

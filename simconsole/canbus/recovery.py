@@ -1,4 +1,43 @@
-"""When a bus that went off is tried again: after the first time, then after twice as long each, up to the last."""
+"""What a bus says of itself, in words; and when one that went off is tried again.
+
+After the first time, then after twice as long each, up to the last.
+"""
+
+from typing import Final
+
+BUS_OFF: Final = 0x40
+_ERRORS: Final = {
+    0x001: "transmit time-out",
+    0x002: "lost arbitration",
+    0x004: "controller problem",
+    0x008: "protocol violation",
+    0x010: "transceiver problem",
+    0x020: "no acknowledgement",
+    BUS_OFF: "bus-off",
+    0x080: "bus error",
+    0x100: "controller restarted",
+}
+"""Classes of an error frame: the bits of its id (linux/can/error.h)."""
+
+
+def error_words(can_id: int) -> str:
+    """Return what an error frame's id says."""
+    return ", ".join(words for bit, words in _ERRORS.items() if can_id & bit) or "unspecified error"
+
+
+class Seldom:
+    """Lets something through at once, and then not again for a while. Times are s of whatever clock the caller has."""
+
+    def __init__(self, gap_s: float) -> None:
+        self._gap_s = gap_s
+        self._last_s: float | None = None
+
+    def __call__(self, now_s: float) -> bool:
+        """Return whether it may pass now."""
+        if self._last_s is not None and now_s - self._last_s < self._gap_s:
+            return False
+        self._last_s = now_s
+        return True
 
 
 class Recovery:

@@ -276,3 +276,15 @@ def test_interfaces_of_vendors_get_what_the_profile_says(interface: Any, monkeyp
     assert asked["can_filters"] == (
         [{"can_id": 0x200, "can_mask": 0x7FF, "extended": False}] if interface == "socketcan" else None
     )
+
+
+def test_error_frames_are_counted_and_told_seldom(yard: Yard, caplog: pytest.LogCaptureFixture) -> None:
+    port = yard.port()
+    yard.buses[0].coming += [can.Message(arbitration_id=0x20, is_error_frame=True) for _ in range(50)]
+    with caplog.at_level(logging.WARNING):
+        assert port.receive(0.0) is None
+    assert port.counters().error_frames == 50
+    assert [record.getMessage() for record in caplog.records if "error frame" in record.getMessage()] == [
+        f"CAN {port._profile.channel}: error frame: no acknowledgement (1 so far)"
+    ]
+    assert port.up

@@ -1,4 +1,4 @@
-from simconsole.canbus.recovery import Recovery
+from simconsole.canbus.recovery import Recovery, Seldom, error_words
 
 
 def test_waits_double_from_one_to_thirty_seconds() -> None:
@@ -32,3 +32,14 @@ def test_up_is_never_due() -> None:
     recovery = Recovery(1.0, 30.0)
     assert recovery.up
     assert not recovery.is_due(1e9)
+
+
+def test_error_frames_are_told_in_words() -> None:
+    assert error_words(0x40) == "bus-off"
+    assert error_words(0x20 | 0x08) == "protocol violation, no acknowledgement"
+    assert error_words(0x200) == "unspecified error"
+
+
+def test_seldom_lets_one_through_and_then_waits() -> None:
+    seldom = Seldom(10.0)
+    assert [seldom(now_s) for now_s in (3.0, 4.0, 12.9, 13.0, 14.0)] == [True, False, False, True, False]
