@@ -12,6 +12,7 @@ def counted(router: Router, now_ns: int) -> dict[str, Any]:
     sessions = router.sessions
     return {
         "commander": next((session.peer for session in sessions if session.number == holder), ""),
+        "upstream": router.upstream,
         "connections": router.connections,
         **router.counts()._asdict(),
         "clients": [_of(session) for session in sessions],

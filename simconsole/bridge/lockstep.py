@@ -26,6 +26,7 @@ from simconsole.bridge.record import open_recorder
 from simconsole.bridge.session import Session
 from simconsole.bridge.topics import ODOMETRY
 from simconsole.bridge.wire import RECEIVE_BYTES, address_url, listen, load_access, load_tls, log_outcome
+from simconsole.errors import ProfileError
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.rows import Snapshot
 from simconsole.signals import EventInput, RemoteCommand
@@ -71,6 +72,8 @@ class LockstepBridge:
             profile = msgspec.structs.replace(profile, rates_hz=rates_hz, limits=limits)
         self.console = ConsoleBridge(profile, load_registry(profile) if registry is None else registry)
         self.console.router.access = load_access(profile)
+        if profile.upstream is not None:
+            raise ProfileError("outputs.bridge.upstream: a drive in lockstep waits for its own clients only")
         self._tls = load_tls(profile)
         self._profile = profile
         self._now_ns = 0

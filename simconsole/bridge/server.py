@@ -16,12 +16,10 @@ from typing import TYPE_CHECKING, Any, Final, cast
 from websockets.asyncio.server import Server, ServerConnection
 from websockets.asyncio.server import serve as serve_websockets
 from websockets.exceptions import ConnectionClosed
-from websockets.frames import CloseCode, Frame
 from websockets.http11 import Request, Response
 from websockets.protocol import State
 
 from simconsole.bridge.access import Role
-from simconsole.bridge.backoff import Liveness
 from simconsole.bridge.console import ConsoleBridge
 from simconsole.bridge.documents import Binary
 from simconsole.bridge.handshake import FORBIDDEN, FULL, UNKNOWN, dialect_of, is_host_allowed, origins, role_at
@@ -29,10 +27,11 @@ from simconsole.bridge.inputs import OnCommand, OnEvents
 from simconsole.bridge.message_files import load_registry
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.operate import OnAct
+from simconsole.bridge.peer import Peer
 from simconsole.bridge.record import TopicRecorder, open_recorder
 from simconsole.bridge.session import Session
+from simconsole.bridge.uplink import Uplink
 from simconsole.bridge.wire import (
-    FragmentLimit,
     address_url,
     frame_head,
     is_unacknowledged,
@@ -59,42 +58,10 @@ _WRITE_BYTES: Final = 32_768
 _logger = logging.getLogger("simconsole.bridge.server")
 
 
-class _Peer(ServerConnection):
-    """A connection that knows when it last heard something and counts the frames a message is in."""
-
-    def __init__(self, profile: BridgeProfile, clock_ns: Callable[[], int], *arguments: Any, **options: Any) -> None:
-        super().__init__(*arguments, **options)
-        self.limit = FragmentLimit(profile.limits.message_fragments)
-        self.liveness = Liveness(profile.ping_interval_s, profile.dead_after_s)
-        self.liveness.begin(clock_ns() / NS_PER_S)
-        self._clock_ns = clock_ns
-        # More than the sender, which waits for the socket between two messages, can have put there.
-        self._max_unsent_bytes = 2 * profile.limits.queued_bytes
-
-    def data_received(self, data: bytes) -> None:
-        """Note the time of whatever comes, pongs too."""
-        self.liveness.heard(self._clock_ns() / NS_PER_S)
-        super().data_received(data)
-        if self.protocol.close_rcvd is not None:
-            self.transport.close()  # both have said good-bye: the server ends the connection (RFC 6455, 7.1.1)
-        if self.transport.get_write_buffer_size() > self._max_unsent_bytes:
-            self.transport.abort()  # it sends pings without end and reads no answer
-
-    def process_event(self, event: Any) -> None:
-        """Pass a frame on, unless its message is in too many, or too long on its way (N13)."""
-        if isinstance(event, Frame):
-            reason = self.limit.add(event, self._clock_ns())
-            if reason is not None:
-                self.protocol.fail(CloseCode.POLICY_VIOLATION, reason)
-                self.send_data()
-                return
-        super().process_event(event)
-
-
 class _Client:
     """One connection and what its sender is doing."""
 
-    def __init__(self, connection: _Peer) -> None:
+    def __init__(self, connection: Peer) -> None:
         self.connection = connection
         self.ready = asyncio.Event()
         self.sending_since_ns: int | None = None
@@ -130,6 +97,7 @@ class BridgeServer:
         self._clients: dict[Session, _Client] = {}
         self._server: Server | None = None
         self._watcher: asyncio.Task[None] | None = None
+        self._uplink: asyncio.Task[None] | None = None
         self._port = 0
         self._ros2: Ros2Link | None = None
         self._ros2_woken = False
@@ -173,6 +141,9 @@ class BridgeServer:
             logger=_logger,
         )
         self._watcher = asyncio.create_task(self._watch())
+        if self._profile.upstream is not None:
+            uplink = Uplink(self.console, self._profile.upstream, self._clock_ns)
+            self._uplink = asyncio.create_task(uplink.run())
         self._recorder = open_recorder(self.console, self._profile, self._folder)
         if self._profile.ros2 is not None:
             self._join_ros2(asyncio.get_running_loop())
@@ -196,6 +167,10 @@ class BridgeServer:
         if self._watcher is not None:
             self._watcher.cancel()
             self._watcher = None
+        if self._uplink is not None:
+            self._uplink.cancel()
+            await asyncio.gather(self._uplink, return_exceptions=True)
+            self._uplink = None
         server, self._server = self._server, None
         if server is not None:
             server.close()
@@ -238,11 +213,11 @@ class BridgeServer:
         given = request.headers.get_all("Authorization")
         return role_at(request.path, given[0] if given else None, self._access)
 
-    def _peer(self, *arguments: Any, **options: Any) -> _Peer:
-        return _Peer(self._profile, self._clock_ns, *arguments, **options)
+    def _peer(self, *arguments: Any, **options: Any) -> Peer:
+        return Peer(self._profile, self._clock_ns, *arguments, **options)
 
     async def _serve_client(self, connection: ServerConnection) -> None:
-        assert isinstance(connection, _Peer)
+        assert isinstance(connection, Peer)
         sock: socket.socket = connection.transport.get_extra_info("socket")
         sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         client = _Client(connection)

@@ -51,6 +51,18 @@ class Ros2Profile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     """subnet: nodes of other machines are found too; only with `trust_network`, for a graph shows no tokens."""
 
 
+class UpstreamProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Another rosbridge server that the console joins as a client, under the names its own topics have."""
+
+    url: Annotated[str, Meta(pattern=r"^wss?://[^/\s]+", max_length=1024)]
+    token: Path | None = None
+    """A file with the token to show."""
+    certificate: Path | None = None
+    """A PEM file that a wss:// server is checked against, in place of the system's authorities."""
+    dialect: Literal["ros2", "ros1"] = "ros2"
+    """What the other server's ROS is: how times and headers are spelled for it."""
+
+
 class BridgeProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """One rosbridge server.
 
@@ -84,6 +96,8 @@ class BridgeProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """A folder of own message types, PACKAGE/msg/NAME.msg, .srv and .action, inside that of the session's profile."""
     record: tuple[Annotated[str, Meta(min_length=1, max_length=256)], ...] = ()
     """Names of topics, * and ? as in file names, that are recorded into topics.mcap in the bundle."""
+    upstream: UpstreamProfile | None = None
+    """Connect to another rosbridge server as well: every output is published there, every command asked for."""
     ros2: Ros2Profile | None = None
     """Join a live ROS 2 graph as well; needs rclpy (extra `ros2`)."""
     sender_clock: Literal["own", "console"] = "own"

@@ -73,7 +73,8 @@ def test_own_message_type() -> None:
 
 def test_session_section() -> None:
     texts = [text.replace("outputs:\n", "") for text in blocks("yaml")]
-    profile, recorded = (parse(text, OutputsSection, "docs/rosbridge.md").bridge for text in texts)
+    profile, joined, recorded = (parse(text, OutputsSection, "docs/rosbridge.md").bridge for text in texts)
+    assert joined.upstream.url == "ws://robot:9090"
     assert (recorded.messages, recorded.record) == ("messages", ("/odom", "/grip*"))
     names = ConsoleBridge(profile).names
     assert (names["/odom"], names["/cmd_vel"]) == ("/localization/kinematic_state", "/ego/cmd_vel")

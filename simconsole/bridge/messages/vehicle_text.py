@@ -57,6 +57,8 @@ MSG: simconsole_msgs/Bridge
 std_msgs/Header header
 # Who holds the commander's lease; empty: nobody.
 string commander
+# How it stands with the server that the console is a client of: connecting, connected; empty: there is none.
+string upstream
 # How many clients there have been, and messages of all of them, also of those that are gone.
 uint64 connections
 uint64 received

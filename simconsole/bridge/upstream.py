@@ -1,0 +1,69 @@
+"""The console as a client of another rosbridge server: what it says there, and what of the answers it takes.
+
+To the router the other server is a client like any other, which hears every output and may command; rosbridge's
+publish is the same operation both ways. It is trusted with commands and nothing else: no call, no subscription.
+"""
+
+from collections.abc import Callable
+
+import orjson
+
+from simconsole.bridge.access import Role
+from simconsole.bridge.console import ConsoleBridge
+from simconsole.bridge.documents import read
+from simconsole.bridge.operations import Publish, Status, read_operation
+from simconsole.bridge.protocol import Outcome
+from simconsole.bridge.session import Session
+from simconsole.errors import BridgeError
+from simconsole.profiles.bridge import UpstreamProfile
+
+
+class Upstream:
+    """One console's link to another server. It has a session while it is connected."""
+
+    def __init__(self, console: ConsoleBridge, profile: UpstreamProfile, wake: Callable[[], None]) -> None:
+        """Join `console`; `wake` is called when there may be something to send."""
+        self._console = console
+        self._profile = profile
+        self._wake = wake
+        self.session: Session | None = None
+
+    def connected(self, now_ns: int) -> list[bytes]:
+        """Take up a new connection; return what is to be said first: what is published here and what is asked for."""
+        router = self._console.router
+        session = self.session = router.connect(
+            f"upstream {self._profile.url}", self._wake, self._profile.dialect, Role.CONTROL
+        )
+        session.set_level("none")  # rosbridge_suite does not know the operation
+        wishes = []
+        for name, topic in router.topics.items():
+            if not topic.owned:
+                continue
+            fields = {"topic": name, "type": topic.type.replace("/msg/", "/")}
+            if topic.command is None:
+                wishes.append(orjson.dumps({"op": "advertise", **fields, "latch": topic.latch}))
+                router.receive(session, orjson.dumps({"op": "subscribe", "topic": name}), now_ns)
+            else:
+                wishes.append(orjson.dumps({"op": "subscribe", **fields, "queue_length": 1}))
+        return wishes
+
+    def receive(self, text: bytes, now_ns: int) -> Outcome:
+        """Apply a message of the other server if it is a command; what is none is passed over and told."""
+        assert self.session is not None
+        try:
+            operation = read_operation(read(text).fields)
+        except BridgeError as error:
+            return Outcome("refused", "", str(error))
+        if isinstance(operation, Status):
+            return Outcome("remark", "", f"{operation.level}: {operation.msg[:1000]}")
+        if not isinstance(operation, Publish):
+            return Outcome("done", "", "")
+        topic = self._console.router.topic(operation.topic)
+        if topic is None or topic.command is None:
+            return Outcome("done", operation.topic, "")
+        return self._console.receive(self.session, text, now_ns)
+
+    def lost(self, now_ns: int) -> bool:
+        """Note the end of a connection; return whether it was commanding. Harmless without one."""
+        session, self.session = self.session, None
+        return session is not None and self._console.disconnect(session, now_ns)

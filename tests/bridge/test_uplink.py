@@ -1,0 +1,127 @@
+"""The console as a client of another server, over real sockets: a double that behaves as rosbridge_server does."""
+
+import asyncio
+import json
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+from websockets.asyncio.server import ServerConnection
+from websockets.asyncio.server import serve as serve_websockets
+
+from simconsole.bridge.backoff import Backoff
+from simconsole.bridge.lockstep import LockstepBridge
+from simconsole.bridge.server import BridgeServer
+from simconsole.bridge.uplink import Uplink
+from simconsole.errors import ProfileError
+from simconsole.profiles.bridge import BridgeProfile, UpstreamProfile
+
+CONTROL = "/control/command/control_cmd"
+
+
+class Double:
+    """A rosbridge server that never sends a status and keeps what it hears."""
+
+    def __init__(self) -> None:
+        self.operations: list[dict[str, Any]] = []
+        self.headers: list[str | None] = []
+        self.peers: list[ServerConnection] = []
+
+    async def __call__(self, peer: ServerConnection) -> None:
+        assert peer.request is not None
+        self.headers.append(peer.request.headers.get("Authorization"))
+        self.peers.append(peer)
+        async for text in peer:
+            self.operations.append(json.loads(text))
+
+    def heard(self, op: str, topic: str) -> list[dict[str, Any]]:
+        return [each for each in self.operations if (each["op"], each.get("topic")) == (op, topic)]
+
+
+@asynccontextmanager
+async def joined(double: Double, port: int = 0, **profile: Any) -> AsyncIterator[BridgeServer]:
+    async with serve_websockets(double, "127.0.0.1", port) as far:
+        url = f"ws://127.0.0.1:{next(iter(far.sockets)).getsockname()[1]}"
+        server = BridgeServer(BridgeProfile(port=0, upstream=UpstreamProfile(url=url, **profile)))
+        await server.start()
+        try:
+            yield server
+        finally:
+            await server.close()
+
+
+async def until(holds: Callable[[], bool]) -> None:
+    while not holds():
+        await asyncio.sleep(0.001)
+
+
+def test_state_goes_there_and_commands_come_back(
+    snapshot: Callable[..., Any], control: Callable[..., Any], tmp_path: Path
+) -> None:
+    (tmp_path / "token").write_text("secret-of-theirs\n")
+
+    async def main() -> None:
+        double = Double()
+        async with joined(double, token=str(tmp_path / "token")) as server:
+            await until(lambda: bool(double.heard("subscribe", CONTROL)))
+            assert double.headers == ["Bearer secret-of-theirs"]
+            assert server.console.router.upstream == "connected"
+            server.publish(snapshot(5, x_m=7.0))
+            await until(lambda: bool(double.heard("publish", "/odom")))
+            assert double.heard("publish", "/odom")[0]["msg"]["pose"]["pose"]["position"]["x"] == 7.0
+            await double.peers[0].send(json.dumps({"op": "publish", "topic": CONTROL, "msg": control(0.3)}))
+            await until(lambda: server.console.inputs.command.road_wheel_rad == 0.3)
+
+    asyncio.run(main())
+
+
+def test_it_comes_back_with_everything_and_nobody_engaged(
+    snapshot: Callable[..., Any], control: Callable[..., Any]
+) -> None:
+    async def main() -> None:
+        double = Double()
+        async with joined(double) as server:
+            for number in range(3):
+                await until(lambda: len(double.heard("subscribe", CONTROL)) == number + 1)  # noqa: B023  (ends here)
+                await double.peers[-1].send(json.dumps({"op": "publish", "topic": CONTROL, "msg": control(number / 9)}))
+                await until(lambda: server.console.inputs.command.sequence == number + 1)  # noqa: B023  (ends here)
+                double.peers[-1].transport.abort()
+                await until(lambda: server.console.router.upstream == "connecting")
+            assert server.console.router.lease.holder(0) is None
+            await until(lambda: server.console.router.upstream == "connected")
+            server.publish(snapshot(5))
+            await until(lambda: bool(double.heard("publish", "/odom")))
+            assert len(double.heard("advertise", "/odom")) == 4
+
+    asyncio.run(main())
+
+
+def test_nobody_there_is_no_reason_to_stop(snapshot: Callable[..., Any]) -> None:
+    async def main() -> None:
+        server = BridgeServer(BridgeProfile(port=0))
+        profile = UpstreamProfile(url="ws://127.0.0.1:1")
+        task = asyncio.create_task(Uplink(server.console, profile, backoff=Backoff(0.001, 0.001)).run())
+        await until(lambda: server.console.router.upstream == "connecting")
+        await asyncio.sleep(0.01)
+        assert not task.done()
+        task.cancel()
+        await asyncio.gather(task, return_exceptions=True)
+
+    asyncio.run(main())
+
+
+@pytest.mark.parametrize("profile", [{"token": "/nowhere"}, {"certificate": "/nowhere", "url": "wss://ros:9090"}])
+def test_what_cannot_be_used_is_one_line(profile: dict[str, Any]) -> None:
+    async def main() -> None:
+        console = BridgeServer(BridgeProfile(port=0)).console
+        with pytest.raises(ProfileError, match=r"outputs\.bridge\.upstream: ws"):
+            Uplink(console, UpstreamProfile(**{"url": "ws://ros:9090", **profile}))
+
+    asyncio.run(main())
+
+
+def test_lockstep_waits_for_its_own_clients_only() -> None:
+    with pytest.raises(ProfileError, match=r"outputs\.bridge\.upstream"):
+        LockstepBridge(BridgeProfile(port=0, upstream=UpstreamProfile(url="ws://ros:9090")))
