@@ -23,6 +23,8 @@ from simconsole.signals import Mode, Reason
 
 _TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)
 _PERSON_ASKED: Final = float(Reason.PERSON_ASKED)
+_REMOTE_ASKED: Final = float(Reason.REMOTE_ASKED)
+_DEVICE_LOST: Final = float(Reason.DEVICE_LOST)
 _OPERATOR_ASKED: Final = float(Reason.OPERATOR_ASKED)
 _REFUSED_NOT_COMMANDER: Final = float(Reason.REFUSED_NOT_COMMANDER)
 
@@ -65,13 +67,18 @@ def decide(now: Moment, person: Person, controllers: Controllers, steering: bool
         settings,
     )
     shared = engage if engage != GRANTED else manual
-    no_reaction = mode == _TAKEOVER_REQUESTED and now.memory.mode_ticks + 1.0 >= settings.minimal_risk_ticks
+    waited = mode == _TAKEOVER_REQUESTED and now.memory.mode_ticks + 1.0 >= settings.minimal_risk_ticks
+    # A lost cockpit that is back ends the wait, not the request: autonomy is only ever granted by an act.
+    no_reaction = waited and not (now.before.reason == _DEVICE_LOST and person.trusted > 0.0)
     present = person_triggers(mode, person, steering, settings)
     present |= fault_triggers(link, controllers.events, no_reaction, standing)
     present |= asked_triggers(asked, manual, reset, engage, shared)
     trigger = deciding_trigger(mode, present)
     if trigger >= 0:
         return Decision(next_mode(mode, trigger), _reason(trigger, asked), 1.0, GRANTED, 0.0)
+    if mode == _TAKEOVER_REQUESTED and asked.takeover > 0.0:
+        # Asked for again, by somebody: then the request does not end with the cause that it had first.
+        return Decision(mode, _REMOTE_ASKED, 0.0, GRANTED, 0.0)
     refusal = refusal_of(mode, asked, manual, reset, engage, shared)
     if refusal == GRANTED and controllers.unheard:
         refusal = _REFUSED_NOT_COMMANDER

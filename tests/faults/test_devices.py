@@ -68,11 +68,14 @@ class Driven(NamedTuple):
         return int(ticks[0]) + 1
 
 
-def drive(*faults: Fault, script: str = BY_HAND, remote: str = "[]", seconds: float = 20.0) -> Driven:
+def drive(
+    *faults: Fault, script: str = BY_HAND, remote: str = "[]", events: str = "[]", seconds: float = 20.0
+) -> Driven:
     """Drive in simulated time; whatever happens, what leaves the gate and the vehicle are numbers."""
     profile = parse(
         f"schema: 1\ntitle: d\nduration_s: {seconds}\nsession:\n  schema: 1\n  devices: {{driver: none}}\n"
-        f"  features: {{control: {{manual_automatic: true}}}}\nremote: {remote}\nscript:\n  points:{script}",
+        f"  features: {{control: {{manual_automatic: true}}}}\nremote: {remote}\nevents: {events}\n"
+        f"script:\n  points:{script}",
         ScenarioProfile,
         "d.yaml",
     )
@@ -129,6 +132,27 @@ def test_d02_wheel_unplugged_in_autonomy_asks_and_stops_after_ten_seconds() -> N
     assert (gave_up - asked) / TICK_HZ == pytest.approx(10.0, abs=0.01)
     assert driven.at("vehicle.vx_mps", gave_up - 1) > driven.at("vehicle.vx_mps", asked) + 3.0, "autonomy goes on"
     assert driven.mode(5000) in (Mode.MINIMAL_RISK, Mode.STOPPED)
+
+
+def test_d02_wheel_plugged_in_again_in_time_stops_nothing_and_engages_nothing() -> None:
+    """Back where the car steers, pedals at rest: the request stands until the person acts, without an end."""
+    unplug = Unplug(device="wheel", at_s=FAULT_S, for_s=8.0)
+    driven = drive(unplug, script=HANDED_OVER, remote=CONTROLLER)
+    back = FAULT + round(8.0 * TICK_HZ)
+    assert driven.mode(back - 1) is Mode.TAKEOVER_REQUESTED
+    assert set(driven["arbitration.mode"][back:]) == {Mode.TAKEOVER_REQUESTED}
+    assert driven.at("driver.wheel_validity", 5000) == Validity.LIVE
+    assert driven.at("vehicle.vx_mps", 5000) > 7.0
+
+
+def test_d02_request_of_the_controller_is_not_withdrawn_by_a_wheel_that_is_back() -> None:
+    """Asked for while the wheel is gone: it stands, and nobody reacts."""
+    events = "[{at_s: 6.0, event: request_takeover}]"
+    unplug = Unplug(device="wheel", at_s=FAULT_S, for_s=3.0)
+    driven = drive(unplug, script=HANDED_OVER, remote=CONTROLLER, events=events)
+    gave_up = driven.first(Mode.MINIMAL_RISK)
+    assert (gave_up - FAULT) / TICK_HZ == pytest.approx(10.0, abs=0.01)
+    assert driven.at("arbitration.reason", gave_up) == Reason.NO_REACTION
 
 
 @pytest.mark.parametrize("device", ["wheel", "pedals"])
