@@ -43,6 +43,11 @@ def test_outputs_are_advertised_and_commands_asked_for_under_the_console_s_names
     assert not [topic for topic in advertised if topic in subscribed]
 
 
+def test_topics_between_clients_stay_here(bridge: ConsoleBridge, join: Callable[..., Any]) -> None:
+    join(bridge).send(op="advertise", topic="/own", type="std_msgs/String")
+    assert not [text for text in upstream(bridge).connected(0) if json.loads(text)["topic"] == "/own"]
+
+
 @pytest.mark.parametrize(("dialect", "stamp"), [("ros2", {"sec": 1, "nanosec": 0}), ("ros1", {"secs": 1, "nsecs": 0})])
 def test_what_the_console_publishes_goes_there(
     bridge: ConsoleBridge, snapshot: Callable[..., Any], dialect: Any, stamp: dict[str, int]
