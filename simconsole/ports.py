@@ -24,7 +24,10 @@ class CommandSource(Protocol):
 
 
 class Station(Protocol):
-    """A reader of snapshots. It must not block and must not raise into the loop."""
+    """A reader of snapshots. It must not block and must not raise into the loop.
+
+    One with an attribute `hop` (`ledger.Hop`) is timed under that name in the latency ledger, every other as "others".
+    """
 
     def publish(self, snapshot: Snapshot) -> None:
         """See one tick; a station with its own rate ignores what it does not need."""
