@@ -63,7 +63,7 @@ def check(words: Namespace) -> Outcome:
 
 def bench(words: Namespace) -> Outcome:
     """Measure what our server carries, beside a bare broker and the server at `words.url` if one is given."""
-    from simconsole.bridge import bench
+    from simconsole.bridge import bench, bench_load
 
     found = bench.bench(url=words.url, seconds=words.duration_s or 1.0)
     bare = {case[1:]: figures.rate_hz for case, figures in found.items() if case.server == "bare"}
@@ -78,7 +78,19 @@ def bench(words: Namespace) -> Outcome:
                 f"at 100 Hz p50 {figures.p50_ms:.2f} ms, p99 {figures.p99_ms:.2f} ms",
             )
         )
-    return Outcome(0, {"rows": rows}, table(lines))
+    load = bench_load.load()
+    lines += [
+        (
+            "beside a stalled subscriber",
+            f"{load.lost} of {bench_load.MESSAGES} lost by another, {load.growth_mb:.1f} MB more memory",
+        ),
+        (
+            f"flood of {load.sent_hz:.0f} commands a second",
+            f"age of the applied one p50 {load.age_p50_ms:.1f} ms, p99 {load.age_p99_ms:.1f} ms, "
+            f"max {load.age_max_ms:.1f} ms",
+        ),
+    ]
+    return Outcome(0, {"rows": rows, "load": load._asdict()}, table(lines))
 
 
 def cert(words: Namespace) -> Outcome:
