@@ -1,5 +1,7 @@
 """From resolved profiles to a console that is ready to drive: pure, so that a replay builds exactly the same one."""
 
+import math
+
 from msgspec import Struct, structs
 
 from simconsole.control.settings import settings as control_settings
@@ -7,12 +9,12 @@ from simconsole.devices.calibration import settings as cockpit_settings
 from simconsole.devices.force_settings import force_settings
 from simconsole.pipeline import Console, ConsoleState, Execution, build_console, initial_state
 from simconsole.profiles.device import CockpitProfile
-from simconsole.profiles.session import Aids, SessionProfile
+from simconsole.profiles.session import Aids, Environment, SessionProfile
 from simconsole.profiles.vehicle import CarProfile, VehicleProfile
 from simconsole.profiles.world import WorldProfile
 from simconsole.signals import Commander
 from simconsole.units import RAD_PER_DEG
-from simconsole.vehicle.platform import Ground, Pose
+from simconsole.vehicle.platform import Ground, Patch, Pose
 from simconsole.vehicle.registry import build
 
 
@@ -32,12 +34,7 @@ def assemble(resolved: ResolvedSession, execution: Execution) -> tuple[Console, 
     platform = build(
         switched(resolved.vehicle, session.features.aids),
         Pose(start.x_m, start.y_m, start.yaw_deg * RAD_PER_DEG),
-        Ground(
-            environment.friction,
-            environment.slope_x_percent / 100.0,
-            environment.slope_y_percent / 100.0,
-            environment.friction_right_share,
-        ),
+        ground_of(environment),
     )
     console = build_console(
         cockpit_settings(resolved.cockpit, tick_hz),
@@ -55,6 +52,20 @@ def assemble(resolved: ResolvedSession, execution: Execution) -> tuple[Console, 
         force_settings(resolved.cockpit, platform.steering_ratio, platform.max_road_wheel_rad, tick_hz),
     )
     return console, initial_state(console)
+
+
+def ground_of(environment: Environment) -> Ground:
+    """Return the ground and the wind of a session."""
+    to_rad = environment.wind_to_deg * RAD_PER_DEG
+    return Ground(
+        environment.friction,
+        environment.slope_x_percent / 100.0,
+        environment.slope_y_percent / 100.0,
+        environment.friction_right_share,
+        environment.wind_mps * math.cos(to_rad),
+        environment.wind_mps * math.sin(to_rad),
+        tuple(Patch(*structs.astuple(patch)) for patch in environment.friction_patches),
+    )
 
 
 def switched(vehicle: VehicleProfile, aids: Aids) -> VehicleProfile:

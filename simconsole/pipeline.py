@@ -226,7 +226,8 @@ def decide(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
     )
     memory, ros_link, ecu_link, arbitration, request = arbitrate(now)
     remote = ecu if arbitration.commander == ECU else ros
-    command = gate(request, remote, arbitration, command_before, vehicle, control, tick_s)
+    events = EventInput(*take(row, EVENTS_AT, EVENTS_WIDTH))
+    command = gate(request, remote, arbitration, command_before, vehicle, control, tick_s, events.events)
     put(row, DRIVER_AT, driver)
     put(row, MEMORY_AT, memory)
     put(row, ROS_LINK_AT, ros_link)

@@ -117,6 +117,9 @@ class Event(IntFlag):
     START = 2048
     RESTART = 4096
     FAULT = 8192
+    TOGGLE_ANTI_LOCK = 16384
+    TOGGLE_TRACTION = 32768
+    TOGGLE_STABILITY = 65536
 
 
 class Button(IntFlag):
@@ -136,6 +139,14 @@ class Button(IntFlag):
     TAKEOVER = 2048
     SHARED = 4096
     FAULT = 8192
+
+
+class GearFault(IntFlag):
+    """Why a gear does not go in: the bits of `VehicleState.gear_fault`, set for as long as the lever asks for it."""
+
+    GRIND = 1  # the speeds do not match and the clutch is not pressed: it grates
+    MONEY_SHIFT = 2  # the wheels would turn the engine beyond its limit
+    MISSED = 4  # no such gear, or one of the other direction
 
 
 class GateLimit(IntFlag):
@@ -306,6 +317,9 @@ class VehicleCommand(NamedTuple):
     target_yaw_rad: float
     gate_active: float  # `GateLimit` mask of the limits that changed something
     gate_active_ticks: float  # in how many ticks of the drive they have
+    anti_lock_off: float = 0.0  # 1: switched off by hand, whatever the vehicle has
+    traction_off: float = 0.0
+    stability_off: float = 0.0
 
 
 class VehicleState(NamedTuple):
@@ -332,6 +346,7 @@ class VehicleState(NamedTuple):
     coast_accel_mps2: float  # what released pedals would give now
     full_throttle_accel_mps2: float  # what full throttle would give now
     full_brake_accel_mps2: float  # what full brake would give now (negative)
+    gear_fault: float = 0.0  # `GearFault` mask: why the lever's gear does not go in
 
 
 class WheelTorque(NamedTuple):

@@ -38,6 +38,7 @@ UNITLESS = {
     *("sequence", "refused", "refused_seen", "sequence_seen", "invalid_run", "automatic", "engine_running"),
     *("wheel_buttons", "shifter_buttons", "pressed", "edges", "events", "faults", "gate_active", "throttle_override"),
     *("wheel_motor", "ramp", "clipped", "enabled", "hands_on", "live", "ecu_events", "fresh", "invalid", "lever_fault"),
+    *("anti_lock_off", "traction_off", "stability_off", "gear_fault"),
     # members of an enumeration
     *("kind", "mode", "reason", "refusal", "gear", "direction", "takeover_stage", "commander", "state", "restarted"),
     *("wheel_validity", "throttle_validity", "brake_validity", "clutch_validity", "shifter_validity"),

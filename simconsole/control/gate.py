@@ -14,6 +14,7 @@ from simconsole.kernels import approach, clip, is_finite, kernel
 from simconsole.signals import (
     NEVER_TICKS,
     Arbitration,
+    Event,
     GateLimit,
     Mode,
     RemoteCommand,
@@ -38,6 +39,11 @@ _LATERAL: Final = int(GateLimit.LATERAL_ACCELERATION)
 _OVER: Final = int(GateLimit.BRAKE_OVER_THROTTLE)
 _GEAR: Final = int(GateLimit.GEAR)
 _JERK: Final = int(GateLimit.LATERAL_JERK)
+
+_RESET: Final = int(Event.RESET)
+_ANTI_LOCK: Final = int(Event.TOGGLE_ANTI_LOCK)
+_TRACTION: Final = int(Event.TOGGLE_TRACTION)
+_STABILITY: Final = int(Event.TOGGLE_STABILITY)
 
 _SAFE_BRAKE: Final = 0.3
 """Stands in for a brake request that is not finite: slows any car, locks none on a dry road."""
@@ -115,6 +121,7 @@ def gate(
     vehicle: VehicleState,
     settings: ControlSettings,
     tick_s: float,
+    events: float = 0.0,
 ) -> VehicleCommand:
     """Return the one command that the vehicle gets: finite and inside every limit, whatever comes in.
 
@@ -126,6 +133,7 @@ def gate(
         vehicle: State after the tick before, for the limits that depend on speed.
         settings: Limits.
         tick_s: Length of a tick in s.
+        events: `Event` mask of this tick: somebody may switch a driver aid off or on again.
     """
     mode = arbitration.mode
     limits = limits_of(mode, settings)
@@ -156,7 +164,19 @@ def gate(
         target.yaw_rad,
         float(active),
         _counted(before.gate_active_ticks, active),
+        _switched(before.anti_lock_off, events, _ANTI_LOCK),
+        _switched(before.traction_off, events, _TRACTION),
+        _switched(before.stability_off, events, _STABILITY),
     )
+
+
+@kernel
+def _switched(before: float, events: float, bit: int) -> float:
+    """Return the other position of a switch in a tick with its event. A reset puts every switch back on (0)."""
+    if int(events) & _RESET:
+        return 0.0
+    off = 1.0 if before > 0.0 else 0.0
+    return 1.0 - off if int(events) & bit else off
 
 
 @kernel

@@ -27,14 +27,27 @@ class Start(Section, frozen=True, kw_only=True):
     yaw_deg: Annotated[float, Meta(ge=-180.0, le=180.0)] = 0.0
 
 
+class FrictionPatch(Section, frozen=True, kw_only=True):
+    """A rectangle of map with another friction: ice, a puddle, a strip of tiles."""
+
+    from_x_m: Annotated[float, Meta(ge=-1e5, le=1e5)]
+    to_x_m: Annotated[float, Meta(ge=-1e5, le=1e5)]
+    from_y_m: Annotated[float, Meta(ge=-1e5, le=1e5)]
+    to_y_m: Annotated[float, Meta(ge=-1e5, le=1e5)]
+    friction_share: Annotated[float, Meta(ge=0.0, le=2.0)]  # of the environment's friction
+
+
 class Environment(Section, frozen=True, kw_only=True):
     """The world and the ground under the wheels."""
 
     world: Name | None = None
     friction: Annotated[float, Meta(gt=0.0, le=2.0)] = 1.0
     friction_right_share: Annotated[float, Meta(ge=0.0, le=1.0)] = 1.0  # of it, under the right wheels
+    friction_patches: Annotated[tuple[FrictionPatch, ...], Meta(max_length=4)] = ()  # where they overlap, the later one
     slope_x_percent: Annotated[float, Meta(ge=-40.0, le=40.0)] = 0.0
     slope_y_percent: Annotated[float, Meta(ge=-40.0, le=40.0)] = 0.0
+    wind_mps: Annotated[float, Meta(ge=0.0, le=60.0)] = 0.0
+    wind_to_deg: Annotated[float, Meta(ge=-180.0, le=180.0)] = 0.0  # where the air moves to; 0: along x of map
 
 
 class Scenario(Section, frozen=True, kw_only=True):

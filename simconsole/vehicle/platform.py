@@ -1,7 +1,7 @@
 """The interface behind which every vehicle stands."""
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from simconsole.kernels import Row
 from simconsole.signals import VehicleState
@@ -15,16 +15,33 @@ class Pose(NamedTuple):
     yaw_rad: float
 
 
+class Patch(NamedTuple):
+    """A rectangle of `map` with a friction of its own: a share of the ground's. Where two overlap, the later counts."""
+
+    from_x_m: float
+    to_x_m: float
+    from_y_m: float
+    to_y_m: float
+    share: float
+
+
+MOST_PATCHES: Final = 4
+
+
 class Ground(NamedTuple):
     """The ground under the vehicle: friction coefficient and the slope of its plane along x and y of `map`.
 
-    `right_share` is the share of the friction under the vehicle's right wheels: below 1 on split friction.
+    `right_share` is the share of the friction under the vehicle's right wheels: below 1 on split friction. `patches`,
+    at most MOST_PATCHES, hold for each wheel that stands on them. The wind is where the air moves to, in `map`.
     """
 
     friction: float
     slope_x: float
     slope_y: float
     right_share: float = 1.0
+    wind_x_mps: float = 0.0
+    wind_y_mps: float = 0.0
+    patches: tuple[Patch, ...] = ()
 
 
 class Platform(NamedTuple):

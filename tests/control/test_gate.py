@@ -8,6 +8,7 @@ from simconsole.control.gate import gate, limits_of
 from simconsole.control.settings import ControlSettings
 from simconsole.signals import (
     Arbitration,
+    Event,
     GateLimit,
     Mode,
     RemoteCommand,
@@ -31,6 +32,7 @@ def passed(
     before: VehicleCommand | None = None,
     vehicle: VehicleState | None = None,
     remote: RemoteCommand | None = None,
+    events: int = 0,
     **fields: float,
 ) -> VehicleCommand:
     return gate(
@@ -41,6 +43,7 @@ def passed(
         vehicle or zeros(VehicleState),
         control,
         TICK_S,
+        float(events),
     )
 
 
@@ -283,3 +286,22 @@ def test_speed_commands_show_as_target_speed(control: ControlSettings) -> None:
     before = zeros(VehicleCommand)._replace(target_speed_mps=11.999)
     command = passed(control, Mode.AUTONOMOUS, before, zeros(VehicleState)._replace(x_m=5.0), remote)
     assert (command.target_speed_mps, command.target_x_m) == (12.0, 5.0)
+
+
+@pytest.mark.parametrize(
+    ("event", "field"),
+    [
+        (Event.TOGGLE_ANTI_LOCK, "anti_lock_off"),
+        (Event.TOGGLE_TRACTION, "traction_off"),
+        (Event.TOGGLE_STABILITY, "stability_off"),
+    ],
+)
+def test_events_switch_a_driver_aid_off_and_on_again_and_a_reset_on(
+    control: ControlSettings, event: Event, field: str
+) -> None:
+    off = passed(control, events=event | Event.MARK)
+    assert getattr(off, field) == 1.0
+    assert sum((off.anti_lock_off, off.traction_off, off.stability_off)) == 1.0
+    assert getattr(passed(control, before=off), field) == 1.0, "it stays off"
+    assert getattr(passed(control, before=off, events=event), field) == 0.0
+    assert getattr(passed(control, before=off, events=Event.RESET), field) == 0.0

@@ -192,4 +192,5 @@ def vehicle_state(s: BallState, p: BallParameters, road_wheel_rad: float) -> Veh
         coast,
         coast + p.max_accel_mps2,
         coast - p.brake_mps2,
+        0.0,
     )

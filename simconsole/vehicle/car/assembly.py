@@ -19,17 +19,19 @@ from simconsole.trigonometry import wrap_angle
 from simconsole.units import MPS_PER_KMH, RAD_PER_DEG, RADPS_PER_RPM, STANDARD_GRAVITY_MPS2
 from simconsole.vehicle.car.outputs import vehicle_state
 from simconsole.vehicle.car.parameters import (
+    NO_PATCH,
     AidParameters,
     AxleParameters,
     BodyParameters,
     CarParameters,
     EngineParameters,
     GearParameters,
+    PatchParameters,
     SteeringParameters,
 )
 from simconsole.vehicle.car.state import CAR_WIDTH, CarState
 from simconsole.vehicle.car.step import load_car, step
-from simconsole.vehicle.platform import Ground, Platform, Pose
+from simconsole.vehicle.platform import MOST_PATCHES, Ground, Platform, Pose
 
 AIR_KGPM3: Final = 1.225
 """Density of air, ISO 2533 standard atmosphere at sea level."""
@@ -94,7 +96,20 @@ def car_parameters(profile: CarProfile, ground: Ground) -> CarParameters:
         aids=_aids(profile.aids),
         front=front,
         rear=rear,
+        **_patches(ground),
     )
+
+
+def _patches(ground: Ground) -> dict[str, PatchParameters]:
+    """Return the patches, filled up with nothing.
+
+    Raises:
+        ValueError: more than MOST_PATCHES.
+    """
+    if len(ground.patches) > MOST_PATCHES:
+        raise ValueError(f"{len(ground.patches)} patches of friction, at most {MOST_PATCHES} are possible")
+    given = [PatchParameters(*patch) for patch in ground.patches]
+    return {f"patch_{n + 1}": given[n] if n < len(given) else NO_PATCH for n in range(MOST_PATCHES)}
 
 
 def _gravity(ground: Ground) -> float:
@@ -121,6 +136,8 @@ def _body(profile: CarProfile, ground: Ground, front: AxleParameters, rear: Axle
         slope_x=ground.slope_x,
         slope_y=ground.slope_y,
         gravity_plane_mps2=_gravity(ground),
+        wind_x_mps=ground.wind_x_mps,
+        wind_y_mps=ground.wind_y_mps,
     )
 
 

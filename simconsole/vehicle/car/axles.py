@@ -23,6 +23,15 @@ class Contact(NamedTuple):
     force_y_n: float
 
 
+class Grips(NamedTuple):
+    """Share of the ground's friction under each wheel."""
+
+    fl: float
+    fr: float
+    rl: float
+    rr: float
+
+
 class Axles(NamedTuple):
     """Tyres of one step and the sum of their forces on the body."""
 
@@ -113,7 +122,7 @@ def camber(axle: AxleParameters, body: BodyState, left: Wheel, right: Wheel) -> 
 
 
 @kernel
-def push(car: Car, p: CarParameters, points: Heading, turned_rad: float, step_s: float) -> Axles:
+def push(car: Car, p: CarParameters, grips: Grips, points: Heading, turned_rad: float, step_s: float) -> Axles:
     """Return the tyres one step later, with the front wheels pointing to `points`."""
     body = car.body
     front = p.front
@@ -122,17 +131,15 @@ def push(car: Car, p: CarParameters, points: Heading, turned_rad: float, step_s:
     vy = side_speed(front, body, car.fl, car.fr)
     side = front.half_track_m * body.yaw_rate_radps
     lean = camber(front, body, car.fl, car.fr)
-    fl = contact(
-        front, front.friction_left, car.fl, vx - side, vy, points.left_cos, points.left_sin, turned_rad, lean, step_s
-    )
-    fr = contact(
-        front, front.friction_right, car.fr, vx + side, vy, points.right_cos, points.right_sin, turned_rad, lean, step_s
-    )
+    mu = front.friction_left * grips.fl
+    fl = contact(front, mu, car.fl, vx - side, vy, points.left_cos, points.left_sin, turned_rad, lean, step_s)
+    mu = front.friction_right * grips.fr
+    fr = contact(front, mu, car.fr, vx + side, vy, points.right_cos, points.right_sin, turned_rad, lean, step_s)
     vy = side_speed(rear, body, car.rl, car.rr)
     side = rear.half_track_m * body.yaw_rate_radps
     lean = camber(rear, body, car.rl, car.rr)
-    rl = contact(rear, rear.friction_left, car.rl, vx - side, vy, 1.0, 0.0, 0.0, lean, step_s)
-    rr = contact(rear, rear.friction_right, car.rr, vx + side, vy, 1.0, 0.0, 0.0, lean, step_s)
+    rl = contact(rear, rear.friction_left * grips.rl, car.rl, vx - side, vy, 1.0, 0.0, 0.0, lean, step_s)
+    rr = contact(rear, rear.friction_right * grips.rr, car.rr, vx + side, vy, 1.0, 0.0, 0.0, lean, step_s)
     front_y = fl.force_y_n + fr.force_y_n
     rear_y = rl.force_y_n + rr.force_y_n
     steering = p.steering

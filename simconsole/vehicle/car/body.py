@@ -77,19 +77,21 @@ def move(car: Car, p: CarParameters, axles: Axles, step_s: float) -> Motion:
     ahead = direction(before.yaw_rad)
     c = ahead.cos
     s = ahead.sin
-    speed = sqrt(before.vx_mps * before.vx_mps + before.vy_mps * before.vy_mps)
+    into_x = before.vx_mps - (body.wind_x_mps * c + body.wind_y_mps * s)
+    into_y = before.vy_mps - (body.wind_y_mps * c - body.wind_x_mps * s)
+    speed = sqrt(into_x * into_x + into_y * into_y)
     air = body.drag_nsspmm * speed
     gravity = body.gravity_plane_mps2
     per_kg = 1.0 / body.mass_kg
-    ax = (axles.force_x_n - air * before.vx_mps) * per_kg - gravity * (body.slope_x * c + body.slope_y * s)
+    ax = (axles.force_x_n - air * into_x) * per_kg - gravity * (body.slope_x * c + body.slope_y * s)
     side_n = axles.front_y_n + axles.rear_y_n
-    ay = (side_n - air * before.vy_mps) * per_kg - gravity * (body.slope_y * c - body.slope_x * s)
+    ay = (side_n - air * into_y) * per_kg - gravity * (body.slope_y * c - body.slope_x * s)
     # One after the other, not both from the old values: turning the body then neither adds nor takes energy.
     vx = before.vx_mps + step_s * (ax + before.yaw_rate_radps * before.vy_mps)
     vy = before.vy_mps + step_s * (ay - before.yaw_rate_radps * vx)
     yaw_rate = before.yaw_rate_radps + (axles.moment_nm + axles.aligning_nm) * (step_s / body.yaw_inertia_kgm2)
-    front_lift = body.front_lift_nsspmm * speed * speed
-    rear_lift = body.rear_lift_nsspmm * speed * speed
+    front_lift = body.front_lift_nsspmm * into_x * into_x
+    rear_lift = body.rear_lift_nsspmm * into_x * into_x
     heave_mps = before.heave_mps + (front.force_n + rear.force_n + front_lift + rear_lift) * (step_s / body.sprung_kg)
     rolling = (
         p.front.roll_arm_m * axles.front_y_n + p.rear.roll_arm_m * axles.rear_y_n + body.sway_npm * before.roll_rad

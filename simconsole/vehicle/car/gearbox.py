@@ -6,10 +6,16 @@ engaged gear and the automatic clutch stay until the person takes them back: by 
 lever where the gearbox is while the clutch is closed.
 """
 
+from typing import Final
+
 from simconsole.kernels import approach, clip, kernel
-from simconsole.signals import Request
+from simconsole.signals import GearFault, Request
 from simconsole.vehicle.car.parameters import GearParameters
 from simconsole.vehicle.car.state import Gearbox
+
+GRIND: Final = float(GearFault.GRIND)
+MONEY_SHIFT: Final = float(GearFault.MONEY_SHIFT)
+MISSED: Final = float(GearFault.MISSED)
 
 BACKWARDS_RADPS = -40.0
 """How fast a gear may turn the engine's side backwards when it goes in: rolling at a slow walking pace."""
@@ -49,13 +55,20 @@ def by_lever(
 ) -> Gearbox:
     """Return the gearbox under the person's lever and clutch pedal."""
     if lever == box.gear:
-        return Gearbox(lever, pedal, 1.0, lever, 0.0, box.since_shift_s)
+        return Gearbox(lever, pedal, 1.0, lever, 0.0, box.since_shift_s, 0.0)
     ratio = gear_ratio(p, lever)
     speed = ratio * wheel_radps
     free = pedal >= p.bite_open or abs(speed - engine_radps) < p.synchro_radps
-    fits = BACKWARDS_RADPS < speed < p.limit_radps
-    gear = lever if lever == 0.0 or (ratio != 0.0 and free and fits) else 0.0
-    return Gearbox(gear, pedal, 1.0, gear, 0.0, 0.0)
+    fault = 0.0
+    if lever != 0.0:
+        if not free:
+            fault += GRIND
+        if speed >= p.limit_radps:
+            fault += MONEY_SHIFT
+        if ratio == 0.0 or speed <= BACKWARDS_RADPS:
+            fault += MISSED
+    gear = lever if fault == 0.0 else 0.0
+    return Gearbox(gear, pedal, 1.0, gear, 0.0, 0.0, fault)
 
 
 @kernel
@@ -144,9 +157,9 @@ def by_itself(
     elif wanted != gear:
         target = wanted
         left = p.shift_s
-    shifted = Gearbox(gear, box.clutch, 0.0, target, left, since)
+    shifted = Gearbox(gear, box.clutch, 0.0, target, left, since, 0.0)
     clutch = automatic_clutch(p, shifted, engine_radps, wheel_radps, step_s)
-    return Gearbox(gear, clutch, 0.0, target, left, since)
+    return Gearbox(gear, clutch, 0.0, target, left, since, 0.0)
 
 
 @kernel
@@ -169,4 +182,4 @@ def work_gearbox(
         return by_lever(p, box, request.gear, request.clutch, engine_radps, wheel_radps)
     kept = by_itself(p, box, box.gear, engine_radps, wheel_radps, step_s)
     clutch = request.clutch if request.clutch > kept.clutch else kept.clutch
-    return Gearbox(kept.gear, clutch, 0.0, kept.wanted_gear, kept.shift_left_s, kept.since_shift_s)
+    return Gearbox(kept.gear, clutch, 0.0, kept.wanted_gear, kept.shift_left_s, kept.since_shift_s, 0.0)

@@ -4,7 +4,7 @@ from typing import Final, NamedTuple
 
 from simconsole.kernels import clip, kernel
 from simconsole.signals import VehicleState
-from simconsole.trigonometry import atan, cos, sin
+from simconsole.trigonometry import atan, direction
 from simconsole.vehicle.car.axles import along_speed, side_speed
 from simconsole.vehicle.car.engine import above_idle, engine_friction, full_torque
 from simconsole.vehicle.car.gearbox import bite, gear_ratio
@@ -50,9 +50,11 @@ def pedals(car: Car, p: CarParameters, automatic: float) -> Pedals:
     wheels = 2.0 * (p.front.wheel_inertia_kgm2 + p.rear.wheel_inertia_kgm2)
     mass = body.mass_kg + (wheels + driven * grip * p.engine.inertia_kgm2 * ratio * ratio) / (radius * radius)
     load = body.mass_kg * body.gravity_plane_mps2
-    slope = body.slope_x * cos(car.body.yaw_rad) + body.slope_y * sin(car.body.yaw_rad)
+    ahead = direction(car.body.yaw_rad)
+    slope = body.slope_x * ahead.cos + body.slope_y * ahead.sin
+    air = speed - way * (body.wind_x_mps * ahead.cos + body.wind_y_mps * ahead.sin)
     rolling = p.rear.rolling_resistance * load * speed / (abs(speed) + SMOOTH_MPS)
-    outside = -way * slope * load - rolling - body.drag_nsspmm * speed * abs(speed)
+    outside = -way * slope * load - rolling - body.drag_nsspmm * air * abs(air)
     traction = axle.static_n * (axle.friction_left + axle.friction_right)
     grips = p.front.static_n * (p.front.friction_left + p.front.friction_right)
     grips += p.rear.static_n * (p.rear.friction_left + p.rear.friction_right)
@@ -72,8 +74,9 @@ def vehicle_state(car: Car, p: CarParameters, automatic: float) -> VehicleState:
     """
     body = p.body
     now = car.body
-    c = cos(now.yaw_rad)
-    d = sin(now.yaw_rad)
+    ahead = direction(now.yaw_rad)
+    c = ahead.cos
+    d = ahead.sin
     forecast = pedals(car, p, automatic)
     return VehicleState(
         now.x_m,
@@ -98,4 +101,5 @@ def vehicle_state(car: Car, p: CarParameters, automatic: float) -> VehicleState:
         forecast.coast_mps2,
         forecast.full_throttle_mps2,
         forecast.full_brake_mps2,
+        car.box.gear_fault,
     )

@@ -126,6 +126,8 @@ class BodyParameters(NamedTuple):
     slope_x: float
     slope_y: float
     gravity_plane_mps2: float  # gravity / sqrt(1 + slope^2): times slope along, times 1 normal to the plane
+    wind_x_mps: float  # where the air moves to, in map
+    wind_y_mps: float
 
 
 class SteeringParameters(NamedTuple):
@@ -160,6 +162,17 @@ class AidParameters(NamedTuple):
     stability_most_nm: float
 
 
+class PatchParameters(NamedTuple):
+    """A rectangle of map on which friction is another; without any place where there is none."""
+
+    from_x_m: float
+    to_x_m: float
+    from_y_m: float
+    to_y_m: float
+    share: float
+
+
+NO_PATCH: Final = PatchParameters(1.0, -1.0, 1.0, -1.0, 1.0)
 BODY_AT: Final = 0
 BODY_WIDTH: Final = len(BodyParameters._fields)
 STEERING_AT: Final = BODY_AT + BODY_WIDTH
@@ -173,6 +186,11 @@ AIDS_WIDTH: Final = len(AidParameters._fields)
 FRONT_AT: Final = AIDS_AT + AIDS_WIDTH
 AXLE_WIDTH: Final = len(AxleParameters._fields)
 REAR_AT: Final = FRONT_AT + AXLE_WIDTH
+PATCH_1_AT: Final = REAR_AT + AXLE_WIDTH
+PATCH_WIDTH: Final = len(PatchParameters._fields)
+PATCH_2_AT: Final = PATCH_1_AT + PATCH_WIDTH
+PATCH_3_AT: Final = PATCH_2_AT + PATCH_WIDTH
+PATCH_4_AT: Final = PATCH_3_AT + PATCH_WIDTH
 
 
 class CarParameters(NamedTuple):
@@ -185,3 +203,7 @@ class CarParameters(NamedTuple):
     aids: AidParameters
     front: AxleParameters
     rear: AxleParameters
+    patch_1: PatchParameters
+    patch_2: PatchParameters
+    patch_3: PatchParameters
+    patch_4: PatchParameters

@@ -67,6 +67,7 @@ class Gearbox(NamedTuple):
     wanted_gear: float  # of the shift in progress
     shift_left_s: float  # until the shift in progress is over
     since_shift_s: float
+    gear_fault: float  # `GearFault` mask: why the lever's gear does not go in
 
 
 class AidState(NamedTuple):
@@ -150,6 +151,7 @@ class CarState(NamedTuple):
     wanted_gear: float
     shift_left_s: float
     since_shift_s: float
+    gear_fault: float
     throttle_share: float
     stability_nm: float
     hold_left_s: float

@@ -6,9 +6,10 @@ from simconsole.kernels import Row, clip, is_finite, kernel, put, take
 from simconsole.rows import COMMAND_AT, COMMAND_WIDTH, PLATFORM_AT, VEHICLE_AT
 from simconsole.signals import Request, VehicleCommand
 from simconsole.trigonometry import nearest
-from simconsole.vehicle.car.axles import Contact, push
+from simconsole.vehicle.car.axles import Contact, Grips, push
 from simconsole.vehicle.car.body import move
 from simconsole.vehicle.car.driveline import turn
+from simconsole.vehicle.car.ground import grips_of
 from simconsole.vehicle.car.outputs import vehicle_state
 from simconsole.vehicle.car.parameters import (
     AIDS_AT,
@@ -21,6 +22,11 @@ from simconsole.vehicle.car.parameters import (
     FRONT_AT,
     GEARS_AT,
     GEARS_WIDTH,
+    PATCH_1_AT,
+    PATCH_2_AT,
+    PATCH_3_AT,
+    PATCH_4_AT,
+    PATCH_WIDTH,
     REAR_AT,
     STEERING_AT,
     STEERING_WIDTH,
@@ -30,6 +36,7 @@ from simconsole.vehicle.car.parameters import (
     CarParameters,
     EngineParameters,
     GearParameters,
+    PatchParameters,
     SteeringParameters,
 )
 from simconsole.vehicle.car.state import (
@@ -75,6 +82,10 @@ def load_parameters(parameters: Row) -> CarParameters:
         AidParameters(*take(parameters, AIDS_AT, AIDS_WIDTH)),
         AxleParameters(*take(parameters, FRONT_AT, AXLE_WIDTH)),
         AxleParameters(*take(parameters, REAR_AT, AXLE_WIDTH)),
+        PatchParameters(*take(parameters, PATCH_1_AT, PATCH_WIDTH)),
+        PatchParameters(*take(parameters, PATCH_2_AT, PATCH_WIDTH)),
+        PatchParameters(*take(parameters, PATCH_3_AT, PATCH_WIDTH)),
+        PatchParameters(*take(parameters, PATCH_4_AT, PATCH_WIDTH)),
     )
 
 
@@ -111,9 +122,10 @@ def store_car(row: Row, car: Car) -> None:
 @kernel
 def step(previous: Row, row: Row, parameters: Row, substeps: int) -> None:
     """Advance the car by one tick: the platform interface of vehicle/platform.py."""
-    p = load_parameters(parameters)
     command = VehicleCommand(*take(row, COMMAND_AT, COMMAND_WIDTH))
+    p = with_aids(load_parameters(parameters), command)
     car = load_car(previous)
+    grips = grips_of(car, p)
     request = Request(
         command.road_wheel_rad if is_finite(command.road_wheel_rad) else car.steering.road_wheel_rad,
         pedal(command.throttle),
@@ -124,7 +136,7 @@ def step(previous: Row, row: Row, parameters: Row, substeps: int) -> None:
         command.automatic,
     )
     for _ in range(substeps):
-        car = substep(car, p, request)
+        car = substep(car, p, grips, request)
     store_car(row, car)
     put(row, VEHICLE_AT, vehicle_state(car, p, command.automatic))
 
@@ -144,12 +156,31 @@ def lever(gear: float) -> float:
 
 
 @kernel
-def substep(car: Car, p: CarParameters, request: Request) -> Car:
+def with_aids(p: CarParameters, command: VehicleCommand) -> CarParameters:
+    """Return the parameters with the driver aids off that somebody has switched off."""
+    aids = p.aids
+    switched = AidParameters(
+        0.0 if command.anti_lock_off > 0.0 else aids.anti_lock,
+        0.0 if command.traction_off > 0.0 else aids.traction,
+        0.0 if command.stability_off > 0.0 else aids.stability,
+        aids.hill_hold,
+        aids.understeer_s2pm2,
+        aids.lateral_mps2,
+        aids.stability_nms,
+        aids.stability_most_nm,
+    )
+    return CarParameters(
+        p.body, p.steering, p.engine, p.gears, switched, p.front, p.rear, p.patch_1, p.patch_2, p.patch_3, p.patch_4
+    )
+
+
+@kernel
+def substep(car: Car, p: CarParameters, grips: Grips, request: Request) -> Car:
     """Advance the car by 1 ms: steer, push against the ground, turn the shafts, move."""
     rack = car.steering
     # The rack works against the tyres of the last step: their moment is part of the rack's torque.
     mean_rad = rack.road_wheel_rad + STEP_S * rack.road_wheel_radps
-    axles = push(car, p, heading(p.steering, mean_rad), mean_rad - rack.road_wheel_rad, STEP_S)
+    axles = push(car, p, grips, heading(p.steering, mean_rad), mean_rad - rack.road_wheel_rad, STEP_S)
     moved = SteeringState(mean_rad, rack.road_wheel_radps, rack.hand_wheel_torque_nm)
     rate = steer(p.steering, moved, request.road_wheel_rad, axles.aligning_nm, STEP_S)
     line = turn(car, p, request, axles, STEP_S)
