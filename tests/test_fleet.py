@@ -13,6 +13,7 @@ from simconsole.lane_values import LANES
 from simconsole.rows import COMMAND_AT, COMMAND_WIDTH, PLATFORM_AT, VEHICLE_AT, VEHICLE_WIDTH
 from simconsole.vehicle.platform import Ground, Platform, Pose
 from tests.vehicle.driving import LEVEL, platform
+from tests.vehicle.fuzzing import ground
 from tests.vehicle.test_car_twin import FUSED, commands
 
 TICKS = 400
@@ -23,11 +24,7 @@ def mixed(
 ) -> list[Platform]:
     """Return vehicles that differ in profile, place and ground."""
     return [
-        platform(
-            rng.choice(names),
-            Ground(rng.uniform(0.05, 1.2), rng.uniform(-0.2, 0.2), rng.uniform(-0.2, 0.2), rng.choice([1.0, 0.3])),
-            Pose(rng.uniform(-9.0, 9.0), 0.0, rng.uniform(-3.0, 3.0)),
-        )
+        platform(rng.choice(names), ground(rng), Pose(rng.uniform(-9.0, 9.0), 0.0, rng.uniform(-3.0, 3.0)))
         for _ in range(count)
     ]
 

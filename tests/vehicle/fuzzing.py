@@ -1,8 +1,8 @@
 """Millions of steps of cars that anything happens to: `python -m tests.vehicle.fuzzing [--steps N] [--seed N]`.
 
-A fleet of cars with random ground and commands (all axes, gears and both modes, nonsense and NaN among them) that are
-hit now and then: velocities of up to 60 m/s out of nothing, spins, leans. After every tick each state is compared with
-its bound; at the end all cars are put on level asphalt with the brake pressed and must come to rest.
+A fleet of cars on any ground, in any wind, with any commands (all axes, gears and both modes, nonsense and NaN among
+them), hit now and then: velocities of up to 60 m/s out of nothing, spins, leans. After every tick each state is
+compared with its bound; at the end all cars are put on level asphalt with the brake pressed and must come to rest.
 """
 
 import argparse
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from simconsole.fleet import Fleet
 from simconsole.signals import VehicleCommand
 from simconsole.vehicle.car.state import CarState
-from simconsole.vehicle.platform import Ground
+from simconsole.vehicle.platform import Ground, Patch
 
 from .driving import platform
 
@@ -65,6 +65,7 @@ BOUNDS: Final[dict[str, tuple[float, float]]] = {
     "lock_impulse_nms": (0.0, 0.0),  # an open differential
     **dict.fromkeys(("gear", "wanted_gear"), (-1.0, 6.0)),
     **dict.fromkeys(("clutch", "lever_adopted", "throttle_share", "hold_brake"), (0.0, 1.0)),
+    "gear_fault": (0.0, 7.0),  # three bits
     "shift_left_s": (0.0, 0.25),
     "since_shift_s": (0.0, 10.0),
     "stability_nm": (-1900.0, 1900.0),
@@ -157,8 +158,16 @@ def fuzz(steps: int, seed: int) -> Report:
 
 
 def ground(spread: random.Random) -> Ground:
+    """Return any ground: friction, hills, wind, and now and then a patch of another friction."""
+    patch = Patch(spread.uniform(-50.0, 0.0), spread.uniform(0.0, 50.0), -5.0, spread.uniform(-2.0, 5.0), 0.3)
     return Ground(
-        spread.uniform(0.05, 1.2), spread.uniform(-0.3, 0.3), spread.uniform(-0.3, 0.3), spread.choice([1.0, 0.3])
+        spread.uniform(0.05, 1.2),
+        spread.uniform(-0.3, 0.3),
+        spread.uniform(-0.3, 0.3),
+        spread.choice([1.0, 0.3]),
+        spread.uniform(-20.0, 20.0),
+        spread.uniform(-20.0, 20.0),
+        spread.choice([(), (patch,)]),
     )
 
 
