@@ -12,6 +12,9 @@ from typing import Any, Final
 from simconsole.bridge.relay import ABORTED, CANCELED, SUCCEEDED, Order
 from simconsole.bridge.ros2_types import load
 
+MAX_LOOKS: Final = 300
+"""How often a service or action that is known but not found is looked for."""
+
 _logger: Final = logging.getLogger("simconsole.bridge.ros2")
 
 
@@ -31,21 +34,28 @@ class GraphCalls:
         self._served: dict[str, tuple[Any, Any]] = {}
         """The graph's goals by key: handle and types."""
         self._pursued: dict[str, Any] = {}
-        """Handles of the clients' goals by key, None until the graph has accepted one."""
+        """Handles of the clients' goals by key; until the graph has accepted one None, or a word if it is unwanted."""
+        self._unready: list[tuple[Order, int]] = []
+        """What is for a service or action not yet found by our end of it, and how many looks are left."""
 
     def do(self, order: Order) -> None:
         """Do one thing that the relay ordered."""
         match order.does:
-            case "call":
-                self._call(order)
-            case "goal":
-                self._pursue(order)
+            case "call" | "goal":
+                self._ask_graph(order, MAX_LOOKS)
             case "cancel":
                 self._cancel(order)
             case "reply" | "end":
                 self._finish(order)
             case "feedback":
                 self._tell(order)
+
+    def look(self) -> None:
+        """Ask again for what was not yet there: a request sent before both ends know each other is lost."""
+        waiting, self._unready = self._unready, []
+        for order, looks in waiting:
+            if looks:
+                self._ask_graph(order, looks - 1)
 
     def make_service(self, name: str, kind: str) -> Any:
         """Return a service of the graph that a client of the bridge answers."""
@@ -118,49 +128,59 @@ class GraphCalls:
             goal, types = self._served[order.key]
             goal.publish_feedback(deserialize_message(order.data, types.Feedback))
 
-    def _call(self, order: Order) -> None:
-        from rclpy.serialization import deserialize_message, serialize_message
+    def _ask_graph(self, order: Order, looks: int) -> None:
+        from rclpy.action import ActionClient
+        from rclpy.serialization import deserialize_message
 
+        is_call = order.does == "call"
         if order.data is None:
-            self._put("answered", order.key, order.name, None, order.text)
+            if is_call:
+                self._put("answered", order.key, order.name, None, order.text)
+            else:
+                self._put("ended", order.key, order.name, None, ABORTED, order.text)
             return
         types = load(order.type)
         client = self._clients.get(order.name)
-        if client is None:
+        if client is None and is_call:
             client = self._node.create_client(types, order.name, callback_group=self._group)
-            self._clients[order.name] = client
+        elif client is None:
+            client = ActionClient(self._node, types, order.name, callback_group=self._group)
+        self._clients[order.name] = client
+        if not is_call:
+            self._pursued.setdefault(order.key, None)
+        if not (client.service_is_ready() if is_call else client.server_is_ready()):
+            self._unready.append((order, looks))
+        elif is_call:
+            self._call(order, client, deserialize_message(order.data, types.Request))
+        else:
+            self._pursue(order, client, deserialize_message(order.data, types.Goal))
+
+    def _call(self, order: Order, client: Any, request: Any) -> None:
+        from rclpy.serialization import serialize_message
 
         def done(future: Any) -> None:
             error = future.exception()
             data = None if error is not None else serialize_message(future.result())
             self._put("answered", order.key, order.name, data, str(error))
 
-        client.call_async(deserialize_message(order.data, types.Request)).add_done_callback(done)
+        client.call_async(request).add_done_callback(done)
 
-    def _pursue(self, order: Order) -> None:
-        from rclpy.action import ActionClient
-        from rclpy.serialization import deserialize_message, serialize_message
+    def _pursue(self, order: Order, client: Any, goal: Any) -> None:
+        from rclpy.serialization import serialize_message
 
         key, name = order.key, order.name
-        if order.data is None:
-            self._put("ended", key, name, None, ABORTED, order.text)
-            return
-        types = load(order.type)
-        client = self._clients.get(name)
-        if client is None:
-            client = self._clients[name] = ActionClient(self._node, types, name, callback_group=self._group)
 
         def accepted(future: Any) -> None:
-            goal = future.result()
-            if not goal.accepted:
+            handle = future.result()
+            if not handle.accepted:
                 self._pursued.pop(key, None)
                 self._put("ended", key, name, None, ABORTED, "the goal was not accepted")
                 return
-            wants_end = key in self._pursued and self._pursued[key] == "cancel"
-            self._pursued[key] = goal
-            goal.get_result_async().add_done_callback(ended)
-            if wants_end:
-                goal.cancel_goal_async()
+            is_unwanted = isinstance(self._pursued.get(key), str)
+            self._pursued[key] = handle
+            handle.get_result_async().add_done_callback(ended)
+            if is_unwanted:
+                handle.cancel_goal_async()
 
         def ended(future: Any) -> None:
             self._pursued.pop(key, None)
@@ -170,8 +190,6 @@ class GraphCalls:
         def progressed(message: Any) -> None:
             self._put("progressed", key, name, serialize_message(message.feedback))
 
-        self._pursued[key] = None
-        goal = deserialize_message(order.data, types.Goal)
         client.send_goal_async(goal, feedback_callback=progressed).add_done_callback(accepted)
 
     def _cancel(self, order: Order) -> None:
@@ -180,5 +198,5 @@ class GraphCalls:
         goal = self._pursued[order.key]
         if goal is None:
             self._pursued[order.key] = "cancel"
-        elif goal != "cancel":
+        elif not isinstance(goal, str):
             goal.cancel_goal_async()

@@ -2,6 +2,7 @@
 
 import os
 import threading
+from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Any, Final, NamedTuple
@@ -17,6 +18,7 @@ LOOK_S: Final = 0.1
 DEPTH: Final = 10
 MAX_LOOKS: Final = 10
 MAX_UNNAMED: Final = 100
+MAX_SENT: Final = 100
 _NAMELESS: Final = "_NODE_NAME_UNKNOWN_"
 """rmw's name of a node whose endpoints are known before itself."""
 NOT_INSTALLED: Final = (
@@ -95,6 +97,9 @@ class Graph:
         self._closing = False
         self._early: dict[str, bytes] = {}
         """The newest message of each topic whose publisher is not yet made."""
+        self._lock = threading.Lock()
+        self._sent: dict[str, deque[bytes]] = {}
+        """The newest messages that were sent on topics which are also heard."""
         self._unnamed: list[_Unnamed] = []
         self._nodes: dict[bytes, str] = {}
         """Who publishes, by the identity of the publisher."""
@@ -133,6 +138,9 @@ class Graph:
             return
         from rclpy.exceptions import InvalidHandle
 
+        if name in self._subscriptions:
+            with self._lock:
+                self._sent.setdefault(name, deque(maxlen=MAX_SENT)).append(data)
         with suppress(InvalidHandle):  # destroyed meanwhile, because nobody wants it
             known[1].publish(data)
 
@@ -168,6 +176,7 @@ class Graph:
         }
         nodes = {_path(space, name) for name, space in node.get_node_names_and_namespaces()}
         self._name_them(1)
+        self._calls.look()
         self._put("view", GraphView(topics, frozenset(listened), services, actions, frozenset(nodes)))
         self._settle()
 
@@ -213,12 +222,22 @@ class Graph:
             # Where ROS does not tell who publishes (before Kilted), all of the graph is one.
             identity = (info.get("publisher_gid") or {}).get("data")
             if identity is None:
-                self._hear(Heard(name, data, ANYONE))
+                if not self._is_own(name, data):
+                    self._hear(Heard(name, data, ANYONE))
                 return
             self._unnamed.append(_Unnamed(name, data, identity, 0))
             self._name_them(0)
 
         return self._node.create_subscription(load(way.type), name, take, qos, raw=True, callback_group=self._group)
+
+    def _is_own(self, name: str, data: bytes) -> bool:
+        """Return whether a message is one that was sent from here, where ROS does not tell who publishes."""
+        with self._lock:
+            try:
+                self._sent[name].remove(data)
+            except (KeyError, ValueError):
+                return False
+        return True
 
     def _name_them(self, looks: int) -> None:
         """Pass on, in order, what has come from publishers whose node is known by now.

@@ -81,6 +81,14 @@ class Client:
             if wanted(heard):
                 return heard
 
+    def answers(self, count: int) -> dict[int, dict[str, Any]]:
+        """Values of the answers to calls 0 to `count` - 1, in whatever order they come."""
+        found: dict[int, dict[str, Any]] = {}
+        while len(found) < count:
+            heard = self.hear(lambda said: said["op"] == "service_response")
+            found[heard["id"]] = heard["values"]
+        return found
+
     def message(self, topic: str) -> Any:
         return self.hear(lambda heard: heard.get("topic") == topic)["msg"]
 

@@ -49,8 +49,8 @@ def test_a_rospy_node_drives_calls_and_serves(tmp_path: Path) -> None:
             web.say(op="service_response", service="/web/flip", id=call["id"], values=values, result=True)
             for number in range(4):
                 web.say(op="call_service", service="/ros1/flip", id=number, args={"data": bool(number % 2)})
-            answers = [web.hear(lambda heard, n=number: heard.get("id") == n) for number in range(4)]
-            assert [answer["values"]["success"] for answer in answers] == [True, False, True, False]
+            answers = web.answers(4)
+            assert [answers[number]["success"] for number in range(4)] == [True, False, True, False]
             assert node.stdout is not None
             seen = json.loads(node.stdout.readline())
     assert seen["flip"] == [False, "no"]
