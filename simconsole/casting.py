@@ -13,6 +13,7 @@ from simconsole.drive import Cast, Recorder, Standby
 from simconsole.errors import BridgeError, ProfileError
 from simconsole.faulting import with_faults
 from simconsole.inline import STAND_S, LockstepLink, end_program, start_autopilot
+from simconsole.isolation import isolated
 from simconsole.ledger import Ledger
 from simconsole.pacing import Pacer, UnpacedPacer, realtime_hints
 from simconsole.pipeline import Console
@@ -83,7 +84,7 @@ def open_headless(
         standby=(*standby, *(() if can is None else (can.listen,))),
     )  # fmt: skip
     ledger = Ledger(time.monotonic_ns, console.tick_hz, every=LOOKED_AT)
-    cast = with_faults(cast, resolved, console.tick_hz)._replace(ledger=ledger)
+    cast = isolated(with_faults(cast, resolved, console.tick_hz))._replace(ledger=ledger)
 
     def summary() -> dict[str, Any]:
         own = {**counters(), **can_summary(), **told(acts())}
@@ -155,7 +156,7 @@ def open_realtime(
     standby = (supervisor.publish, port.stand, *((ecu.stand,) if isinstance(ecu, CommandPort) else ()))
     cast = Cast(seating.devices, port, recorder, outputs, pace, seating.seat, ecu=ecu, standby=standby)
     ledger = Ledger(time.monotonic_ns, console.tick_hz)
-    cast = with_faults(cast, resolved, console.tick_hz)._replace(ledger=ledger)
+    cast = isolated(with_faults(cast, resolved, console.tick_hz))._replace(ledger=ledger)
 
     def summary() -> dict[str, Any]:
         kept = {**bridge_summary(folder), **can_summary(folder), **acts_summary(folder)}

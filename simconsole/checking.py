@@ -17,6 +17,7 @@ from simconsole.drive import Cast, run
 from simconsole.errors import ProfileError
 from simconsole.faulting import with_faults
 from simconsole.handling.attempt import Result
+from simconsole.isolation import isolated
 from simconsole.kernels import Row
 from simconsole.manoeuvring import drive, judge_limit
 from simconsole.memory import MemoryRecorder
@@ -97,7 +98,7 @@ def drive_scenario(scenario: ScenarioProfile) -> tuple[MemoryRecorder, tuple[str
     commands = ScriptedCommands(scenario.remote, scenario.events, tick_hz)
     ecu = ScriptedCommands(scenario.ecu, scenario.ecu_events, tick_hz)
     cast = Cast(devices, commands, recorder, (), UnpacedPacer(), ecu=ecu)
-    run(console, state, with_faults(cast, resolved, tick_hz), ticks)
+    run(console, state, isolated(with_faults(cast, resolved, tick_hz)), ticks)
     return recorder, console.columns
 
 

@@ -9,9 +9,11 @@ from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple, get_args
 
 from simconsole.assembly import ResolvedSession
-from simconsole.devices.faults import FaultyDevices
+from simconsole.commanding_faults import FaultyCommands
+from simconsole.devices.faults import FaultyDevices, Switched
 from simconsole.devices.settings import settings
 from simconsole.drive import Cast
+from simconsole.process_faults import RaisingCommands, RaisingDevices, RaisingStation, StallingPace
 from simconsole.profiles import faults as kinds
 from simconsole.profiles.faults import Fault, Onset
 from simconsole.rows import Snapshot
@@ -91,7 +93,37 @@ def devices(cast: Cast, armed: Sequence[Armed], setting: Setting) -> Cast:
     return cast._replace(devices=faulty)
 
 
-SERVES: Final[dict[type[Onset], Layer]] = dict.fromkeys(get_args(kinds.DeviceFault), devices)
+def controllers(cast: Cast, armed: Sequence[Armed], setting: Setting) -> Cast:
+    """Put command faults between the controllers and the arbiter."""
+    ros = [entry for entry in armed if entry.fault.controller == "ros"]  # type: ignore[union-attr]  # CommandFault
+    can = [entry for entry in armed if entry.fault.controller == "can"]  # type: ignore[union-attr]  # CommandFault
+    return cast._replace(
+        commands=FaultyCommands(cast.commands, ros, setting.tick_hz) if ros else cast.commands,
+        ecu=FaultyCommands(cast.ecu, can, setting.tick_hz) if can else cast.ecu,
+    )
+
+
+def process(cast: Cast, armed: Sequence[Armed], setting: Setting) -> Cast:
+    """Let the loop stand still, and its parts raise."""
+    switches: dict[str, list[Switched]] = {}
+    for fault, switch in armed:
+        if isinstance(fault, kinds.Raises):
+            switches.setdefault(fault.part, []).append(switch)
+    stalls = [(fault.stall_ms, switch) for fault, switch in armed if isinstance(fault, kinds.Stall)]
+    return cast._replace(
+        pace=StallingPace(cast.pace, stalls) if stalls else cast.pace,
+        devices=RaisingDevices(cast.devices, switches["devices"]) if "devices" in switches else cast.devices,
+        commands=RaisingCommands(cast.commands, switches["ros"]) if "ros" in switches else cast.commands,
+        ecu=RaisingCommands(cast.ecu, switches["can"]) if "can" in switches else cast.ecu,
+        stations=((*cast.stations, RaisingStation(switches["stations"])) if "stations" in switches else cast.stations),
+    )
+
+
+SERVES: Final[dict[type[Onset], Layer]] = {
+    **dict.fromkeys(get_args(kinds.DeviceFault), devices),
+    **dict.fromkeys(get_args(kinds.CommandFault), controllers),
+    **dict.fromkeys(get_args(kinds.ProcessFault), process),
+}
 """The layer of every kind of fault."""
 
 

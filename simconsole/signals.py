@@ -74,19 +74,13 @@ class Reason(IntEnum):
 class Commander(IntEnum):
     """Which controller is the remote side: control/commander.py holds the rule."""
 
-    NOBODY = 0
-    ROS = 1
-    ECU = 2
+    NOBODY, ROS, ECU = range(3)
 
 
 class LinkState(IntEnum):
     """How far a controller's commands may be relied on."""
 
-    NEVER = 0  # no command yet
-    UNSTEADY = 1  # fresh, but not for long enough to engage
-    STEADY = 2
-    STALE = 3
-    INVALID = 4
+    NEVER, UNSTEADY, STEADY, STALE, INVALID = range(5)  # unsteady: fresh, but not for long enough to engage
 
 
 class RemoteKind(IntEnum):
@@ -256,6 +250,7 @@ class ArbiterMemory(NamedTuple):
     speed_integral_mps2: float
     stop_accel_mps2: float  # deceleration that a safe stop asks for now (<= 0)
     hold_road_wheel_rad: float  # where a safe or emergency stop holds the wheels
+    stop_steered: float  # 1: the controller, which is not at fault, still steers the safe stop
     shared_trade: float  # -1: the person has pushed the controller away, 1: it has its full share
 
 

@@ -40,7 +40,8 @@ UNITLESS = {
     *("wheel_motor", "ramp", "clipped", "enabled", "hands_on", "live", "ecu_events", "fresh", "invalid", "lever_fault"),
     *("anti_lock_off", "traction_off", "stability_off", "gear_fault"),
     # members of an enumeration
-    *("kind", "mode", "reason", "refusal", "gear", "direction", "takeover_stage", "commander", "state", "restarted"),
+    *("kind", "mode", "reason", "refusal", "gear", "direction", "takeover_stage", "commander", "state"),
+    *("restarted", "stop_steered"),
     *("wheel_validity", "throttle_validity", "brake_validity", "clutch_validity", "shifter_validity"),
 }  # fmt: skip
 

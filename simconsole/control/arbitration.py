@@ -7,7 +7,15 @@ The person's brake is never faded down: it counts in full in every mode.
 
 from typing import Final, NamedTuple
 
-from simconsole.control.authority import RemoteSide, Shares, blend, remote_side, shares_of, transmission_of
+from simconsole.control.authority import (
+    RemoteSide,
+    Shares,
+    blend,
+    remote_side,
+    shares_of,
+    steered_stop,
+    transmission_of,
+)
 from simconsole.control.commander import Controllers, look
 from simconsole.control.decision import Decision, decide, takeover_stage
 from simconsole.control.moment import Moment
@@ -57,7 +65,7 @@ def arbitrate(now: Moment) -> tuple[ArbiterMemory, Link, Link, Arbitration, Requ
     side = remote_side(now, decision, shares, controllers.offered, controllers.link, seen.person)
     transmission = transmission_of(now, decision.mode, side.direction)
     return (
-        _remembered(seen, decision, side, mode_ticks, shared.trade),
+        _remembered(seen, decision, side, mode_ticks, shared.trade, steered_stop(now, decision, controllers.link)),
         controllers.ros_link,
         controllers.ecu_link,
         _shown(
@@ -95,7 +103,9 @@ def _see(now: Moment) -> Seen:
 
 
 @kernel
-def _remembered(seen: Seen, decision: Decision, side: RemoteSide, mode_ticks: float, trade: float) -> ArbiterMemory:
+def _remembered(
+    seen: Seen, decision: Decision, side: RemoteSide, mode_ticks: float, trade: float, stop_steered: float
+) -> ArbiterMemory:
     return ArbiterMemory(
         mode_ticks,
         seen.watch.reference_rad,
@@ -106,6 +116,7 @@ def _remembered(seen: Seen, decision: Decision, side: RemoteSide, mode_ticks: fl
         side.speed_integral_mps2,
         side.stop_accel_mps2,
         side.hold_road_wheel_rad,
+        stop_steered,
         trade if decision.mode == _SHARED else 1.0,
     )
 

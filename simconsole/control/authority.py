@@ -10,7 +10,7 @@ from simconsole.control.remote import RemoteRequest
 from simconsole.control.settings import ControlSettings
 from simconsole.control.stops import safe_stop, stop_start
 from simconsole.kernels import approach, clip, kernel
-from simconsole.signals import Arbitration, DriverInput, Link, Mode, Request, VehicleCommand
+from simconsole.signals import Arbitration, DriverInput, Link, Mode, Reason, Request, VehicleCommand
 
 _PARKED: Final = float(Mode.PARKED)
 _MANUAL: Final = float(Mode.MANUAL)
@@ -19,6 +19,8 @@ _AUTONOMOUS: Final = float(Mode.AUTONOMOUS)
 _TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)
 _MINIMAL_RISK: Final = float(Mode.MINIMAL_RISK)
 _STOPPED: Final = float(Mode.STOPPED)
+_NO_REACTION: Final = float(Reason.NO_REACTION)
+_LOOP_STALL: Final = float(Reason.LOOP_STALL)
 _EMERGENCY_STOP: Final = float(Mode.EMERGENCY_STOP)
 
 
@@ -115,7 +117,7 @@ def remote_side(
             offered.road_wheel_rad, offered.throttle, offered.brake, offered.direction, integral, 0.0, hold
         )
     if mode == _MINIMAL_RISK:
-        return _safe_side(now, entered, hold)
+        return _safe_side(now, entered, hold, offered.road_wheel_rad, steered_stop(now, decision, link) > 0.0)
     brake = now.settings.emergency_brake if mode == _EMERGENCY_STOP else now.settings.hold_brake
     return RemoteSide(hold, 0.0, brake, 0.0, 0.0, 0.0, hold)
 
@@ -180,11 +182,27 @@ def _held_back(now: Moment, offered: RemoteRequest) -> RemoteRequest:
 
 
 @kernel
-def _safe_side(now: Moment, entered: bool, hold_rad: float) -> RemoteSide:
+def steered_stop(now: Moment, decision: Decision, link: Link) -> float:
+    """Return 1 while the controller goes on steering a safe stop: it drove, nothing is wrong with it, and never was.
+
+    So a car whose person did not react, or whose loop stood still, stops in its lane.
+    """
+    if decision.mode != _MINIMAL_RISK or link.fresh == 0.0 or link.invalid > 0.0:
+        return 0.0
+    if decision.changed == 0.0:
+        return now.memory.stop_steered
+    drove = now.before.mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED)
+    return 1.0 if drove and decision.reason in (_NO_REACTION, _LOOP_STALL) else 0.0
+
+
+@kernel
+def _safe_side(now: Moment, entered: bool, hold_rad: float, offered_rad: float, steered: bool) -> RemoteSide:
     accel = stop_start(now.vehicle, now.settings) if entered else now.memory.stop_accel_mps2
     integral = 0.0 if entered else now.memory.speed_integral_mps2
     stop = safe_stop(accel, integral, now.vehicle, now.settings, now.tick_s)
-    road_wheel_rad = approach(hold_rad, 0.0, now.settings.stop_road_wheel_decay_radps * now.tick_s)
+    road_wheel_rad = offered_rad
+    if not steered:
+        road_wheel_rad = approach(hold_rad, 0.0, now.settings.stop_road_wheel_decay_radps * now.tick_s)
     return RemoteSide(
         road_wheel_rad,
         0.0,

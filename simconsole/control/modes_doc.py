@@ -22,7 +22,7 @@ _AUTHORITY = """## What each mode does
 | SHARED | both: blended, or haptic | blended, fixed authority | person, or the car if the controller has a share |
 | AUTONOMOUS | controller | controller; person while the accelerator is pressed | car |
 | TAKEOVER_REQUESTED | as AUTONOMOUS; escalates after 4 s, MINIMAL_RISK after 10 s | as AUTONOMOUS | car |
-| MINIMAL_RISK | last angle, slowly to straight | 2.5 m/s2 reached with 1.5 m/s3, at most 4 m/s2 | car |
+| MINIMAL_RISK | last angle, slowly to straight; the controller if it is well | 2.5 m/s2 by 1.5 m/s3, at most 4 | car |
 | STOPPED | held | brake and handbrake on | neutral |
 | EMERGENCY_STOP | held | full service brake | car |
 

@@ -154,7 +154,67 @@ class TwoGears(Onset, frozen=True, kw_only=True, tag_field="kind", tag="two_gear
 DeviceFault: TypeAlias = Unplug | Freeze | Stuck | Swapped | Noise | Late | Invalid | Burst | TwoGears
 """Between the devices and the cockpit (devices/faults.py)."""
 
-Fault: TypeAlias = DeviceFault
+ControllerName: TypeAlias = Literal["ros", "can"]
+
+
+class Silent(Onset, frozen=True, kw_only=True, tag_field="kind", tag="silent"):
+    """The controller's commands stop coming; nobody says so."""
+
+    controller: ControllerName = "ros"
+
+
+class Disconnected(Onset, frozen=True, kw_only=True, tag_field="kind", tag="disconnected"):
+    """The controller's connection closes: its loss is told once, then there is silence."""
+
+    controller: ControllerName = "ros"
+
+
+class Refused(Onset, frozen=True, kw_only=True, tag_field="kind", tag="refused"):
+    """Every command is refused at the bridge: an old stamp, no number, out of range, a wrong type or frame."""
+
+    controller: ControllerName = "ros"
+
+
+class LateCommands(Onset, frozen=True, kw_only=True, tag_field="kind", tag="late_commands"):
+    """Commands arrive, steadily, `by_ms` older than they were."""
+
+    by_ms: Annotated[float, Meta(gt=0.0, le=5000.0)]
+    controller: ControllerName = "ros"
+
+
+class NotFinite(Onset, frozen=True, kw_only=True, tag_field="kind", tag="not_finite"):
+    """A command that is no number passes the bridge all the same: the arbiter and the gate are a second line."""
+
+    controller: ControllerName = "ros"
+
+
+class Astray(Onset, frozen=True, kw_only=True, tag_field="kind", tag="astray"):
+    """The controller asks for another road-wheel angle, in range and finite: the gate lets it come slowly at most."""
+
+    road_wheel_deg: Annotated[float, Meta(ge=-60.0, le=60.0)]
+    controller: ControllerName = "ros"
+
+
+CommandFault: TypeAlias = Silent | Disconnected | Refused | LateCommands | NotFinite | Astray
+"""Between a controller and the arbiter (commanding_faults.py)."""
+
+
+class Stall(Onset, frozen=True, kw_only=True, tag_field="kind", tag="stall"):
+    """The control loop stands still for this long, once; simulated time stands with it."""
+
+    stall_ms: Annotated[float, Meta(gt=0.0, le=60_000.0)]
+
+
+class Raises(Onset, frozen=True, kw_only=True, tag_field="kind", tag="raises"):
+    """A part of the drive raises an exception whenever it is called."""
+
+    part: Literal["devices", "ros", "can", "stations"]
+
+
+ProcessFault: TypeAlias = Stall | Raises
+"""Of the process that the loop runs in (process_faults.py)."""
+
+Fault: TypeAlias = DeviceFault | CommandFault | ProcessFault
 """Every kind there is."""
 
 Faults: TypeAlias = Annotated[tuple[Fault, ...], Meta(max_length=MAX_FAULTS)]

@@ -78,3 +78,35 @@ def test_a_vehicle_whose_speed_is_no_number_is_braked_and_never_counts_as_standi
     assert rig.mode is Mode.MINIMAL_RISK
     assert rig.command.brake > 0.2
     assert rig.command.gear == 0.0
+
+
+@pytest.mark.parametrize("event", [Event.LOOP_STALL, None])
+def test_a_controller_that_is_well_goes_on_steering_the_stop(make_rig: MakeRig, event: Event | None) -> None:
+    rig = make_rig().drive(Mode.TAKEOVER_REQUESTED)
+    if event is None:
+        rig.until(Mode.MINIMAL_RISK)
+    else:
+        rig.tick(event)
+    assert rig.reason is (Reason.NO_REACTION if event is None else Reason.LOOP_STALL)
+    rig.remote = rig.remote._replace(road_wheel_rad=0.02)
+    rig.run(0.5)
+    assert rig.command.road_wheel_rad == pytest.approx(0.02)
+    assert rig.command.brake > 0.0
+    rig.sending = False
+    rig.run(0.3)
+    held = rig.command.road_wheel_rad
+    assert 0.0 <= held < 0.02, "silent by now: held, and slowly straightened"
+    rig.sending = True
+    rig.remote = rig.remote._replace(road_wheel_rad=-0.02)
+    rig.run(0.5)
+    assert rig.mode is Mode.MINIMAL_RISK
+    assert 0.0 <= rig.command.road_wheel_rad <= held, "a controller that failed once steers this stop no more"
+
+
+def test_a_controller_that_did_not_drive_does_not_steer_the_stop(make_rig: MakeRig) -> None:
+    rig = make_rig().drive(Mode.MANUAL)
+    rig.send(road_wheel_rad=0.05)
+    rig.run(0.5)
+    rig.tick(Event.LOOP_STALL)
+    rig.run(1.0)
+    assert (rig.mode, rig.command.road_wheel_rad) == (Mode.MINIMAL_RISK, 0.0)
