@@ -95,6 +95,9 @@ def _driving(commands: Any) -> None:
         "mark",
         "reset",
         "estop",
+        "anti_lock",
+        "traction",
+        "stability",
     )
     operate.add_argument("act", choices=acts, metavar="ACT", help=", ".join(acts))
     operate.add_argument("--note", default="", metavar="TEXT", help="kept with the drive")

@@ -1,6 +1,17 @@
-from simconsole.profiles.scenario import EventStep, RemoteStep
+from typing import get_args
+
+import pytest
+
+from simconsole.assembly import assemble
+from simconsole.compiling import compiled
+from simconsole.pipeline import advance
+from simconsole.profile_files import load
+from simconsole.profiles.scenario import EventName, EventStep, RemoteStep
+from simconsole.profiles.session import SessionProfile
+from simconsole.rows import TickInputs
 from simconsole.scripted import ScriptedCommands
-from simconsole.signals import NEVER_TICKS, Event, RemoteKind
+from simconsole.session_files import resolve
+from simconsole.signals import NEVER_TICKS, NO_SAMPLE, Event, RemoteKind
 
 
 def commands(**keys: object) -> ScriptedCommands:
@@ -29,3 +40,20 @@ def test_an_event_lasts_one_tick() -> None:
 
 def test_degrees_become_radians() -> None:
     assert abs(commands(road_wheel_deg=10.0).take(10)[0].road_wheel_rad - 0.17453292519943295) < 1e-16
+
+
+@pytest.mark.parametrize("name", get_args(EventName))
+def test_every_name_of_an_event_is_one(name: str) -> None:
+    source = ScriptedCommands([], [EventStep(at_s=0.0, event=name)], 100)  # type: ignore[arg-type]  # of the Literal
+    assert int(source.take(0)[1].events) == Event[name.upper()]
+
+
+def test_a_scripted_event_switches_stability_control_off_in_the_car_of_a_drive() -> None:
+    console, state = assemble(resolve(load("sessions", "seated", SessionProfile)), compiled)
+    script = [EventStep(at_s=0.02, event="toggle_stability"), EventStep(at_s=0.1, event="toggle_stability")]
+    source = ScriptedCommands([], script, console.tick_hz)
+    off = []
+    for tick in range(50):
+        state, snapshot = advance(state, TickInputs(NO_SAMPLE, *source.take(tick)), console)
+        off.append(snapshot.command.stability_off)
+    assert off == [float(5 <= tick < 25) for tick in range(50)]

@@ -37,6 +37,9 @@ REQUESTS: Final[dict[str, Event]] = {
     "start": Event.START,
     "restart": Event.RESTART,
     "fault": Event.FAULT,
+    "anti_lock": Event.TOGGLE_ANTI_LOCK,
+    "traction": Event.TOGGLE_TRACTION,
+    "stability": Event.TOGGLE_STABILITY,
 }
 # autoware_vehicle_msgs/GearCommand: NEUTRAL 1, DRIVE 2 to DRIVE_18 19, REVERSE 20 and 21, PARK 22, LOW 23 and 24.
 DIRECTIONS: Final[dict[int, float]] = {

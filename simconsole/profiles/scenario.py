@@ -10,7 +10,16 @@ from simconsole.profiles.session import Section, SessionProfile
 
 Seconds = Annotated[float, Meta(ge=0.0, le=86_400.0)]
 EventName = Literal[
-    "emergency_stop", "reset", "request_manual", "request_autonomous", "request_takeover", "commander_lost", "mark"
+    "emergency_stop",
+    "reset",
+    "request_manual",
+    "request_autonomous",
+    "request_takeover",
+    "commander_lost",
+    "mark",
+    "toggle_anti_lock",
+    "toggle_traction",
+    "toggle_stability",
 ]
 
 
