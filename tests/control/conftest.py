@@ -99,31 +99,34 @@ class Rig:
             self.ecu = self.ecu._replace(sequence=self.ecu.sequence + 1.0, age_ticks=0.0)
         elif self.ecu.sequence > 0.0:
             self.ecu = self.ecu._replace(age_ticks=self.ecu.age_ticks + 1.0)
-        driver = self.driver._replace(edges=float(edge), pressed=float(int(self.driver.pressed) | int(edge)))
         self.memory, self.ros_link, self.ecu_link, self.arbitration, self.request = arbitrate(
-            Moment(
-                driver,
-                self.remote,
-                self.ecu,
-                EventInput(float(event), ecu_events=float(ecu_event)),
-                self.vehicle,
-                self.memory,
-                self.ros_link,
-                self.ecu_link,
-                self.arbitration,
-                self.command,
-                0.0,
-                0.0,
-                self.human_nm,
-                self.settings,
-                self.tick_s,
-            )
+            self.moment(event, edge, ecu_event)
         )
         remote = self.ecu if self.arbitration.commander == Commander.ECU else self.remote
         self.command = gate(
             self.request, remote, self.arbitration, self.command, self.vehicle, self.settings, self.tick_s
         )
         self._move()
+
+    def moment(self, event: Event | int = 0, edge: Button | int = 0, ecu_event: Event | int = 0) -> Moment:
+        """Return what arbitration would decide from now."""
+        return Moment(
+            self.driver._replace(edges=float(edge), pressed=float(int(self.driver.pressed) | int(edge))),
+            self.remote,
+            self.ecu,
+            EventInput(float(event), ecu_events=float(ecu_event)),
+            self.vehicle,
+            self.memory,
+            self.ros_link,
+            self.ecu_link,
+            self.arbitration,
+            self.command,
+            0.0,
+            0.0,
+            self.human_nm,
+            self.settings,
+            self.tick_s,
+        )
 
     def _move(self) -> None:
         v = self.vehicle

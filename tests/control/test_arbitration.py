@@ -284,3 +284,24 @@ def test_values_that_are_no_numbers_from_the_cockpit_are_a_lost_cockpit(make_rig
     rig.tick()
     assert GateLimit.NON_FINITE in GateLimit(int(rig.command.gate_active))
     assert all(math.isfinite(value) for value in (*rig.memory, *rig.arbitration, *rig.command))
+
+
+def test_with_the_wheel_lost_the_brake_still_brakes_and_the_controller_steers_on(make_rig: MakeRig) -> None:
+    """The person cannot have the car back without a wheel; the request to take over stays until there is one."""
+    rig = make_rig().drive(Mode.AUTONOMOUS)
+    rig.send(road_wheel_rad=0.05, accel_mps2=1.0)
+    rig.run(1.0)
+    rig.driver = rig.driver._replace(wheel_validity=float(Validity.LOST), brake=0.6)
+    rig.tick()
+    rig.tick()
+    assert (rig.mode, rig.reason) == (Mode.TAKEOVER_REQUESTED, Reason.DEVICE_LOST)
+    assert rig.command.throttle == 0.0
+    rig.run(0.2)
+    assert rig.command.brake == 0.6
+    assert rig.command.road_wheel_rad == pytest.approx(0.05)
+    rig.driver = rig.driver._replace(brake=0.0)
+    rig.run(0.5)
+    assert (rig.mode, rig.command.brake) == (Mode.TAKEOVER_REQUESTED, 0.0)
+    rig.driver = rig.driver._replace(wheel_validity=float(Validity.LIVE), brake=0.6)
+    rig.tick()
+    assert (rig.mode, rig.reason) == (Mode.MANUAL, Reason.BRAKE_OVERRIDE)

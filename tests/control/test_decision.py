@@ -1,0 +1,132 @@
+"""The decision number by number: what is refused, how long it is shown, and what a change carries."""
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from simconsole.control.arbitration import arbitrate
+from simconsole.control.commander import look
+from simconsole.control.decision import decide
+from simconsole.control.moment import Moment
+from simconsole.control.person import Person
+from simconsole.signals import Commander, Event, Link, LinkState, Mode, Reason, RemoteKind
+
+THERE = Person(1.0, 1.0, 0.0, 0.0, 0.0)
+STEADY = Link(7.0, 0.0, 0.0, 900.0, 1.0, 0.0, 100.0, float(LinkState.STEADY))
+START = float(Reason.START)
+
+
+@pytest.fixture
+def now(make_rig: Callable[..., Any]) -> Moment:
+    moment = make_rig().moment()
+    ros = moment.ros._replace(kind=float(RemoteKind.ACTUATION), sequence=7.0, age_ticks=1.0, direction=1.0)
+    manual = moment.before._replace(mode=float(Mode.MANUAL), commander=float(Commander.ROS))
+    return moment._replace(ros=ros, ros_before=STEADY, before=manual)  # type: ignore[no-any-return]
+
+
+def decided(
+    now: Moment, event: Event | int = 0, person: Person = THERE, ecu_event: Event | int = 0
+) -> tuple[float, ...]:
+    asked = now._replace(events=now.events._replace(events=float(event), ecu_events=float(ecu_event)))
+    return decide(asked, person, look(asked), False, False)
+
+
+def test_nothing_happens(now: Moment) -> None:
+    assert decided(now) == (Mode.MANUAL, START, 0.0, 0.0, 0.0)
+
+
+def test_each_request_has_its_own_refusal(now: Moment) -> None:
+    fast = now._replace(vehicle=now.vehicle._replace(vx_mps=30.0))
+    too_fast = float(Reason.REFUSED_TOO_FAST)
+    for event in (Event.REQUEST_AUTONOMOUS, Event.REQUEST_SHARED):
+        assert decided(fast, event) == (Mode.MANUAL, START, 0.0, too_fast, 0.0)
+    stopped = now._replace(before=now.before._replace(mode=float(Mode.STOPPED)))
+    assert decided(stopped, Event.RESET) == (Mode.STOPPED, START, 0.0, float(Reason.REFUSED_MOVING), 0.0)
+    foot = THERE._replace(throttle=0.9)
+    assert decided(stopped, Event.REQUEST_MANUAL, foot)[3] == Reason.REFUSED_THROTTLE_PRESSED
+    alone = now._replace(settings=now.settings._replace(person_required=0.0))
+    absent = THERE._replace(trusted=0.0)
+    driven = alone._replace(before=now.before._replace(mode=float(Mode.AUTONOMOUS)))
+    assert decided(driven, Event.REQUEST_SHARED, absent)[3] == Reason.REFUSED_NOT_ARMED
+    assert decided(fast, Event.REQUEST_AUTONOMOUS | Event.REQUEST_SHARED)[3] == too_fast
+
+
+def test_requests_that_are_granted(now: Moment) -> None:
+    for event, mode in ((Event.REQUEST_AUTONOMOUS, Mode.AUTONOMOUS), (Event.REQUEST_SHARED, Mode.SHARED)):
+        assert decided(now, event) == (mode, Reason.OPERATOR_ASKED, 1.0, 0.0, 0.0)
+    shown = now._replace(before=now.before._replace(refusal=float(Reason.REFUSED_MOVING)))
+    assert decided(shown, Event.EMERGENCY_STOP) == (Mode.EMERGENCY_STOP, Reason.EMERGENCY, 1.0, 0.0, 0.0)
+
+
+def test_a_person_is_needed_where_the_profile_says_so(now: Moment) -> None:
+    driven = now._replace(before=now.before._replace(mode=float(Mode.AUTONOMOUS)))
+    absent = THERE._replace(trusted=0.0)
+    assert decided(driven, person=absent)[:2] == (Mode.TAKEOVER_REQUESTED, Reason.DEVICE_LOST)
+    alone = driven._replace(settings=now.settings._replace(person_required=0.0))
+    assert decided(alone, person=absent)[0] == Mode.AUTONOMOUS
+
+
+def test_an_ecu_that_does_not_command_is_refused_in_words(now: Moment) -> None:
+    unheard = decided(now, ecu_event=Event.REQUEST_AUTONOMOUS)
+    assert unheard == (Mode.MANUAL, START, 0.0, float(Reason.REFUSED_NOT_COMMANDER), 0.0)
+    fast = now._replace(vehicle=now.vehicle._replace(vx_mps=30.0))
+    both = decided(fast, Event.REQUEST_AUTONOMOUS, ecu_event=Event.REQUEST_SHARED)
+    assert both[3] == Reason.REFUSED_TOO_FAST
+
+
+def test_a_refusal_is_shown_and_counted_until_its_time_is_over(now: Moment) -> None:
+    refusal = float(Reason.REFUSED_MOVING)
+    reason = float(Reason.ARMED)
+    before = now.before._replace(refusal=refusal, reason=reason)
+    shown = now._replace(before=before, memory=now.memory._replace(refusal_ticks=10.0))
+    assert decided(shown) == (Mode.MANUAL, reason, 0.0, refusal, 11.0)
+    last = now.settings.refusal_ticks - 1.0
+    over = now._replace(before=before, memory=now.memory._replace(refusal_ticks=last))
+    assert decided(over) == (Mode.MANUAL, reason, 0.0, 0.0, 0.0)
+    nearly = now._replace(before=before, memory=now.memory._replace(refusal_ticks=last - 1.0))
+    assert decided(nearly) == (Mode.MANUAL, reason, 0.0, refusal, last)
+
+
+def test_who_commands_and_what_the_other_asks_for(now: Moment) -> None:
+    held = now.command_before._replace(road_wheel_rad=0.2)
+    ecu = now.ros._replace(road_wheel_rad=0.04, throttle=0.5, sequence=1.0)
+    both = now._replace(ecu=ecu, ecu_before=STEADY, command_before=held, ros=now.ros._replace(road_wheel_rad=0.03))
+    seen = look(both)
+    assert (seen.commander, seen.remote, seen.offered.road_wheel_rad) == (Commander.ROS, both.ros, 0.03)
+    assert (seen.ecu_offered.road_wheel_rad, seen.ecu_offered.throttle) == (0.04, 0.5)
+    by_ecu = look(both._replace(settings=now.settings._replace(preferred_commander=float(Commander.ECU))))
+    assert (by_ecu.commander, by_ecu.remote, by_ecu.offered.road_wheel_rad) == (Commander.ECU, ecu, 0.04)
+    assert by_ecu.link == by_ecu.ecu_link
+    silent = look(both._replace(ecu=ecu._replace(sequence=0.0)))
+    assert silent.ecu_offered == (0.2, 0.0, 0.0, 0.0, 0.0)
+    last = STEADY._replace(lease_ticks=2.0)
+    leased = look(now._replace(ros=now.ros._replace(age_ticks=1e9), ros_before=last))
+    assert leased.commander == Commander.ROS
+    over = look(now._replace(ros=now.ros._replace(age_ticks=1e9), ros_before=last._replace(lease_ticks=1.0)))
+    assert over.commander == Commander.NOBODY
+    ecu_alone = now._replace(ros=now.ros._replace(age_ticks=1e9), ros_before=STEADY._replace(lease_ticks=0.0))
+    ecu_alone = ecu_alone._replace(ecu=ecu._replace(age_ticks=1e9), ecu_before=last)
+    assert look(ecu_alone).commander == Commander.ECU
+
+
+def test_only_the_commanders_integral_goes_on(now: Moment) -> None:
+    speed = now.ros._replace(kind=float(RemoteKind.SPEED), speed_mps=10.1)
+    moving = now.vehicle._replace(vx_mps=10.0, coast_accel_mps2=-0.3, full_throttle_accel_mps2=3.0)
+    both = now._replace(ros=speed, ecu=speed, ecu_before=STEADY, vehicle=moving)
+    both = both._replace(memory=now.memory._replace(speed_integral_mps2=0.5))
+    for commander in (Commander.ROS, Commander.ECU):
+        seen = look(both._replace(settings=now.settings._replace(preferred_commander=float(commander))))
+        step = now.settings.integral_gain_per_s * 0.1 * now.tick_s
+        mine, other = seen.ros_offered, seen.ecu_offered
+        if commander is Commander.ECU:
+            mine, other = other, mine
+        assert mine.speed_integral_mps2 == pytest.approx(0.5 + step)
+        assert other.speed_integral_mps2 == pytest.approx(step)
+
+
+def test_a_twist_of_standing_keeps_the_angle_in_force(now: Moment) -> None:
+    twist = now.ros._replace(kind=float(RemoteKind.TWIST), speed_mps=0.0, yaw_rate_radps=1.0)
+    held = now._replace(ros=twist, command_before=now.command_before._replace(road_wheel_rad=0.2))
+    assert look(held).ros_offered.road_wheel_rad == 0.2
+    assert arbitrate(held)[3].ros_road_wheel_rad == 0.2

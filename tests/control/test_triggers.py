@@ -1,0 +1,169 @@
+"""Guards one by one: which trigger comes from what, and which refusal."""
+
+import itertools
+import math
+
+import pytest
+
+from simconsole.control.engage import GRANTED
+from simconsole.control.modes import Trigger
+from simconsole.control.person import Person
+from simconsole.control.settings import ControlSettings
+from simconsole.control.triggers import (
+    Asked,
+    asked_of,
+    asked_triggers,
+    fault_triggers,
+    manual_refusal,
+    person_triggers,
+    refusal_of,
+    reset_refusal,
+)
+from simconsole.signals import Button, DriverInput, Event, Link, Mode, Reason
+
+NOBODY = DriverInput(*(0.0,) * len(DriverInput._fields))
+NOTHING = Asked(*(0.0,) * len(Asked._fields))
+THERE = Person(1.0, 1.0, 0.0, 0.0, 0.0)
+GOOD = Link(*(0.0,) * len(Link._fields))._replace(fresh=1.0)
+
+
+def names(mask: int) -> set[str]:
+    return {trigger.name for trigger in Trigger if mask >> trigger & 1}
+
+
+@pytest.mark.parametrize(
+    ("events", "edges", "pressed", "expected"),
+    [
+        (Event.EMERGENCY_STOP, 0, 0, {"emergency"}),
+        (0, Button.EMERGENCY_STOP, 0, {"emergency"}),
+        (0, 0, Button.EMERGENCY_STOP, {"emergency", "emergency_held"}),
+        (Event.RESET, 0, 0, {"reset"}),
+        (0, Button.RESET, 0, {"reset"}),
+        (0, 0, Button.RESET, set()),
+        (Event.REQUEST_MANUAL, 0, 0, {"manual"}),
+        (0, Button.MANUAL, 0, {"manual", "by_person"}),
+        (Event.REQUEST_AUTONOMOUS, 0, 0, {"autonomous"}),
+        (0, Button.AUTONOMOUS, 0, {"autonomous", "by_person"}),
+        (Event.REQUEST_TAKEOVER, 0, 0, {"takeover"}),
+        (Event.REQUEST_SHARED, 0, 0, {"shared"}),
+        (Event.MARK | Event.LOOP_STALL, Button.SHIFT_UP, Button.INDICATOR_LEFT, set()),
+        (0, 0, 0, set()),
+        (
+            Event.REQUEST_SHARED | Event.RESET,
+            Button.AUTONOMOUS | Button.MARK,
+            Button.MANUAL,
+            {"shared", "reset", "autonomous", "by_person"},
+        ),
+    ],
+)
+def test_what_is_asked(events: int, edges: int, pressed: int, expected: set[str]) -> None:
+    asked = asked_of(NOBODY._replace(edges=float(edges), pressed=float(pressed)), int(events))
+    assert set(asked) <= {0.0, 1.0}
+    assert {name for name, value in asked._asdict().items() if value} == expected
+
+
+@pytest.mark.parametrize("mode", Mode)
+def test_manual_is_refused_in_an_emergency_and_without_a_person(mode: Mode, control: ControlSettings) -> None:
+    usual = Reason.REFUSED_EMERGENCY if mode is Mode.EMERGENCY_STOP else GRANTED
+    assert manual_refusal(float(mode), THERE, control) == usual
+    absent = Reason.REFUSED_EMERGENCY if mode is Mode.EMERGENCY_STOP else Reason.REFUSED_NOT_ARMED
+    assert manual_refusal(float(mode), THERE._replace(trusted=0.0), control) == absent
+    foot = THERE._replace(throttle=control.throttle_override)
+    pressed = Reason.REFUSED_THROTTLE_PRESSED if mode in (Mode.PARKED, Mode.STOPPED) else usual
+    assert manual_refusal(float(mode), foot, control) == pressed
+    assert manual_refusal(float(mode), THERE._replace(throttle=control.throttle_override - 1e-9), control) == usual
+
+
+def test_a_reset_needs_a_released_button_and_standstill() -> None:
+    assert reset_refusal(NOTHING, True) == GRANTED
+    assert reset_refusal(NOTHING, False) == Reason.REFUSED_MOVING
+    for name, standing in itertools.product(("emergency", "emergency_held"), (True, False)):
+        assert reset_refusal(NOTHING._replace(**{name: 1.0}), standing) == Reason.REFUSED_EMERGENCY
+
+
+@pytest.mark.parametrize("mode", Mode)
+def test_triggers_of_the_cockpit(mode: Mode, control: ControlSettings) -> None:
+    def present(person: Person, steering: bool = False, settings: ControlSettings = control) -> set[str]:
+        return names(person_triggers(float(mode), person, steering, settings))
+
+    assert present(THERE) == {"PERSON_READY"}
+    assert present(THERE, steering=True) == {"PERSON_READY", "STEERING"}
+    assert present(THERE._replace(brake=control.brake_override)) == {"PERSON_READY", "BRAKE"}
+    assert present(THERE._replace(brake=control.brake_override - 1e-9)) == {"PERSON_READY"}
+    assert present(THERE._replace(throttle=control.throttle_override)) == set()
+    assert present(THERE._replace(throttle=control.throttle_override - 1e-9)) == {"PERSON_READY"}
+    assert present(THERE._replace(throttle=0.9, brake=0.9), steering=True) == {"STEERING", "BRAKE"}
+    lost = THERE._replace(trusted=0.0, brake=1.0)
+    assert present(lost, steering=True) == {"DEVICE_LOST"}
+    alone = control._replace(person_required=0.0)
+    assert present(lost, settings=alone) == ({"DEVICE_LOST"} if mode in (Mode.MANUAL, Mode.SHARED) else set())
+
+
+def test_triggers_that_nobody_asked_for() -> None:
+    def present(link: Link = GOOD, events: int = 0, no_reaction: bool = False, standing: bool = False) -> set[str]:
+        return names(fault_triggers(link, int(events), no_reaction, standing))
+
+    assert present() == set()
+    assert present(events=Event.LOOP_STALL) == {"LOOP_STALL"}
+    assert present(events=Event.COMMANDER_LOST) == {"COMMANDER_LOST"}
+    assert present(events=Event.NO_ANSWER) == {"COMMAND_STALE"}
+    assert present(GOOD._replace(fresh=0.0)) == {"COMMAND_STALE"}
+    assert present(GOOD._replace(invalid=1.0)) == {"COMMAND_INVALID"}
+    assert present(GOOD._replace(invalid=1.0, fresh=0.0)) == {"COMMAND_INVALID"}
+    assert present(no_reaction=True) == {"NO_REACTION"}
+    assert present(standing=True) == {"STANDSTILL"}
+    everything = present(
+        GOOD._replace(fresh=0.0), Event.LOOP_STALL | Event.COMMANDER_LOST | Event.NO_ANSWER, True, True
+    )
+    assert everything == {"LOOP_STALL", "COMMANDER_LOST", "COMMAND_STALE", "NO_REACTION", "STANDSTILL"}
+    assert present(events=Event.MARK | Event.EMERGENCY_STOP) == set()
+
+
+REFUSED = float(Reason.REFUSED_TOO_FAST)
+TRIGGERS = {
+    "emergency": "EMERGENCY",
+    "takeover": "TAKEOVER_ASKED",
+    "manual": "MANUAL_ASKED",
+    "reset": "RESET",
+    "autonomous": "AUTONOMOUS_ASKED",
+    "shared": "SHARED_ASKED",
+}
+
+
+@pytest.mark.parametrize("name", TRIGGERS)
+def test_what_is_asked_and_not_refused_becomes_a_trigger(name: str) -> None:
+    asked = NOTHING._replace(**{name: 1.0})
+    assert names(asked_triggers(asked, GRANTED, GRANTED, GRANTED, GRANTED)) == {TRIGGERS[name]}
+    guards = ["manual", "reset", "autonomous", "shared"]
+    for guard in guards:
+        refusals = [REFUSED if guard == other else GRANTED for other in guards]
+        assert names(asked_triggers(asked, *refusals)) == (set() if guard == name else {TRIGGERS[name]})
+    everything = NOTHING._replace(**dict.fromkeys(TRIGGERS, 1.0))
+    assert names(asked_triggers(everything, GRANTED, GRANTED, GRANTED, GRANTED)) == set(TRIGGERS.values())
+    assert asked_triggers(NOTHING, GRANTED, GRANTED, GRANTED, GRANTED) == 0
+
+
+@pytest.mark.parametrize("mode", Mode)
+def test_why_an_ask_was_refused(mode: Mode) -> None:
+    def why(name: str, *refusals: float) -> float:
+        return refusal_of(float(mode), NOTHING._replace(**{name: 1.0}), *refusals)
+
+    manual, reset, engage, shared = 21.0, 22.0, 23.0, 24.0
+    given = (manual, reset, engage, shared)
+    granted = (GRANTED,) * 4
+    emergency = mode is Mode.EMERGENCY_STOP
+    assert why("takeover", *given) == GRANTED
+    assert why("manual", *given) == (GRANTED if mode is Mode.MANUAL else manual)
+    assert why("manual", *granted) == (GRANTED if mode is Mode.MANUAL else Reason.REFUSED_MODE)
+    latched = mode in (Mode.EMERGENCY_STOP, Mode.STOPPED)
+    assert why("reset", *given) == (reset if latched else GRANTED)
+    for name, reason, own in (("autonomous", engage, Mode.AUTONOMOUS), ("shared", shared, Mode.SHARED)):
+        refused = GRANTED if mode is own else Reason.REFUSED_EMERGENCY if emergency else reason
+        assert why(name, *given) == refused
+        by_mode = GRANTED if mode is own else Reason.REFUSED_EMERGENCY if emergency else Reason.REFUSED_MODE
+        assert why(name, *granted) == by_mode
+
+
+def test_a_mask_that_is_no_number_asks_for_nothing() -> None:
+    for nonsense in (math.nan, math.inf, -1.0, 1e300):
+        assert asked_of(NOBODY._replace(edges=nonsense, pressed=nonsense), 0) == NOTHING
