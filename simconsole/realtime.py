@@ -157,6 +157,7 @@ def station_specs(resolved: ResolvedSession, console: Console, folder: Path, bun
             "control": msgspec.to_builtins(resolved.session.features.control),
             "tick_hz": tick_hz,
             "can": outputs.can is not None,
+            "bridge": outputs.bridge is not None,
         }
         specs.append(StationSpec(name="hud", target="simconsole.station_programs:hud", arguments=arguments))
     if outputs.scene is not None:
@@ -164,7 +165,11 @@ def station_specs(resolved: ResolvedSession, console: Console, folder: Path, bun
 
         rows, ticks = np.empty((0, console.width)), np.empty(0, np.int64)
         save_job(folder / SCENE_JOB, scene_job(resolved, rows, ticks, console.columns, tick_hz))
-        arguments = {"path": str((bundle / LIVE_SCENE).absolute()), "tick_hz": tick_hz}
+        arguments = {
+            "path": str((bundle / LIVE_SCENE).absolute()),
+            "tick_hz": tick_hz,
+            "bridge": outputs.bridge is not None,
+        }
         specs.append(StationSpec(name="scene", target="simconsole.station_programs:scene", arguments=arguments))
     return specs
 

@@ -22,6 +22,7 @@ from simconsole.rows import REMOTE_WIDTH, Snapshot
 from simconsole.shared_memory import EventCounters, Record, Ring
 from simconsole.signals import RemoteCommand
 from simconsole.units import NS_PER_S
+from simconsole.words import LINK_DOWN
 
 SNAPSHOTS: Final = "snapshots"
 COMMAND: Final = "bridge.command"
@@ -30,6 +31,7 @@ KEYS: Final = "hud.keys"
 ADDRESS: Final = "bridge.address"
 ACTS: Final = "operator.jsonl"
 COUNTS: Final = "bridge.json"
+LINK_STATUS: Final = "link.json"
 CAN_COMMAND: Final = "can.command"
 CAN_EVENTS: Final = "can.events"
 CAN_STATUS: Final = "can.json"
@@ -69,9 +71,15 @@ def bridge(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) ->
         part.write_bytes(msgspec.json.encode(counts))
         part.replace(folder / COUNTS)
 
+    def write_standing(state: str) -> None:
+        part = folder / f"{LINK_STATUS}.part"
+        part.write_bytes(msgspec.json.encode({"state": state}))
+        part.replace(folder / LINK_STATUS)
+
     serve(
         profile, snapshots, write_command, events.raise_events, stop,
-        on_ready=ready, on_act=keep_act, on_counts=write_counts, folder=Path(arguments["bundle"]),
+        on_ready=ready, on_act=keep_act, on_counts=write_counts, on_standing=write_standing,
+        folder=Path(arguments["bundle"]),
     )  # fmt: skip
 
 
@@ -109,7 +117,10 @@ def canbus(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) ->
 
 
 def hud(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> None:
-    """Show the cluster. Arguments: `profile` (HudProfile), `control` (ControlProfile), `tick_hz`, `can` (a bus?)."""
+    """Show the cluster.
+
+    Arguments: `profile` (HudProfile), `control` (ControlProfile), `tick_hz`, `can` (a bus?), `bridge` (one?).
+    """
     from simconsole.hud.view import settings_of
     from simconsole.hud.window import Ports, run
 
@@ -130,11 +141,15 @@ def hud(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> No
         keys.write(np.array([float(mask)]), time.monotonic_ns())
 
     can = CanWatch(folder / CAN_STATUS, time.time, time.monotonic) if arguments["can"] else lambda: None
-    run(Ports(latest, report_keys, stop, can, receipts.drawn), profile, settings_of(profile, control))
+    link = LinkWatch(folder / LINK_STATUS, time.time, time.monotonic) if arguments["bridge"] else lambda: None
+    run(Ports(latest, report_keys, stop, can, receipts.drawn, link), profile, settings_of(profile, control))
 
 
 def scene(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> None:
-    """Record the scene with rerun. Arguments: `path` (the .rrd), `tick_hz`; the course lies in the run folder."""
+    """Record the scene with rerun; the course lies in the run folder.
+
+    Arguments: `path` (the .rrd), `tick_hz`, `bridge` (one?).
+    """
     from simconsole.scene.follow import Ports, follow
     from simconsole.scene.job import load_job
 
@@ -148,11 +163,12 @@ def scene(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> 
             seen = records[-1].number
         return [snapshot_of(record, tick_hz) for record in records]
 
-    follow(Ports(new_ticks, stop), load_job(folder / SCENE_JOB), Path(arguments["path"]))
+    link = LinkWatch(folder / LINK_STATUS, time.time, time.monotonic) if arguments["bridge"] else lambda: None
+    follow(Ports(new_ticks, stop, link), load_job(folder / SCENE_JOB), Path(arguments["path"]))
 
 
-class CanWatch:
-    """Says whether the CAN bus is up, by what its station last wrote; one that writes no more counts as down."""
+class _Watch:
+    """Reads what a station last wrote of itself; one that writes no more says nothing."""
 
     LOOK_S: Final = 0.2
     SILENT_S: Final = 3.0
@@ -162,23 +178,39 @@ class CanWatch:
         self._file_clock_s = file_clock_s
         self._clock_s = clock_s
         self._looked_s = -1e9
-        self._up = False
+        self._status: dict[str, Any] = {}
 
-    def __call__(self) -> bool:
-        """Return what was seen at most LOOK_S ago."""
+    def status(self) -> dict[str, Any]:
+        """Return what was seen at most LOOK_S ago, empty if nothing."""
         now_s = self._clock_s()
         if now_s - self._looked_s >= self.LOOK_S:
             self._looked_s = now_s
-            self._up = self._read()
-        return self._up
+            self._status = self._read()
+        return self._status
 
-    def _read(self) -> bool:
+    def _read(self) -> dict[str, Any]:
         try:
-            status = msgspec.json.decode(self._path.read_bytes())
+            status = msgspec.json.decode(self._path.read_bytes(), type=dict[str, Any])
             silent_s = self._file_clock_s() - self._path.stat().st_mtime
         except (OSError, msgspec.DecodeError):
-            return False
-        return bool(status.get("up")) and silent_s < self.SILENT_S
+            return {}
+        return status if silent_s < self.SILENT_S else {}
+
+
+class CanWatch(_Watch):
+    """Says whether the CAN bus is up; silence of its station counts as down."""
+
+    def __call__(self) -> bool:
+        """Return whether it is up."""
+        return bool(self.status().get("up"))
+
+
+class LinkWatch(_Watch):
+    """Says how the rosbridge link stands; silence of the bridge counts as down."""
+
+    def __call__(self) -> str:
+        """Return one word of `simconsole.words`, or how many clients there are."""
+        return str(self.status().get("state", LINK_DOWN))
 
 
 class Receipts:

@@ -52,6 +52,14 @@ _REASONS: Final[dict[float, str]] = {
     Reason.REFUSED_PEDAL_PRESSED: "refused: a pedal is pressed",
 }
 
+LINK_NOBODY: Final = "nobody"
+LINK_LOST: Final = "lost"
+LINK_RETRYING: Final = "retrying"
+LINK_DOWN: Final = "down"
+LINK_COMMANDER: Final = "commander"
+"""How the rosbridge link stands, beside `2 clients`: nobody has come yet, all have gone, the upstream server is being
+tried, the bridge itself does not run, somebody commands."""
+
 _COMMANDERS: Final[dict[float, str]] = {Commander.NOBODY: "none", Commander.ROS: "ROS", Commander.ECU: "CAN"}
 
 _LINKS: Final[dict[float, str]] = {

@@ -4,6 +4,7 @@ from typing import Any
 
 from simconsole.bridge.protocol import Router
 from simconsole.bridge.session import Session
+from simconsole.words import LINK_COMMANDER, LINK_LOST, LINK_NOBODY, LINK_RETRYING
 
 
 def counted(router: Router, now_ns: int) -> dict[str, Any]:
@@ -13,10 +14,23 @@ def counted(router: Router, now_ns: int) -> dict[str, Any]:
     return {
         "commander": next((session.peer for session in sessions if session.number == holder), ""),
         "upstream": router.upstream,
+        "state": standing(router, now_ns),
         "connections": router.connections,
         **router.counts()._asdict(),
         "clients": [_of(session) for session in sessions],
     }
+
+
+def standing(router: Router, now_ns: int) -> str:
+    """Return how the link stands, in the word that driver and operator read (`simconsole.words`)."""
+    if router.upstream == "connecting":
+        return LINK_RETRYING
+    if router.lease.holder(now_ns) is not None:
+        return LINK_COMMANDER
+    count = len(router.sessions)
+    if count:
+        return f"{count} clients" if count > 1 else "1 client"
+    return LINK_LOST if router.connections else LINK_NOBODY
 
 
 def summed(router: Router) -> dict[str, int]:

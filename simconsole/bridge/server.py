@@ -21,6 +21,7 @@ from websockets.protocol import State
 
 from simconsole.bridge.access import Role
 from simconsole.bridge.console import ConsoleBridge
+from simconsole.bridge.counters import standing
 from simconsole.bridge.documents import Binary
 from simconsole.bridge.handshake import FORBIDDEN, FULL, UNKNOWN, dialect_of, is_host_allowed, origins, role_at
 from simconsole.bridge.inputs import OnCommand, OnEvents
@@ -53,6 +54,7 @@ _CLOSE_S: Final = 1.0
 _WATCH_S: Final = 0.25
 _POLL_S: Final = 0.001
 _COUNT_S: Final = 1.0
+_STANDING_S: Final = 0.1
 _WRITE_BYTES: Final = 32_768
 
 _logger = logging.getLogger("simconsole.bridge.server")
@@ -116,6 +118,10 @@ class BridgeServer:
     def clients(self) -> int:
         """How many clients are connected."""
         return len(self._clients)
+
+    def standing(self) -> str:
+        """Return how the link stands, in one word of `simconsole.words`."""
+        return standing(self.console.router, self._clock_ns())
 
     async def start(self) -> None:
         """Listen.
@@ -320,6 +326,7 @@ def serve(
     on_ready: Callable[[int], None] = lambda port: None,
     on_act: OnAct | None = None,
     on_counts: Callable[[dict[str, int]], None] = lambda counts: None,
+    on_standing: Callable[[str], None] = lambda state: None,
     registry: Registry | None = None,
     folder: Path | None = None,
 ) -> None:
@@ -334,6 +341,7 @@ def serve(
         on_ready: gets the port when the server listens.
         on_act: gets each act of an operator, at once.
         on_counts: gets what was counted, once a second and at the end.
+        on_standing: gets how the link stands, within 0.1 s of a change and once a second.
         registry: message types; without, the standard ones and those of the profile's folder.
         folder: where topics are recorded if the profile says so.
 
@@ -353,12 +361,21 @@ def serve(
         )
         await server.start()
         on_ready(server.port)
-        next_count_s = 0.0
+        next_count_s = next_look_s = 0.0
+        told = ""
         try:
             while not stop():
-                if time.monotonic() >= next_count_s:
-                    next_count_s = time.monotonic() + _COUNT_S
+                now_s = time.monotonic()
+                if now_s >= next_count_s:
+                    next_count_s = now_s + _COUNT_S
                     on_counts(server.console.counts())
+                    told = ""
+                if now_s >= next_look_s or not told:
+                    next_look_s = now_s + _STANDING_S
+                    state = server.standing()
+                    if state != told:
+                        told = state
+                        on_standing(state)
                 snapshot = read_snapshot()
                 if snapshot is not None:
                     server.publish(snapshot)

@@ -58,6 +58,7 @@ class Uplink:
     async def run(self) -> None:
         """Stay connected until cancelled."""
         chance = random.Random()
+        self._tell("connecting")
         headers = None if self._token is None else {"Authorization": f"Bearer {self._token}"}
         while True:
             try:

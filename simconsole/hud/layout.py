@@ -14,7 +14,7 @@ from simconsole.hud.panels import pedals, status, steering
 from simconsole.hud.screen import Screen
 from simconsole.hud.view import HudView
 from simconsole.signals import Mode, Reason
-from simconsole.words import mode_words, reason_words
+from simconsole.words import LINK_COMMANDER, LINK_NOBODY, LINK_RETRYING, mode_words, reason_words
 
 GAP: Final = 0.02
 
@@ -106,6 +106,8 @@ def sample_views() -> list[HudView]:
     views += [asked._replace(takeover_stage=stage, remaining_s=10.0) for stage in (1, 2)]
     validities = (0.0, 1.0, 2.0, 3.0, 4.0)
     views += [wide._replace(wheel_validity=v, pedals_validity=v, shifter_validity=v) for v in validities]
+    views.append(wide._replace(can_up=False, link="64 clients", force="limit"))
+    views += [wide._replace(can_up=True, link=link) for link in (LINK_NOBODY, LINK_COMMANDER, LINK_RETRYING)]
     views += [wide._replace(force=force, can_up=up) for force, up in (("limit", False), ("lost", True), ("on", None))]
     views += [wide._replace(lever_words=words) for words in ("two gears", "not now")]
     views += [wide._replace(link_age_s=None, handbrake=1.0, engine_running=False, road_wheel_rad=-0.6)]

@@ -24,11 +24,12 @@ from simconsole.hud.shapes import exclamation
 from simconsole.hud.view import HudView
 from simconsole.signals import Validity
 from simconsole.units import DEG_PER_RAD
-from simconsole.words import validity_words
+from simconsole.words import LINK_DOWN, LINK_LOST, LINK_NOBODY, LINK_RETRYING, validity_words
 
 FULL_STEERING_DEG: Final = 40.0
 """Road-wheel angle at the end of the steering scale."""
 
+_LINK_LEVELS: Final = {LINK_NOBODY: "plain", LINK_LOST: "warn", LINK_RETRYING: "warn", LINK_DOWN: "warn"}
 _FORCE_LEVELS: Final = {"none": "plain", "on": "good", "limit": "warn", "lost": "warn"}
 
 
@@ -167,7 +168,7 @@ def _link_shape(words: str, box: Box, colour: Colour) -> list[DrawItem]:
 
 
 def status(view: HudView, box: Box) -> list[DrawItem]:
-    """Return the lamps: the three devices, the wheel's motor, engine and hand brake, and CAN where there is a bus."""
+    """Return the lamps: the three devices, the wheel's motor, engine, hand brake, and CAN and bridge if any."""
     cells = [
         ("WHEEL", *_device(view.wheel_validity)),
         ("PEDALS", *_device(view.pedals_validity)),
@@ -178,6 +179,8 @@ def status(view: HudView, box: Box) -> list[DrawItem]:
     ]
     if view.can_up is not None:
         cells.append(("CAN", "on", "good") if view.can_up else ("CAN", "down", "warn"))
+    if view.link is not None:
+        cells.append(("LINK", view.link, _LINK_LEVELS.get(view.link, "good")))
     items: list[DrawItem] = [Rect(box, PANEL, "status", 0.12 * box.h)]
     for index, (name, words, level) in enumerate(cells):
         cell = box.inset(0.01 * box.w).column(index / len(cells), (index + 1) / len(cells))

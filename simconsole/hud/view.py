@@ -75,6 +75,7 @@ class HudView(NamedTuple):
     distance_m: float = 0.0
     force: str = "none"  # of the wheel's motor: none, on, limit (more is wished for than it has), lost
     can_up: bool | None = None  # None: this drive has no CAN bus
+    link: str | None = None  # how the rosbridge link stands (simconsole.words); None: this drive has no bridge
 
 
 def shown_speed(speed_mps: float, t_s: float, memory: HudMemory) -> tuple[int, float]:
@@ -101,7 +102,12 @@ def force_words(snapshot: Snapshot, memory: HudMemory) -> tuple[str, bool, float
 
 
 def view(
-    snapshot: Snapshot, age_s: float, memory: HudMemory, settings: HudSettings, can_up: bool | None = None
+    snapshot: Snapshot,
+    age_s: float,
+    memory: HudMemory,
+    settings: HudSettings,
+    can_up: bool | None = None,
+    link: str | None = None,
 ) -> tuple[HudView, HudMemory]:
     """Return the content of one picture.
 
@@ -111,6 +117,7 @@ def view(
         memory: what the previous picture left.
         settings: the dial's and the rules' numbers.
         can_up: whether the CAN bus is up; None without one.
+        link: how the rosbridge link stands; None without a bridge.
     """
     vehicle, command, driver = snapshot.vehicle, snapshot.command, snapshot.driver
     arbitration = snapshot.arbitration
@@ -156,6 +163,7 @@ def view(
         distance_m=vehicle.distance_m,
         force=force,
         can_up=can_up,
+        link=link,
     )
     return shown, HudMemory(kmh, shown_s, motor_seen, clipped_s)
 

@@ -49,6 +49,7 @@ class Ports(NamedTuple):
     stop: Callable[[], bool]  # True ends the window
     can_up: Callable[[], bool | None] = lambda: None  # whether the CAN bus is up; None where there is none
     drawn: Callable[[], None] = lambda: None  # told after every frame
+    link: Callable[[], str | None] = lambda: None  # how the rosbridge link stands; None where there is no bridge
 
 
 class Freshness:
@@ -94,21 +95,23 @@ class Window:
         if profile.fullscreen:
             pygame.mouse.set_visible(False)
 
-    def frame(self, snapshot: Snapshot | None, now_s: float, can_up: bool | None = None) -> None:
-        """Draw one frame; a picture equal to the last one costs nothing. `can_up`: None without a CAN bus."""
+    def frame(
+        self, snapshot: Snapshot | None, now_s: float, can_up: bool | None = None, link: str | None = None
+    ) -> None:
+        """Draw one frame; a picture equal to the last one costs nothing. `can_up`, `link`: None without such a one."""
         import pygame
 
-        items = layout(self._content(snapshot, now_s, can_up), self._screen)
+        items = layout(self._content(snapshot, now_s, can_up, link), self._screen)
         if items == self._drawn:
             return
         pygame.display.update(self._painter.repaint(self._surface, self._drawn, items))
         self._drawn = items
 
-    def _content(self, snapshot: Snapshot | None, now_s: float, can_up: bool | None) -> HudView:
+    def _content(self, snapshot: Snapshot | None, now_s: float, can_up: bool | None, link: str | None) -> HudView:
         if snapshot is None:
             return HudView(stale=True)
         age_s = self._freshness.age_s(snapshot.tick, now_s)
-        shown, self._memory = view(snapshot, age_s, self._memory, self._settings, can_up)
+        shown, self._memory = view(snapshot, age_s, self._memory, self._settings, can_up, link)
         return shown
 
     def close(self) -> None:
@@ -141,7 +144,7 @@ def run(ports: Ports, profile: HudProfile, settings: HudSettings) -> None:
             if any(event.type == pygame.QUIT for event in pygame.event.get()):
                 break
             ports.report_keys(held_keys())
-            window.frame(ports.latest(), time.monotonic(), ports.can_up())
+            window.frame(ports.latest(), time.monotonic(), ports.can_up(), ports.link())
             ports.drawn()
             clock.tick(profile.rate_hz)
     finally:

@@ -10,9 +10,10 @@ import numpy as np
 from simconsole.rows import Snapshot
 from simconsole.scene.entities import world_shapes
 from simconsole.scene.job import Job
-from simconsole.scene.timeline import Memory, piece
+from simconsole.scene.timeline import Lane, Memory, piece
 
 POLL_S = 0.01
+LINK_LANE = "lanes/link"
 
 
 class Ports(NamedTuple):
@@ -20,6 +21,7 @@ class Ports(NamedTuple):
 
     new_ticks: Callable[[], Sequence[Snapshot]]  # all ticks since the last call, oldest first; gaps are allowed
     stop: Callable[[], bool]  # True ends the recording
+    link: Callable[[], str | None] = lambda: None  # how the rosbridge link stands; None where there is no bridge
 
 
 def follow(ports: Ports, job: Job, path: Path) -> None:
@@ -38,17 +40,25 @@ def follow(ports: Ports, job: Job, path: Path) -> None:
     view = RerunView(path, job.profile, job.dimensions, None if job.drawing is None else world_shapes(job.drawing))
     memory = Memory()
     waiting: list[Snapshot] = []
+    link, seen = Lane(LINK_LANE, [], []), ""
     written_s = time.monotonic()
     running = True
     while running:
         # Asked before reading, so that ticks from just before the end are still read.
         running = not ports.stop()
         waiting += ports.new_ticks()
+        state = ports.link()
+        if waiting and state is not None and state != seen:
+            # Of wall time, so in no row: it stands at the newest tick that is known.
+            seen = state
+            link.times_ns.append(waiting[-1].t_ns)
+            link.states.append(state)
         if waiting and (not running or time.monotonic() - written_s >= job.profile.chunk_s):
             rows = np.array([snapshot.row for snapshot in waiting])
             ticks = np.array([snapshot.tick for snapshot in waiting], dtype=np.int64)
             added, memory = piece(rows, job.columns, ticks, job.tick_hz, job.profile.rate_hz, memory)
-            view.add(added)
+            view.add(added._replace(lanes=(*added.lanes, link)))
+            link = Lane(LINK_LANE, [], [])
             waiting.clear()
             written_s = time.monotonic()
         if running:

@@ -101,6 +101,7 @@ class Served:
     def __init__(self, profile: BridgeProfile, registry: Registry | None = None) -> None:
         self.commands: queue.SimpleQueue[tuple[RemoteCommand, int | None]] = queue.SimpleQueue()
         self.events: queue.SimpleQueue[int] = queue.SimpleQueue()
+        self.standings: queue.SimpleQueue[str] = queue.SimpleQueue()
         self.snapshots: queue.SimpleQueue[Snapshot] = queue.SimpleQueue()
         self._port: queue.SimpleQueue[int] = queue.SimpleQueue()
         self._stop = threading.Event()
@@ -117,6 +118,7 @@ class Served:
             self.events.put,
             self._stop.is_set,
             on_ready=self._port.put,
+            on_standing=self.standings.put,
             registry=registry,
         )
 

@@ -2,7 +2,7 @@ from collections.abc import Callable
 from typing import Any
 
 from simconsole.bridge.console import ConsoleBridge
-from simconsole.bridge.counters import summed
+from simconsole.bridge.counters import standing, summed
 
 CONTROL = "/control/command/control_cmd"
 
@@ -24,6 +24,7 @@ def test_counts_are_published_and_outlive_their_clients(
     (counts,) = [message["msg"] for message in watcher.heard() if message["topic"] == "/console/bridge"]
     assert counts["header"]["stamp"] == {"sec": 1, "nanosec": 0}
     assert (counts["commander"], counts["connections"]) == ("driver", 3)
+    assert counts["state"] == "commander"
     assert (counts["received"], counts["refused"], counts["throttled"]) == (2 + 501 + 1, 2, 1)
     assert (counts["sent"], counts["dropped"]) == (1, 1)
     first, second = counts["clients"]
@@ -37,3 +38,23 @@ def test_counts_are_published_and_outlive_their_clients(
     bridge.publish(snapshot(500), 10**9)
     (counts,) = [message["msg"] for message in watcher.heard() if message["topic"] == "/console/bridge"]
     assert counts["commander"] == ""
+
+
+def test_link_goes_from_nobody_over_clients_and_a_commander_to_lost(
+    bridge: ConsoleBridge, join: Callable[..., Any], control: Callable[..., Any]
+) -> None:
+    def now(now_ns: int = 0) -> str:
+        return standing(bridge.router, now_ns)
+
+    assert now() == "nobody"
+    first = join(bridge)
+    assert now() == "1 client"
+    second = join(bridge)
+    assert now() == "2 clients"
+    first.publish(CONTROL, control())
+    assert (now(), now(10**9)) == ("commander", "2 clients"), "its lease ends"
+    bridge.disconnect(first.session, 10**9)
+    bridge.disconnect(second.session, 10**9)
+    assert now(10**9) == "lost"
+    bridge.router.upstream = "connecting"
+    assert now(10**9) == "retrying"

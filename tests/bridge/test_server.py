@@ -264,3 +264,19 @@ def test_binary_forms_and_dialects_go_over_the_wire(serving: Callable[..., Any],
         server.snapshots.put(snapshot(250))
         assert cbor2.loads(modern.recv(timeout=10.0))["msg"] == {"clock": {"sec": 1, "nanosec": 0}}
         assert answer(old)["msg"] == {"clock": {"secs": 1, "nsecs": 0}}
+
+
+def test_how_the_link_stands_is_told_as_it_changes(serving: Callable[..., Any], control: Callable[..., Any]) -> None:
+    server = serving(lease_ms=10_000)
+
+    def wait_for(state: str) -> None:
+        while server.standings.get(timeout=10.0) != state:
+            pass  # each is also said once a second
+
+    wait_for("nobody")
+    with connect(server.url) as peer:
+        wait_for("1 client")
+        send(peer, op="advertise", topic=CONTROL, type="autoware_control_msgs/Control")
+        send(peer, op="publish", topic=CONTROL, msg=control(0.1))
+        wait_for("commander")
+    wait_for("lost")

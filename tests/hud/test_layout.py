@@ -362,3 +362,15 @@ def test_bus_that_is_down_warns_and_none_is_not_shown() -> None:
     assert said(HudView(can_up=False), "status.can.words") == ["down"]
     assert said(HudView(can_up=True), "status.can.words") == ["on"]
     assert said(HudView(can_up=None), "status.can.words") == []
+
+
+@pytest.mark.parametrize(
+    ("link", "lamp"),
+    [("nobody", 0), ("1 client", 1), ("64 clients", 1), ("commander", 1), ("lost", 3), ("retrying", 3), ("down", 3)],
+)
+def test_link_is_told_in_words_with_a_warning_where_nobody_is_left(link: str, lamp: int) -> None:
+    items = layout(HudView(link=link), SCREEN)
+    assert said(HudView(link=link), "status.link.words") == [link]
+    assert len(by_role(items, "status.link.lamp")) == lamp
+    assert said(HudView(link=link, stale=True), "status.link.words") == ["--"]
+    assert said(HudView(link=None), "status.link.words") == []

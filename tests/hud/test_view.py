@@ -156,6 +156,8 @@ def test_sign_of_the_motor_says_on_limit_lost_or_none() -> None:
 def test_can_is_shown_only_where_there_is_a_bus() -> None:
     assert view(snapshot(), 0.0, HudMemory(), HudSettings())[0].can_up is None
     assert view(snapshot(), 0.0, HudMemory(), HudSettings(), can_up=False)[0].can_up is False
+    assert view(snapshot(), 0.0, HudMemory(), HudSettings())[0].link is None
+    assert view(snapshot(), 0.0, HudMemory(), HudSettings(), link="lost")[0].link == "lost"
 
 
 @pytest.mark.parametrize(

@@ -28,7 +28,9 @@ if sys.argv[3] == "die":
         if given >= 2000:
             import os, signal
             os.kill(os.getpid(), signal.SIGKILL)
-follow(Ports(new_ticks, stop), job._replace(profile=job.profile.__class__(chunk_s=0.05)), Path(sys.argv[2]))
+states = iter(["nobody"] * 2 + ["1 client"] * 9 + ["lost"] * 999)
+link = (lambda: next(states)) if sys.argv[3] == "link" else lambda: None
+follow(Ports(new_ticks, stop, link), job._replace(profile=job.profile.__class__(chunk_s=0.05)), Path(sys.argv[2]))
 """
 
 
@@ -57,3 +59,12 @@ def test_a_killed_scene_leaves_what_it_had_written(tmp_path: Path) -> None:
     printed = rerun_rrd("print", str(path))
     assert printed.returncode == 0
     assert "/world/road/surface" in printed.stdout
+
+
+def test_how_the_bridge_stands_is_a_lane_of_a_live_drive_that_has_one(tmp_path: Path) -> None:
+    code, path = follow_apart(tmp_path, "link")
+    assert code == 0
+    rows = contents(path)
+    assert rows["/lanes/link"] == 3
+    code, path = follow_apart(tmp_path, "stop")
+    assert "/lanes/link" not in contents(path)

@@ -1,9 +1,9 @@
-"""What the driver's display knows of the CAN bus: what the station last wrote, and that it still writes."""
+"""What the driver's display knows of CAN bus and bridge: what the station last wrote, and that it still writes."""
 
 import os
 from pathlib import Path
 
-from simconsole.station_programs import CanWatch
+from simconsole.station_programs import CanWatch, LinkWatch
 
 
 def test_bus_is_up_only_while_its_station_says_so(tmp_path: Path) -> None:
@@ -30,3 +30,19 @@ def test_bus_is_up_only_while_its_station_says_so(tmp_path: Path) -> None:
     assert not look(0.5), "a station that writes no more"
     write("{")
     assert not look(0.21)
+
+
+def test_link_stands_as_the_bridge_says_and_is_down_when_it_says_nothing(tmp_path: Path) -> None:
+    path, clock = tmp_path / "link.json", [100.0]
+    watch = LinkWatch(path, lambda: clock[0], lambda: clock[0])
+    assert watch() == "down"
+    clock[0] += 0.3
+    path.write_text('{"state": "2 clients"}')
+    os.utime(path, (clock[0], clock[0]))
+    assert watch() == "2 clients"
+    clock[0] += 3.1
+    assert watch() == "down"
+    path.write_text("[]")
+    os.utime(path, (clock[0], clock[0]))
+    clock[0] += 0.3
+    assert watch() == "down", "not a status at all"

@@ -59,6 +59,8 @@ std_msgs/Header header
 string commander
 # How it stands with the server that the console is a client of: connecting, connected; empty: there is none.
 string upstream
+# How the link stands, as the driver reads it: nobody, N clients, commander, lost (all have gone), retrying (upstream).
+string state
 # How many clients there have been, and messages of all of them, also of those that are gone.
 uint64 connections
 uint64 received
