@@ -156,10 +156,7 @@ class GateLimit(IntFlag):
 
 
 class DeviceSample(NamedTuple):
-    """The cockpit exactly as read: raw axes -1..1, buttons as bit masks of their device, ages in whole ticks.
-
-    An age counts from the last successful poll of the device, NEVER_TICKS when it is not there.
-    """
+    """The cockpit as read: raw axes -1..1, button masks, ages in ticks since the last good poll (NEVER_TICKS: gone)."""
 
     wheel_axis: float
     throttle_axis: float
@@ -173,6 +170,7 @@ class DeviceSample(NamedTuple):
     wheel_age_ticks: float
     pedals_age_ticks: float
     shifter_age_ticks: float
+    handbrake_age_ticks: float  # of the pedals, where it has no device of its own
     wheel_motor: float = 0.0  # 1 while the wheel's motor obeys: then the wheel also moves by itself
 
 
@@ -224,6 +222,7 @@ class DriverInput(NamedTuple):
     neutral_ticks: float  # how long the lever has shown no gear (dwell)
     refused_ticks: float = 0.0  # ticks in a row in which a reading was refused (not finite or out of range)
     lever_fault: float = 0.0  # 1: the lever shows two gears at once
+    handbrake_validity: float = 0.0
 
 
 class Request(NamedTuple):
@@ -382,7 +381,7 @@ class TickTiming(NamedTuple):
     work_ns: int
 
 
-NO_SAMPLE: Final = DeviceSample(*(0.0,) * 9, NEVER_TICKS, NEVER_TICKS, NEVER_TICKS)
+NO_SAMPLE: Final = DeviceSample(*(0.0,) * 9, *(NEVER_TICKS,) * 4)
 """A cockpit that is not there."""
 
 NO_TORQUE: Final = WheelTorque(*(0.0,) * len(WheelTorque._fields))

@@ -43,6 +43,7 @@ UNITLESS = {
     *("kind", "mode", "reason", "refusal", "gear", "direction", "takeover_stage", "commander", "state"),
     *("restarted", "stop_steered"),
     *("wheel_validity", "throttle_validity", "brake_validity", "clutch_validity", "shifter_validity"),
+    "handbrake_validity",
 }  # fmt: skip
 
 

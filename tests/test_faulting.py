@@ -119,7 +119,10 @@ def _indented(text: str) -> str:
     [
         ("{kind: unplug, device: wheel}", ": no onset given, must be exactly one of at_s"),
         ("{kind: unplug, device: wheel, at_s: 1, on_mode: manual}", ": at_s and on_mode given"),
-        ("{kind: unplug, device: seat, at_s: 1}", 'faults[0].device: value "seat": one of pedals, shifter, wheel'),
+        (
+            "{kind: unplug, device: seat, at_s: 1}",
+            'faults[0].device: value "seat": one of handbrake, pedals, shifter, wheel',
+        ),
         ("{kind: unplugg, device: wheel, at_s: 1}", 'faults[0].kind: value "unplugg": one of unplug, freeze, stuck,'),
         ("{kind: stuck, axis: wheel, raw: 3, at_s: 1}", "faults[0].raw: value 3: a number from -1 to 1 or null"),
         ("{kind: stuck, axis: wheel, raw: 0, at: 1}", "faults[0].at: value 1: unknown key"),

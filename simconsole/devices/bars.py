@@ -34,10 +34,9 @@ def lines(driver: DriverInput, lock_rad: float) -> list[str]:
     angle = driver.hand_wheel_rad * DEG_PER_RAD
     held = [button.name.lower() for button in Button if int(driver.pressed) & button and button.name]
     shown = [f"wheel     {needle(driver.hand_wheel_rad / lock_rad)} {angle:+7.1f} deg  {_WORDS[driver.wheel_validity]}"]
-    for name in ("throttle", "brake", "clutch"):
+    for name in ("throttle", "brake", "clutch", "handbrake"):
         share, validity = getattr(driver, name), getattr(driver, f"{name}_validity")
         shown.append(f"{name:<9} {bar(share)} {share:7.0%}      {_WORDS[validity]}")
-    shown.append(f"handbrake {bar(driver.handbrake)} {driver.handbrake:7.0%}")
     gear = "R" if driver.gear < 0.0 else "N" if driver.gear == 0.0 else f"{driver.gear:.0f}"
     shown.append(f"gear {gear}  {_WORDS[driver.shifter_validity]}  held: {' '.join(held) or '-'}")
     return shown

@@ -244,9 +244,9 @@ def calibrate(
     )
     handbrake = pedal(
         sample.handbrake_axis,
-        pedals_age,
+        sample.handbrake_age_ticks,
         bad_ticks,
-        Pedal(previous.handbrake, previous.brake_validity),
+        Pedal(previous.handbrake, previous.handbrake_validity),
         settings.handbrake_rest_raw,
         settings.handbrake_full_raw,
         settings.handbrake_dead,
@@ -280,6 +280,7 @@ def calibrate(
         shift.neutral_ticks,
         bad_ticks,
         shift.fault,
+        handbrake.validity,
     )
 
 

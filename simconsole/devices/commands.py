@@ -205,9 +205,9 @@ class _Cockpit:
 
 def exercise(cockpit: CockpitProfile) -> ScriptProfile:
     """Return a script that works every part of a cockpit once: what a person does to check theirs."""
-    points = [ScriptPoint(time_s=0.0, throttle=0.0, brake=0.0, clutch=0.0, hand_wheel_deg=0.0, gear=0)]
+    points = [ScriptPoint(time_s=0.0, throttle=0.0, brake=0.0, clutch=0.0, handbrake=0.0, hand_wheel_deg=0.0, gear=0)]
     at_s = 0.5
-    for pedal in ("throttle", "brake", "clutch"):
+    for pedal in ("throttle", "brake", "clutch", *([] if cockpit.pedals.handbrake is None else ["handbrake"])):
         for share in (0.0, 1.0, 0.0):
             points.append(ScriptPoint(time_s=at_s, **{pedal: share}))  # type: ignore[arg-type]  # a key of its own
             at_s += 0.25

@@ -33,16 +33,19 @@ AGES: Final[dict[RoleName, str]] = {
     "wheel": "wheel_age_ticks",
     "pedals": "pedals_age_ticks",
     "shifter": "shifter_age_ticks",
+    "handbrake": "handbrake_age_ticks",
 }
 AXES: Final[dict[RoleName, tuple[str, ...]]] = {
     "wheel": ("wheel_axis",),
-    "pedals": ("throttle_axis", "brake_axis", "clutch_axis", "handbrake_axis"),
+    "pedals": ("throttle_axis", "brake_axis", "clutch_axis"),
     "shifter": (),
+    "handbrake": ("handbrake_axis",),
 }
 _REST: Final[dict[RoleName, tuple[str, ...]]] = {
     "wheel": ("wheel_buttons", "hat_x", "hat_y", "wheel_motor"),
     "pedals": (),
     "shifter": ("shifter_buttons",),
+    "handbrake": (),
 }
 _READINGS: Final = {
     "not_a_number": float("nan"),
@@ -133,9 +136,12 @@ def effect(fault: Fault, cockpit: CockpitProfile, settings: CockpitSettings, tic
 
 
 def _on_plug(device: RoleName, cockpit: CockpitProfile) -> tuple[RoleName, ...]:
-    """Return every role on the same USB plug: pedals behind the wheel base go with it."""
-    plugs = {binding.role: (binding.vendor_id, binding.product_id) for binding in cockpit.roles}
-    return tuple(role for role in AGES if role == device or (role in plugs and plugs[role] == plugs.get(device)))
+    """Return every role on the same USB plug: pedals behind the wheel base go with it, a handbrake with its pedals."""
+    plugs: dict[RoleName, object] = dict(zip(AGES, AGES, strict=True))
+    plugs |= {binding.role: (binding.vendor_id, binding.product_id) for binding in cockpit.roles}
+    if cockpit.played_by("handbrake") == "pedals":
+        plugs["handbrake"] = plugs["pedals"]
+    return tuple(role for role in AGES if plugs[role] == plugs[device])
 
 
 def _fields(roles: Sequence[RoleName]) -> tuple[str, ...]:

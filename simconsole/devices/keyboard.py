@@ -61,7 +61,7 @@ class KeyboardSource:
             self._intent = self._moved(Key(mask))
         age = float(age_ticks)
         return uncalibrate(self._intent, self._settings)._replace(
-            wheel_age_ticks=age, pedals_age_ticks=age, shifter_age_ticks=age
+            wheel_age_ticks=age, pedals_age_ticks=age, shifter_age_ticks=age, handbrake_age_ticks=age
         )
 
     def close(self) -> None:

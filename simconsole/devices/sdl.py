@@ -87,11 +87,12 @@ class SdlSource:
         self._keys = {binding.role: (binding.vendor_id, binding.product_id) for binding in cockpit.roles}
         pedals = cockpit.pedals
         self._axes = tuple(
-            None if pedal is None else pedal.axis
-            for pedal in (pedals.throttle, pedals.brake, pedals.clutch, pedals.handbrake)
+            None if pedal is None else pedal.axis for pedal in (pedals.throttle, pedals.brake, pedals.clutch)
         )
+        self._handbrake_role = cockpit.played_by("handbrake")
         self._wheel = [cockpit.wheel.centre_raw, 0.0, 0.0, 0.0]  # axis, buttons, hat x, hat y: last good
-        self._pedals = [0.0, 0.0, 0.0, 0.0]
+        self._pedals = [0.0, 0.0, 0.0]
+        self._handbrake = 0.0
         self._shifter = 0.0
         self._count = 0
         self._pygame = sdl_runtime.acquire()
@@ -113,6 +114,9 @@ class SdlSource:
         pedals = self._readable("pedals")
         if pedals is not None:
             self._read_pedals(pedals)
+        hand = self._readable(self._handbrake_role)
+        if hand is not None and self._cockpit.pedals.handbrake is not None:
+            self._handbrake = hand.joystick.get_axis(self._cockpit.pedals.handbrake.axis)
         shifter = self._readable("shifter")
         if shifter is not None:
             self._shifter = float(_held(shifter))
@@ -121,13 +125,13 @@ class SdlSource:
         if arrived:
             self._bind()
         angle, wheel_buttons, hat_x, hat_y = self._wheel
-        throttle, brake, clutch, handbrake = self._pedals
+        throttle, brake, clutch = self._pedals
         return DeviceSample(
             angle,
             throttle,
             brake,
             clutch,
-            handbrake,
+            self._handbrake,
             wheel_buttons,
             self._shifter,
             hat_x,
@@ -135,6 +139,7 @@ class SdlSource:
             NEVER_TICKS if wheel is None else 0.0,
             NEVER_TICKS if pedals is None else 0.0,
             NEVER_TICKS if shifter is None else 0.0,
+            NEVER_TICKS if hand is None else 0.0,
         )
 
     def instance_id(self, role: RoleName) -> int | None:

@@ -122,7 +122,7 @@ _RULES: Final[tuple[tuple[Callable[[float], bool], str], ...]] = (
     *((axis_good, "a number from -1 to 1"),) * 5,
     *((mask_good, "a whole number below 2**24"),) * 2,
     *((_hat_good, "-1, 0 or 1"),) * 2,
-    *((_age_good, "a number of ticks, 0 or more"),) * 3,
+    *((_age_good, "a number of ticks, 0 or more"),) * 4,
     (_flag_good, "0 or 1"),
 )
 
@@ -133,6 +133,7 @@ def aged(sample: DeviceSample, ticks: float) -> DeviceSample:
         wheel_age_ticks=sample.wheel_age_ticks + ticks,
         pedals_age_ticks=sample.pedals_age_ticks + ticks,
         shifter_age_ticks=sample.shifter_age_ticks + ticks,
+        handbrake_age_ticks=sample.handbrake_age_ticks + ticks,
     )
 
 

@@ -68,4 +68,5 @@ def uncalibrate(intent: Intent, settings: CockpitSettings) -> DeviceSample:
         0.0,
         0.0,
         0.0,
+        0.0,
     )

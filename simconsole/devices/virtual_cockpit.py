@@ -44,7 +44,7 @@ class VirtualCockpit:
         if pedals.clutch is not None:
             self._set_axis("pedals", pedals.clutch.axis, sample.clutch_axis)
         if pedals.handbrake is not None:
-            self._set_axis("pedals", pedals.handbrake.axis, sample.handbrake_axis)
+            self._set_axis(self._profile.played_by("handbrake"), pedals.handbrake.axis, sample.handbrake_axis)
         if self._keys["wheel"] == self._keys["shifter"]:  # one device plays both: its buttons are those of both
             self._set_buttons("wheel", float(int(sample.wheel_buttons) | int(sample.shifter_buttons)))
             return

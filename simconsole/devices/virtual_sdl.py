@@ -12,7 +12,7 @@ from typing import Any, Final, NamedTuple
 
 from simconsole.devices import sdl_runtime
 from simconsole.errors import DeviceError
-from simconsole.profiles.device import CockpitProfile
+from simconsole.profiles.device import CockpitProfile, PedalAxis
 
 _WHEEL_TYPE: Final = 2
 _UNKNOWN_TYPE: Final = 0
@@ -63,10 +63,10 @@ def specs(profile: CockpitProfile) -> list[VirtualSpec]:
     for binding in profile.roles:
         key = (binding.vendor_id, binding.product_id)
         rest = list(made[key].rest) if key in made else [0.0] * binding.axes
-        if binding.role == "pedals":
-            for pedal in (profile.pedals.throttle, profile.pedals.brake, profile.pedals.clutch):
-                if pedal is not None:
-                    rest[pedal.axis] = pedal.rest_raw
+        for name in ("throttle", "brake", "clutch", "handbrake"):
+            pedal: PedalAxis | None = getattr(profile.pedals, name)
+            if pedal is not None and profile.played_by(name) == binding.role:
+                rest[pedal.axis] = pedal.rest_raw
         is_wheel = binding.role == "wheel" or (key in made and made[key].is_wheel)
         made[key] = VirtualSpec(binding.name, *key, binding.axes, binding.buttons, binding.hats, tuple(rest), is_wheel)
     return list(made.values())

@@ -5,7 +5,7 @@ from typing import Any, Final
 from simconsole.devices.calibration import calibrate, travel
 from simconsole.devices.cockpit import NOBODY, CockpitSettings
 from simconsole.devices.settings import settings
-from simconsole.devices.validity import trusted
+from simconsole.devices.validity import LOST, STALE, trusted
 from simconsole.profiles.device import CockpitProfile, PedalAxis
 from simconsole.signals import NO_SAMPLE, Button, DeviceSample, DriverInput
 from simconsole.units import DEG_PER_RAD
@@ -54,7 +54,10 @@ class Watch:
         """Return what would keep this cockpit from driving, one line each."""
         driver, found = self.driver, []
         for name, _ in self._pedals():
-            if name != "handbrake" and not trusted(getattr(driver, f"{name}_validity")):
+            validity = getattr(driver, f"{name}_validity")
+            if validity in (STALE, LOST):
+                found.append(f"pedals.{name}: value no reading: a device that answers")
+            elif not trusted(validity):
                 found.append(
                     f"pedals.{name}: value {self._least[name]:.0%} pressed at least: at most "
                     f"{self._profile.limits.arming:.0%} at rest; foot off, or rest_raw and full_raw are swapped"

@@ -91,10 +91,12 @@ class Wizard:
         self._question("rest", "Hands and feet off everything, lever in neutral.")
         self._rest = self._look()
         wheel_key, wheel = self._learn_wheel()
-        pedals_key, pedals = self._learn_pedals()
+        pedals_key, pedals, handbrake_key = self._learn_pedals()
         shifter_key, shifter = self._learn_lever(wheel_key)
         shifter_key, buttons = self._learn_buttons(wheel_key, shifter_key, shifter)
         keys = {"wheel": wheel_key, "pedals": pedals_key, "shifter": shifter_key}
+        if handbrake_key not in (None, pedals_key):
+            keys["handbrake"] = handbrake_key
         known = [(role.vendor_id, role.product_id) for role in self._base.roles if role.role == "wheel"]
         force = self._base.force_feedback if known == [wheel_key] else None
         return CockpitProfile(
@@ -133,15 +135,16 @@ class Wizard:
             raise DeviceError(f"degrees: value {typed}: 40 to 2520")
         return degrees
 
-    def _learn_pedals(self) -> tuple[DeviceKey, Pedals]:
+    def _learn_pedals(self) -> tuple[DeviceKey, Pedals, DeviceKey | None]:
+        """Learn the pedals, all on one device; the handbrake may be on another, which comes last."""
         found: dict[str, PedalAxis] = {}
-        keys: list[DeviceKey] = []
+        keys: dict[str, DeviceKey] = {}
         for name in PEDALS:
 
             def learn(name: str = name) -> tuple[AxisAt, PedalAxis]:
                 skip = "" if name in NEEDED else f" ({SKIP}: there is none)"
                 at = self._moved(name, f"Press the {name.upper()} fully and hold it{skip}.", name not in NEEDED)
-                if keys and at.device != keys[0]:
+                if name != "handbrake" and at.device != keys.get("throttle", at.device):
                     raise DeviceError(f"{name}: value on another device: all pedals on one device")
                 return at, learnt_pedal(self._rest, at)
 
@@ -149,9 +152,9 @@ class Wizard:
                 at, found[name] = self._tried(learn)
             except Skipped:
                 continue
-            keys.append(at.device)
+            keys[name] = at.device
             self._axes.append((at.device, at.axis))
-        return keys[0], Pedals(**found)
+        return keys["throttle"], Pedals(**found), keys.get("handbrake")
 
     def _learn_lever(self, wheel_key: DeviceKey) -> tuple[DeviceKey, Shifter]:
         kind = self._question("lever", f"H pattern: go on. Sequential lever or paddles: {SKIP}.")

@@ -175,7 +175,7 @@ def status(view: HudView, box: Box) -> list[DrawItem]:
         ("SHIFTER", view.lever_words, "warn") if view.lever_words else ("SHIFTER", *_device(view.shifter_validity)),
         ("FORCE", view.force, _FORCE_LEVELS[view.force]),
         ("ENGINE", "running", "good") if view.engine_running else ("ENGINE", "off", "plain"),
-        ("HAND BRAKE", "on", "warn") if view.handbrake > 0.05 else ("HAND BRAKE", "off", "plain"),
+        ("HAND BRAKE", *_hand_brake(view)),
     ]
     if view.can_up is not None:
         cells.append(("CAN", "on", "good") if view.can_up else ("CAN", "down", "warn"))
@@ -192,6 +192,18 @@ def _device(validity: float) -> tuple[str, str]:
     bad = validity in (Validity.STALE, Validity.LOST)
     good = validity in (Validity.LIVE, Validity.ARMED)
     return validity_words(validity), "warn" if bad else ("good" if good else "plain")
+
+
+def _hand_brake(view: HudView) -> tuple[str, str]:
+    """A lever that was lost reads released, and so does one that is pulled before it was seen at rest: both are said.
+
+    Also while the console itself holds the brake on.
+    """
+    if view.handbrake_validity in (Validity.STALE, Validity.LOST):
+        return _device(view.handbrake_validity)
+    if view.handbrake_validity == Validity.UNKNOWN and view.wheel_validity in (Validity.ARMED, Validity.LIVE):
+        return "let go", "warn"
+    return ("on", "warn") if view.handbrake > 0.05 else ("off", "plain")
 
 
 def _cell(name: str, words: str, level: str, cell: Box, box: Box) -> list[DrawItem]:

@@ -71,6 +71,7 @@ class HudView(NamedTuple):
     wheel_validity: float = 0.0
     pedals_validity: float = 0.0
     shifter_validity: float = 0.0
+    handbrake_validity: float = 0.0
     lever_words: str = ""  # what is wrong with the gear that the lever shows
     distance_m: float = 0.0
     force: str = "none"  # of the wheel's motor: none, on, limit (more is wished for than it has), lost
@@ -159,6 +160,7 @@ def view(
         wheel_validity=driver.wheel_validity,
         pedals_validity=_worst(driver.throttle_validity, driver.brake_validity, driver.clutch_validity),
         shifter_validity=driver.shifter_validity,
+        handbrake_validity=driver.handbrake_validity,
         lever_words=_lever_words(driver.lever_fault, command.gate_active),
         distance_m=vehicle.distance_m,
         force=force,

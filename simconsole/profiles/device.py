@@ -6,7 +6,7 @@ from msgspec import Meta, Struct
 
 from simconsole.profiles.force_feedback import ForceFeedback
 
-RoleName: TypeAlias = Literal["wheel", "pedals", "shifter"]
+RoleName: TypeAlias = Literal["wheel", "pedals", "shifter", "handbrake"]
 UsbId: TypeAlias = Annotated[int, Meta(ge=0, le=0xFFFF)]
 AxisIndex: TypeAlias = Annotated[int, Meta(ge=0, le=31)]
 ButtonIndex: TypeAlias = Annotated[int, Meta(ge=0, le=23)]
@@ -94,7 +94,7 @@ class PedalAxis(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Pedals(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The pedals, all on the device of the role `pedals`."""
+    """The pedals, on the device of the role `pedals`; the handbrake on its own where the role `handbrake` is bound."""
 
     throttle: PedalAxis
     brake: PedalAxis
@@ -176,8 +176,11 @@ class CockpitProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
             ValueError: one of these; the message names the key.
         """
         names = [binding.role for binding in self.roles]
-        if names and sorted(names) != ["pedals", "shifter", "wheel"]:
-            raise ValueError("roles must bind wheel, pedals and shifter once each, or none of them")
+        own_handbrake = "handbrake" in names
+        if names and sorted(names) != [*(["handbrake"] if own_handbrake else []), "pedals", "shifter", "wheel"]:
+            raise ValueError("roles must bind wheel, pedals and shifter once each (handbrake may follow), or none")
+        if own_handbrake and self.pedals.handbrake is None:
+            raise ValueError("pedals.handbrake must name the axis where roles bind a handbrake")
         lever = [*self.shifter.gears, *([] if self.shifter.reverse is None else [self.shifter.reverse])]
         if len(set(lever)) != len(lever):
             raise ValueError("shifter.gears and shifter.reverse must be different buttons")
@@ -186,16 +189,20 @@ class CockpitProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         for binding in self.roles:
             _check_indices(binding, self)
 
+    def played_by(self, pedal: str) -> RoleName:
+        """Return the role on whose device this pedal is: a handbrake may have one of its own."""
+        own = pedal == "handbrake" and any(binding.role == "handbrake" for binding in self.roles)
+        return "handbrake" if own else "pedals"
+
 
 def _check_indices(binding: RoleBinding, profile: CockpitProfile) -> None:
     pedals = profile.pedals
     if binding.role == "wheel" and profile.wheel.axis >= binding.axes:
         raise ValueError(f"wheel.axis {profile.wheel.axis} must be below {binding.axes}, the axes of {binding.name}")
-    if binding.role == "pedals":
-        for name in ("throttle", "brake", "clutch", "handbrake"):
-            pedal: PedalAxis | None = getattr(pedals, name)
-            if pedal is not None and pedal.axis >= binding.axes:
-                raise ValueError(f"pedals.{name}.axis {pedal.axis} must be below {binding.axes}")
+    for name in ("throttle", "brake", "clutch", "handbrake"):
+        pedal: PedalAxis | None = getattr(pedals, name)
+        if pedal is not None and profile.played_by(name) == binding.role and pedal.axis >= binding.axes:
+            raise ValueError(f"pedals.{name}.axis {pedal.axis} must be below {binding.axes}")
     for key, bound in ((name, getattr(profile.buttons, name)) for name in Buttons.__struct_fields__):
         if bound is not None and bound.on == binding.role and bound.button >= binding.buttons:
             raise ValueError(f"buttons.{key}.button {bound.button} must be below {binding.buttons}")

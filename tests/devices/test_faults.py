@@ -39,7 +39,8 @@ class Ramp:
 
     def poll(self, tick: int) -> DeviceSample:
         raw = tick / 1000.0
-        return DeviceSample(raw, raw + 0.1, raw + 0.2, raw + 0.3, raw + 0.4, 1.0, 2.0, 1.0, -1.0, 0.0, 0.0, 0.0, 1.0)
+        axes = (raw, raw + 0.1, raw + 0.2, raw + 0.3, raw + 0.4)
+        return DeviceSample(*axes, 1.0, 2.0, 1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 
     def close(self) -> None:
         self.closed = True

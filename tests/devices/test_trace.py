@@ -12,7 +12,7 @@ from simconsole.errors import DeviceError, ProfileError
 from simconsole.signals import NEVER_TICKS, DeviceSample
 
 HEADER = TraceHeader(250, "test")
-REST = DeviceSample(0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+REST = DeviceSample(0.0, 1.0, 1.0, 1.0, *(0.0,) * 9)
 
 
 def samples(count: int) -> list[DeviceSample]:
@@ -25,7 +25,7 @@ def samples(count: int) -> list[DeviceSample]:
             float(dice.getrandbits(10)),
             float(dice.randint(-1, 1)),
             float(dice.randint(-1, 1)),
-            *(dice.choice([0.0, 3.0, NEVER_TICKS]) for _ in range(3)),
+            *(dice.choice([0.0, 3.0, NEVER_TICKS]) for _ in range(4)),
             float(dice.getrandbits(1)),
         )
         for _ in range(count)

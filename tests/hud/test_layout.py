@@ -280,6 +280,30 @@ def test_a_lost_device_is_named_with_a_warning_shape() -> None:
     assert len(by_role(items, "status.wheel.lamp")) == 1
 
 
+@pytest.mark.parametrize(
+    ("validity", "pulled", "words", "warned"),
+    [
+        (2.0, 0.0, "off", False),
+        (2.0, 1.0, "on", True),
+        (3.0, 0.0, "stale", True),
+        (4.0, 0.0, "lost", True),
+        (4.0, 1.0, "lost", True),
+        (0.0, 0.0, "let go", True),
+    ],
+)
+def test_a_handbrake_that_commands_nothing_is_warned_of(
+    validity: float, pulled: float, words: str, warned: bool
+) -> None:
+    items = layout(HudView(wheel_validity=2.0, handbrake_validity=validity, handbrake=pulled), SCREEN)
+    assert [t.text for t in texts(items) if t.role == "status.hand_brake.words"] == [words]
+    assert bool(by_role(items, "status.hand_brake.lamp")) == warned
+
+
+def test_nobody_is_told_to_let_go_where_nobody_sits() -> None:
+    items = layout(HudView(), SCREEN)
+    assert [t.text for t in texts(items) if t.role == "status.hand_brake.words"] == ["off"]
+
+
 def test_steering_left_is_drawn_to_the_left() -> None:
     left = bounds(by_role(layout(HudView(road_wheel_rad=0.2), SCREEN), "steering.bar")[0])
     right = bounds(by_role(layout(HudView(road_wheel_rad=-0.2), SCREEN), "steering.bar")[0])
