@@ -74,7 +74,7 @@ def bench(words: Namespace) -> Outcome:
         lines.append(
             (
                 f"{case.message} to {case.subscribers}: {case.server}",
-                f"{figures.rate_hz:7.0f}/s each ({share:.2f} of bare), "
+                f"{figures.rate_hz:7.0f}/s each ({share:.2f} of bare, {figures.under_way:.0f} under way), "
                 f"at 100 Hz p50 {figures.p50_ms:.2f} ms, p99 {figures.p99_ms:.2f} ms",
             )
         )

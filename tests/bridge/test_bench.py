@@ -1,9 +1,14 @@
-from collections.abc import Callable
+import asyncio
+import threading
+from collections import deque
+from collections.abc import Callable, Iterator
 from typing import Any
 
+import orjson
 import pytest
+from websockets.asyncio.server import ServerConnection, serve
 
-from simconsole.bridge.bench import Case, bench
+from simconsole.bridge.bench import UNDER_WAY, Case, bench
 from simconsole.errors import BridgeError
 
 
@@ -19,3 +24,52 @@ def test_all_servers_are_measured_in_all_cases(serving: Callable[..., Any]) -> N
 def test_nobody_there() -> None:
     with pytest.raises(BridgeError, match=r"ws://127\.0\.0\.1:1"):
         bench(rounds=1, seconds=0.01, url="ws://127.0.0.1:1")
+
+
+KEPT = 10
+
+
+async def keep_the_newest(ready: Callable[[int], None], stop: threading.Event) -> None:
+    """Serve as a ROS 2 graph behind a bridge does: a queue of KEPT for each subscriber, the oldest dropped."""
+    queues: dict[ServerConnection, deque[str]] = {}
+
+    async def client(peer: ServerConnection) -> None:
+        async for text in peer:
+            operation = orjson.loads(text)
+            if operation["op"] == "subscribe":
+                queues[peer] = deque(maxlen=KEPT)
+            elif operation["op"] == "publish":
+                for queue in queues.values():
+                    queue.append(str(text))
+        queues.pop(peer, None)
+
+    async with serve(client, "127.0.0.1", 0, compression=None) as server:
+        ready(next(iter(server.sockets)).getsockname()[1])
+        while not stop.is_set():
+            await asyncio.sleep(0.002)
+            for peer, queue in list(queues.items()):
+                while queue:
+                    await peer.send(queue.popleft())
+
+
+@pytest.fixture
+def short_queues() -> Iterator[str]:
+    ports: list[int] = []
+    ready, stop = threading.Event(), threading.Event()
+
+    def run() -> None:
+        asyncio.run(keep_the_newest(lambda port: (ports.append(port), ready.set())[0], stop))
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    assert ready.wait(10.0)
+    yield f"ws://127.0.0.1:{ports[0]}"
+    stop.set()
+    thread.join()
+
+
+def test_a_server_with_short_queues_is_measured_with_fewer_under_way(short_queues: str) -> None:
+    found = bench(rounds=1, seconds=0.05, url=short_queues)
+    for case, figures in found.items():
+        assert figures.rate_hz > 0.0
+        assert (figures.under_way < UNDER_WAY) == (case.server == "url"), (case, figures)
