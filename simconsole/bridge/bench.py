@@ -23,7 +23,7 @@ from simconsole.errors import BridgeError
 UNDER_WAY: Final = 20
 RATE_HZ: Final = 100
 _START_S: Final = 30.0
-_SILENCE_S: Final = 0.5
+_SILENCE_S: Final = 0.3
 _TYPES: Final = {"odometry": "nav_msgs/Odometry", "laser_scan": "sensor_msgs/LaserScan"}
 
 
@@ -129,8 +129,7 @@ async def _warm_up(publisher: ClientConnection, listeners: list[ClientConnection
             except TimeoutError:
                 continue
             break
-    for listener in listeners:
-        await _heard(listener, _SILENCE_S)
+    await asyncio.gather(*(_heard(listener, _SILENCE_S) for listener in listeners))
 
 
 async def _heard(listener: ClientConnection, silence_s: float) -> int:
@@ -152,7 +151,7 @@ async def _window(publisher: ClientConnection, listeners: list[ClientConnection]
     """
     for _ in range(UNDER_WAY):
         await publisher.send(text)
-    kept = min([await _heard(listener, _SILENCE_S) for listener in listeners])
+    kept = min(await asyncio.gather(*(_heard(listener, _SILENCE_S) for listener in listeners)))
     return UNDER_WAY if kept == UNDER_WAY else max(1, kept // 2)
 
 
