@@ -15,27 +15,24 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 from websockets.asyncio.server import Server, ServerConnection
 from websockets.asyncio.server import serve as serve_websockets
-from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
-from websockets.protocol import State
 
 from simconsole.bridge.access import Role
 from simconsole.bridge.console import ConsoleBridge
 from simconsole.bridge.counters import standing
-from simconsole.bridge.documents import Binary
+from simconsole.bridge.forms import Dialect
 from simconsole.bridge.handshake import FORBIDDEN, FULL, UNKNOWN, dialect_of, is_host_allowed, origins, role_at
 from simconsole.bridge.inputs import OnCommand, OnEvents
 from simconsole.bridge.message_files import load_registry
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.operate import OnAct
-from simconsole.bridge.peer import Peer
+from simconsole.bridge.peer import CLOSE_S, Peer
 from simconsole.bridge.record import TopicRecorder, open_recorder
 from simconsole.bridge.session import Session
+from simconsole.bridge.transport import Transport
 from simconsole.bridge.uplink import Uplink
 from simconsole.bridge.wire import (
     address_url,
-    frame_head,
-    is_unacknowledged,
     listen,
     load_access,
     load_tls,
@@ -50,7 +47,6 @@ if TYPE_CHECKING:
     from simconsole.bridge.ros2 import Ros2Link
 
 _HANDSHAKE_S: Final = 5.0
-_CLOSE_S: Final = 1.0
 _WATCH_S: Final = 0.25
 _POLL_S: Final = 0.001
 _COUNT_S: Final = 1.0
@@ -63,11 +59,10 @@ _logger = logging.getLogger("simconsole.bridge.server")
 class _Client:
     """One connection and what its sender is doing."""
 
-    def __init__(self, connection: Peer) -> None:
-        self.connection = connection
+    def __init__(self, transport: Transport) -> None:
+        self.transport = transport
         self.ready = asyncio.Event()
         self.sending_since_ns: int | None = None
-        self.closing_since_ns: int | None = None
 
 
 class BridgeServer:
@@ -142,7 +137,7 @@ class BridgeServer:
             max_size=self._profile.limits.message_bytes,
             ping_interval=None,  # `_watch` asks, and cuts nobody who is merely slow
             open_timeout=_HANDSHAKE_S,
-            close_timeout=_CLOSE_S,
+            close_timeout=CLOSE_S,
             server_header=None,
             logger=_logger,
         )
@@ -181,11 +176,11 @@ class BridgeServer:
         if server is not None:
             server.close()
             try:
-                async with asyncio.timeout(2.0 * _CLOSE_S):
+                async with asyncio.timeout(2.0 * CLOSE_S):
                     await server.wait_closed()
             except TimeoutError:  # somebody takes nothing, not even a good-bye
                 for client in self._clients.values():
-                    client.connection.transport.abort()
+                    client.transport.abort()
                 await server.wait_closed()
 
     def _join_ros2(self, loop: asyncio.AbstractEventLoop) -> None:
@@ -226,21 +221,21 @@ class BridgeServer:
         assert isinstance(connection, Peer)
         sock: socket.socket = connection.transport.get_extra_info("socket")
         sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        client = _Client(connection)
-        address = connection.remote_address
+        host, port = connection.remote_address[:2]
         assert connection.request is not None
         dialect = dialect_of(connection.request.path, self._profile)
-        role = self._role(connection.request)
-        session = self.console.router.connect(f"{address[0]}:{address[1]}", client.ready.set, dialect, role)
+        await self.attend(connection, f"{host}:{port}", dialect, self._role(connection.request))
+
+    async def attend(self, transport: Transport, peer: str, dialect: Dialect, role: Role) -> None:
+        """Serve one client until its connection ends; `peer` names it in the log."""
+        client = _Client(transport)
+        session = self.console.router.connect(peer, client.ready.set, dialect, role)
         self._clients[session] = client
         _logger.info("%s connected", session.peer)
         sender = asyncio.create_task(self._send(session, client))
         try:
-            async for message in connection:
-                data = message.encode() if isinstance(message, str) else Binary(message)
+            async for data in transport.messages():
                 log_outcome(_logger, session, self.console.receive(session, data, self._clock_ns()))
-        except ConnectionClosed:
-            pass
         finally:
             sender.cancel()
             del self._clients[session]
@@ -251,34 +246,29 @@ class BridgeServer:
                 _logger.info("%s is gone", session.peer)
 
     async def _send(self, session: Session, client: _Client) -> None:
-        """Send what waits for one client, for as long as it is connected.
-
-        Whole frames are written past the library, whose sending costs more than all the rest (decision 8); it still
-        writes pings, pongs and good-byes, between them.
-        """
-        peer = client.connection
+        """Send what waits for one client, for as long as it is connected."""
+        transport = client.transport
         while True:
             await client.ready.wait()
             client.ready.clear()
-            while peer.state is State.OPEN and (frames := self._frames(session)):
+            while transport.is_open and (messages := self._due(session)):
                 client.sending_since_ns = self._clock_ns()
-                peer.transport.write(frames)
-                await peer.drain()
+                await transport.put(messages)
                 client.sending_since_ns = None
             due_ns = session.due_ns()
-            if due_ns is not None and peer.state is State.OPEN:
+            if due_ns is not None and transport.is_open:
                 # Throttled: look again when the first may go, whether or not more is published until then.
                 wait_s = max(0, due_ns - self._clock_ns()) / NS_PER_S
                 asyncio.get_running_loop().call_later(wait_s, client.ready.set)
 
-    def _frames(self, session: Session) -> bytes:
-        """Return what may be sent now, at most a system call's worth of it."""
-        frames: list[bytes] = []
+    def _due(self, session: Session) -> list[bytes]:
+        """Return the messages that may be sent now, at most a system call's worth of them."""
+        messages: list[bytes] = []
         size, now_ns = 0, self._clock_ns()
         while size < _WRITE_BYTES and (message := session.next_text(now_ns)) is not None:
-            frames += (frame_head(message), message)
+            messages.append(message)
             size += len(message)
-        return b"".join(frames)
+        return messages
 
     async def _watch(self) -> None:
         """Ask quiet clients for a sign of life, cut those that are gone and those that take nothing."""
@@ -294,26 +284,13 @@ class BridgeServer:
             reason = self._why_cut(client, now_ns)
             if reason is not None:
                 _logger.warning("%s %s and is cut", session.peer, reason)
-                client.connection.transport.abort()
+                client.transport.abort()
 
     def _why_cut(self, client: _Client, now_ns: int) -> str | None:
-        peer, profile = client.connection, self._profile
-        if peer.state is not State.OPEN:
-            client.closing_since_ns = client.closing_since_ns or now_ns
-            return "does not close" if now_ns - client.closing_since_ns > _CLOSE_S * NS_PER_S else None
-        overdue = peer.limit.overdue(now_ns)
-        if overdue is not None:
-            return f"sends too slowly: {overdue}"
-        since_ns, now_s = client.sending_since_ns, now_ns / NS_PER_S
-        if since_ns is not None and now_ns - since_ns > profile.stall_close_s * NS_PER_S:
-            return f"took nothing for {profile.stall_close_s:g} s"
-        # A program that is slow to answer is not a machine that is gone, which acknowledges nothing either.
-        if peer.liveness.is_dead(now_s) and is_unacknowledged(peer.transport.get_extra_info("socket")):
-            return f"has been gone for {profile.dead_after_s:g} s"
-        if peer.liveness.ping_due(now_s):
-            peer.protocol.send_ping(b"")
-            peer.send_data()
-        return None
+        since_ns, patience_s = client.sending_since_ns, self._profile.stall_close_s
+        if client.transport.is_open and since_ns is not None and now_ns - since_ns > patience_s * NS_PER_S:
+            return f"took nothing for {patience_s:g} s"
+        return client.transport.look(now_ns)
 
 
 def serve(
