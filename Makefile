@@ -1,6 +1,6 @@
 # Everything this project does with one command. `make` alone lists it.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lint format wheel clean
+.PHONY: help setup demo test mutation lint format wheel clean
 BIN := .venv/bin
 
 help:  ## This list
@@ -14,6 +14,9 @@ demo: .venv/ready-to-run  ## The whole console without hardware: drive, hand ove
 test: setup lint  ## All checks: format, lint, types, import contracts, tests
 	scripts/system-packages
 	$(BIN)/pytest
+
+mutation: setup  ## Mutation score of control/ into docs/mutation.md; half an hour on two cores
+	$(BIN)/python scripts/mutation.py
 
 lint: .venv/ready-to-test  ## Format, lint, types and import contracts only
 	$(BIN)/ruff format --check --quiet
