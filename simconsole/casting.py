@@ -128,6 +128,7 @@ def open_realtime(
     check_commander(resolved.session)
     if resolved.session.outputs.bridge is not None:
         _check_address(resolved.session.outputs.bridge)
+    token = _own_token(resolved.session)
     folder = make_run_folder()
     stack.callback(remove_run_folder, folder)
     ring, port, keys = make_memory(folder, console)
@@ -146,7 +147,9 @@ def open_realtime(
     if session.outputs.bridge is not None:
         address = bridge_address(folder, alive)
         if session.features.autopilot is not None:
-            programs.append(start_autopilot(address, session.features.autopilot))
+            programs.append(
+                start_autopilot(address, session.features.autopilot, token, session.outputs.bridge.certificate)
+            )
     if session.outputs.can is not None:
         wait_for_can(folder, lambda: alive() and not supervisor.counters().get("canbus"))
     seating = open_seating(resolved, console, stack, None if session.outputs.hud is None else keys)
@@ -197,15 +200,25 @@ def _open_lockstep(
     if session.outputs.bridge is None:
         raise ProfileError("outputs.bridge: value missing: a bridge, where mode.pacing is lockstep")
     period_ticks = max(1, session.mode.control_period_ms * console.tick_hz // 1000)
+    token = _own_token(session)
     bridge = LockstepBridge(session.outputs.bridge, odometry_hz=console.tick_hz / period_ticks, folder=folder)
     course = session.features.autopilot
     program = None
     if course is not None:
-        program = start_autopilot(bridge.url, course)
+        program = start_autopilot(bridge.url, course, token, session.outputs.bridge.certificate)
         stack.callback(end_program, program)
     stack.callback(bridge.close)  # before the program's end is waited for: it is what ends it
     _wait_for_controller(bridge, program, session.mode.wait_for_controller_s, check)
     return LockstepLink(bridge, period_ticks, session.mode.answer_timeout_s)
+
+
+def _own_token(session: SessionProfile) -> str | None:
+    """Return what the session's own autopilot shows its bridge; None where it has to show nothing."""
+    if session.outputs.bridge is None or session.features.autopilot is None:
+        return None
+    from simconsole.bridge.wire import control_token
+
+    return control_token(session.outputs.bridge)
 
 
 def _wait_for_controller(

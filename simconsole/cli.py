@@ -111,6 +111,7 @@ def _driving(commands: Any) -> None:
     autopilot.add_argument("--url", default="ws://127.0.0.1:9090", metavar="URL")
     autopilot.add_argument("--course", default="urban", metavar="WORLD")
     autopilot.add_argument("--wait", type=float, default=10.0, metavar="S", help="how long to wait for the server")
+    autopilot.add_argument("--certificate", metavar="PEM", help="of a wss:// server; a token: SIMCONSOLE_TOKEN")
 
 
 def _recordings(commands: Any) -> None:

@@ -1,5 +1,6 @@
 """A headless drive's outputs: the bridge on the core's own sockets in lockstep, and programs beside it."""
 
+import os
 import subprocess
 import sys
 from typing import Any, Protocol
@@ -10,6 +11,8 @@ from simconsole.signals import Event, EventInput, RemoteCommand
 
 PROGRAM_END_S = 5.0
 STAND_S = 0.02
+TOKEN_VARIABLE = "SIMCONSOLE_TOKEN"
+"""The environment's variable with the token that `simconsole autopilot` shows."""
 
 
 class LockstepServer(Protocol):
@@ -92,11 +95,30 @@ class LockstepLink:
         return remote, EventInput(events=float(int(events.events) | raised))
 
 
-def start_autopilot(url: str, course: str) -> "subprocess.Popen[bytes]":
-    """Start `simconsole autopilot` as a program of its own; `end_program` ends it."""
-    words = [sys.executable, "-m", "simconsole", "autopilot", "--url", url, "--course", course]
+def start_autopilot(
+    url: str, course: str, token: str | None = None, certificate: str | None = None
+) -> "subprocess.Popen[bytes]":
+    """Start `simconsole autopilot` as a program of its own; `end_program` ends it.
+
+    Args:
+        url: the console's own server.
+        course: what to follow.
+        token: what the server asks for; it goes by the environment, for everyone can read a program's arguments.
+        certificate: the PEM file of a wss:// server.
+    """
+    words = [sys.executable, "-m", "simconsole", "autopilot", "--url", _here(url), "--course", course]
+    if certificate is not None:
+        words += ["--certificate", certificate]
+    environment = dict(os.environ) if token is None else {**os.environ, TOKEN_VARIABLE: token}
     # A group of its own: a terminal's Ctrl-C reaches the core only, which then ends the drive in order.
-    return subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, process_group=0)
+    return subprocess.Popen(
+        words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, process_group=0, env=environment
+    )
+
+
+def _here(url: str) -> str:
+    """Return the address for this machine of a server that listens on all addresses: no certificate names those."""
+    return url.replace("//0.0.0.0:", "//127.0.0.1:").replace("//[::]:", "//[::1]:")
 
 
 def end_program(program: "subprocess.Popen[bytes]") -> None:

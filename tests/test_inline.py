@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from simconsole.inline import LockstepLink, end_program, start_autopilot
+from simconsole.inline import TOKEN_VARIABLE, LockstepLink, end_program, start_autopilot
 from simconsole.rows import Snapshot
 from simconsole.signals import NO_COMMAND, Event, EventInput, RemoteCommand
 
@@ -100,3 +100,19 @@ def test_an_autopilot_with_nobody_to_drive_for_is_ended() -> None:
     program.terminate()
     end_program(program)
     assert program.returncode is not None
+
+
+def test_a_token_goes_by_the_environment_and_a_server_on_all_addresses_is_reached_here(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    started: list[tuple[list[str], dict[str, str]]] = []
+    monkeypatch.setattr("subprocess.Popen", lambda words, **options: started.append((words, options["env"])))
+    monkeypatch.delenv(TOKEN_VARIABLE, raising=False)
+    start_autopilot("wss://0.0.0.0:9", "urban", "secret", "b.pem")
+    start_autopilot("ws://[::]:9", "urban")
+    (words, environment), (plain, without) = started
+    assert words[4:] == ["--url", "wss://127.0.0.1:9", "--course", "urban", "--certificate", "b.pem"]
+    assert environment[TOKEN_VARIABLE] == "secret"
+    assert "secret" not in words
+    assert plain[4:] == ["--url", "ws://[::1]:9", "--course", "urban"]
+    assert TOKEN_VARIABLE not in without

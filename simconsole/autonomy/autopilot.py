@@ -36,6 +36,8 @@ def run(
     stop: Callable[[], bool] | None = None,
     namespace: str = "",
     patience_s: float = _PATIENCE_S,
+    token: str | None = None,
+    certificate: str | None = None,
 ) -> dict[str, Any]:
     """Drive until the server says good-bye or is gone for `patience_s`, or `stop()` says so; return statistics.
 
@@ -45,6 +47,8 @@ def run(
         stop: asked after every message and four times a second.
         namespace: put before every topic, `/car1`.
         patience_s: how long to try to connect, at the start and after a connection was lost.
+        token: shown to the server.
+        certificate: a PEM file that a wss:// server is checked against.
 
     Raises:
         ProfileError: the course cannot be read.
@@ -52,7 +56,7 @@ def run(
     """
     tracker = Tracker(Course(load("worlds", course_name, WorldProfile, max_bytes=MAX_DATA_BYTES)))
     tally = Tally()
-    with BridgeClient(url, until_good_bye=True) as client:
+    with BridgeClient(url, token=token, certificate=certificate, until_good_bye=True) as client:
         client.advertise(namespace + COMMAND, CONTROL)
         client.subscribe(namespace + ODOMETRY, "nav_msgs/Odometry")
         client.subscribe(namespace + ARBITRATION, "simconsole_msgs/Arbitration")

@@ -141,11 +141,31 @@ def load_access(profile: BridgeProfile) -> Access:
     check_exposure(profile)
     if profile.tokens is None:
         return OPEN
+    return Access(_tokens(profile.tokens), Role[profile.anonymous.upper()])
+
+
+def control_token(profile: BridgeProfile) -> str | None:
+    """Return a token that may command, for a program of the console's own; None where no token is asked for.
+
+    Raises:
+        ProfileError: the file of tokens cannot be used, or has none of role control.
+    """
+    if profile.tokens is None:
+        return None
+    for token, role in _tokens(profile.tokens).items():
+        if role is Role.CONTROL:
+            return token
+    raise ProfileError(
+        f"outputs.bridge.tokens: {profile.tokens}: no token of role control, as features.autopilot needs"
+    )
+
+
+def _tokens(name: str) -> dict[str, Role]:
     try:
-        text = Path(profile.tokens).read_text("utf-8")
+        text = Path(name).read_text("utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        raise ProfileError(f"outputs.bridge.tokens: {profile.tokens}: {error}") from None
-    return Access(read_tokens(text, profile.tokens), Role[profile.anonymous.upper()])
+        raise ProfileError(f"outputs.bridge.tokens: {name}: {error}") from None
+    return read_tokens(text, name)
 
 
 def load_tls(profile: BridgeProfile) -> ssl.SSLContext | None:
