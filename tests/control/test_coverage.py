@@ -1,0 +1,32 @@
+"""The arbitration's own tests take every line and branch of it."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+ROOM = ROOT / "simconsole" / "control"
+LONG = ("test_random.py", "test_reactions.py", "test_coverage.py", "test_mutation_page.py")
+"""Compiled code is not seen line by line; the others would take what single tests should take."""
+
+
+def test_every_line_and_branch_is_taken(tmp_path: Path) -> None:
+    files = sorted(path for path in (ROOT / "tests" / "control").glob("test_*.py") if path.name not in LONG)
+    environment = {"COVERAGE_FILE": str(tmp_path / "coverage"), "PYTHONPATH": str(ROOT), "PATH": ""}
+    run = [sys.executable, "-m", "coverage"]
+    measure = [*run, "run", "--branch", "--source", str(ROOM), "-m", "pytest", "-q", "-p", "no:cacheprovider"]
+    done = subprocess.run(
+        [*measure, *map(str, files)], cwd=ROOT, env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-1000:]
+    report = tmp_path / "report.json"
+    subprocess.run([*run, "json", "-q", "-o", report], cwd=ROOT, env=environment, check=True)
+    pages = json.loads(report.read_text())["files"]
+    missed = {
+        name: (page["missing_lines"], page["missing_branches"])
+        for name, page in pages.items()
+        if page["missing_lines"] or page["missing_branches"]
+    }
+    assert len(pages) > 15
+    assert missed == {}
