@@ -77,7 +77,7 @@ def test_importing_the_report_loads_no_matplotlib() -> None:
 
 def test_take_overs_are_listed(sample: Any, course: Course) -> None:
     drive = drive_of(sample.rows, sample.columns, sample.tick_hz)
-    html = page("t", metrics(drive, course), (), {})
+    html = page("t", metrics(drive, course), (), {}, {})
     assert "<h2>Take-overs</h2>" in html
     row = html.partition("<h2>Take-overs</h2>")[2].partition("</table>")[0]
     assert "<td class=n>1251</td><td>driver turned the wheel</td><td>no</td>" in row
