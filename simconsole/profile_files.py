@@ -14,7 +14,18 @@ from simconsole import profile_errors, profile_text
 from simconsole.errors import ProfileError
 from simconsole.profile_text import Plain, to_text
 
-__all__ = ["MAX_BYTES", "MAX_DATA_BYTES", "find", "load", "names", "parse", "profiles_folder", "read_text", "to_text"]
+__all__ = [
+    "MAX_BYTES",
+    "MAX_DATA_BYTES",
+    "find",
+    "load",
+    "names",
+    "parse",
+    "profiles_folder",
+    "read_beside",
+    "read_text",
+    "to_text",
+]
 
 T = TypeVar("T")
 
@@ -106,6 +117,21 @@ def read_text(kind: str, file_name: str, *, max_bytes: int = MAX_DATA_BYTES) -> 
     allowed = len(file_name) <= _MAX_NAME and _NAME.fullmatch(file_name) is not None
     if not allowed or not _is_file(path) or not _stays_in(path, folder):
         raise _refused(kind, _shown(file_name), "a file that simconsole ships", None)
+    return _read(path, max_bytes)
+
+
+def read_beside(kind: str, reference: str, referrer: Path, *, max_bytes: int = MAX_BYTES) -> str:
+    """Return the text of a file that a profile names, which must lie in the profile's folder or below.
+
+    Raises:
+        ProfileError: the reference is refused, the file is not there, too big or not UTF-8.
+    """
+    shown = _shown(reference)
+    if not reference or not reference.isprintable():
+        raise _refused(kind, shown, "printable text", referrer)
+    path = _inside(kind, reference, shown, referrer)
+    if not _is_file(path):
+        raise _refused(kind, shown, "a file that exists", referrer)
     return _read(path, max_bytes)
 
 

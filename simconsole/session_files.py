@@ -11,8 +11,8 @@ from simconsole.profile_files import MAX_DATA_BYTES, find, load
 from simconsole.profiles.device import CockpitProfile, ScriptProfile
 from simconsole.profiles.scenario import ScenarioProfile
 from simconsole.profiles.session import SessionProfile
-from simconsole.profiles.vehicle import VehicleProfile
 from simconsole.profiles.world import WorldProfile
+from simconsole.vehicle_files import load_vehicle
 
 
 def resolve(session: SessionProfile, cockpit: str | None = None) -> ResolvedSession:
@@ -25,7 +25,7 @@ def resolve(session: SessionProfile, cockpit: str | None = None) -> ResolvedSess
     return ResolvedSession(
         session=session,
         cockpit=load("devices", cockpit or session.devices.cockpit, CockpitProfile),
-        vehicle=load("vehicles", session.scenario.vehicle, VehicleProfile),  # type: ignore[arg-type]  # a union
+        vehicle=load_vehicle(session.scenario.vehicle),
         world=None if world is None else load("worlds", world, WorldProfile, max_bytes=MAX_DATA_BYTES),
     )
 

@@ -5,6 +5,7 @@ from typing import Annotated, Literal, TypeAlias
 
 import msgspec
 
+from simconsole.profiles.tyre import TirTyre
 from simconsole.units import STANDARD_GRAVITY_MPS2
 
 Length: TypeAlias = Annotated[float, msgspec.Meta(ge=0.01, le=10.0)]
@@ -217,6 +218,7 @@ class CarProfile(
     gearbox: GearboxProfile
     automatic: AutomaticProfile
     aids: AidsProfile
+    tyre: TirTyre | None = None  # None: the tyre that the axles describe
 
     def __post_init__(self) -> None:
         """Refuse an automatic that does not fit the engine, and wheels too light for their tyres at steps of 1 ms.
@@ -233,7 +235,9 @@ class CarProfile(
         up = auto.up_full_rpm
         require(up < engine.limit_rpm, f"automatic.up_full_rpm {up} must be below engine.limit_rpm {engine.limit_rpm}")
         for name, axle in (("front", self.front), ("rear", self.rear)):
-            stiffness = axle.slip_stiffness / axle.relaxation_x_m * self.body.mass_kg * STANDARD_GRAVITY_MPS2
+            given = {} if self.tyre is None else self.tyre.coefficients
+            slip_stiffness = max(axle.slip_stiffness, given.get("PKX1", 0.0) * given.get("LKX", 1.0))
+            stiffness = slip_stiffness / axle.relaxation_x_m * self.body.mass_kg * STANDARD_GRAVITY_MPS2
             lever = axle.wheel_radius_m**2
             # Semi-implicit steps of h are stable to h^2 k / m = 4 and h d / m = 2; an eighth and a quarter of that.
             least = lever * max(stiffness * 1e-6 / 0.5, axle.damping_nspm * 1e-3 / 0.5)

@@ -1,11 +1,13 @@
 """From a car's profile to a platform: units, derived figures, and the checks that need more than one value."""
 
 import math
+from collections.abc import Callable
 from typing import Final
 
 import numpy as np
 
-from simconsole.kernels import put
+from simconsole.errors import ProfileError
+from simconsole.kernels import Row, put
 from simconsole.profiles.vehicle import (
     AidsProfile,
     AutomaticProfile,
@@ -72,7 +74,7 @@ def build_car(profile: CarProfile, pose: Pose, ground: Ground) -> Platform:
         initial_state=tuple(initial),
         initial_vehicle=vehicle_state(load_car(row), car, 0.0),
         parameters=np.array([value for group in car for value in group], dtype=np.float64),
-        step=step,
+        step=_step(profile),
         steering_ratio=profile.steering.ratio,
         max_road_wheel_rad=car.steering.max_road_wheel_rad,
         wheelbase_m=body.wheelbase_m,
@@ -81,6 +83,22 @@ def build_car(profile: CarProfile, pose: Pose, ground: Ground) -> Platform:
         height_m=body.height_m,
         rear_overhang_m=body.rear_overhang_m,
     )
+
+
+def _step(profile: CarProfile) -> Callable[[Row, Row, Row, int], None]:
+    """Return the step on the tyre of the profile.
+
+    Raises:
+        ProfileError: the tyre's file has not been read.
+    """
+    if profile.tyre is None:
+        return step
+    if not profile.tyre.coefficients:
+        raise ProfileError(f"vehicle profile: tyre.coefficients: value missing: those of {profile.tyre.tir}")
+    from simconsole.vehicle.car.pac2002 import coefficients
+    from simconsole.vehicle.car.tir_tyre import step_on
+
+    return step_on(coefficients(profile.tyre.coefficients))  # type: ignore[no-any-return]
 
 
 def car_parameters(profile: CarProfile, ground: Ground) -> CarParameters:

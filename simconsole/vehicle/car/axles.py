@@ -3,7 +3,7 @@
 from typing import Final, NamedTuple
 
 from simconsole.kernels import kernel
-from simconsole.vehicle.car.parameters import AxleParameters, CarParameters
+from simconsole.vehicle.car.parameters import AxleParameters, CarParameters, SteeringParameters
 from simconsole.vehicle.car.state import BodyState, Car, Wheel
 from simconsole.vehicle.car.steering import Heading, aligning_moment
 from simconsole.vehicle.car.suspension import axle_roll, wheel_load
@@ -97,6 +97,12 @@ def contact(
 
 
 @kernel
+def rim_moment(p: SteeringParameters, tyre_force: Tyre, rolling_mps: float) -> float:
+    """Return one tyre's moment about its kingpin."""
+    return aligning_moment(p, tyre_force.force_y_n, tyre_force.demand, rolling_mps)
+
+
+@kernel
 def side_speed(axle: AxleParameters, body: BodyState, left: Wheel, right: Wheel) -> float:
     """Return the velocity of an axle's contact patches to the left.
 
@@ -143,9 +149,9 @@ def push(car: Car, p: CarParameters, grips: Grips, points: Heading, turned_rad: 
     front_y = fl.force_y_n + fr.force_y_n
     rear_y = rl.force_y_n + rr.force_y_n
     steering = p.steering
-    aligning = aligning_moment(
-        steering, fl.tyre.force_y_n, fl.tyre.demand, car.fl.radps * front.radius_m
-    ) + aligning_moment(steering, fr.tyre.force_y_n, fr.tyre.demand, car.fr.radps * front.radius_m)
+    aligning = rim_moment(steering, fl.tyre, car.fl.radps * front.radius_m) + rim_moment(
+        steering, fr.tyre, car.fr.radps * front.radius_m
+    )
     return Axles(
         fl,
         fr,

@@ -1,0 +1,104 @@
+"""The car on PAC2002 tyres: the same transient deflection, other steady forces. Chosen when the car is assembled.
+
+The deflection over its relaxation length is the slip that PAC2002 is asked for: no division by speed, a spring at
+standstill. Beyond `slide_demand` (the profile's `sliding_share`) the deflection slides along with the force it has.
+"""
+
+from functools import cache
+from math import sqrt
+from typing import Any, Final, NamedTuple
+
+from simconsole.kernels import clip, kernel, rebound
+from simconsole.profiles.tyre import NEEDED, ONE, ZERO
+from simconsole.vehicle.car.axles import rim_moment
+from simconsole.vehicle.car.pac2002 import (
+    LEAST_LOAD_N,
+    Pac2002,
+    Slip,
+    pac2002,
+    peak_x,
+    peak_y,
+    stiffness_x,
+    stiffness_y,
+)
+from simconsole.vehicle.car.parameters import AxleParameters, SteeringParameters
+from simconsole.vehicle.car.steering import ROLLING_MPS
+from simconsole.vehicle.car.step import step
+from simconsole.vehicle.car.tyre import PEAK_DEMAND, tyre
+
+COEFFICIENTS: Final = Pac2002(*(1.0,) * len(NEEDED + ZERO + ONE))
+"""Takes the place of a tyre's own, which `step_on` puts here."""
+
+
+class TirForce(NamedTuple):
+    """A `Tyre` with its own aligning moment."""
+
+    force_x_n: float
+    force_y_n: float
+    deflection_x_m: float
+    deflection_y_m: float
+    demand: float
+    moment_nm: float  # as it rolls ahead
+
+
+@kernel
+def tir_tyre(
+    axle: AxleParameters,
+    friction: float,
+    load_n: float,
+    slip_x_mps: float,
+    slip_y_mps: float,
+    wheel_radps: float,
+    deflection_x_m: float,
+    deflection_y_m: float,
+    camber_rad: float,
+    step_s: float,
+) -> TirForce:
+    """Advance the deflection by one step and return the force: `tyre`, with PAC2002 for the curve."""
+    rolled = step_s * abs(wheel_radps) * axle.radius_m
+    x = (deflection_x_m - step_s * slip_x_mps) / (1.0 + rolled * axle.decay_x_per_m)
+    y = (deflection_y_m - step_s * slip_y_mps) / (1.0 + rolled * axle.decay_y_per_m)
+    load = load_n if load_n > LEAST_LOAD_N else LEAST_LOAD_N
+    along = x * axle.decay_x_per_m
+    across = -y * axle.decay_y_per_m
+    firm_x = stiffness_x(COEFFICIENTS, load) * along
+    firm_y = stiffness_y(COEFFICIENTS, load, camber_rad) * across
+    s = Slip(along, across, load, camber_rad, friction)
+    share_x = firm_x / peak_x(COEFFICIENTS, s)
+    share_y = firm_y / peak_y(COEFFICIENTS, s)
+    demand = sqrt(share_x * share_x + share_y * share_y)
+    if demand > axle.slide_demand:
+        share = axle.slide_demand / demand
+        x = x * share
+        y = y * share
+        demand = axle.slide_demand
+    steady = pac2002(COEFFICIENTS, Slip(x * axle.decay_x_per_m, -y * axle.decay_y_per_m, load, camber_rad, friction))
+    damping = axle.locked_damping_nspm
+    if wheel_radps != 0.0:
+        held = clip(1.0 - demand / PEAK_DEMAND, 0.0, 1.0)
+        damping = axle.damping_nspm * held * held
+    touching = clip(load_n * (1.0 / LEAST_LOAD_N), 0.0, 1.0)
+    rate = damping * clip(load_n * (1.0 / axle.static_n), 0.0, 4.0) * (1.0 / step_s)
+    force_x = steady.x_n * touching + rate * (x - deflection_x_m)
+    force_y = steady.y_n * touching + rate * (y - deflection_y_m)
+    force = sqrt(force_x * force_x + force_y * force_y)
+    limit = touching * (steady.peak_x_n if steady.peak_x_n > steady.peak_y_n else steady.peak_y_n)
+    if force > limit:
+        share = limit / force
+        force_x = force_x * share
+        force_y = force_y * share
+    return TirForce(force_x, force_y, x, y, demand, steady.moment_nm * touching)
+
+
+@kernel
+def tir_moment(p: SteeringParameters, tyre_force: TirForce, rolling_mps: float) -> float:
+    """Return the moment about the kingpin: the tyre's own, which turns over when it rolls back, and the caster's."""
+    way = rolling_mps / (abs(rolling_mps) + ROLLING_MPS)
+    return tyre_force.moment_nm * way - tyre_force.force_y_n * p.caster_trail_m
+
+
+@cache
+def step_on(coefficients: Pac2002) -> Any:
+    """Return the car's step on this tyre. Equal coefficients give the same step: it compiles once."""
+    own = rebound(tir_tyre, {id(COEFFICIENTS): coefficients})
+    return rebound(step, {id(tyre): own, id(rim_moment): tir_moment})

@@ -1,0 +1,22 @@
+"""Read a vehicle's profile with the tyre file that it names."""
+
+import msgspec
+
+from simconsole.profile_files import find, load, read_beside
+from simconsole.profiles.tyre import parse_tir
+from simconsole.profiles.vehicle import CarProfile, VehicleProfile
+
+
+def load_vehicle(name_or_path: str) -> VehicleProfile:
+    """Return the profile, its tyre's coefficients filled in: whoever records the profile records the tyre.
+
+    Raises:
+        ProfileError: the profile or its tyre file cannot be used; names file and key.
+    """
+    profile: VehicleProfile = load("vehicles", name_or_path, VehicleProfile)  # type: ignore[arg-type]  # a union
+    if not isinstance(profile, CarProfile) or profile.tyre is None or profile.tyre.coefficients:
+        return profile
+    path = find("vehicles", name_or_path)
+    name = profile.tyre.tir
+    values = parse_tir(read_beside("tyre", name, path), str(path.parent / name))
+    return msgspec.structs.replace(profile, tyre=msgspec.structs.replace(profile.tyre, coefficients=values))
