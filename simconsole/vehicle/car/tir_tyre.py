@@ -29,6 +29,9 @@ from simconsole.vehicle.car.tyre import PEAK_DEMAND, tyre
 COEFFICIENTS: Final = Pac2002(*(1.0,) * len(NEEDED + ZERO + ONE))
 """Takes the place of a tyre's own, which `step_on` puts here."""
 
+MOST_NOMINAL: Final = 2.0
+"""Nominal loads above which a tyre slides at the same deflection as there."""
+
 
 class TirForce(NamedTuple):
     """A `Tyre` with its own aligning moment."""
@@ -61,9 +64,11 @@ def tir_tyre(
     load = load_n if load_n > LEAST_LOAD_N else LEAST_LOAD_N
     along = x * axle.decay_x_per_m
     across = -y * axle.decay_y_per_m
-    firm_x = stiffness_x(COEFFICIENTS, load) * along
-    firm_y = stiffness_y(COEFFICIENTS, load, camber_rad) * across
-    s = Slip(along, across, load, camber_rad, friction)
+    # Stiffness over load falls without end: under an impact the patch would slide only when it is out of sight.
+    usual = clip(load, LEAST_LOAD_N, MOST_NOMINAL * COEFFICIENTS.fnomin)
+    firm_x = stiffness_x(COEFFICIENTS, usual) * along
+    firm_y = stiffness_y(COEFFICIENTS, usual, camber_rad) * across
+    s = Slip(along, across, usual, camber_rad, friction)
     share_x = firm_x / peak_x(COEFFICIENTS, s)
     share_y = firm_y / peak_y(COEFFICIENTS, s)
     demand = sqrt(share_x * share_x + share_y * share_y)
