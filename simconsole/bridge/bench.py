@@ -24,6 +24,7 @@ UNDER_WAY: Final = 20
 RATE_HZ: Final = 100
 _START_S: Final = 30.0
 _SILENCE_S: Final = 0.3
+_TRIES: Final = 40
 _TYPES: Final = {"odometry": "nav_msgs/Odometry", "laser_scan": "sensor_msgs/LaserScan"}
 
 
@@ -122,11 +123,13 @@ def _text(topic: str, message: str) -> str:
 async def _warm_up(publisher: ClientConnection, listeners: list[ClientConnection], text: str) -> None:
     """Return when every subscription stands: each listener has heard, and nothing more is under way."""
     for listener in listeners:
-        while True:
+        for tries_left in reversed(range(_TRIES)):
             await publisher.send(text)
             try:
                 await asyncio.wait_for(listener.recv(), 0.5)
             except TimeoutError:
+                if not tries_left:
+                    raise
                 continue
             break
     await asyncio.gather(*(_heard(listener, _SILENCE_S) for listener in listeners))

@@ -73,3 +73,10 @@ def test_a_server_with_short_queues_is_measured_with_fewer_under_way(short_queue
     for case, figures in found.items():
         assert figures.rate_hz > 0.0
         assert (figures.under_way < UNDER_WAY) == (case.server == "url"), (case, figures)
+
+
+def test_a_server_that_passes_nothing_on_is_left(short_queues: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("simconsole.bridge.bench._TRIES", 2)
+    monkeypatch.setattr("simconsole.bridge.bench._text", lambda *_: '{"op": "nothing"}')
+    with pytest.raises(BridgeError, match="loses messages"):
+        bench(rounds=1, seconds=0.01, url=short_queues)
