@@ -1,0 +1,70 @@
+"""The values of one tick: what the rooms hand to each other, with the unit in every field name.
+
+Frames: ISO 8855 / REP-103, x forward, y left, z up, angles left-positive; poses are of `base_link`, the centre of
+the rear axle on the ground, in `map`. Every field is a float64, so that one row holds a whole tick (rows.py) and
+the same classes serve the compiled functions. Enumerations are stored as their number.
+"""
+
+from simconsole.signals.codes import (
+    Button,
+    Commander,
+    Event,
+    GateLimit,
+    GearFault,
+    LinkState,
+    Mode,
+    Reason,
+    RemoteKind,
+    Validity,
+)
+from simconsole.signals.inputs import (
+    NEVER_TICKS,
+    NO_COMMAND,
+    NO_EVENTS,
+    NO_SAMPLE,
+    DeviceSample,
+    EventInput,
+    RemoteCommand,
+)
+from simconsole.signals.stages import (
+    NO_TORQUE,
+    ArbiterMemory,
+    Arbitration,
+    DriverInput,
+    Link,
+    Request,
+    VehicleCommand,
+    VehicleState,
+    WheelMemory,
+    WheelTorque,
+)
+
+__all__ = [
+    "NEVER_TICKS",
+    "NO_COMMAND",
+    "NO_EVENTS",
+    "NO_SAMPLE",
+    "NO_TORQUE",
+    "ArbiterMemory",
+    "Arbitration",
+    "Button",
+    "Commander",
+    "DeviceSample",
+    "DriverInput",
+    "Event",
+    "EventInput",
+    "GateLimit",
+    "GearFault",
+    "Link",
+    "LinkState",
+    "Mode",
+    "Reason",
+    "RemoteCommand",
+    "RemoteKind",
+    "Request",
+    "Validity",
+    "VehicleCommand",
+    "VehicleState",
+    "WheelMemory",
+    "WheelTorque",
+]

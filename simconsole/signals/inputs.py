@@ -1,0 +1,63 @@
+"""What comes from outside in one tick, and what each is when nothing comes."""
+
+from typing import Final, NamedTuple
+
+NEVER_TICKS: Final = 1e9
+"""Age of something that has never been received or whose device is gone."""
+
+
+class DeviceSample(NamedTuple):
+    """The cockpit as read: raw axes -1..1, button masks, ages in ticks since the last good poll (NEVER_TICKS: gone)."""
+
+    wheel_axis: float
+    throttle_axis: float
+    brake_axis: float
+    clutch_axis: float
+    handbrake_axis: float
+    wheel_buttons: float
+    shifter_buttons: float
+    hat_x: float
+    hat_y: float
+    wheel_age_ticks: float
+    pedals_age_ticks: float
+    shifter_age_ticks: float
+    handbrake_age_ticks: float  # of the pedals, where it has no device of its own
+    wheel_motor: float = 0.0  # 1 while the wheel's motor obeys: then the wheel also moves by itself
+
+
+class RemoteCommand(NamedTuple):
+    """The newest accepted command of the ROS side, or of the ECU on CAN; fields its kind does not use are 0."""
+
+    kind: float
+    sequence: float  # commands accepted since the start; 0 before the first
+    refused: float  # commands refused since the start
+    age_ticks: float  # since receipt
+    road_wheel_rad: float
+    road_wheel_radps: float
+    speed_mps: float
+    accel_mps2: float
+    yaw_rate_radps: float
+    throttle: float
+    brake: float
+    x_m: float
+    y_m: float
+    yaw_rad: float
+    direction: float  # 1 drive, -1 reverse, 0 neutral (Autoware GearCommand)
+
+
+class EventInput(NamedTuple):
+    """All edges that came in since the last tick, as masks of `Event`; and what is being done to the drive."""
+
+    events: float  # of operators, the ROS side and the console itself
+    faults: float = 0.0  # faults that a test has put on, a bit for each place in the scenario's list
+    ecu_events: float = 0.0  # of the ECU on CAN: they count in full only while it commands
+
+
+NO_SAMPLE: Final = DeviceSample(*(0.0,) * 9, *(NEVER_TICKS,) * 4)
+"""A cockpit that is not there."""
+
+NO_COMMAND: Final = RemoteCommand(*(0.0,) * len(RemoteCommand._fields))._replace(age_ticks=NEVER_TICKS, direction=1.0)
+"""A controller that has said nothing; until it does, forwards is the direction it means."""
+
+NO_EVENTS: Final = EventInput(events=0.0)
+"""A tick in which nothing happened."""
