@@ -20,6 +20,18 @@ from simconsole.pipeline import Console
 from simconsole.ports import CommandSource, NobodyCommands, Station
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.session import SessionProfile
+from simconsole.realtime import (
+    CommandPort,
+    acts_summary,
+    add_can_memory,
+    bridge_address,
+    bridge_summary,
+    can_summary,
+    make_memory,
+    station_latencies,
+    station_specs,
+    wait_for_can,
+)
 from simconsole.rows import Snapshot
 from simconsole.seating import open_seating
 from simconsole.shared_memory import make_run_folder, remove_run_folder
@@ -67,7 +79,7 @@ def open_headless(
     pace = UnpacedPacer()
     standby: tuple[Standby, ...] = (_idle,)
     counters: Callable[[], dict[str, Any]] = dict
-    can_summary: Callable[[], dict[str, Any]] = dict
+    of_can: Callable[[], dict[str, Any]] = dict
     acts: Callable[[], list[dict[str, Any]]] = list
     if resolved.session.mode.pacing == "lockstep":
         link = _open_lockstep(resolved, console, bundle, check, stack)
@@ -76,7 +88,7 @@ def open_headless(
         raise ProfileError("mode.pacing: value free: lockstep or realtime, where features.autopilot drives")
     can = _open_can(resolved, console, bundle, stack)
     if can is not None:
-        stations, can_summary = (*stations, can), can.summary
+        stations, of_can = (*stations, can), can.summary
     seating = open_seating(resolved, console, stack)
     outputs = (*seating.stations, *stations)
     cast = Cast(
@@ -87,7 +99,7 @@ def open_headless(
     cast = isolated(with_faults(cast, resolved, console.tick_hz))._replace(ledger=ledger)
 
     def summary() -> dict[str, Any]:
-        own = {**counters(), **can_summary(), **told(acts())}
+        own = {**counters(), **of_can(), **told(acts())}
         return {**pace.summary(), **own, "latency_us": ledger.summary_us()}
 
     return Opened(cast, seating.finished, summary)
@@ -112,19 +124,6 @@ def open_realtime(
         ProfileError: the session's commander has no way in.
         DeviceError: a device is missing.
     """
-    from simconsole.realtime import (
-        CommandPort,
-        acts_summary,
-        add_can_memory,
-        bridge_address,
-        bridge_summary,
-        can_summary,
-        make_memory,
-        station_latencies,
-        station_specs,
-        wait_for_can,
-    )
-
     check_commander(resolved.session)
     if resolved.session.outputs.bridge is not None:
         _check_address(resolved.session.outputs.bridge)
@@ -139,20 +138,9 @@ def open_realtime(
     stack.callback(supervisor.stop)
     supervisor.start()
 
-    def alive() -> bool:
-        check()
-        return supervisor.alive()
-
-    session, address = resolved.session, None
-    if session.outputs.bridge is not None:
-        address = bridge_address(folder, alive)
-        if session.features.autopilot is not None:
-            programs.append(
-                start_autopilot(address, session.features.autopilot, token, session.outputs.bridge.certificate)
-            )
-    if session.outputs.can is not None:
-        wait_for_can(folder, lambda: alive() and not supervisor.counters().get("canbus"))
-    seating = open_seating(resolved, console, stack, None if session.outputs.hud is None else keys)
+    address = _await_stations(resolved.session, folder, token, supervisor, programs, check)
+    with_window = resolved.session.outputs.hud is not None
+    seating = open_seating(resolved, console, stack, keys if with_window else None)
     missing = stack.enter_context(realtime_hints())
     pace = Pacer(console.tick_hz)
     outputs = (*seating.stations, ring, supervisor)
@@ -168,6 +156,30 @@ def open_realtime(
         return {**pace.summary(), **stations, "latency_us": latency, "not_granted": missing}
 
     return Opened(cast, seating.finished, summary, address)
+
+
+def _await_stations(
+    session: SessionProfile,
+    folder: Path,
+    token: str | None,
+    supervisor: Supervisor,
+    programs: list[Popen[bytes]],
+    check: Callable[[], None],
+) -> str | None:
+    """Wait until every way in is open, starting the session's own autopilot; return where the bridge listens."""
+
+    def alive() -> bool:
+        check()
+        return supervisor.alive()
+
+    address, bridge = None, session.outputs.bridge
+    if bridge is not None:
+        address = bridge_address(folder, alive)
+        if session.features.autopilot is not None:
+            programs.append(start_autopilot(address, session.features.autopilot, token, bridge.certificate))
+    if session.outputs.can is not None:
+        wait_for_can(folder, lambda: alive() and not supervisor.counters().get("canbus"))
+    return address
 
 
 def _check_address(profile: BridgeProfile) -> None:

@@ -16,11 +16,29 @@ from simconsole.signals import NO_SAMPLE, DeviceSample, DriverInput
 __all__ = ["NOBODY", "NO_SAMPLE", "CockpitSettings", "calibrate", "settings"]
 
 
+class Axis(NamedTuple):
+    """How one pedal's axis is read: raw ends of its travel, the share of it that still reads 0, and its curve."""
+
+    rest_raw: float
+    full_raw: float
+    dead: float
+    curve: float
+
+
 class Pedal(NamedTuple):
     """One pedal after this tick."""
 
     pressed: float
     validity: float
+
+
+class Pedals(NamedTuple):
+    """All of them; the hand brake is read like a pedal."""
+
+    throttle: Pedal
+    brake: Pedal
+    clutch: Pedal
+    handbrake: Pedal
 
 
 class Wheel(NamedTuple):
@@ -72,21 +90,39 @@ def pedal(
     age_ticks: float,
     refused_ticks: float,
     before: Pedal,
-    rest_raw: float,
-    full_raw: float,
-    dead: float,
-    curve: float,
+    axis: Axis,
     settings: CockpitSettings,
 ) -> Pedal:
     """Return one pedal: 0 while it is not trusted, the last good value while a bad reading is held."""
     good = axis_good(raw)
-    at_rest = good and travel(raw, rest_raw, full_raw) <= settings.arming_limit
+    at_rest = good and travel(raw, axis.rest_raw, axis.full_raw) <= settings.arming_limit
     validity = next_validity(before.validity, age_ticks, 0.0 if good else refused_ticks, settings.stale_ticks, at_rest)
     if not trusted(validity):
         return Pedal(0.0, validity)
     if not good:
         return Pedal(before.pressed, validity)
-    return Pedal(pressed_share(raw, rest_raw, full_raw, dead, curve), validity)
+    return Pedal(pressed_share(raw, axis.rest_raw, axis.full_raw, axis.dead, axis.curve), validity)
+
+
+@kernel
+def pedals(sample: DeviceSample, refused_ticks: float, before: DriverInput, settings: CockpitSettings) -> Pedals:
+    """Return the three pedals and the hand brake, which may be a device of its own."""
+    s = settings
+    age_ticks = sample.pedals_age_ticks
+    throttle_axis = Axis(s.throttle_rest_raw, s.throttle_full_raw, s.throttle_dead, s.throttle_curve)
+    brake_axis = Axis(s.brake_rest_raw, s.brake_full_raw, s.brake_dead, s.brake_curve)
+    clutch_axis = Axis(s.clutch_rest_raw, s.clutch_full_raw, s.clutch_dead, s.clutch_curve)
+    handbrake_axis = Axis(s.handbrake_rest_raw, s.handbrake_full_raw, s.handbrake_dead, s.handbrake_curve)
+    throttle = Pedal(before.throttle, before.throttle_validity)
+    brake = Pedal(before.brake, before.brake_validity)
+    clutch = Pedal(before.clutch, before.clutch_validity)
+    handbrake = Pedal(before.handbrake, before.handbrake_validity)
+    return Pedals(
+        pedal(sample.throttle_axis, age_ticks, refused_ticks, throttle, throttle_axis, s),
+        pedal(sample.brake_axis, age_ticks, refused_ticks, brake, brake_axis, s),
+        pedal(sample.clutch_axis, age_ticks, refused_ticks, clutch, clutch_axis, s),
+        pedal(sample.handbrake_axis, sample.handbrake_age_ticks, refused_ticks, handbrake, handbrake_axis, s),
+    )
 
 
 @kernel
@@ -199,88 +235,32 @@ def calibrate(
         pedals are 0, wheel and lever stay where they were.
     """
     bad_ticks = previous.refused_ticks + 1.0 if refused(sample) else 0.0
-    angle = wheel(
-        sample.wheel_axis,
-        sample.wheel_age_ticks,
-        bad_ticks,
-        Wheel(previous.hand_wheel_rad, previous.hand_wheel_radps, previous.wheel_validity),
-        model_wheel_rad,
-        settings,
-        tick_s,
-    )
-    pedals_age = sample.pedals_age_ticks
-    throttle = pedal(
-        sample.throttle_axis,
-        pedals_age,
-        bad_ticks,
-        Pedal(previous.throttle, previous.throttle_validity),
-        settings.throttle_rest_raw,
-        settings.throttle_full_raw,
-        settings.throttle_dead,
-        settings.throttle_curve,
-        settings,
-    )
-    brake = pedal(
-        sample.brake_axis,
-        pedals_age,
-        bad_ticks,
-        Pedal(previous.brake, previous.brake_validity),
-        settings.brake_rest_raw,
-        settings.brake_full_raw,
-        settings.brake_dead,
-        settings.brake_curve,
-        settings,
-    )
-    clutch = pedal(
-        sample.clutch_axis,
-        pedals_age,
-        bad_ticks,
-        Pedal(previous.clutch, previous.clutch_validity),
-        settings.clutch_rest_raw,
-        settings.clutch_full_raw,
-        settings.clutch_dead,
-        settings.clutch_curve,
-        settings,
-    )
-    handbrake = pedal(
-        sample.handbrake_axis,
-        sample.handbrake_age_ticks,
-        bad_ticks,
-        Pedal(previous.handbrake, previous.handbrake_validity),
-        settings.handbrake_rest_raw,
-        settings.handbrake_full_raw,
-        settings.handbrake_dead,
-        settings.handbrake_curve,
-        settings,
-    )
+    turned = Wheel(previous.hand_wheel_rad, previous.hand_wheel_radps, previous.wheel_validity)
+    angle = wheel(sample.wheel_axis, sample.wheel_age_ticks, bad_ticks, turned, model_wheel_rad, settings, tick_s)
+    feet = pedals(sample, bad_ticks, previous, settings)
     held = _held(sample, sample, int(previous.pressed), settings)
     edges = held & ~_held(before, sample, int(previous.pressed), settings)
-    shift = lever(
-        sample,
-        edges,
-        bad_ticks,
-        Lever(previous.gear, previous.shifter_validity, previous.neutral_ticks, previous.lever_fault),
-        settings,
-    )
+    shifted = Lever(previous.gear, previous.shifter_validity, previous.neutral_ticks, previous.lever_fault)
+    shift = lever(sample, edges, bad_ticks, shifted, settings)
     return DriverInput(
         angle.rad,
         angle.radps,
-        throttle.pressed,
-        brake.pressed,
-        clutch.pressed,
-        handbrake.pressed,
+        feet.throttle.pressed,
+        feet.brake.pressed,
+        feet.clutch.pressed,
+        feet.handbrake.pressed,
         shift.gear,
         float(held),
         float(edges),
         angle.validity,
-        throttle.validity,
-        brake.validity,
-        clutch.validity,
+        feet.throttle.validity,
+        feet.brake.validity,
+        feet.clutch.validity,
         shift.validity,
         shift.neutral_ticks,
         bad_ticks,
         shift.fault,
-        handbrake.validity,
+        feet.handbrake.validity,
     )
 
 

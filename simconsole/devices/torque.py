@@ -40,6 +40,14 @@ class Parts(NamedTuple):
     feel_nm: float  # damping, friction, end stop, road
 
 
+class Aim(NamedTuple):
+    """Where the wheel is to be."""
+
+    known: bool  # all that it and the torque are made of is finite
+    rim: Rim  # where the road wheels are: the servo goes there
+    asked: Wanted  # where the controller would have the person's hands
+
+
 class Alone(NamedTuple):
     """The wheel as the motor alone would have it."""
 
@@ -115,6 +123,64 @@ def compose(
     car = force.car_share * rolling * vehicle.hand_wheel_torque_nm
     guide = guidance(asked, rim, rolling, share, force)
     return Parts(car, 0.0, guide, drag + end_stop(rim, force) + texture)
+
+
+@kernel
+def estimate(
+    driver: DriverInput,
+    live: bool,
+    motor_nm: float,
+    before: WheelTorque,
+    memory: WheelMemory,
+    force: ForceSettings,
+    tick_s: float,
+) -> Felt:
+    """Return the wheel's motion and the person's torque; a wheel whose motor comes back starts at rest, hands off."""
+    if not live or memory.live <= 0.0:
+        return at_rest(driver.hand_wheel_rad)
+    known = Felt(memory.wheel_rad, memory.wheel_radps, before.human_nm, memory.hands_nm, before.hands_on)
+    return observe(known, driver.hand_wheel_rad, motor_nm, force, tick_s)
+
+
+@kernel
+def aim(
+    arbitration: Arbitration,
+    vehicle: VehicleState,
+    felt: Felt,
+    memory: WheelMemory,
+    force: ForceSettings,
+    tick_s: float,
+) -> Aim:
+    """Return where the wheel is to be; where something is not a number, it is to stay, and this is not known."""
+    lock = force.end_stop_rad
+    wanted_rad = vehicle.road_wheel_rad * force.hand_wheel_per_road_wheel
+    known = is_finite(wanted_rad) and is_finite(vehicle.hand_wheel_torque_nm) and is_finite(vehicle.vx_mps)
+    known = known and is_finite(vehicle.distance_m) and is_finite(felt.rad) and is_finite(felt.radps)
+    known = known and is_finite(arbitration.remote_road_wheel_rad)
+    if not known:
+        return Aim(False, Rim(memory.target_rad, 0.0), Wanted(0.0, 0.0))
+    asked = wanted(arbitration.remote_road_wheel_rad, memory.guide_rad, arbitration.mode, force, tick_s)
+    target_rad = clip(wanted_rad, -lock, lock)
+    radps = (target_rad - memory.target_rad) / tick_s if memory.live > 0.0 else 0.0
+    return Aim(True, Rim(target_rad, radps), asked)
+
+
+@kernel
+def limited(parts: Parts, ramp: float, felt: Felt, before: WheelTorque, force: ForceSettings) -> WheelTorque:
+    """Return the torque that the motor is asked for: within its limit, coming in slowly and never in steps."""
+    raw_nm = parts.car_nm + parts.servo_nm + parts.guide_nm + parts.feel_nm
+    wished_nm = ramp * soft_clip(raw_nm, force)
+    return WheelTorque(
+        approach(before.torque_nm, wished_nm, force.slew_nm),
+        parts.car_nm,
+        parts.servo_nm,
+        parts.guide_nm,
+        ramp,
+        1.0 if abs(raw_nm) > force.max_torque_nm else 0.0,
+        1.0,
+        felt.human_nm,
+        felt.hands_on,
+    )
 
 
 @kernel
@@ -196,57 +262,31 @@ def wheel_torque(
     mode = arbitration.mode
     live = wheel_motor > 0.0 and trusted(driver.wheel_validity)
     motor_nm = memory.motor_nm + force.motor_lag_share * (before.torque_nm - memory.motor_nm)
-    felt = at_rest(driver.hand_wheel_rad)
-    if live and memory.live > 0.0:
-        known = Felt(memory.wheel_rad, memory.wheel_radps, before.human_nm, memory.hands_nm, before.hands_on)
-        felt = observe(known, driver.hand_wheel_rad, motor_nm, force, tick_s)
+    felt = estimate(driver, live, motor_nm, before, memory, force, tick_s)
     rim = Rim(felt.rad, felt.radps)
     follows = mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED)
-    lock = force.end_stop_rad
-    wanted_rad = vehicle.road_wheel_rad * force.hand_wheel_per_road_wheel
-    finite = is_finite(wanted_rad) and is_finite(vehicle.hand_wheel_torque_nm) and is_finite(vehicle.vx_mps)
-    finite = finite and is_finite(vehicle.distance_m) and is_finite(felt.rad) and is_finite(felt.radps)
-    finite = finite and is_finite(arbitration.remote_road_wheel_rad)
-    target, asked = Rim(memory.target_rad, 0.0), Wanted(0.0, 0.0)
-    if finite:
-        asked = wanted(arbitration.remote_road_wheel_rad, memory.guide_rad, mode, force, tick_s)
-        target_rad = clip(wanted_rad, -lock, lock)
-        target = Rim(target_rad, (target_rad - memory.target_rad) / tick_s if memory.live > 0.0 else 0.0)
+    target = aim(arbitration, vehicle, felt, memory, force, tick_s)
     driven = follows or mode in (_MANUAL, _SHARED)
-    enabled = live and finite and driven and int(events) & _STANDING == 0
+    enabled = live and target.known and driven and int(events) & _STANDING == 0
     ramp = approach(before.ramp, 1.0, force.ramp_per_tick) if enabled else 0.0
     torque = WheelTorque(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, felt.human_nm, felt.hands_on)
     if enabled:
         guided = arbitration.remote_guidance if mode == _SHARED else 0.0
-        parts = compose(follows, target, rim, vehicle, asked, guided, force)
-        raw_nm = parts.car_nm + parts.servo_nm + parts.guide_nm + parts.feel_nm
-        wished_nm = ramp * soft_clip(raw_nm, force)
-        torque_nm = approach(before.torque_nm, wished_nm, force.slew_nm)
-        clipped = 1.0 if abs(raw_nm) > force.max_torque_nm else 0.0
-        torque = WheelTorque(
-            torque_nm,
-            parts.car_nm,
-            parts.servo_nm,
-            parts.guide_nm,
-            ramp,
-            clipped,
-            1.0,
-            felt.human_nm,
-            felt.hands_on,
-        )
+        parts = compose(follows, target.rim, rim, vehicle, target.asked, guided, force)
+        torque = limited(parts, ramp, felt, before, force)
     share = ramp if follows else 0.0
-    alone = motion_alone(driver, felt, target, share, watching, live, memory, force, rate_filter_s, tick_s)
+    alone = motion_alone(driver, felt, target.rim, share, watching, live, memory, force, rate_filter_s, tick_s)
     return torque, WheelMemory(
         1.0 if live else 0.0,
         felt.rad,
         felt.radps,
         motor_nm,
         felt.hands_nm,
-        target.rad,
+        target.rim.rad,
         alone.rad,
         alone.radps,
         alone.motor_nm,
         alone.explained_rad,
         alone.explained_radps,
-        asked.slow_rad,
+        target.asked.slow_rad,
     )

@@ -175,7 +175,7 @@ def _countdown(view: HudView, box: Box, ink: Colour) -> list[DrawItem]:
     """Return the seconds left, as a number and as a bar."""
     seconds = f"{math.ceil(view.remaining_s)}"
     inside = box.inset(0.3 * box.h)
-    part = min(1.0, view.remaining_s / view.takeover_window_s)
+    part = min(1.0, view.remaining_s / view.settings.takeover_window_s)
     items: list[DrawItem] = [
         Text(inside.right, box.y + 0.44 * box.h, seconds, 0.52 * box.h, ink, "alert.countdown", "r", DRIVING_ARCMIN)
     ]

@@ -43,7 +43,7 @@ def dial(view: HudView, box: Box) -> list[DrawItem]:
 
 
 def _clock_deg(view: HudView, rpm: float) -> float:
-    return START_DEG + SWEEP_DEG * min(1.0, max(0.0, rpm / view.rpm_max))
+    return START_DEG + SWEEP_DEG * min(1.0, max(0.0, rpm / view.settings.rpm_max))
 
 
 def _face(cx: float, cy: float, radius: float) -> list[DrawItem]:
@@ -60,7 +60,7 @@ def _band(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]:
     if view.stale:
         return [track]
     clock = _clock_deg(view, view.rpm)
-    colour = WARNING_LINE if view.rpm >= view.rpm_red else TEXT
+    colour = WARNING_LINE if view.rpm >= view.settings.rpm_red else TEXT
     needle = tuple(
         at_clock(cx, cy, distance * radius, clock + offset)
         for distance, offset in ((0.82, -0.9), (0.985, -0.45), (0.985, 0.45), (0.82, 0.9))
@@ -81,10 +81,10 @@ def _filled(cx: float, cy: float, radius: float, clock_deg: float) -> list[DrawI
 
 
 def _scale(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]:
-    red = _clock_deg(view, view.rpm_red)
+    red = _clock_deg(view, view.settings.rpm_red)
     end = START_DEG + SWEEP_DEG
     items: list[DrawItem] = [Arc(cx, cy, 0.955 * radius, 0.925 * radius, red, end, WARNING_LINE, "dial.red")]
-    for half in range(2 * int(view.rpm_max // 1000.0) + 1):
+    for half in range(2 * int(view.settings.rpm_max // 1000.0) + 1):
         clock = _clock_deg(view, 500.0 * half)
         whole = half % 2 == 0
         colour = WARNING_LINE if clock >= red - 1e-6 else MUTED
@@ -124,7 +124,7 @@ def _gear(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]:
     if view.automatic and not view.stale:
         x = box.right + 0.07 * radius
         items.append(Text(x, box.cy, "AUTO", 0.06 * radius, MUTED, "gear.automatic", "l", SECONDARY_ARCMIN))
-    elif view.rpm >= view.rpm_red and not view.stale:
+    elif view.rpm >= view.settings.rpm_red and not view.stale:
         items += _shift_up(Box(box.right + 0.07 * radius, box.cy - 0.06 * radius, 0.12 * radius, 0.12 * radius))
     return items
 

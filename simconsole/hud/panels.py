@@ -157,7 +157,7 @@ def _link_words(view: HudView) -> tuple[str, str, Colour]:
     if view.link_age_s is None:
         return "NONE", "no command yet", MUTED
     shown = f"{1000.0 * view.link_age_s:.0f} ms old" if view.link_age_s < 10.0 else "over 10 s old"
-    return ("SILENT", shown, CAUTION) if view.link_age_s > view.link_stale_s else ("LIVE", shown, ACTIVE)
+    return ("SILENT", shown, CAUTION) if view.link_age_s > view.settings.link_stale_s else ("LIVE", shown, ACTIVE)
 
 
 def _link_shape(words: str, box: Box, colour: Colour) -> list[DrawItem]:

@@ -40,12 +40,11 @@ class HudMemory(NamedTuple):
 class HudView(NamedTuple):
     """One picture's content. Pedals 0 to 1; `driver_*` is the person, the others what the car does."""
 
+    settings: HudSettings = HudSettings()
     t_s: float = 0.0
     stale: bool = False
     shown_kmh: int = 0
     rpm: float = 0.0
-    rpm_max: float = 7000.0
-    rpm_red: float = 6000.0
     engine_running: bool = False
     gear: str = "N"
     automatic: bool = False
@@ -55,7 +54,6 @@ class HudView(NamedTuple):
     refusal_words: str = ""
     takeover_stage: int = 0
     remaining_s: float = 0.0
-    takeover_window_s: float = 10.0
     throttle: float = 0.0
     brake: float = 0.0
     clutch: float = 0.0
@@ -67,7 +65,6 @@ class HudView(NamedTuple):
     remote_lateral: float = 0.0
     commander: str = "none"
     link_age_s: float | None = None
-    link_stale_s: float = 0.2
     wheel_validity: float = 0.0
     pedals_validity: float = 0.0
     shifter_validity: float = 0.0
@@ -122,19 +119,15 @@ def view(
     """
     vehicle, command, driver = snapshot.vehicle, snapshot.command, snapshot.driver
     arbitration = snapshot.arbitration
-    arbiter = ArbiterMemory(*snapshot.row[MEMORY_AT : MEMORY_AT + MEMORY_WIDTH].tolist())
     kmh, shown_s = shown_speed(vehicle.vx_mps, snapshot.t_s, memory)
     force, motor_seen, clipped_s = force_words(snapshot, memory)
-    asked = arbitration.mode == Mode.TAKEOVER_REQUESTED
     paused = bool(int(snapshot.events.events) & Event.PAUSE)
-    waited_s = arbiter.mode_ticks / snapshot.tick_hz
     shown = HudView(
+        settings=settings,
         t_s=snapshot.t_s,
         stale=age_s > STALE_S and not paused,
         shown_kmh=kmh,
         rpm=max(0.0, vehicle.engine_radps * RPM_PER_RADPS),
-        rpm_max=settings.rpm_max,
-        rpm_red=settings.rpm_red,
         engine_running=vehicle.engine_running != 0.0,
         gear=gear_words(vehicle.gear),
         automatic=command.automatic != 0.0,
@@ -143,8 +136,7 @@ def view(
         reason_words=reason_words(arbitration.reason),
         refusal_words=reason_words(arbitration.refusal) if arbitration.refusal else "",
         takeover_stage=int(arbitration.takeover_stage),
-        remaining_s=max(0.0, settings.takeover_window_s - waited_s) if asked else 0.0,
-        takeover_window_s=settings.takeover_window_s,
+        remaining_s=_remaining_s(snapshot, settings),
         throttle=command.throttle,
         brake=command.brake,
         clutch=vehicle.clutch,
@@ -156,7 +148,6 @@ def view(
         remote_lateral=arbitration.remote_lateral,
         commander=commander_words(arbitration.commander),
         link_age_s=_link_age_s(snapshot),
-        link_stale_s=settings.link_stale_s,
         wheel_validity=driver.wheel_validity,
         pedals_validity=_worst(driver.throttle_validity, driver.brake_validity, driver.clutch_validity),
         shifter_validity=driver.shifter_validity,
@@ -168,6 +159,14 @@ def view(
         link=link,
     )
     return shown, HudMemory(kmh, shown_s, motor_seen, clipped_s)
+
+
+def _remaining_s(snapshot: Snapshot, settings: HudSettings) -> float:
+    """Return how long the person still has to take over; 0 where nobody asks."""
+    if snapshot.arbitration.mode != Mode.TAKEOVER_REQUESTED:
+        return 0.0
+    memory = ArbiterMemory(*snapshot.row[MEMORY_AT : MEMORY_AT + MEMORY_WIDTH].tolist())
+    return max(0.0, settings.takeover_window_s - memory.mode_ticks / snapshot.tick_hz)
 
 
 def _lever_words(lever_fault: float, gate_active: float) -> str:
