@@ -167,6 +167,13 @@ def _tools(commands: Any) -> None:
     bridge.add_argument("--certificate", metavar="FILE", help="speak TLS only; its key stands beside it as .key")
     bridge.add_argument("--messages", metavar="DIR", help="own types: PACKAGE/msg/NAME.msg, .srv, .action")
     bridge.add_argument("--ros2", action="store_true", help="join the ROS 2 graph of this machine too (needs rclpy)")
+    bridge.add_argument(
+        "--transport",
+        choices=("websockets", "picows"),
+        default="websockets",
+        metavar="LIBRARY",
+        help="what carries clients: websockets, or picows (extra `picows`)",
+    )
     bridge.add_argument("--trust-network", action="store_true", help="other machines need no token and no TLS")
     bridge.add_argument("--out", metavar="DIR", default=".", help="where `cert` writes")
 

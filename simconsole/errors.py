@@ -10,6 +10,7 @@
     +-- BridgeError             the rosbridge link
     |   +-- LocalProtocolError  we broke the protocol: a bug here
     |   +-- RemoteProtocolError the peer broke the protocol: answered with a status
+    |       +-- FrameError      below its messages: answered with a close code
     +-- CanError                the CAN bus, a DBC or a frame
     +-- RecordingError          a bundle or log that cannot be read
     +-- StationError            a consumer process or its shared memory
@@ -50,6 +51,14 @@ class LocalProtocolError(BridgeError):
 
 class RemoteProtocolError(BridgeError):
     """The peer sent something the protocol forbids; nothing of it was applied."""
+
+
+class FrameError(RemoteProtocolError):
+    """The peer broke the WebSocket protocol or a limit of its frames; `code` is the close code that says which."""
+
+    def __init__(self, code: int, reason: str) -> None:
+        super().__init__(reason)
+        self.code = code
 
 
 class CanError(SimConsoleError):

@@ -4,29 +4,26 @@ import logging
 import socket
 import ssl
 import time
-from typing import Any, Final, Protocol, cast
+from typing import Final, Protocol
 
-from websockets.datastructures import MultipleValuesError
 from websockets.frames import CloseCode, Frame
 from websockets.http11 import Request
 from websockets.protocol import SEND_EOF, State
 from websockets.server import ServerProtocol
 
-from simconsole.bridge.access import Role
+from simconsole.bridge.access import Access
 from simconsole.bridge.backoff import Liveness
 from simconsole.bridge.documents import Binary
-from simconsole.bridge.forms import Dialect
-from simconsole.bridge.handshake import FORBIDDEN, FULL, UNKNOWN, dialect_of, is_host_allowed, origins
+from simconsole.bridge.frames import CLOSE, MessageAssembler
+from simconsole.bridge.handshake import Admission, Opening, Refusal, admit
 from simconsole.bridge.session import Session
-from simconsole.bridge.wire import RECEIVE_BYTES, FragmentLimit, MessageAssembler, is_data, is_unacknowledged
-from simconsole.errors import RemoteProtocolError
+from simconsole.bridge.wire import CLOSE_S, RECEIVE_BYTES, is_unacknowledged
+from simconsole.errors import FrameError
 from simconsole.profiles.bridge import BridgeProfile
 
 UNSENT_BYTES: Final = 262_144
 """Bytes taken out of a session's bounded queues beyond what the system's socket buffer holds."""
 _LATER: Final = (BlockingIOError, InterruptedError, ssl.SSLWantReadError, ssl.SSLWantWriteError)
-CLOSE_S: Final = 1.0
-"""How long a client may take to answer a good-bye."""
 
 _logger = logging.getLogger("simconsole.bridge.lockstep")
 
@@ -34,10 +31,11 @@ _logger = logging.getLogger("simconsole.bridge.lockstep")
 class Owner(Protocol):
     """Who is told what happens on a connection."""
 
-    def role_of(self, path: str, authorization: str | None) -> Role:
-        """Return what a client may do; raises RemoteProtocolError for a token that is not known."""
+    @property
+    def access(self) -> Access:
+        """Who may do what."""
 
-    def connected(self, peer: str, dialect: Dialect, role: Role) -> Session:
+    def connected(self, peer: str, admission: Admission) -> Session:
         """Take in a client whose handshake is done."""
 
     def received(self, session: Session, text: bytes) -> None:
@@ -58,12 +56,8 @@ class Connection:
         self._owner = owner
         self._profile = profile
         self._is_full = is_full
-        # websockets types its origins with a NewType of str.
-        self._web = ServerProtocol(
-            origins=cast("Any", origins(profile)), max_size=profile.limits.message_bytes, logger=_logger
-        )
-        self._limit = FragmentLimit(profile.limits.message_fragments)
-        self._messages = MessageAssembler()
+        self._web = ServerProtocol(max_size=profile.limits.message_bytes, logger=_logger)
+        self._messages = MessageAssembler(profile.limits.message_bytes, profile.limits.message_fragments)
         self._liveness = Liveness(profile.ping_interval_s, profile.dead_after_s)
         self._liveness.begin(time.monotonic())
         self._unsent = bytearray()
@@ -103,7 +97,7 @@ class Connection:
         for event in self._web.events_received():
             if isinstance(event, Request):
                 self._answer(event)
-            elif isinstance(event, Frame) and is_data(event) and self.session is not None:
+            elif isinstance(event, Frame) and event.opcode < CLOSE and self.session is not None:
                 self._take(event, self.session)
         if not data or self._web.state is State.CLOSED:
             self.close()
@@ -152,36 +146,24 @@ class Connection:
         self.socket.close()
 
     def _answer(self, request: Request) -> None:
-        try:
-            host = request.headers.get("Host")
-        except MultipleValuesError:
-            host = None
-        role = self._role(request)
-        if self._is_full:
-            response = self._web.reject(503, f"{FULL}\n")
-        elif not is_host_allowed(host, self._profile):
-            response = self._web.reject(403, f"{FORBIDDEN}\n")
-        elif role is None:
-            response = self._web.reject(401, f"{UNKNOWN}\n")
-        else:
-            response = self._web.accept(request)
-        self._web.send_response(response)
-        if self._web.state is State.OPEN and role is not None:
-            self.session = self._owner.connected(self.peer, dialect_of(request.path, self._profile), role)
-
-    def _role(self, request: Request) -> Role | None:
-        given = request.headers.get_all("Authorization")
-        try:
-            return self._owner.role_of(request.path, given[0] if given else None)
-        except RemoteProtocolError:
-            return None
+        headers = request.headers
+        opening = Opening(
+            request.path, headers.get_all("Host"), headers.get_all("Origin"), headers.get_all("Authorization")
+        )
+        decision = admit(opening, self._profile, self._owner.access, self._is_full)
+        if isinstance(decision, Refusal):
+            self._web.send_response(self._web.reject(decision.status, f"{decision.reason}\n"))
+            return
+        self._web.send_response(self._web.accept(request))
+        if self._web.state is State.OPEN:
+            self.session = self._owner.connected(self.peer, decision)
 
     def _take(self, frame: Frame, session: Session) -> None:
-        reason = self._limit.add(frame, time.monotonic_ns())
-        if reason is not None:
-            self._web.fail(CloseCode.POLICY_VIOLATION, reason)
+        try:
+            message = self._messages.add(frame.opcode, bytes(frame.data), frame.fin, time.monotonic_ns())
+        except FrameError as error:
+            self._web.fail(error.code, str(error))
             return
-        message = self._messages.add(frame)
         if message is not None:
             self._owner.received(session, message)
 

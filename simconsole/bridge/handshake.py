@@ -1,34 +1,74 @@
-"""Who may open a connection: the Origin of web pages and the Host a server is addressed by (N15, N16)."""
+"""Who may open a connection: the Origin of web pages, the Host a server is addressed by (N15, N16), tokens, room.
+
+Each library that reads the first request asks `admit`, so that they cannot differ.
+"""
 
 import ipaddress
 import re
 from collections.abc import Sequence
-from typing import Final
+from http import HTTPStatus
+from typing import Final, NamedTuple
 from urllib.parse import parse_qs, urlsplit
 
 from simconsole.bridge.access import Access, Role
 from simconsole.bridge.forms import Dialect
-from simconsole.errors import ProfileError
+from simconsole.errors import ProfileError, RemoteProtocolError
 from simconsole.profiles.bridge import BridgeProfile
 
 _LOCAL: Final = ("localhost", "127.0.0.1", "[::1]")
 _LOCAL_PAGE: Final = re.compile(r"https?://(?:localhost|127\.0\.0\.1|\[::1\])(?::\d{1,5})?")
 _PORT: Final = re.compile(r":\d{1,5}$")
 
-FORBIDDEN: Final = "this server does not answer to that Host"
-UNKNOWN: Final = "this server does not know that token"
-FULL: Final = "too many clients"
+
+class Opening(NamedTuple):
+    """A client's first request: its target, and every value it gives for the headers that matter."""
+
+    path: str
+    hosts: Sequence[str]
+    origins: Sequence[str]
+    authorizations: Sequence[str]
 
 
-def origins(profile: BridgeProfile) -> Sequence[re.Pattern[str] | str | None]:
-    """Return what the Origin header may be: nothing (a program), a page of this machine, one the profile names."""
-    return (None, _LOCAL_PAGE, *profile.allowed_origins)
+class Admission(NamedTuple):
+    """Who came in: what it may do, and how times and headers are spelled for it."""
+
+    role: Role
+    dialect: Dialect
 
 
-def is_host_allowed(host: str | None, profile: BridgeProfile) -> bool:
+class Refusal(NamedTuple):
+    """What a client is told that may not come in."""
+
+    status: HTTPStatus
+    reason: str
+
+
+def admit(opening: Opening, profile: BridgeProfile, access: Access, is_full: bool) -> Admission | Refusal:
+    """Decide on a first request."""
+    if len(opening.hosts) != 1 or not is_host_allowed(opening.hosts[0], profile):
+        return Refusal(HTTPStatus.FORBIDDEN, "this server does not answer to that Host")
+    if not is_origin_allowed(opening.origins, profile):
+        return Refusal(HTTPStatus.FORBIDDEN, "this server does not answer to pages of that Origin")
+    try:
+        role = role_at(opening.path, opening.authorizations[0] if opening.authorizations else None, access)
+    except RemoteProtocolError:
+        return Refusal(HTTPStatus.UNAUTHORIZED, "this server does not know that token")
+    if is_full:
+        return Refusal(HTTPStatus.SERVICE_UNAVAILABLE, "too many clients")
+    return Admission(role, dialect_of(opening.path, profile))
+
+
+def is_origin_allowed(origins: Sequence[str], profile: BridgeProfile) -> bool:
+    """Return whether the Origin headers are: none (a program), a page of this machine, or one the profile names."""
+    if not origins:
+        return True
+    return len(origins) == 1 and (
+        _LOCAL_PAGE.fullmatch(origins[0]) is not None or origins[0] in profile.allowed_origins
+    )
+
+
+def is_host_allowed(host: str, profile: BridgeProfile) -> bool:
     """Return whether a Host header names this server; a page elsewhere can make a browser send any other name here."""
-    if host is None:
-        return False
     name = _PORT.sub("", host).lower()
     bind = f"[{profile.host}]" if ":" in profile.host else profile.host
     return name in {*_LOCAL, bind.lower(), *(allowed.lower() for allowed in profile.allowed_hosts)}

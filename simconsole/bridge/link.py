@@ -13,7 +13,8 @@ from websockets.protocol import SEND_EOF, State
 from websockets.uri import parse_uri
 
 from simconsole.bridge.documents import Binary
-from simconsole.bridge.wire import RECEIVE_BYTES, MessageAssembler, is_data
+from simconsole.bridge.frames import CLOSE, MessageAssembler
+from simconsole.bridge.wire import RECEIVE_BYTES
 from simconsole.errors import BridgeError
 
 MAX_MESSAGE_BYTES: Final = 16_777_216
@@ -53,7 +54,7 @@ class Link:
         self._token = token
         self._socket: socket.socket | None = None
         self._web: WebSocketClientProtocol | None = None
-        self._messages = MessageAssembler()
+        self._messages = MessageAssembler(MAX_MESSAGE_BYTES)
         self.heard_s = 0.0
         """When something last arrived, on the monotonic clock."""
         self.close_code: int | None = None
@@ -70,7 +71,7 @@ class Link:
         Raises:
             BridgeError: nobody listens there, the server refused, or it did not answer in time.
         """
-        self._messages = MessageAssembler()
+        self._messages = MessageAssembler(MAX_MESSAGE_BYTES)
         self.close_code = None
         deadline_s = time.monotonic() + self._timeout_s
         try:
@@ -139,8 +140,12 @@ class Link:
             web.receive_data(data)
         else:
             web.receive_eof()
-        frames = [event for event in web.events_received() if isinstance(event, Frame) and is_data(event)]
-        messages = [whole for whole in map(self._messages.add, frames) if whole is not None]
+        messages = []
+        for event in web.events_received():
+            if isinstance(event, Frame) and event.opcode < CLOSE:
+                whole = self._messages.add(event.opcode, bytes(event.data), event.fin, 0)
+                if whole is not None:
+                    messages.append(whole)
         if web.close_rcvd is not None:
             self.close_code = web.close_rcvd.code
         self._flush()

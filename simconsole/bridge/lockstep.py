@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, Any, Final, Self
 
 import msgspec
 
-from simconsole.bridge.access import Role
+from simconsole.bridge import wire
+from simconsole.bridge.access import Access
 from simconsole.bridge.connection import Connection
 from simconsole.bridge.console import ConsoleBridge
-from simconsole.bridge.forms import Dialect
-from simconsole.bridge.handshake import role_at
+from simconsole.bridge.handshake import Admission
 from simconsole.bridge.message_files import load_registry
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.record import open_recorder
@@ -34,7 +34,6 @@ from simconsole.signals import EventInput, RemoteCommand
 if TYPE_CHECKING:
     from simconsole.bridge.ros2 import Ros2Link
 
-_HANDSHAKE_S: Final = 5.0
 _ANSWERS: Final = 4.0
 """Commands a controller may send for each odometry, at least: it must never be too fast to be answered to."""
 _GOOD_BYE_S: Final = 0.5
@@ -207,14 +206,15 @@ class LockstepBridge:
         for end in self._bell:
             end.close()
 
-    def role_of(self, path: str, authorization: str | None) -> Role:
-        """Return what a client may do (Connection's owner)."""
-        return role_at(path, authorization, self.console.router.access)
+    @property
+    def access(self) -> Access:
+        """Who may do what (Connection's owner)."""
+        return self.console.router.access
 
-    def connected(self, peer: str, dialect: Dialect, role: Role) -> Session:
+    def connected(self, peer: str, admission: Admission) -> Session:
         """Take in a client (Connection's owner)."""
         _logger.info("%s connected", peer)
-        return self.console.router.connect(peer, dialect=dialect, role=role)
+        return self.console.router.connect(peer, dialect=admission.dialect, role=admission.role)
 
     def received(self, session: Session, text: bytes) -> None:
         """Apply a text of a client (Connection's owner)."""
@@ -284,7 +284,7 @@ class LockstepBridge:
     def _sweep(self, now_s: float) -> None:
         """Close connections that have not become, or no longer are, WebSockets after a while (N12)."""
         for connection, since_s in list(self._connections.items()):
-            if not connection.is_open and now_s - since_s > _HANDSHAKE_S:
+            if not connection.is_open and now_s - since_s > wire.HANDSHAKE_S:
                 connection.close()
                 self._forget(connection)
 

@@ -1,44 +1,27 @@
 """The bridge for a process or thread of its own: an asyncio server around the transport-free console bridge.
 
-Every client has one task that takes texts out of its bounded queues and waits for its socket, so that a client that
-stops reading stops nobody else and costs a bounded amount of memory.
+Messages are applied as they are read and queued for who wants them; each client's queues are emptied into its
+connection while that takes more, so that a client that stops reading stops nobody else and costs a bounded memory.
 """
 
 import asyncio
 import logging
-import socket
 import time
 from collections.abc import Callable
-from http import HTTPStatus
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import TYPE_CHECKING, Final
 
-from websockets.asyncio.server import Server, ServerConnection
-from websockets.asyncio.server import serve as serve_websockets
-from websockets.http11 import Request, Response
-
-from simconsole.bridge.access import Role
 from simconsole.bridge.console import ConsoleBridge
 from simconsole.bridge.counters import standing
-from simconsole.bridge.forms import Dialect
-from simconsole.bridge.handshake import FORBIDDEN, FULL, UNKNOWN, dialect_of, is_host_allowed, origins, role_at
+from simconsole.bridge.handshake import Admission, Opening, Refusal, admit
 from simconsole.bridge.inputs import OnCommand, OnEvents
 from simconsole.bridge.message_files import load_registry
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.operate import OnAct
-from simconsole.bridge.peer import CLOSE_S, Peer
 from simconsole.bridge.record import TopicRecorder, open_recorder
-from simconsole.bridge.session import Session
-from simconsole.bridge.transport import Transport
+from simconsole.bridge.transport import Client, Door, Transport, load_transport
 from simconsole.bridge.uplink import Uplink
-from simconsole.bridge.wire import (
-    address_url,
-    listen,
-    load_access,
-    load_tls,
-    log_outcome,
-)
-from simconsole.errors import RemoteProtocolError
+from simconsole.bridge.wire import CLOSE_S, address_url, listen, load_access, load_tls, log_outcome
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.rows import Snapshot
 from simconsole.units import NS_PER_S
@@ -46,23 +29,85 @@ from simconsole.units import NS_PER_S
 if TYPE_CHECKING:
     from simconsole.bridge.ros2 import Ros2Link
 
-_HANDSHAKE_S: Final = 5.0
 _WATCH_S: Final = 0.25
 _POLL_S: Final = 0.001
 _COUNT_S: Final = 1.0
 _STANDING_S: Final = 0.1
 _WRITE_BYTES: Final = 32_768
+_QUIET: Final = ("done", "command")
+"""What becomes of most messages, and is not logged."""
 
 _logger = logging.getLogger("simconsole.bridge.server")
 
 
 class _Client:
-    """One connection and what its sender is doing."""
+    """One client: what it says goes to the console, what waits for it goes out when its connection takes it.
 
-    def __init__(self, transport: Transport) -> None:
+    Nothing waits for a client that reads nothing: it keeps its bounded queues, and the loop serves the others.
+    """
+
+    def __init__(self, server: "BridgeServer", transport: Transport, peer: str, admission: Admission) -> None:
         self.transport = transport
-        self.ready = asyncio.Event()
-        self.sending_since_ns: int | None = None
+        self.stalled_since_ns: int | None = None
+        self._server = server
+        self._console = server.console
+        self._clock_ns = server.clock_ns
+        self._loop = asyncio.get_running_loop()
+        self._is_woken = False
+        self._alarm: asyncio.TimerHandle | None = None
+        self.session = self._console.router.connect(peer, self._wake, admission.dialect, admission.role)
+
+    def receive(self, message: bytes) -> None:
+        """Apply a message."""
+        outcome = self._console.receive(self.session, message, self._clock_ns())
+        if outcome.kind not in _QUIET:
+            log_outcome(_logger, self.session, outcome)
+
+    def resume(self) -> None:
+        """Go on sending."""
+        self.stalled_since_ns = None
+        self._wake()
+
+    def gone(self) -> None:
+        """Leave the server."""
+        if self._alarm is not None:
+            self._alarm.cancel()
+        self._server.leave(self)
+
+    def _wake(self) -> None:
+        """Send in a moment: what is queued until then goes in one piece."""
+        if not self._is_woken:
+            self._is_woken = True
+            self._loop.call_soon(self._send)
+
+    def _send(self) -> None:
+        self._is_woken = False
+        transport, now_ns = self.transport, self._clock_ns()
+        while transport.is_open and transport.takes_more:
+            messages = self._due(now_ns)
+            if not messages:
+                self._set_alarm(now_ns)
+                return
+            transport.put(messages)
+            if not transport.takes_more:
+                self.stalled_since_ns = now_ns
+
+    def _set_alarm(self, now_ns: int) -> None:
+        """Look again when the first throttled message may go, whether or not more is published until then."""
+        due_ns = self.session.due_ns()
+        if due_ns is not None:
+            if self._alarm is not None:
+                self._alarm.cancel()
+            self._alarm = self._loop.call_later(max(0, due_ns - now_ns) / NS_PER_S, self._wake)
+
+    def _due(self, now_ns: int) -> list[bytes]:
+        """Return the messages that may be sent now, at most a system call's worth of them."""
+        messages: list[bytes] = []
+        size = 0
+        while size < _WRITE_BYTES and (message := self.session.next_text(now_ns)) is not None:
+            messages.append(message)
+            size += len(message)
+        return messages
 
 
 class BridgeServer:
@@ -90,9 +135,9 @@ class BridgeServer:
         self._profile = profile
         self._access = self.console.router.access = load_access(profile)
         self._tls = load_tls(profile)
-        self._clock_ns = clock_ns
-        self._clients: dict[Session, _Client] = {}
-        self._server: Server | None = None
+        self.clock_ns = clock_ns
+        self._clients: set[_Client] = set()
+        self._door: Door | None = None
         self._watcher: asyncio.Task[None] | None = None
         self._uplink: asyncio.Task[None] | None = None
         self._port = 0
@@ -116,7 +161,7 @@ class BridgeServer:
 
     def standing(self) -> str:
         """Return how the link stands, in one word of `simconsole.words`."""
-        return standing(self.console.router, self._clock_ns())
+        return standing(self.console.router, self.clock_ns())
 
     async def start(self) -> None:
         """Listen.
@@ -126,24 +171,11 @@ class BridgeServer:
         """
         listener = listen(self._profile.host, self._profile.port)
         self._port = int(listener.getsockname()[1])
-        self._server = await serve_websockets(
-            self._serve_client,
-            sock=listener,
-            ssl=self._tls,
-            origins=cast("Any", origins(self._profile)),  # a NewType of str there
-            process_request=self._admit,
-            create_connection=cast("Any", self._peer),  # any function will do; its type says a class
-            compression=None,
-            max_size=self._profile.limits.message_bytes,
-            ping_interval=None,  # `_watch` asks, and cuts nobody who is merely slow
-            open_timeout=_HANDSHAKE_S,
-            close_timeout=CLOSE_S,
-            server_header=None,
-            logger=_logger,
-        )
+        open_door = load_transport(self._profile)
+        self._door = await open_door(self, listener, self._profile, self._tls, self.clock_ns)
         self._watcher = asyncio.create_task(self._watch())
         if self._profile.upstream is not None:
-            uplink = Uplink(self.console, self._profile.upstream, self._clock_ns)
+            uplink = Uplink(self.console, self._profile.upstream, self.clock_ns)
             self._uplink = asyncio.create_task(uplink.run())
         self._recorder = open_recorder(self.console, self._profile, self._folder)
         if self._profile.ros2 is not None:
@@ -151,7 +183,7 @@ class BridgeServer:
 
     def publish(self, snapshot: Snapshot) -> None:
         """Queue what is due of a snapshot; the clients' tasks send it."""
-        now_ns = self._clock_ns()
+        now_ns = self.clock_ns()
         if self._recorder is not None:
             self._recorder.look(now_ns)
         self.console.publish(snapshot, now_ns)
@@ -172,16 +204,37 @@ class BridgeServer:
             self._uplink.cancel()
             await asyncio.gather(self._uplink, return_exceptions=True)
             self._uplink = None
-        server, self._server = self._server, None
-        if server is not None:
-            server.close()
+        door, self._door = self._door, None
+        if door is not None:
+            door.close()
             try:
                 async with asyncio.timeout(2.0 * CLOSE_S):
-                    await server.wait_closed()
+                    await door.wait_closed()
             except TimeoutError:  # somebody takes nothing, not even a good-bye
-                for client in self._clients.values():
+                for client in self._clients:
                     client.transport.abort()
-                await server.wait_closed()
+                await door.wait_closed()
+
+    def admit(self, opening: Opening) -> Admission | Refusal:
+        """Decide on a client's first request (`House`)."""
+        is_full = len(self._clients) >= self._profile.limits.clients
+        return admit(opening, self._profile, self._access, is_full)
+
+    def welcome(self, transport: Transport, peer: str, admission: Admission) -> Client:
+        """Take a client in (`House`)."""
+        client = _Client(self, transport, peer, admission)
+        self._clients.add(client)
+        _logger.info("%s connected", peer)
+        return client
+
+    def leave(self, client: _Client) -> None:
+        """Forget a client whose connection has ended."""
+        self._clients.discard(client)
+        commanded = self.console.disconnect(client.session, self.clock_ns())
+        if commanded and self._door is not None:
+            _logger.warning("%s was commanding and is gone", client.session.peer)
+        else:  # also when it was this side that closed
+            _logger.info("%s is gone", client.session.peer)
 
     def _join_ros2(self, loop: asyncio.AbstractEventLoop) -> None:
         from simconsole.bridge.ros2 import Ros2Link
@@ -196,79 +249,7 @@ class BridgeServer:
     def _pump_ros2(self) -> None:
         self._ros2_woken = False
         if self._ros2 is not None:
-            self._ros2.pump(self._clock_ns())
-
-    def _admit(self, connection: ServerConnection, request: Request) -> Response | None:
-        hosts = request.headers.get_all("Host")
-        if len(hosts) != 1 or not is_host_allowed(hosts[0], self._profile):
-            return connection.respond(HTTPStatus.FORBIDDEN, f"{FORBIDDEN}\n")
-        try:
-            self._role(request)
-        except RemoteProtocolError:
-            return connection.respond(HTTPStatus.UNAUTHORIZED, f"{UNKNOWN}\n")
-        if len(self._clients) >= self._profile.limits.clients:
-            return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, f"{FULL}\n")
-        return None
-
-    def _role(self, request: Request) -> Role:
-        given = request.headers.get_all("Authorization")
-        return role_at(request.path, given[0] if given else None, self._access)
-
-    def _peer(self, *arguments: Any, **options: Any) -> Peer:
-        return Peer(self._profile, self._clock_ns, *arguments, **options)
-
-    async def _serve_client(self, connection: ServerConnection) -> None:
-        assert isinstance(connection, Peer)
-        sock: socket.socket = connection.transport.get_extra_info("socket")
-        sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        host, port = connection.remote_address[:2]
-        assert connection.request is not None
-        dialect = dialect_of(connection.request.path, self._profile)
-        await self.attend(connection, f"{host}:{port}", dialect, self._role(connection.request))
-
-    async def attend(self, transport: Transport, peer: str, dialect: Dialect, role: Role) -> None:
-        """Serve one client until its connection ends; `peer` names it in the log."""
-        client = _Client(transport)
-        session = self.console.router.connect(peer, client.ready.set, dialect, role)
-        self._clients[session] = client
-        _logger.info("%s connected", session.peer)
-        sender = asyncio.create_task(self._send(session, client))
-        try:
-            async for data in transport.messages():
-                log_outcome(_logger, session, self.console.receive(session, data, self._clock_ns()))
-        finally:
-            sender.cancel()
-            del self._clients[session]
-            commanded = self.console.disconnect(session, self._clock_ns())
-            if commanded and self._server is not None:
-                _logger.warning("%s was commanding and is gone", session.peer)
-            else:  # also when it was this side that closed
-                _logger.info("%s is gone", session.peer)
-
-    async def _send(self, session: Session, client: _Client) -> None:
-        """Send what waits for one client, for as long as it is connected."""
-        transport = client.transport
-        while True:
-            await client.ready.wait()
-            client.ready.clear()
-            while transport.is_open and (messages := self._due(session)):
-                client.sending_since_ns = self._clock_ns()
-                await transport.put(messages)
-                client.sending_since_ns = None
-            due_ns = session.due_ns()
-            if due_ns is not None and transport.is_open:
-                # Throttled: look again when the first may go, whether or not more is published until then.
-                wait_s = max(0, due_ns - self._clock_ns()) / NS_PER_S
-                asyncio.get_running_loop().call_later(wait_s, client.ready.set)
-
-    def _due(self, session: Session) -> list[bytes]:
-        """Return the messages that may be sent now, at most a system call's worth of them."""
-        messages: list[bytes] = []
-        size, now_ns = 0, self._clock_ns()
-        while size < _WRITE_BYTES and (message := session.next_text(now_ns)) is not None:
-            messages.append(message)
-            size += len(message)
-        return messages
+            self._ros2.pump(self.clock_ns())
 
     async def _watch(self) -> None:
         """Ask quiet clients for a sign of life, cut those that are gone and those that take nothing."""
@@ -278,16 +259,16 @@ class BridgeServer:
 
     def look(self) -> None:
         """Do what is due of it now."""
-        now_ns = self._clock_ns()
+        now_ns = self.clock_ns()
         self.console.router.calls.expire(now_ns)
-        for session, client in list(self._clients.items()):
+        for client in list(self._clients):
             reason = self._why_cut(client, now_ns)
             if reason is not None:
-                _logger.warning("%s %s and is cut", session.peer, reason)
+                _logger.warning("%s %s and is cut", client.session.peer, reason)
                 client.transport.abort()
 
     def _why_cut(self, client: _Client, now_ns: int) -> str | None:
-        since_ns, patience_s = client.sending_since_ns, self._profile.stall_close_s
+        since_ns, patience_s = client.stalled_since_ns, self._profile.stall_close_s
         if client.transport.is_open and since_ns is not None and now_ns - since_ns > patience_s * NS_PER_S:
             return f"took nothing for {patience_s:g} s"
         return client.transport.look(now_ns)

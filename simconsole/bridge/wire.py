@@ -1,4 +1,4 @@
-"""What servers and client share: whole messages out of WebSocket frames, listening, and lines in the log."""
+"""What servers share: listening, tokens and certificates from files, what the system knows of a client, the log."""
 
 import logging
 import socket
@@ -7,20 +7,18 @@ import struct
 from pathlib import Path
 from typing import Final
 
-from websockets.frames import Frame, Opcode
-
 from simconsole.bridge.access import OPEN, Access, Role, read_tokens
-from simconsole.bridge.documents import Binary
 from simconsole.bridge.handshake import check_exposure
 from simconsole.bridge.protocol import Outcome
 from simconsole.bridge.session import Session
 from simconsole.errors import BridgeError, ProfileError
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.units import NS_PER_S
 
 RECEIVE_BYTES: Final = 65_536
-ASSEMBLY_NS: Final = 2 * NS_PER_S
-"""The longest that one message may be on its way once its first frame is here."""
+HANDSHAKE_S: Final = 5.0
+"""How long a client may take until its connection is a WebSocket (N12)."""
+CLOSE_S: Final = 1.0
+"""How long a client may take to answer a good-bye."""
 _BACKLOG: Final = 64
 _UNACKNOWLEDGED_AT: Final = 24
 _LAST_ACKNOWLEDGED_AT: Final = 56
@@ -28,69 +26,7 @@ _LAST_ACKNOWLEDGED_AT: Final = 56
 _LOGGED_REFUSALS: Final = 10
 _LOGGED_EVERY: Final = 1000
 
-
-class FragmentLimit:
-    """Counts the frames of one message, and how long it has been coming (N13). Time is given, in ns."""
-
-    def __init__(self, max_fragments: int) -> None:
-        """Allow messages of at most `max_fragments` frames."""
-        self._max_fragments = max_fragments
-        self._count = 0
-        self._since_ns = 0
-
-    def add(self, frame: Frame, now_ns: int) -> str | None:
-        """Take a frame; return why its message is refused, None while it is not."""
-        if not is_data(frame):
-            return None
-        if frame.opcode is not Opcode.CONT:
-            self._count, self._since_ns = 0, now_ns
-        self._count = 0 if frame.fin else self._count + 1
-        if self._count >= self._max_fragments:
-            return f"message is in more than {self._max_fragments} fragments"
-        return self.overdue(now_ns)
-
-    def overdue(self, now_ns: int) -> str | None:
-        """Return why a message that is not complete is no longer waited for, None while it is or there is none."""
-        if self._count and now_ns - self._since_ns > ASSEMBLY_NS:
-            return f"message has been coming for more than {ASSEMBLY_NS // NS_PER_S} s"
-        return None
-
-
-class MessageAssembler:
-    """Joins the frames of messages. The protocol object has checked their order and total size."""
-
-    def __init__(self) -> None:
-        """Start between two messages."""
-        self._parts: list[bytes] = []
-        self._binary = False
-
-    def add(self, frame: Frame) -> bytes | None:
-        """Take one data frame; return the message when it is complete, `Binary` if it is no text."""
-        if frame.opcode is not Opcode.CONT:
-            self._binary = frame.opcode is Opcode.BINARY
-            self._parts.clear()
-        self._parts.append(bytes(frame.data))
-        if not frame.fin:
-            return None
-        whole = self._parts[0] if len(self._parts) == 1 else b"".join(self._parts)
-        self._parts = []
-        return Binary(whole) if self._binary else whole
-
-
-def frame_head(message: bytes) -> bytes:
-    """Return what stands before a message in a server's frame: final, unmasked, binary or text (RFC 6455, 5.2)."""
-    opcode = 0x82 if isinstance(message, Binary) else 0x81
-    length = len(message)
-    if length < 126:
-        return bytes((opcode, length))
-    if length < 65_536:
-        return bytes((opcode, 126)) + length.to_bytes(2)
-    return bytes((opcode, 127)) + length.to_bytes(8)
-
-
-def is_data(frame: Frame) -> bool:
-    """Return whether a frame carries part of a message, and is not ping, pong or close."""
-    return frame.opcode is Opcode.TEXT or frame.opcode is Opcode.CONT or frame.opcode is Opcode.BINARY
+logger: Final = logging.getLogger("simconsole.bridge.server")
 
 
 def is_unacknowledged(sock: socket.socket, patience_ms: int = 1000) -> bool:

@@ -17,6 +17,7 @@ def serve(words: Namespace) -> Outcome:
     """Serve rosbridge on a standing car that nobody sits in, in real time, until interrupted; nothing is kept."""
     from simconsole.bridge.message_files import load_registry
     from simconsole.bridge.ros2 import check as check_ros2
+    from simconsole.bridge.transport import load_transport
     from simconsole.bridge.wire import load_access, load_tls
     from simconsole.session import drive
     from simconsole.session_files import load_session, override, resolve
@@ -29,6 +30,7 @@ def serve(words: Namespace) -> Outcome:
         "certificate": certificate,
         "certificate_key": None if certificate is None else str(Path(certificate).with_suffix(".key")),
         "trust_network": words.trust_network,
+        "transport": words.transport,
         "ros2": {} if words.ros2 else None,
         "messages": words.messages,
     }
@@ -41,6 +43,7 @@ def serve(words: Namespace) -> Outcome:
         load_tls(session.outputs.bridge)
         check_ros2(session.outputs.bridge)
         load_registry(session.outputs.bridge)
+        load_transport(session.outputs.bridge)
     with tempfile.TemporaryDirectory(prefix="simconsole-bridge-") as folder:
         result = drive(resolve(session), Path(folder), on_bridge=lambda url: print(f"rosbridge at {url}", flush=True))
     code = INTERRUPTED if result.interrupted else 0

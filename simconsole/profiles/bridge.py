@@ -73,6 +73,9 @@ class BridgeProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     host: Annotated[str, Meta(min_length=1, max_length=253)] = "127.0.0.1"
     port: Annotated[int, Meta(ge=0, le=65_535)] = 9090
     """0 lets the system choose."""
+    transport: Literal["websockets", "picows"] = "websockets"
+    """The library that carries clients' connections; picows (extra `picows`) serves many for less time. No matter in
+    lockstep, where the core serves its own sockets."""
     namespace: Namespace = ""
     rename: dict[TopicName, TopicName] = field(default_factory=dict)
     rates_hz: dict[TopicName, Rate] = field(default_factory=dict)

@@ -1,3 +1,3 @@
-from tests.bridge.fixtures import bridge, control, join, peer, serving, snapshot
+from tests.bridge.fixtures import bridge, control, join, peer, serving, snapshot, transport
 
-__all__ = ["bridge", "control", "join", "peer", "serving", "snapshot"]
+__all__ = ["bridge", "control", "join", "peer", "serving", "snapshot", "transport"]

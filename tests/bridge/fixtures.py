@@ -138,13 +138,20 @@ class Served:
         assert not self._thread.is_alive()
 
 
+@pytest.fixture(params=["websockets", "picows"])
+def transport(request: pytest.FixtureRequest) -> str:
+    """Each library that can carry clients' connections: what a client sees must not differ."""
+    name: str = request.param
+    return name
+
+
 @pytest.fixture
-def serving() -> Iterator[Callable[..., Served]]:
-    """Start a server with a profile on a free port; it is stopped at the end."""
+def serving(transport: str) -> Iterator[Callable[..., Served]]:
+    """Start a server with a profile on a free port, with each library; it is stopped at the end."""
     started: list[Served] = []
 
     def start(**profile: Any) -> Served:
-        started.append(Served(BridgeProfile(**{"port": 0, **profile})))
+        started.append(Served(BridgeProfile(**{"port": 0, "transport": transport, **profile})))
         return started[-1]
 
     yield start

@@ -1,38 +1,43 @@
-import re
 from typing import Any
 
 import pytest
 
 from simconsole.bridge.access import Access, Role
-from simconsole.bridge.handshake import check_exposure, dialect_of, is_host_allowed, origins, role_at
+from simconsole.bridge.handshake import (
+    Admission,
+    Opening,
+    Refusal,
+    admit,
+    check_exposure,
+    dialect_of,
+    is_host_allowed,
+    is_origin_allowed,
+    role_at,
+)
 from simconsole.errors import ProfileError, RemoteProtocolError
 from simconsole.profiles.bridge import BridgeProfile
 
 
-def accepted(origin: str | None, profile: BridgeProfile) -> bool:
-    """As websockets reads the list."""
-    return any(
-        allowed == origin or (isinstance(allowed, re.Pattern) and origin is not None and allowed.fullmatch(origin))
-        for allowed in origins(profile)
-    )
-
-
 @pytest.mark.parametrize("origin", [None, "http://localhost:8080", "https://127.0.0.1", "http://[::1]:1"])
 def test_programs_and_pages_of_this_machine_may_connect(origin: str | None) -> None:
-    assert accepted(origin, BridgeProfile())
+    assert is_origin_allowed([] if origin is None else [origin], BridgeProfile())
 
 
 @pytest.mark.parametrize(
     "origin", ["null", "", "http://evil.example", "http://localhost.evil.example", "file://", "http://localhost:80/x"]
 )
 def test_other_pages_may_not(origin: str) -> None:
-    assert not accepted(origin, BridgeProfile())
+    assert not is_origin_allowed([origin], BridgeProfile())
+
+
+def test_who_names_two_origins_has_none() -> None:
+    assert not is_origin_allowed(["http://localhost", "http://localhost"], BridgeProfile())
 
 
 def test_page_that_the_profile_names_may() -> None:
     profile = BridgeProfile(allowed_origins=("https://lab.example",))
-    assert accepted("https://lab.example", profile)
-    assert not accepted("https://lab.example.evil", profile)
+    assert is_origin_allowed(["https://lab.example"], profile)
+    assert not is_origin_allowed(["https://lab.example.evil"], profile)
 
 
 @pytest.mark.parametrize(
@@ -42,10 +47,8 @@ def test_own_names_are_answered(host: str) -> None:
     assert is_host_allowed(host, BridgeProfile(host="10.0.0.5", allowed_hosts=("rig",)))
 
 
-@pytest.mark.parametrize(
-    "host", [None, "", "evil.example", "evil.example:9090", "127.0.0.1.evil.example", "localhost:x"]
-)
-def test_other_names_are_not(host: str | None) -> None:
+@pytest.mark.parametrize("host", ["", "evil.example", "evil.example:9090", "127.0.0.1.evil.example", "localhost:x"])
+def test_other_names_are_not(host: str) -> None:
     assert not is_host_allowed(host, BridgeProfile())
 
 
@@ -86,6 +89,42 @@ def test_role_from_the_first_request_on(path: str, header: str | None, role: Rol
 def test_wrong_token_is_refused_at_the_door(path: str, header: str | None) -> None:
     with pytest.raises(RemoteProtocolError, match="not a token"):
         role_at(path, header, ACCESS)
+
+
+OPENING = Opening("/ros1?token=" + "c" * 16, ["localhost:9090"], [], [])
+
+
+@pytest.mark.parametrize(
+    ("given", "is_full", "status"),
+    [
+        ({"hosts": []}, False, 403),
+        ({"hosts": ["localhost", "localhost"]}, False, 403),
+        ({"hosts": ["evil.example"]}, False, 403),
+        ({"origins": ["http://evil.example"]}, False, 403),
+        ({"authorizations": ["Bearer wrong"]}, False, 401),
+        ({"path": "/?token=%ff"}, False, 401),
+        ({"path": "/?token=\udcff"}, False, 401),
+        ({}, True, 503),
+        ({"hosts": ["evil.example"]}, True, 403),
+    ],
+)
+def test_first_requests_that_are_refused(given: dict[str, Any], is_full: bool, status: int) -> None:
+    decision = admit(OPENING._replace(**given), BridgeProfile(), ACCESS, is_full)
+    assert isinstance(decision, Refusal)
+    assert decision.status == status
+    assert decision.reason
+
+
+@pytest.mark.parametrize(
+    ("given", "admission"),
+    [
+        ({}, Admission(Role.CONTROL, "ros1")),
+        ({"path": "/", "authorizations": ["Bearer " + "v" * 16, "Bearer wrong"]}, Admission(Role.VIEW, "ros2")),
+        ({"path": "/", "origins": ["http://localhost:3000"]}, Admission(Role.NONE, "ros2")),
+    ],
+)
+def test_first_requests_that_come_in(given: dict[str, Any], admission: Admission) -> None:
+    assert admit(OPENING._replace(**given), BridgeProfile(), ACCESS, False) == admission
 
 
 @pytest.mark.parametrize(

@@ -50,6 +50,15 @@ def test_encrypted_and_authenticated(
         BridgeClient(server.url, token=TOKEN, timeout_s=2.0).connect()
 
 
+def test_n12_who_begins_no_encryption_is_ended_too(
+    serving: Callable[..., Any], files: dict[str, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("simconsole.bridge.wire.HANDSHAKE_S", 0.2)
+    server = serving(**files)
+    with socket.create_connection(("127.0.0.1", server.port), 20.0) as idle:
+        assert idle.recv(100) == b""
+
+
 def test_stock_client_authenticates_after_connecting(serving: Callable[..., Any], files: dict[str, str]) -> None:
     server = serving(tokens=files["tokens"])
     with connect(server.url) as peer:

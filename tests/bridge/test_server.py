@@ -200,12 +200,12 @@ def test_clients_are_told_good_bye(serving: Callable[..., Any]) -> None:
         assert caught.value.rcvd.code == 1001
 
 
-def test_port_is_free_again_after_close_and_taken_before() -> None:
+def test_port_is_free_again_after_close_and_taken_before(transport: str) -> None:
     async def twice() -> None:
-        first = BridgeServer(BridgeProfile(port=0))
+        first = BridgeServer(BridgeProfile(port=0, transport=transport))
         assert first.port == 0
         await first.start()
-        profile = BridgeProfile(port=first.port)
+        profile = BridgeProfile(port=first.port, transport=transport)
         with pytest.raises(BridgeError, match=f"port {first.port}"):
             await BridgeServer(profile).start()
         await first.close()
@@ -219,13 +219,14 @@ def test_port_is_free_again_after_close_and_taken_before() -> None:
     asyncio.run(twice())
 
 
-def test_client_that_takes_nothing_is_cut() -> None:
+def test_client_that_takes_nothing_is_cut(transport: str) -> None:
     """The clock is ours, so that no second of stalling is waited for."""
     now_ns = 0
 
     async def main() -> None:
         nonlocal now_ns
-        profile = BridgeProfile(port=0, stall_close_s=5.0, limits=BridgeLimits(queued_bytes=1_000_000))
+        limits = BridgeLimits(queued_bytes=1_000_000)
+        profile = BridgeProfile(port=0, stall_close_s=5.0, limits=limits, transport=transport)
         server = BridgeServer(profile, clock_ns=lambda: now_ns)
         await server.start()
         raw = socket.socket()

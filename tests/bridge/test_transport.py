@@ -1,6 +1,7 @@
-"""What the server asks of a connection: websockets' gives it, and so does another, here one in memory."""
+"""What server and connections ask of each other: each library's connections give it, and so does one in memory."""
 
 import asyncio
+import importlib.util
 import json
 import time
 from collections.abc import AsyncIterator, Callable, Sequence
@@ -10,16 +11,18 @@ from typing import Any, Protocol
 
 import pytest
 from websockets.asyncio.client import ClientConnection, connect
-from websockets.asyncio.server import ServerConnection, serve
 
 from simconsole.bridge.access import Role
 from simconsole.bridge.documents import Binary
-from simconsole.bridge.peer import Peer
+from simconsole.bridge.handshake import Admission, Opening, Refusal
 from simconsole.bridge.server import BridgeServer
-from simconsole.bridge.transport import Transport
+from simconsole.bridge.transport import Client, Transport, load_transport
+from simconsole.bridge.wire import listen
+from simconsole.errors import ProfileError
 from simconsole.profiles.bridge import BridgeProfile
 
 PROFILE = BridgeProfile(port=0)
+ADMISSION = Admission(Role.CONTROL, "ros2")
 
 
 class Far(Protocol):
@@ -30,34 +33,77 @@ class Far(Protocol):
     async def leave(self) -> None: ...
 
 
+class Notes:
+    """A client as the server has it, who notes what it is told."""
+
+    def __init__(self) -> None:
+        self.heard: list[bytes] = []
+        self.resumed = 0
+        self.ended = 0
+
+    def receive(self, message: bytes) -> None:
+        self.heard.append(message)
+
+    def resume(self) -> None:
+        self.resumed += 1
+
+    def gone(self) -> None:
+        self.ended += 1
+
+
+class Home:
+    """Lets everybody in; the latest connection and its client are kept. `make` makes the client."""
+
+    def __init__(self, make: Callable[[Transport], Client]) -> None:
+        self.transport: Transport | None = None
+        self.client: Client | None = None
+        self._make = make
+
+    def admit(self, opening: Opening) -> Admission | Refusal:
+        return ADMISSION
+
+    def welcome(self, transport: Transport, peer: str, admission: Admission) -> Client:
+        self.transport, self.client = transport, self._make(transport)
+        return self.client
+
+
 class InMemory:
-    """A transport without any network: two queues."""
+    """A transport without any network: two messages may wait to be heard."""
 
     def __init__(self) -> None:
         self.is_open = True
-        self._in: asyncio.Queue[bytes | None] = asyncio.Queue()
-        self._out: asyncio.Queue[bytes] = asyncio.Queue(maxsize=2)
+        self.client: Client
+        self._out: list[bytes] = []
+        self._more = asyncio.Event()
 
-    async def messages(self) -> AsyncIterator[bytes]:
-        while (message := await self._in.get()) is not None:
-            yield message
+    @property
+    def takes_more(self) -> bool:
+        return len(self._out) < 2
 
-    async def put(self, messages: Sequence[bytes]) -> None:
-        for message in messages:
-            await self._out.put(message)
+    def put(self, messages: Sequence[bytes]) -> None:
+        self._out += messages
+        self._more.set()
 
     def abort(self) -> None:
-        self.is_open = False
-        self._in.put_nowait(None)
+        if self.is_open:
+            self.is_open = False
+            asyncio.get_running_loop().call_soon(self.client.gone)
 
     def look(self, now_ns: int) -> str | None:
         return None
 
     async def say(self, message: bytes) -> None:
-        await self._in.put(message)
+        self.client.receive(message)
 
     async def hear(self) -> bytes:
-        return await self._out.get()
+        while not self._out:
+            self._more.clear()
+            await self._more.wait()
+        was_full = not self.takes_more
+        message = self._out.pop(0)
+        if was_full and self.takes_more:
+            self.client.resume()
+        return message
 
     async def leave(self) -> None:
         self.abort()
@@ -81,104 +127,141 @@ class OverSockets:
 
 
 @asynccontextmanager
-async def in_memory() -> AsyncIterator[tuple[Transport, Far]]:
+async def in_memory(make: Callable[[Transport], Client]) -> AsyncIterator[tuple[Transport, Client, Far]]:
     both = InMemory()
-    yield both, both
+    both.client = make(both)
+    yield both, both.client, both
 
 
 @asynccontextmanager
-async def over_sockets() -> AsyncIterator[tuple[Transport, Far]]:
-    came: asyncio.Queue[Peer] = asyncio.Queue()
+async def over_sockets(
+    library: Any, make: Callable[[Transport], Client]
+) -> AsyncIterator[tuple[Transport, Client, Far]]:
+    profile = BridgeProfile(port=0, transport=library)
+    listener = listen(profile.host, 0)
+    home = Home(make)
+    door = await load_transport(profile)(home, listener, profile, None, time.monotonic_ns)
+    async with connect(f"ws://127.0.0.1:{listener.getsockname()[1]}", max_size=None) as far:
+        while home.client is None:
+            await asyncio.sleep(0.001)
+        assert home.transport is not None
+        try:
+            yield home.transport, home.client, OverSockets(far)
+        finally:
+            home.transport.abort()
+            door.close()
+            await door.wait_closed()
 
-    async def serve_client(connection: ServerConnection) -> None:
-        assert isinstance(connection, Peer)
-        came.put_nowait(connection)
-        await connection.wait_closed()
 
-    make: Any = partial(Peer, PROFILE, time.monotonic_ns)
-    options = {"compression": None, "ping_interval": None}
-    async with serve(serve_client, "127.0.0.1", 0, create_connection=make, **options) as server:  # type: ignore[arg-type]  # a dictionary of options
-        port = next(iter(server.sockets)).getsockname()[1]
-        async with connect(f"ws://127.0.0.1:{port}", max_size=None) as far:
-            yield await came.get(), OverSockets(far)
+Pair = Callable[[Callable[[Transport], Client]], AbstractAsyncContextManager[tuple[Transport, Any, Far]]]
+each = pytest.mark.parametrize(
+    "pair",
+    [in_memory, partial(over_sockets, "websockets"), partial(over_sockets, "picows")],
+    ids=["in memory", "websockets", "picows"],
+)
 
 
-Pair = Callable[[], AbstractAsyncContextManager[tuple[Transport, Far]]]
-both = pytest.mark.parametrize("pair", [in_memory, over_sockets])
+async def until(holds: Callable[[], bool]) -> None:
+    while not holds():
+        await asyncio.sleep(0.001)
 
 
-def run(pair: Pair, check: Callable[[Transport, Far], Any]) -> None:
+def run(pair: Pair, check: Callable[[Transport, Notes, Far], Any]) -> None:
     async def main() -> None:
-        async with asyncio.timeout(20.0), pair() as (transport, far):
-            await check(transport, far)
+        async with asyncio.timeout(20.0), pair(lambda _: Notes()) as (transport, client, far):
+            await check(transport, client, far)
 
     asyncio.run(main())
 
 
-@both
+@each
 def test_messages_come_in_whole_and_say_whether_they_are_text(pair: Pair) -> None:
-    async def check(transport: Transport, far: Far) -> None:
+    async def check(transport: Transport, client: Notes, far: Far) -> None:
         said = [b"{}", Binary(b"\xa0"), b"x" * 100_000]
         for message in said:
             await far.say(message)
         await far.leave()
-        heard = [message async for message in transport.messages()]
-        assert heard == said
-        assert [isinstance(message, Binary) for message in heard] == [False, True, False]
+        await until(lambda: client.ended == 1)
+        assert client.heard == said
+        assert [isinstance(message, Binary) for message in client.heard] == [False, True, False]
         assert not transport.is_open
 
     run(pair, check)
 
 
-@both
-def test_messages_go_out_in_order_and_wait_for_who_does_not_read(pair: Pair) -> None:
-    async def check(transport: Transport, far: Far) -> None:
-        given = [bytes([65 + number]) * 65_536 for number in range(20)]
-        rounds = 20
-
-        async def send() -> None:
-            for _ in range(rounds):
-                await transport.put(given)
-
-        sender = asyncio.create_task(send())
-        done, _ = await asyncio.wait([sender], timeout=0.1)
-        assert not done, "26 MB were taken though nobody reads"
-        for _ in range(rounds):
-            assert [await far.hear() for _ in given] == given
-        await sender
+@each
+def test_messages_go_out_in_order_and_no_more_are_taken_of_who_does_not_read(pair: Pair) -> None:
+    async def check(transport: Transport, client: Notes, far: Far) -> None:
+        given = [bytes([65 + number % 26]) * 65_536 for number in range(400)]
+        sent = 0
+        while transport.takes_more:
+            transport.put(given[sent : sent + 1])
+            sent += 1
+            await asyncio.sleep(0)
+        assert sent < len(given), "26 MB were taken though nobody reads"
+        assert client.resumed == 0
+        heard = 0
+        while heard < len(given):
+            if transport.takes_more and sent < len(given):
+                transport.put(given[sent : sent + 1])
+                sent += 1
+            assert await far.hear() == given[heard]
+            heard += 1
+        assert client.resumed > 0
 
     run(pair, check)
 
 
-@both
+@each
+def test_text_and_binary_go_out_as_they_are(pair: Pair) -> None:
+    async def check(transport: Transport, client: Notes, far: Far) -> None:
+        transport.put([b"a", Binary(b"b")])
+        heard = [await far.hear(), await far.hear()]
+        assert heard == [b"a", b"b"]
+        assert [isinstance(message, Binary) for message in heard] == [False, True]
+
+    run(pair, check)
+
+
+@each
 def test_abort_ends_it_at_once(pair: Pair) -> None:
-    async def check(transport: Transport, far: Far) -> None:
+    async def check(transport: Transport, client: Notes, far: Far) -> None:
         assert transport.is_open
         assert transport.look(0) is None
         transport.abort()
-        assert [message async for message in transport.messages()] == []
+        await until(lambda: client.ended == 1)
+        assert client.heard == []
         assert not transport.is_open
 
     run(pair, check)
 
 
-@both
+@each
 def test_a_server_drives_over_it(pair: Pair, snapshot: Callable[..., Any], control: Callable[..., Any]) -> None:
-    async def check(transport: Transport, far: Far) -> None:
+    async def main() -> None:
         server = BridgeServer(PROFILE)
-        client = asyncio.create_task(server.attend(transport, "far", "ros2", Role.CONTROL))
-        await far.say(b'{"op":"subscribe","topic":"/odom"}')
-        while not server.console.router.wanted("/odom"):
-            await asyncio.sleep(0)
-        server.publish(snapshot(5, x_m=7.0))
-        assert json.loads(await far.hear())["msg"]["pose"]["pose"]["position"]["x"] == 7.0
-        command = {"op": "publish", "topic": "/control/command/control_cmd", "msg": control(0.25)}
-        await far.say(json.dumps(command).encode())
-        while server.console.inputs.command.sequence == 0.0:
-            await asyncio.sleep(0)
-        assert server.console.inputs.command.road_wheel_rad == 0.25
-        await far.leave()
-        await client
-        assert server.clients == 0
 
-    run(pair, check)
+        def welcome(transport: Transport) -> Client:
+            return server.welcome(transport, "far", ADMISSION)
+
+        async with asyncio.timeout(20.0), pair(welcome) as (_, _, far):
+            await far.say(b'{"op":"subscribe","topic":"/odom"}')
+            await until(lambda: server.console.router.wanted("/odom"))
+            server.publish(snapshot(5, x_m=7.0))
+            assert json.loads(await far.hear())["msg"]["pose"]["pose"]["position"]["x"] == 7.0
+            command = {"op": "publish", "topic": "/control/command/control_cmd", "msg": control(0.25)}
+            await far.say(json.dumps(command).encode())
+            await until(lambda: server.console.inputs.command.sequence > 0.0)
+            assert server.console.inputs.command.road_wheel_rad == 0.25
+            assert server.clients == 1
+            await far.leave()
+            await until(lambda: server.clients == 0)
+
+    asyncio.run(main())
+
+
+def test_library_that_is_not_there_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    assert load_transport(BridgeProfile()) is not None
+    with pytest.raises(ProfileError, match=r"outputs\.bridge\.transport: picows is not installed"):
+        load_transport(BridgeProfile(transport="picows"))

@@ -7,9 +7,9 @@ import pytest
 from simconsole.bridge.lockstep import LockstepBridge
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.signals import RemoteCommand
-from tests.bridge.fixtures import Served, bridge, control, join, make_snapshot, peer, serving, snapshot
+from tests.bridge.fixtures import Served, bridge, control, join, make_snapshot, peer, serving, snapshot, transport
 
-__all__ = ["bridge", "control", "join", "peer", "serving", "snapshot"]
+__all__ = ["bridge", "control", "join", "peer", "serving", "snapshot", "transport"]
 
 
 class ServerEdge:
@@ -57,13 +57,22 @@ class LockstepEdge:
         self._bridge.close()
 
 
-@pytest.fixture(params=[ServerEdge, LockstepEdge], ids=["server", "lockstep"])
+EDGES = {
+    "server": (ServerEdge, "websockets"),
+    "picows": (ServerEdge, "picows"),
+    "lockstep": (LockstepEdge, "websockets"),
+}
+
+
+@pytest.fixture(params=EDGES)
 def edge(request: pytest.FixtureRequest) -> Iterator[Callable[..., Any]]:
-    """Start either server with a profile on a free port; it is stopped at the end."""
+    """Start each server with a profile on a free port; it is stopped at the end."""
     started: list[Any] = []
+    kind, transport = EDGES[request.param]
 
     def start(**profile: Any) -> Any:
-        started.append(request.param(BridgeProfile(**{"port": 0, "lease_ms": 10_000.0, **profile})))
+        given = {"port": 0, "lease_ms": 10_000.0, "transport": transport, **profile}
+        started.append(kind(BridgeProfile(**given)))
         return started[-1]
 
     yield start

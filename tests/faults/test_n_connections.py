@@ -85,14 +85,14 @@ def test_n01_commander_that_closes_is_an_event_and_the_others_go_on(
 
 @pytest.mark.parametrize("subscribed", [False, True])
 def test_n04_client_that_went_without_a_word_is_freed_after_three_seconds(
-    snapshot: Callable[..., Any], control: Callable[..., Any], subscribed: bool
+    snapshot: Callable[..., Any], control: Callable[..., Any], subscribed: bool, transport: str
 ) -> None:
     """The clock is ours; what the kernel knows of the other side is real."""
     now_ns = 0
 
     async def main() -> None:
         nonlocal now_ns
-        async with served(BridgeProfile(port=0), lambda: now_ns) as server:
+        async with served(BridgeProfile(port=0, transport=transport), lambda: now_ns) as server:
             half = await raw(server)
             alive = await connect(server.url)
             await until(lambda: server.clients == 2)
@@ -120,12 +120,12 @@ def test_n04_client_that_went_without_a_word_is_freed_after_three_seconds(
     asyncio.run(main())
 
 
-def test_n04_program_that_is_merely_slow_is_not_cut(control: Callable[..., Any]) -> None:
+def test_n04_program_that_is_merely_slow_is_not_cut(control: Callable[..., Any], transport: str) -> None:
     now_ns = 0
 
     async def main() -> None:
         nonlocal now_ns
-        async with served(BridgeProfile(port=0), lambda: now_ns) as server:
+        async with served(BridgeProfile(port=0, transport=transport), lambda: now_ns) as server:
             slow = await raw(server)
             await until(lambda: server.clients == 1)
             for second in range(1, 60):
@@ -141,6 +141,7 @@ def test_n04_program_that_is_merely_slow_is_not_cut(control: Callable[..., Any])
 
 def test_n05_stalled_subscriber_costs_the_others_nothing_and_no_memory(
     record_property: Callable[[str, object], None],
+    transport: str,
 ) -> None:
     """A thousand messages of 20 kB: the others get every one, the stalled one's 20 MB are not kept anywhere."""
     messages, text = 1000, "x" * 20_000
@@ -156,7 +157,7 @@ def test_n05_stalled_subscriber_costs_the_others_nothing_and_no_memory(
                     return
 
     async def main() -> None:
-        async with served(BridgeProfile(port=0, limits=limits)) as server:
+        async with served(BridgeProfile(port=0, limits=limits, transport=transport)) as server:
             stalled = await raw(server, receive_bytes=4096)
             stalled.say(op="subscribe", topic="/big", type="std_msgs/String", queue_length=1000)
             heard: list[list[int]] = [[], [], []]

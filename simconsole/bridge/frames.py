@@ -1,0 +1,104 @@
+"""What is between messages and WebSocket frames whatever library carries them (RFC 6455): joining, limits, heads."""
+
+from typing import Final
+
+from simconsole.bridge.documents import Binary
+from simconsole.errors import FrameError
+from simconsole.units import NS_PER_S
+
+CONTINUATION: Final = 0
+TEXT: Final = 1
+BINARY: Final = 2
+CLOSE: Final = 8
+PING: Final = 9
+"""Opcodes (5.2); those from CLOSE on are of control frames, those before carry messages."""
+
+GOING_AWAY: Final = 1001
+PROTOCOL_ERROR: Final = 1002
+INVALID_DATA: Final = 1007
+POLICY_VIOLATION: Final = 1008
+TOO_BIG: Final = 1009
+"""Close codes (7.4.1)."""
+
+ASSEMBLY_NS: Final = 2 * NS_PER_S
+"""The longest that one message may be on its way once its first frame is here."""
+_REGISTERED: Final = {1000, 1001, 1002, 1003, *range(1007, 1015)}
+_PRIVATE: Final = range(3000, 5000)
+
+
+class MessageAssembler:
+    """Joins the frames of messages, and refuses one in too many of them, too long, or too long on its way (N08, N13).
+
+    Time is given, in ns.
+    """
+
+    def __init__(self, max_bytes: int, max_fragments: int | None = None) -> None:
+        """Allow messages of `max_bytes` in `max_fragments` frames within ASSEMBLY_NS; None: in any number and time."""
+        self._max_bytes = max_bytes
+        self._max_fragments = max_fragments
+        self._parts: list[bytes] = []
+        self._bytes = 0
+        self._binary = False
+        self._since_ns = 0
+
+    def add(self, opcode: int, data: bytes, fin: bool, now_ns: int) -> bytes | None:
+        """Take the next data frame; return the message when it is complete, `Binary` if it is no text.
+
+        Raises:
+            FrameError: the connection has to be closed.
+        """
+        if (opcode == CONTINUATION) is not bool(self._parts):
+            raise FrameError(PROTOCOL_ERROR, "a message begins inside of another, or goes on where there is none")
+        if opcode != CONTINUATION:
+            self._binary = opcode == BINARY
+            if fin and len(data) <= self._max_bytes:
+                return Binary(data) if self._binary else data
+            self._bytes, self._since_ns = 0, now_ns
+        self._parts.append(data)
+        self._bytes += len(data)
+        if self._bytes > self._max_bytes:
+            raise FrameError(TOO_BIG, f"message is longer than {self._max_bytes} bytes")
+        late = self.overdue(now_ns)
+        if late is not None:
+            raise FrameError(POLICY_VIOLATION, late)
+        if not fin:
+            if self._max_fragments is not None and len(self._parts) >= self._max_fragments:
+                raise FrameError(POLICY_VIOLATION, f"message is in more than {self._max_fragments} fragments")
+            return None
+        whole = b"".join(self._parts)
+        self._parts = []
+        return Binary(whole) if self._binary else whole
+
+    def overdue(self, now_ns: int) -> str | None:
+        """Return why a message that is not complete is no longer waited for, None while it is or there is none."""
+        if self._parts and self._max_fragments is not None and now_ns - self._since_ns > ASSEMBLY_NS:
+            return f"message has been coming for more than {ASSEMBLY_NS // NS_PER_S} s"
+        return None
+
+
+def check_close(data: bytes) -> None:
+    """Check what a close frame carries: nothing, or a code that may be sent and a reason in UTF-8 (5.5.1, 7.4).
+
+    Raises:
+        FrameError: it is none of these.
+    """
+    if not data:
+        return
+    code = int.from_bytes(data[:2])
+    if len(data) < 2 or not (code in _REGISTERED or code in _PRIVATE):
+        raise FrameError(PROTOCOL_ERROR, "a close frame has a code that no frame may carry")
+    try:
+        data[2:].decode()
+    except UnicodeDecodeError:
+        raise FrameError(INVALID_DATA, "a close frame's reason is no UTF-8") from None
+
+
+def frame_head(message: bytes) -> bytes:
+    """Return what stands before a message in a server's frame: final, unmasked, binary or text (5.2)."""
+    opcode = 0x80 | (BINARY if isinstance(message, Binary) else TEXT)
+    length = len(message)
+    if length < 126:
+        return bytes((opcode, length))
+    if length < 65_536:
+        return bytes((opcode, 126)) + length.to_bytes(2)
+    return bytes((opcode, 127)) + length.to_bytes(8)

@@ -1,0 +1,177 @@
+"""Clients' connections by the library websockets, with an eye on silence, fragments and floods (shell)."""
+
+import socket
+import ssl
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
+
+from websockets.asyncio.server import Server, ServerConnection
+from websockets.asyncio.server import serve as serve_websockets
+from websockets.frames import Frame
+from websockets.http11 import Request, Response
+from websockets.protocol import State
+
+from simconsole.bridge import wire
+from simconsole.bridge.backoff import Liveness
+from simconsole.bridge.frames import CLOSE, MessageAssembler, frame_head
+from simconsole.bridge.handshake import Admission, Opening, Refusal
+from simconsole.bridge.transport import Client, House
+from simconsole.errors import FrameError
+from simconsole.profiles.bridge import BridgeProfile
+from simconsole.units import NS_PER_S
+
+
+class Connection(ServerConnection):
+    """A connection that hands messages on as they are read, and knows when it last heard something (`Transport`)."""
+
+    def __init__(self, profile: BridgeProfile, clock_ns: Callable[[], int], *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        self.admission: Admission | None = None
+        self.client: Client | None = None
+        self._early: list[bytes] = []
+        self._has_failed = False
+        self._assembler = MessageAssembler(profile.limits.message_bytes, profile.limits.message_fragments)
+        self._liveness = Liveness(profile.ping_interval_s, profile.dead_after_s)
+        self._liveness.begin(clock_ns() / NS_PER_S)
+        self._clock_ns = clock_ns
+        self._closing_since_ns: int | None = None
+        self._dead_after_s = profile.dead_after_s
+        # More than the sender, which waits for the socket between two messages, can have put there.
+        self._max_unsent_bytes = 2 * profile.limits.queued_bytes
+
+    @property
+    def is_open(self) -> bool:
+        """Whether messages can pass, as far as this side knows."""
+        return self.state is State.OPEN
+
+    @property
+    def takes_more(self) -> bool:
+        """Whether messages may be given."""
+        return not self.paused
+
+    def put(self, messages: Sequence[bytes]) -> None:
+        """Send messages.
+
+        Whole frames are written past the library, whose sending costs more than all the rest (decision 8); it still
+        writes pings, pongs and good-byes, between them.
+        """
+        self.transport.write(b"".join(part for message in messages for part in (frame_head(message), message)))
+
+    def abort(self) -> None:
+        """End the connection at once."""
+        self.transport.abort()
+
+    def look(self, now_ns: int) -> str | None:
+        """Ask a quiet client for a sign of life; return why the connection has to be cut, None while it has not."""
+        if not self.is_open:
+            self._closing_since_ns = self._closing_since_ns or now_ns
+            return "does not close" if now_ns - self._closing_since_ns > wire.CLOSE_S * NS_PER_S else None
+        overdue = self._assembler.overdue(now_ns)
+        if overdue is not None:
+            return f"sends too slowly: {overdue}"
+        now_s = now_ns / NS_PER_S
+        # A program that is slow to answer is not a machine that is gone, which acknowledges nothing either.
+        if self._liveness.is_dead(now_s) and wire.is_unacknowledged(self.transport.get_extra_info("socket")):
+            return f"has been gone for {self._dead_after_s:g} s"
+        if self._liveness.ping_due(now_s):
+            self.protocol.send_ping(b"")
+            self.send_data()
+        return None
+
+    def begin(self, client: Client) -> None:
+        """Hand messages on from now on, those first that came while the handshake was being finished."""
+        self.client = client
+        for message in self._early:
+            client.receive(message)
+        self._early.clear()
+        self.transport.resume_reading()
+
+    def data_received(self, data: bytes) -> None:
+        """Note the time of whatever comes, pongs too."""
+        self._liveness.heard(self._clock_ns() / NS_PER_S)
+        super().data_received(data)
+        if self.protocol.close_rcvd is not None:
+            self.transport.close()  # both have said good-bye: the server ends the connection (RFC 6455, 7.1.1)
+        if self.transport.get_write_buffer_size() > self._max_unsent_bytes:
+            self.transport.abort()  # it sends pings without end and reads no answer
+
+    def process_event(self, event: Any) -> None:
+        """Join frames here and now: the library's queue and its reader would cost as much as reading them."""
+        if not isinstance(event, Frame) or event.opcode >= CLOSE:
+            super().process_event(event)
+            return
+        if self._has_failed:
+            return
+        try:
+            message = self._assembler.add(event.opcode, bytes(event.data), event.fin, self._clock_ns())
+        except FrameError as error:
+            self._has_failed = True
+            self.protocol.fail(error.code, str(error))
+            self.send_data()
+            return
+        if message is None:
+            return
+        if self.client is not None:
+            self.client.receive(message)
+        else:
+            self._early.append(message)
+            self.transport.pause_reading()  # until the handshake is finished
+
+    def resume_writing(self) -> None:
+        """Let the client's messages flow again."""
+        super().resume_writing()
+        if self.client is not None:
+            self.client.resume()
+
+
+async def open_door(
+    house: House,
+    listener: socket.socket,
+    profile: BridgeProfile,
+    tls: ssl.SSLContext | None,
+    clock_ns: Callable[[], int],
+) -> Server:
+    """Let clients of `listener` into `house`."""
+    make: Any = partial(Connection, profile, clock_ns)  # any function will do; its type says a class
+
+    def admit(connection: ServerConnection, request: Request) -> Response | None:
+        assert isinstance(connection, Connection)
+        decision = house.admit(_opening(request))
+        if isinstance(decision, Refusal):
+            return connection.respond(decision.status, f"{decision.reason}\n")
+        connection.admission = decision
+        return None
+
+    async def attend(connection: ServerConnection) -> None:
+        assert isinstance(connection, Connection)
+        assert connection.admission is not None
+        connection.transport.get_extra_info("socket").setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        host, port = connection.remote_address[:2]
+        client = house.welcome(connection, f"{host}:{port}", connection.admission)
+        try:
+            connection.begin(client)
+            await connection.wait_closed()
+        finally:
+            client.gone()
+
+    options: dict[str, Any] = {} if tls is None else {"ssl": tls, "ssl_handshake_timeout": wire.HANDSHAKE_S}
+    return await serve_websockets(
+        attend,
+        sock=listener,
+        process_request=admit,
+        create_connection=make,
+        compression=None,
+        max_size=profile.limits.message_bytes,
+        ping_interval=None,  # `look` asks, and cuts nobody who is merely slow
+        open_timeout=wire.HANDSHAKE_S,
+        close_timeout=wire.CLOSE_S,
+        server_header=None,
+        logger=wire.logger,
+        **options,
+    )
+
+
+def _opening(request: Request) -> Opening:
+    headers = request.headers
+    return Opening(request.path, headers.get_all("Host"), headers.get_all("Origin"), headers.get_all("Authorization"))
