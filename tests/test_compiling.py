@@ -109,4 +109,4 @@ def test_unused_folders_are_removed_after_a_month(own_cache: Path) -> None:
 def test_importing_loads_no_numba() -> None:
     code = "import sys, simconsole.compiling, simconsole.vehicle.car.step; sys.exit('numba' in sys.modules)"
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
-    subprocess.run([sys.executable, "-c", code], check=True, env=environment)
+    assert subprocess.run([sys.executable, "-c", code], check=False, env=environment).returncode == 0

@@ -221,9 +221,14 @@ def test_the_ring_tells_a_station_when_it_was_published(tmp_path: Path, monkeypa
 
 def test_a_full_disk_of_the_run_folder_harms_no_station(tmp_path: Path) -> None:
     clock = Clock({})
-    receipts = Receipts(tmp_path / "gone" / "latency.hud.json", clock.read)
+    receipts = Receipts(tmp_path / "gone" / f"{LATENCY}.hud.json", clock.read)
     clock.now_ns += 2_000_000_000
     receipts.received(record(1, clock.now_ns))
+    (tmp_path / "gone").mkdir()
+    clock.now_ns += 2_000_000_000
+    receipts.received(record(2, clock.now_ns))
+    found = station_latencies(tmp_path / "gone")
+    assert found["receive, hud"]["count"] == 2, "counted all the same, and saved when it can be"
 
 
 def test_percentiles_hold_to_one_bin() -> None:

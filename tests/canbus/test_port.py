@@ -27,7 +27,7 @@ class FakeBus:
         self.sent: list[can.Message] = []
         self.coming: list[can.Message | Exception] = []
         self.on_send: Exception | None = None
-        self.closed = False
+        self.closings = 0
 
     def send(self, message: can.Message, timeout: float | None = None) -> None:
         if self.on_send is not None:
@@ -43,7 +43,7 @@ class FakeBus:
         return found
 
     def shutdown(self) -> None:
-        self.closed = True
+        self.closings += 1
 
 
 class Yard:
@@ -132,7 +132,7 @@ def test_failed_send_closes_reports_and_opens_again(
     yard.buses[0].on_send = error
     with caplog.at_level(logging.WARNING):
         assert not port.send(Frame(0x100, DATA))
-    assert yard.buses[0].closed
+    assert yard.buses[0].closings == 1
     assert "cannot send" in caplog.text
     assert not port.send(Frame(0x100, DATA))
     assert len(yard.buses) == 1
@@ -257,10 +257,14 @@ def test_bus_that_is_not_there_is_one_line(interface: Any, channel: str, codec: 
     assert "\n" not in str(caught.value)
 
 
-def test_closing_twice_is_harmless(profile: CanProfile) -> None:
-    port = CanPort(profile, frozenset(), frozenset())
+def test_closing_twice_lets_go_of_the_bus_once(yard: Yard) -> None:
+    port = yard.port()
+    assert port.send(Frame(0x100, DATA))
     port.close()
     port.close()
+    assert yard.buses[0].closings == 1
+    assert not port.send(Frame(0x100, DATA))
+    assert len(yard.buses[0].sent) == 1
 
 
 def test_every_interface_of_a_profile_is_one_of_python_can() -> None:

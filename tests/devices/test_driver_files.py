@@ -33,8 +33,20 @@ def sysfs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return folder
 
 
-def motor() -> SimulatedWheelPort:
-    return SimulatedWheelPort(SimulatedWheel(FORCE, 1080.0, tick_hz=250))
+class NotedMotor(SimulatedWheelPort):
+    """Keeps the levels that it was told."""
+
+    def __init__(self) -> None:
+        super().__init__(SimulatedWheel(FORCE, 1080.0, tick_hz=250))
+        self.levels: list[float] = []
+
+    def write(self, level: float) -> None:
+        super().write(level)
+        self.levels.append(level)
+
+
+def motor() -> NotedMotor:
+    return NotedMotor()
 
 
 def test_folder_is_found_by_identity(sysfs: Path) -> None:
@@ -67,8 +79,13 @@ def test_wheel_without_such_files_is_left_as_the_profile_says(
 
 
 def test_motor_that_keeps_them_honours_the_contract(sysfs: Path) -> None:
-    takes_every_level_in_any_order(Restoring(motor(), settings(WHEEL)))
-    closes_twice_and_then_has_no_force(Restoring(motor(), settings(WHEEL)))
+    alone, kept = motor(), motor()
+    takes_every_level_in_any_order(alone)
+    takes_every_level_in_any_order(Restoring(kept, settings(WHEEL)))
+    assert kept.levels == alone.levels != []
+    assert Restoring(kept, settings(WHEEL)).capability == alone.capability
+    closes_twice_and_then_has_no_force(Restoring(kept, settings(WHEEL)))
+    assert not kept.capability.constant
 
 
 def test_wheel_that_is_gone_meanwhile_is_no_error(sysfs: Path, monkeypatch: pytest.MonkeyPatch) -> None:

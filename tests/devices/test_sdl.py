@@ -9,7 +9,7 @@ from msgspec.structs import replace
 
 from simconsole.devices import sdl as sdl_module
 from simconsole.devices import sdl_runtime
-from simconsole.devices.calibration import CockpitSettings, settings
+from simconsole.devices.calibration import CockpitSettings, settings, travel
 from simconsole.devices.sdl import SdlSource, identity
 from simconsole.devices.uncalibrate import Intent, uncalibrate
 from simconsole.devices.validity import LIVE, LOST, UNKNOWN
@@ -344,10 +344,17 @@ def test_throttle_calibrated_the_wrong_way_round_is_refused(
         SdlSource(t500)
 
 
-def test_foot_on_brake_and_clutch_at_the_start_is_no_fault(plug: Plug, t500: CockpitProfile) -> None:
+def test_foot_on_brake_and_clutch_at_the_start_is_no_fault(
+    plug: Plug, t500: CockpitProfile, t500_settings: CockpitSettings
+) -> None:
     plug(VirtualSpec("Wheel", 0x044F, 0xB65E, 4, 13, 1, (0.0, -1.0, 1.0, -1.0)))
     plug(VirtualSpec("Shifter", 0x044F, 0xB660, 2, 10))
-    SdlSource(t500).close()
+    source = SdlSource(t500)
+    sample = source.poll(1)
+    source.close()
+    s = t500_settings
+    assert (sample.brake_axis, sample.clutch_axis) == (s.brake_full_raw, s.clutch_full_raw)
+    assert travel(sample.throttle_axis, s.throttle_rest_raw, s.throttle_full_raw) < s.throttle_dead
 
 
 def test_cockpit_without_devices_is_refused(sdl: None, t500: CockpitProfile) -> None:

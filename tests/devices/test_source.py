@@ -8,10 +8,12 @@ from pathlib import Path
 
 import pytest
 
+from simconsole.devices import sdl_runtime
 from simconsole.devices.calibration import CockpitSettings, settings
 from simconsole.devices.faults import FaultyDevices
 from simconsole.devices.motor import MotorisedSource, SimulatedWheelPort, WheelMotor
 from simconsole.devices.record import TraceWriter
+from simconsole.devices.sdl import SdlSource
 from simconsole.devices.simulated_wheel import SimulatedWheel
 from simconsole.devices.source import open_source
 from simconsole.devices.trace import TraceHeader
@@ -136,9 +138,12 @@ class TestEverySource:
         assert {driver.throttle_validity, driver.wheel_validity, driver.shifter_validity} == {LIVE}
         opened.source.close()
 
-    def test_closing_twice_is_harmless(self, opened: Opened) -> None:
+    def test_closing_twice_takes_nothing_from_others(self, opened: Opened) -> None:
+        """SDL is shared within the process: the second call must not let go of it for somebody else."""
+        before = sdl_runtime._Runtime.users
         opened.source.close()
         opened.source.close()
+        assert sdl_runtime._Runtime.users == before - isinstance(opened.source, SdlSource)
 
 
 @pytest.mark.parametrize("driver", ["", "wheel", "sdl:x", "trace:", "script:", "keyboard:a", "TRACE:x"])

@@ -44,8 +44,10 @@ def test_port_of_the_system_s_choice_is_said(tmp_path: Path) -> None:
         controller.start()
         wait_until(lambda: controller.odometry > 0, "odometry")
         server.process.send_signal(signal.SIGINT)
-        server.end()
+        done = server.end()
         controller.join(30.0)
+    assert (controller.failure, controller.statuses) == (None, [])
+    assert (done.returncode, results(done)["interrupted"]) == (130, True)
 
 
 def test_a_port_that_is_none_is_one_line() -> None:

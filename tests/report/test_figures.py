@@ -53,4 +53,4 @@ def test_odd_drives_are_drawn_too(sample: Any, course: Course, with_course: bool
     one = sample._replace(rows=sample.rows[:1])
     for odd in (still, by_hand, one):
         for svg in drawn(odd, course if with_course else None):
-            ElementTree.fromstring(svg)
+            assert ElementTree.fromstring(svg).tag.endswith("svg")

@@ -132,6 +132,7 @@ def test_nothing_is_imported_from_the_working_directory(
     monkeypatch.chdir(tmp_path / "cwd")
     supervisor = start(station(programs, "one"))
     wait_until(lambda: said(supervisor.folder, "one"))
+    assert supervisor.counters() == {"one": 0}
 
 
 def test_a_killed_station_is_restarted_while_the_core_goes_on(

@@ -68,4 +68,4 @@ def test_building_loads_no_numba() -> None:
         "build(load('vehicles', 'hatchback', CarProfile), Pose(0.0, 0.0, 0.0), Ground(1.0, 0.0, 0.0)); "
         "sys.exit('numba' in sys.modules or 'simconsole.vehicle.ball.step' in sys.modules)"
     )
-    subprocess.run([sys.executable, "-c", code], check=True)
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
