@@ -3,6 +3,8 @@
 Everything outside comes in as three callables (`Ports`), so the loop runs the same on shared memory and in a test.
 """
 
+import os
+import sys
 import time
 from collections.abc import Callable
 from typing import Final, NamedTuple
@@ -83,6 +85,7 @@ class Window:
         self._freshness = Freshness()
         self._painter = Painter()
         self._drawn: list[DrawItem] = []
+        choose_display()
         import pygame
 
         flags = pygame.FULLSCREEN | pygame.SCALED if profile.fullscreen else 0
@@ -119,6 +122,16 @@ class Window:
         import pygame
 
         pygame.display.quit()
+
+
+def choose_display() -> None:
+    """Draw into memory where no desktop can be reached; a driver that the user names stays. Before SDL starts.
+
+    SDL would end there too, but its Wayland probe complains on standard error first.
+    """
+    reachable = ("DISPLAY", "WAYLAND_DISPLAY", "XDG_RUNTIME_DIR")
+    if sys.platform == "linux" and not any(os.environ.get(name) for name in reachable):
+        os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 
 
 def held_keys() -> int:

@@ -1,3 +1,6 @@
+import os
+import subprocess
+import sys
 from collections import defaultdict
 from collections.abc import Iterator
 
@@ -8,7 +11,7 @@ import pytest
 from simconsole.errors import ProfileError
 from simconsole.hud import window
 from simconsole.hud.view import HudSettings
-from simconsole.hud.window import KEYS, Freshness, Ports, Window, run
+from simconsole.hud.window import KEYS, Freshness, Ports, Window, choose_display, run
 from simconsole.keys import Key
 from simconsole.profiles.view import HudProfile
 from simconsole.rows import PLATFORM_AT, Snapshot
@@ -109,6 +112,33 @@ def test_an_equal_picture_is_not_drawn_again(monkeypatch: pytest.MonkeyPatch) ->
     assert painted == []
     opened.frame(None, 1.2)
     assert len(painted) == 1
+
+
+DESKTOP = ("DISPLAY", "WAYLAND_DISPLAY", "XDG_RUNTIME_DIR")
+
+
+def test_without_a_desktop_it_draws_into_memory_and_says_nothing() -> None:
+    program = (
+        "import pygame; from simconsole.hud.window import Window; from simconsole.hud.view import HudSettings; "
+        "from simconsole.profiles.view import HudProfile; Window(HudProfile(), HudSettings()); "
+        "assert pygame.display.get_driver() == 'dummy'"
+    )
+    kept = {name: value for name, value in os.environ.items() if name not in (*DESKTOP, "SDL_VIDEODRIVER")}
+    environment = {**kept, "PYGAME_HIDE_SUPPORT_PROMPT": "1", "PYTHONPATH": os.pathsep.join(sys.path)}
+    done = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+@pytest.mark.parametrize("found", [{"SDL_VIDEODRIVER": "x11"}, {"DISPLAY": ":0"}, {"XDG_RUNTIME_DIR": "/run/user/1"}])
+def test_a_desktop_or_a_driver_that_the_user_names_is_left_to_sdl(
+    found: dict[str, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in (*DESKTOP, "SDL_VIDEODRIVER"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in found.items():
+        monkeypatch.setenv(name, value)
+    choose_display()
+    assert os.environ.get("SDL_VIDEODRIVER") == found.get("SDL_VIDEODRIVER")
 
 
 def test_an_illegible_seat_opens_no_window() -> None:
