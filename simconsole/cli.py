@@ -142,6 +142,8 @@ def _can(commands: Any) -> None:
     can.add_argument("--accel", dest="accel_mps2", type=float, default=0.0, metavar="MPS2", help="send")
     can.add_argument("--hold", dest="speed_mps", type=float, metavar="MPS", help="send: hold this speed instead")
     can.add_argument("--direction", choices=("drive", "neutral", "reverse"), default="drive", help="send")
+    can.add_argument("--turn-indicators", choices=("left", "off", "right"), default="off", help="send")
+    can.add_argument("--hazard-lights", action="store_true", help="send")
     can.add_argument("--engage", action="store_true", help="send: ask for autonomy until it is granted")
     requests = ("REQUEST_MANUAL", "REQUEST_SHARED", "REQUEST_TAKEOVER", "EMERGENCY_STOP", "RESET", "MARK")
     can.add_argument("--request", choices=requests, help="send: ask for this once")

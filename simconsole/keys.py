@@ -24,3 +24,4 @@ class Key(IntFlag):
     INDICATOR_LEFT = 4096
     INDICATOR_RIGHT = 8192
     MARK = 16384
+    HAZARD = 32768

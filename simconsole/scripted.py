@@ -48,4 +48,6 @@ def _command(step: RemoteStep, sequence: int) -> RemoteCommand:
         x_m=step.x_m,
         y_m=step.y_m,
         direction=float(step.direction),
+        turn_indicators=float(step.turn_indicators),
+        hazard_lights=float(step.hazard_lights),
     )

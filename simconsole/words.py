@@ -109,3 +109,10 @@ def gear_words(gear: float) -> str:
     if gear < 0.0:
         return "R"
     return f"{gear:.0f}" if gear > 0.0 else "N"
+
+
+def indicator_words(turn_indicators: float) -> str:
+    """Return what the turn indicators show: left, right or off."""
+    if turn_indicators < 0.0:
+        return "right"
+    return "left" if turn_indicators > 0.0 else "off"

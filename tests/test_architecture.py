@@ -39,6 +39,7 @@ UNITLESS = {
     *("wheel_buttons", "shifter_buttons", "pressed", "edges", "events", "faults", "gate_active", "throttle_override"),
     *("wheel_motor", "ramp", "clipped", "enabled", "hands_on", "live", "ecu_events", "fresh", "invalid", "lever_fault"),
     *("anti_lock_off", "traction_off", "stability_off", "gear_fault"),
+    *("turn_indicators", "hazard_lights", "stalk", "hazard_switch"),
     # members of an enumeration
     *("kind", "mode", "reason", "refusal", "gear", "direction", "takeover_stage", "commander", "state"),
     *("restarted", "stop_steered"),

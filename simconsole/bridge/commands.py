@@ -18,6 +18,8 @@ from simconsole.units import NS_PER_S
 
 CONTROL: Final = "/control/command/control_cmd"
 GEAR: Final = "/control/command/gear_cmd"
+TURN_INDICATORS: Final = "/control/command/turn_indicators_cmd"
+HAZARD_LIGHTS: Final = "/control/command/hazard_lights_cmd"
 ACKERMANN: Final = "/ackermann_cmd"
 TWIST: Final = "/cmd_vel"
 TWIST_STAMPED: Final = "/cmd_vel_stamped"
@@ -51,6 +53,9 @@ DIRECTIONS: Final[dict[int, float]] = {
     23: 1.0,
     24: 1.0,
 }
+# autoware_vehicle_msgs/TurnIndicatorsCommand and HazardLightsCommand; 0 is NO_COMMAND and leaves them as they are.
+INDICATORS: Final[dict[int, float]] = {1: 0.0, 2: 1.0, 3: -1.0}
+HAZARDS: Final[dict[int, float]] = {1: 0.0, 2: 1.0}
 _BODY_FRAMES: Final = ("", BASE_FRAME)
 _FUTURE_NS: Final = 50_000_000
 _UNIT_TOLERANCE: Final = 0.1
@@ -86,6 +91,8 @@ class CommandIntake:
         return (
             CommandTopic(CONTROL, "autoware_control_msgs/Control", self._control),
             CommandTopic(GEAR, "autoware_vehicle_msgs/GearCommand", self._gear),
+            CommandTopic(TURN_INDICATORS, "autoware_vehicle_msgs/TurnIndicatorsCommand", self._turn_indicators),
+            CommandTopic(HAZARD_LIGHTS, "autoware_vehicle_msgs/HazardLightsCommand", self._hazard_lights),
             CommandTopic(ACKERMANN, "ackermann_msgs/AckermannDriveStamped", self._ackermann),
             CommandTopic(TWIST, "geometry_msgs/Twist", self._twist),
             CommandTopic(TWIST_STAMPED, "geometry_msgs/TwistStamped", self._twist_stamped),
@@ -180,7 +187,19 @@ class CommandIntake:
         if direction is None:
             raise RemoteProtocolError(f"{message.command} is no gear - at `$.command`")
         self._order(GEAR, message.stamp)
-        self._inputs.set_direction(direction)
+        self._inputs.keep(direction=direction)
+
+    def _turn_indicators(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
+        shown = _setting(plain, message.command, INDICATORS, "a turn indicator")
+        self._order(TURN_INDICATORS, message.stamp)
+        if shown is not None:
+            self._inputs.keep(turn_indicators=shown)
+
+    def _hazard_lights(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
+        shown = _setting(plain, message.command, HAZARDS, "a state of hazard lights")
+        self._order(HAZARD_LIGHTS, message.stamp)
+        if shown is not None:
+            self._inputs.keep(hazard_lights=shown)
 
     def _request(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
         event = REQUESTS.get(message.data)
@@ -213,6 +232,14 @@ def _require(plain: dict[str, Any], *paths: str) -> None:
             value = value.get(key) if isinstance(value, dict) else None
         if value is None:
             raise RemoteProtocolError(f"required in a command - at `$.{path}`")
+
+
+def _setting(plain: dict[str, Any], command: int, settings: dict[int, float], name: str) -> float | None:
+    """Return what one of Autoware's command numbers means; None for its NO_COMMAND."""
+    _require(plain, "command")
+    if command != 0 and command not in settings:
+        raise RemoteProtocolError(f"{command} is not {name} - at `$.command`")
+    return settings.get(command)
 
 
 def _in_frame(header: Any, frames: tuple[str, ...]) -> None:

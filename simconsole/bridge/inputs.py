@@ -32,7 +32,7 @@ class BridgeInputs:
         self._on_events = on_events
 
     def accept(self, command: RemoteCommand, stamp_ns: int | None, now_ns: int) -> None:
-        """Put a command into the slot; sequence, refusals, direction and age are this slot's, not the caller's.
+        """Put a command into the slot; sequence, refusals, direction, lights and age are this slot's, not the caller's.
 
         Args:
             command: kind and values; a direction other than 0 is kept for later commands too.
@@ -45,6 +45,8 @@ class BridgeInputs:
             refused=before.refused,
             age_ticks=0.0,
             direction=command.direction or before.direction,
+            turn_indicators=before.turn_indicators,
+            hazard_lights=before.hazard_lights,
         )
         self.receipt_ns, self.stamp_ns, self._receipt_tick = now_ns, stamp_ns, self.tick
         self._announce()
@@ -54,9 +56,9 @@ class BridgeInputs:
         self.command = self.command._replace(refused=self.command.refused + 1.0)
         self._announce()
 
-    def set_direction(self, direction: float) -> None:
-        """Set the direction of travel: 1, 0 or -1. It neither renews the command's age nor counts as one."""
-        self.command = self.command._replace(direction=direction)
+    def keep(self, **settings: float) -> None:
+        """Set what later commands keep: direction of travel or lights. It neither renews the age nor counts as one."""
+        self.command = self.command._replace(**settings)
         self._announce()
 
     def raise_events(self, events: int) -> None:

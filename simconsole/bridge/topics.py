@@ -26,6 +26,8 @@ BRIDGE: Final = "/console/bridge"
 VELOCITY: Final = "/vehicle/status/velocity_status"
 STEERING: Final = "/vehicle/status/steering_status"
 GEAR_STATUS: Final = "/vehicle/status/gear_status"
+TURN_INDICATORS_STATUS: Final = "/vehicle/status/turn_indicators_status"
+HAZARD_LIGHTS_STATUS: Final = "/vehicle/status/hazard_lights_status"
 CONTROL_MODE: Final = "/vehicle/status/control_mode"
 
 GLOBAL_TOPICS: Final = frozenset({CLOCK, TF, TF_STATIC})
@@ -43,8 +45,9 @@ builtin_interfaces/Time std_msgs/Header rosgraph_msgs/Clock nav_msgs/Odometry tf
 geometry_msgs/TransformStamped geometry_msgs/Transform geometry_msgs/Vector3 geometry_msgs/Point
 geometry_msgs/Quaternion geometry_msgs/Pose geometry_msgs/PoseWithCovariance geometry_msgs/Twist
 geometry_msgs/TwistWithCovariance autoware_vehicle_msgs/VelocityReport autoware_vehicle_msgs/SteeringReport
-autoware_vehicle_msgs/GearReport autoware_vehicle_msgs/ControlModeReport simconsole_msgs/Arbitration
-simconsole_msgs/Controller simconsole_msgs/Bridge simconsole_msgs/BridgeClient
+autoware_vehicle_msgs/GearReport autoware_vehicle_msgs/TurnIndicatorsReport autoware_vehicle_msgs/HazardLightsReport
+autoware_vehicle_msgs/ControlModeReport simconsole_msgs/Arbitration simconsole_msgs/Controller simconsole_msgs/Bridge
+simconsole_msgs/BridgeClient
 """
 _NO_COVARIANCE: Final = [0.0] * 36
 # Numbers of autoware_vehicle_msgs/ControlModeReport.
@@ -60,6 +63,9 @@ _CONTROL_MODES: Final[dict[float, int]] = {
 }
 # Numbers of autoware_vehicle_msgs/GearReport.
 _NEUTRAL, _DRIVE, _REVERSE = 1, 2, 20
+# Numbers of autoware_vehicle_msgs/TurnIndicatorsReport and HazardLightsReport.
+_DISABLE, _ENABLE_LEFT, _ENABLE_RIGHT = 1, 2, 3
+_ENABLE = 2
 
 
 class OutputTopic(NamedTuple):
@@ -116,6 +122,10 @@ class Outputs:
             OutputTopic(VELOCITY, "autoware_vehicle_msgs/VelocityReport", 30.0, self._velocity),
             OutputTopic(STEERING, "autoware_vehicle_msgs/SteeringReport", 30.0, self._steering),
             OutputTopic(GEAR_STATUS, "autoware_vehicle_msgs/GearReport", 30.0, self._gear),
+            OutputTopic(
+                TURN_INDICATORS_STATUS, "autoware_vehicle_msgs/TurnIndicatorsReport", 30.0, self._turn_indicators
+            ),
+            OutputTopic(HAZARD_LIGHTS_STATUS, "autoware_vehicle_msgs/HazardLightsReport", 30.0, self._hazard_lights),
             OutputTopic(CONTROL_MODE, "autoware_vehicle_msgs/ControlModeReport", 30.0, self._control_mode),
             OutputTopic(ARBITRATION, "simconsole_msgs/Arbitration", 50.0, self._arbitration),
             OutputTopic(BRIDGE, "simconsole_msgs/Bridge", 1.0, self._bridge),
@@ -179,6 +189,15 @@ class Outputs:
         gear = moment.vehicle.gear
         report = _DRIVE if gear > 0.0 else _REVERSE if gear < 0.0 else _NEUTRAL
         return self._types["GearReport"](moment.stamp, report)
+
+    def _turn_indicators(self, moment: Moment) -> Any:
+        shown = moment.snapshot.command.turn_indicators
+        report = _ENABLE_LEFT if shown > 0.0 else _ENABLE_RIGHT if shown < 0.0 else _DISABLE
+        return self._types["TurnIndicatorsReport"](moment.stamp, report)
+
+    def _hazard_lights(self, moment: Moment) -> Any:
+        shown = moment.snapshot.command.hazard_lights
+        return self._types["HazardLightsReport"](moment.stamp, _ENABLE if shown > 0.0 else _DISABLE)
 
     def _control_mode(self, moment: Moment) -> Any:
         arbitration = moment.snapshot.arbitration

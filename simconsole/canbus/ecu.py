@@ -66,6 +66,8 @@ class Wish(NamedTuple):
     speed_mps: float | None = None
     accel_max_mps2: float = 2.0
     direction: float = 1.0
+    turn_indicators: float = 0.0
+    hazard_lights: float = 0.0
     engage: bool = False
     request: int = 0
 
@@ -111,6 +113,8 @@ class Ecu:
             "ROAD_WHEEL": wish.road_wheel_rad,
             "ACCEL": self._accel_mps2(),
             "DIRECTION": wish.direction,
+            "TURN_INDICATORS": wish.turn_indicators,
+            "HAZARD_LIGHTS": wish.hazard_lights,
         }
         frame = self._codec.encode(COMMAND, values, self._frames % 16)
         self._frames += 1

@@ -74,6 +74,8 @@ def actuation(now: Moment) -> Mapping[str, float]:
         "THROTTLE_COMMAND": command.throttle,
         "BRAKE_COMMAND": command.brake,
         "GATE_LIMITS": command.gate_active,
+        "TURN_INDICATORS": command.turn_indicators,
+        "HAZARD_LIGHTS": command.hazard_lights,
     }
 
 

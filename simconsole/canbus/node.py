@@ -121,6 +121,8 @@ class CanNode:
             road_wheel_rad=values["ROAD_WHEEL"],
             accel_mps2=values["ACCEL"],
             direction=values["DIRECTION"],
+            turn_indicators=values["TURN_INDICATORS"],
+            hazard_lights=values["HAZARD_LIGHTS"],
         )
         return self._asked(int(values["REQUEST"]))
 

@@ -11,6 +11,7 @@ from simconsole.profiles.can import CanProfile
 from simconsole.units import RAD_PER_DEG
 
 _DIRECTIONS = {"drive": 1.0, "neutral": 0.0, "reverse": -1.0}
+_INDICATORS = {"left": 1.0, "off": 0.0, "right": -1.0}
 
 
 def can(words: Namespace) -> Outcome:
@@ -43,6 +44,8 @@ def can(words: Namespace) -> Outcome:
         accel_mps2=words.accel_mps2,
         speed_mps=words.speed_mps,
         direction=_DIRECTIONS[words.direction],
+        turn_indicators=_INDICATORS[words.turn_indicators],
+        hazard_lights=float(words.hazard_lights),
         engage=words.engage,
         request=names.get(words.request or "", 0),
     )

@@ -18,6 +18,7 @@ from simconsole.control.authority import (
 )
 from simconsole.control.commander import Controllers, look
 from simconsole.control.decision import Decision, decide, takeover_stage
+from simconsole.control.lights import Lights, lights_of, switched
 from simconsole.control.moment import Moment
 from simconsole.control.person import Person, person_of
 from simconsole.control.shared import consent
@@ -64,14 +65,17 @@ def arbitrate(now: Moment) -> tuple[ArbiterMemory, Link, Link, Arbitration, Requ
     shares = shares_of(decision.mode, seen.throttle_override, shared.lateral, now.before, now.settings)
     side = remote_side(now, decision, shares, controllers.offered, controllers.link, seen.person)
     transmission = transmission_of(now, decision.mode, side.direction)
+    stalk = switched(now.driver, now.memory)
+    lights = lights_of(decision.mode, stalk, controllers.remote, controllers.link)
+    steered = steered_stop(now, decision, controllers.link)
     return (
-        _remembered(seen, decision, side, mode_ticks, shared.trade, steered_stop(now, decision, controllers.link)),
+        _remembered(seen, decision, side, mode_ticks, shared.trade, steered, stalk),
         controllers.ros_link,
         controllers.ecu_link,
         _shown(
             decision, shares, seen.person, side, controllers, takeover_stage(decision.mode, mode_ticks, now.settings)
         ),
-        blend(decision.mode, shares, side, seen.person, transmission, now.driver),
+        blend(decision.mode, shares, side, seen.person, transmission, lights, now.driver),
     )
 
 
@@ -104,7 +108,13 @@ def _see(now: Moment) -> Seen:
 
 @kernel
 def _remembered(
-    seen: Seen, decision: Decision, side: RemoteSide, mode_ticks: float, trade: float, stop_steered: float
+    seen: Seen,
+    decision: Decision,
+    side: RemoteSide,
+    mode_ticks: float,
+    trade: float,
+    stop_steered: float,
+    stalk: Lights,
 ) -> ArbiterMemory:
     return ArbiterMemory(
         mode_ticks,
@@ -118,6 +128,8 @@ def _remembered(
         side.hold_road_wheel_rad,
         stop_steered,
         trade if decision.mode == _SHARED else 1.0,
+        stalk.turn_indicators,
+        stalk.hazard_lights,
     )
 
 

@@ -4,6 +4,7 @@ from typing import Final, NamedTuple
 
 from simconsole.control.angles import gentle_angle, gentle_step
 from simconsole.control.decision import Decision
+from simconsole.control.lights import Lights
 from simconsole.control.moment import Moment
 from simconsole.control.person import Person
 from simconsole.control.remote import RemoteRequest
@@ -248,7 +249,13 @@ def _sign(value: float) -> float:
 
 @kernel
 def blend(
-    mode: float, shares: Shares, side: RemoteSide, person: Person, transmission: Transmission, driver: DriverInput
+    mode: float,
+    shares: Shares,
+    side: RemoteSide,
+    person: Person,
+    transmission: Transmission,
+    lights: Lights,
+    driver: DriverInput,
 ) -> Request:
     """Return the two sides' requests weighted by their shares; the person's brake counts in full."""
     road_wheel_rad = shares.lateral * side.road_wheel_rad + (1.0 - shares.lateral) * person.road_wheel_rad
@@ -269,4 +276,6 @@ def blend(
         handbrake,
         transmission.gear,
         transmission.automatic,
+        lights.turn_indicators,
+        lights.hazard_lights,
     )

@@ -149,7 +149,9 @@ def gate(
     gear = _gear(request.gear, known(before.gear, 0.0), automatic, vehicle, settings)
     target = _target(remote, mode, before, vehicle, limits, settings, tick_s)
     active = wheel.active | brake.active | throttle.active | clutch.active | handbrake.active
-    active |= gear.active | target.active
+    turn = _switch(request.turn_indicators, before.turn_indicators, -1.0)
+    hazard = _switch(request.hazard_lights, before.hazard_lights, 0.0)
+    active |= gear.active | target.active | turn.active | hazard.active
     return VehicleCommand(
         wheel.value,
         throttle.value,
@@ -162,6 +164,8 @@ def gate(
         target.x_m,
         target.y_m,
         target.yaw_rad,
+        turn.value,
+        hazard.value,
         float(active),
         _counted(before.gate_active_ticks, active),
         _switched(before.anti_lock_off, events, _ANTI_LOCK),
@@ -261,6 +265,22 @@ def _gear(wanted: float, before: float, automatic: float, vehicle: VehicleState,
     if against and wanted * before <= 0.0:
         return Passed(clip(before, lowest, highest), _GEAR)
     return Passed(wanted, 0)
+
+
+@kernel
+def _switch(wanted: float, before: float, lowest: float) -> Passed:
+    """Pass a switch's position, fully to one side or off (0); one that is not finite stays where it was."""
+    active = 0
+    value = wanted
+    if not is_finite(value):
+        value = known(before, 0.0)
+        active |= _NON_FINITE
+    position = 1.0 if value > 0.0 else 0.0
+    if value < 0.0 and lowest < 0.0:
+        position = -1.0
+    if position != value:
+        active |= _RANGE
+    return Passed(position, active)
 
 
 @kernel

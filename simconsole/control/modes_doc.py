@@ -30,6 +30,12 @@ The person's brake counts in full in every mode, and the brake always beats the 
 to the other over 0.6 s, starting from the command in force. Every figure is a setting of
 `simconsole/profiles/control.py`, with its source.
 
+## Turn indicators and hazard lights
+
+The person's stalk and hazard switch keep their position through every mode. While the controller drives, its indicator
+goes before the stalk where it sets one, and either side may put the hazard lights on. MINIMAL_RISK, STOPPED and
+EMERGENCY_STOP always show them.
+
 ## Authority over steering in SHARED
 
 `shared_authority` of the profile says how much the controller has; it never moves faster than the fade.

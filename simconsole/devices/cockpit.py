@@ -57,6 +57,7 @@ class CockpitSettings(NamedTuple):
     takeover_mask: float
     shared_mask: float
     fault_mask: float
+    hazard_mask: float
 
 
 NOBODY: Final = DriverInput(*(0.0,) * len(DriverInput._fields))

@@ -36,6 +36,7 @@ _BUTTONS: Final = (
     (Key.INDICATOR_LEFT, Button.INDICATOR_LEFT),
     (Key.INDICATOR_RIGHT, Button.INDICATOR_RIGHT),
     (Key.MARK, Button.MARK),
+    (Key.HAZARD, Button.HAZARD),
 )
 
 

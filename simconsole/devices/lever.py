@@ -35,6 +35,7 @@ def held_roles(wheel_buttons: float, shifter_buttons: float, settings: CockpitSe
         settings.takeover_mask,
         settings.shared_mask,
         settings.fault_mask,
+        settings.hazard_mask,
     ):
         if held & int(mask) != 0:
             roles |= bit

@@ -4,6 +4,7 @@ import math
 from typing import Final
 
 from simconsole.hud.draw import (
+    ACTIVE,
     CAUTION,
     LINE,
     MUTED,
@@ -25,12 +26,14 @@ from simconsole.hud.view import HudView
 START_DEG: Final = -130.0
 SWEEP_DEG: Final = 260.0
 PIECE_DEG: Final = 20.0
+INDICATOR_HZ: Final = 1.5
+"""Direction indicators flash 90 times a minute (UN Regulation 48: 90 plus or minus 30)."""
 FLAT: Final = -0.78
 """Height of the dial's flat foot below its centre, in radii (upwards positive)."""
 
 
 def dial(view: HudView, box: Box) -> list[DrawItem]:
-    """Return ring, needle, speed and gear."""
+    """Return ring, needle, speed, gear and, in the two upper corners, the turn indicators."""
     radius = min(0.5 * box.w, box.h / (1.0 - FLAT))
     cx, cy = box.cx, box.y + 0.5 * (box.h - (1.0 - FLAT) * radius) + radius
     return [
@@ -39,6 +42,7 @@ def dial(view: HudView, box: Box) -> list[DrawItem]:
         *_scale(view, cx, cy, radius),
         *_speed(view, cx, cy, radius),
         *_gear(view, cx, cy, radius),
+        *_indicators(view, cx, cy, radius),
     ]
 
 
@@ -133,3 +137,31 @@ def _shift_up(box: Box) -> list[DrawItem]:
     arrow = ((box.cx, box.y), (box.right, box.bottom), (box.x, box.bottom))
     label = Text(box.right + 0.3 * box.w, box.cy, "UP", 0.6 * box.h, CAUTION, "shift", "l", DRIVING_ARCMIN)
     return [Polygon(arrow, CAUTION, "shift.arrow"), label]
+
+
+def _indicators(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]:
+    """Return the arrows that flash with the lamps outside: one side's, or both for the hazard lights."""
+    if view.stale or not lamps_on(view.t_s):
+        return []
+    both = view.hazard_lights > 0.0
+    y, reach = cy - 0.86 * radius, 0.16 * radius
+    items: list[DrawItem] = []
+    for name, side in (("left", -1.0), ("right", 1.0)):
+        if both or side * view.turn_indicators < 0.0:
+            items.append(_arrow(cx + side * 0.84 * radius, y, side * reach, f"indicator.{name}"))
+    return items
+
+
+def _arrow(x: float, y: float, reach: float, role: str) -> DrawItem:
+    """Return an arrow about (x, y) that points along `reach`."""
+    half, neck = abs(reach), 0.45 * abs(reach)
+    points = (
+        (x + reach, y), (x, y - half), (x, y - neck), (x - reach, y - neck),
+        (x - reach, y + neck), (x, y + neck), (x, y + half),
+    )  # fmt: skip
+    return Polygon(points, ACTIVE, role)
+
+
+def lamps_on(t_s: float) -> bool:
+    """Return whether flashing lamps are lit at this time of the drive."""
+    return math.floor(2.0 * INDICATOR_HZ * t_s) % 2 == 0

@@ -109,6 +109,7 @@ def sample_views() -> list[HudView]:
     views.append(wide._replace(can_up=False, link="64 clients", force="limit"))
     views += [wide._replace(can_up=True, link=link) for link in (LINK_NOBODY, LINK_COMMANDER, LINK_RETRYING)]
     views += [wide._replace(force=force, can_up=up) for force, up in (("limit", False), ("lost", True), ("on", None))]
+    views += [wide._replace(turn_indicators=1.0), wide._replace(turn_indicators=-1.0), wide._replace(hazard_lights=1.0)]
     views += [wide._replace(lever_words=words) for words in ("two gears", "not now")]
     views += [wide._replace(link_age_s=None, handbrake=1.0, engine_running=False, road_wheel_rad=-0.6)]
     return [*views, wide._replace(stale=True)]

@@ -58,6 +58,8 @@ class HudView(NamedTuple):
     brake: float = 0.0
     clutch: float = 0.0
     handbrake: float = 0.0
+    turn_indicators: float = 0.0  # 1 left, -1 right
+    hazard_lights: float = 0.0
     driver_throttle: float = 0.0
     driver_brake: float = 0.0
     driver_clutch: float = 0.0
@@ -141,6 +143,8 @@ def view(
         brake=command.brake,
         clutch=vehicle.clutch,
         handbrake=command.handbrake,
+        turn_indicators=command.turn_indicators,
+        hazard_lights=command.hazard_lights,
         driver_throttle=driver.throttle,
         driver_brake=driver.brake,
         driver_clutch=driver.clutch,

@@ -39,6 +39,7 @@ KEYS: Final[dict[str, Key]] = {
     "K_COMMA": Key.INDICATOR_LEFT,
     "K_PERIOD": Key.INDICATOR_RIGHT,
     "K_m": Key.MARK,
+    "K_h": Key.HAZARD,
 }
 """Names of pygame's key constants: the library itself is loaded when a window opens."""
 

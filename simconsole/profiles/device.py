@@ -137,6 +137,7 @@ class Buttons(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     takeover: ButtonBinding | None = None
     shared: ButtonBinding | None = None
     fault: ButtonBinding | None = None
+    hazard: ButtonBinding | None = None
 
 
 class Limits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -227,6 +228,7 @@ ButtonName: TypeAlias = Literal[
     "takeover",
     "shared",
     "fault",
+    "hazard",
 ]
 
 

@@ -39,6 +39,8 @@ class RemoteStep(Section, frozen=True, kw_only=True):
     x_m: Annotated[float, Meta(ge=-1e5, le=1e5)] = 0.0
     y_m: Annotated[float, Meta(ge=-1e5, le=1e5)] = 0.0
     direction: Literal[-1, 0, 1] = 1
+    turn_indicators: Literal[-1, 0, 1] = 0  # 1 left
+    hazard_lights: bool = False
 
 
 class EventStep(Section, frozen=True, kw_only=True):

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from simconsole.scene.entities import Array, Colour
 from simconsole.signals import Event, Mode
 from simconsole.units import DEG_PER_RAD, KMH_PER_MPS, NS_PER_S, RPM_PER_RADPS
-from simconsole.words import commander_words, gear_words, mode_words, reason_words
+from simconsole.words import commander_words, gear_words, indicator_words, mode_words, reason_words
 
 Ticks = NDArray[np.int64]
 
@@ -82,6 +82,8 @@ _LANES: Final = (
     ("lanes/remote", "arbitration.commander"),
     ("lanes/takeover", "arbitration.takeover_stage"),
     ("lanes/transmission", "vehicle.gear"),
+    ("lanes/turn_indicators", "command.turn_indicators"),
+    ("lanes/hazard_lights", "command.hazard_lights"),
 )
 TAKEOVER_WORDS: Final = ("none", "asked", "escalated")
 _OTHERS: Final = ("x_m", "y_m", "z_m", "yaw_rad", "pitch_rad", "roll_rad")
@@ -200,6 +202,10 @@ def lane_words(path: str, value: float) -> str:
         return commander_words(value)
     if path == "lanes/takeover":
         return TAKEOVER_WORDS[int(value)] if value in (0.0, 1.0, 2.0) else f"{value:g}"
+    if path == "lanes/turn_indicators":
+        return indicator_words(value)
+    if path == "lanes/hazard_lights":
+        return "on" if value > 0.0 else "off"
     return gear_words(value)
 
 

@@ -124,6 +124,7 @@ class Button(IntFlag):
     TAKEOVER = 2048
     SHARED = 4096
     FAULT = 8192
+    HAZARD = 16384
 
 
 class GearFault(IntFlag):

@@ -43,6 +43,8 @@ class RemoteCommand(NamedTuple):
     y_m: float
     yaw_rad: float
     direction: float  # 1 drive, -1 reverse, 0 neutral (Autoware GearCommand)
+    turn_indicators: float  # 1 left, -1 right, 0 off
+    hazard_lights: float  # 1: on
 
 
 class EventInput(NamedTuple):

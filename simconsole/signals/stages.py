@@ -36,6 +36,8 @@ class Request(NamedTuple):
     handbrake: float
     gear: float
     automatic: float  # 1: the car works clutch and gears itself, in the direction of `gear`
+    turn_indicators: float  # 1 left, -1 right, 0 off
+    hazard_lights: float  # 1: on
 
 
 class ArbiterMemory(NamedTuple):
@@ -52,6 +54,8 @@ class ArbiterMemory(NamedTuple):
     hold_road_wheel_rad: float  # where a safe or emergency stop holds the wheels
     stop_steered: float  # 1: the controller, which is not at fault, still steers the safe stop
     shared_trade: float  # -1: the person has pushed the controller away, 1: it has its full share
+    stalk: float  # the person's turn indicators: 1 left, -1 right, 0 off
+    hazard_switch: float  # the person's hazard lights, 1: on
 
 
 class Link(NamedTuple):
@@ -110,6 +114,8 @@ class VehicleCommand(NamedTuple):
     target_x_m: float
     target_y_m: float
     target_yaw_rad: float
+    turn_indicators: float  # 1 left, -1 right, 0 off
+    hazard_lights: float  # 1: on
     gate_active: float  # `GateLimit` mask of the limits that changed something
     gate_active_ticks: float  # in how many ticks of the drive they have
     anti_lock_off: float = 0.0  # 1: switched off by hand, whatever the vehicle has

@@ -80,6 +80,37 @@ def test_no_gear_is_refused(peer: Any) -> None:
 
 
 @pytest.mark.parametrize(
+    ("topic", "number", "field", "value"),
+    [
+        ("turn_indicators_cmd", 2, "turn_indicators", 1.0),
+        ("turn_indicators_cmd", 3, "turn_indicators", -1.0),
+        ("hazard_lights_cmd", 2, "hazard_lights", 1.0),
+    ],
+)
+def test_lights_are_kept_and_are_no_sign_of_life(peer: Any, topic: str, number: int, field: str, value: float) -> None:
+    topic = f"/control/command/{topic}"
+    assert peer.publish(topic, {"command": number}).kind == "command"
+    assert (getattr(command(peer), field), command(peer).sequence) == (value, 0.0)
+    peer.publish("/cmd_vel", {"linear": {"x": 3.0}, "angular": {"z": 0.0}})
+    assert (getattr(command(peer), field), command(peer).sequence) == (value, 1.0)
+    assert peer.publish(topic, {"command": 0}).kind == "command"  # NO_COMMAND
+    assert getattr(command(peer), field) == value
+    assert peer.publish(topic, {"command": 1}).kind == "command"  # DISABLE
+    assert getattr(command(peer), field) == 0.0
+
+
+def test_lights_that_there_are_not_are_refused(peer: Any) -> None:
+    for topic, number, text in (
+        ("turn_indicators_cmd", 4, "4 is not a turn"),
+        ("hazard_lights_cmd", 3, "3 is not a state"),
+    ):
+        assert text in peer.publish(f"/control/command/{topic}", {"command": number}).text
+    old = {"stamp": {"sec": 5}, "command": 2}
+    assert peer.publish("/control/command/hazard_lights_cmd", old).kind == "command"
+    assert "not newer" in peer.publish("/control/command/hazard_lights_cmd", old).text
+
+
+@pytest.mark.parametrize(
     ("word", "event"),
     [
         ("autonomous", Event.REQUEST_AUTONOMOUS),
@@ -110,6 +141,8 @@ def test_unknown_request_is_refused(peer: Any) -> None:
         ("/ball/desired_pose", {"pose": {"position": {"x": 1.0}}}, "$.pose.position.y"),
         ("/ball/desired_speed", {}, "$.data"),
         ("/control/command/gear_cmd", {}, "$.command"),
+        ("/control/command/turn_indicators_cmd", {}, "$.command"),
+        ("/control/command/hazard_lights_cmd", {}, "$.command"),
     ],
 )
 def test_command_is_never_zero_by_omission(peer: Any, topic: str, msg: dict[str, Any], path: str) -> None:

@@ -39,7 +39,7 @@ def test_refusals_count_beside_the_command_and_change_nothing_else() -> None:
 def test_direction_stays_until_another_is_set() -> None:
     inputs = BridgeInputs()
     assert inputs.command.direction == 1.0
-    inputs.set_direction(-1.0)
+    inputs.keep(direction=-1.0)
     assert inputs.take(1)[0].age_ticks == NEVER_TICKS
     inputs.accept(COMMAND, None, 0)
     assert inputs.command.direction == -1.0

@@ -17,6 +17,8 @@ TYPES = {
     "/vehicle/status/velocity_status": "autoware_vehicle_msgs/VelocityReport",
     "/vehicle/status/steering_status": "autoware_vehicle_msgs/SteeringReport",
     "/vehicle/status/gear_status": "autoware_vehicle_msgs/GearReport",
+    "/vehicle/status/turn_indicators_status": "autoware_vehicle_msgs/TurnIndicatorsReport",
+    "/vehicle/status/hazard_lights_status": "autoware_vehicle_msgs/HazardLightsReport",
     "/vehicle/status/control_mode": "autoware_vehicle_msgs/ControlModeReport",
 }
 
@@ -43,7 +45,7 @@ def test_every_topic_of_the_table_is_published_and_stamped(publish: Callable[...
     assert messages["/clock"]["clock"] == stamp
     for topic in ("/odom", "/console/joy", "/console/arbitration", "/vehicle/status/velocity_status"):
         assert messages[topic]["header"]["stamp"] == stamp
-    for topic in ("steering_status", "gear_status", "control_mode"):
+    for topic in ("steering_status", "gear_status", "control_mode", "turn_indicators_status", "hazard_lights_status"):
         assert messages[f"/vehicle/status/{topic}"]["stamp"] == stamp
 
 
@@ -114,6 +116,17 @@ def test_control_mode(
 ) -> None:
     messages = publish(mode=float(mode), remote_lateral=lateral, remote_longitudinal=longitudinal)
     assert messages["/vehicle/status/control_mode"]["mode"] == report
+
+
+@pytest.mark.parametrize(
+    ("turn_indicators", "hazard_lights", "reports"), [(0.0, 0.0, (1, 1)), (1.0, 0.0, (2, 1)), (-1.0, 1.0, (3, 2))]
+)
+def test_lights_are_reported_as_autoware_does(
+    publish: Callable[..., dict[str, Any]], turn_indicators: float, hazard_lights: float, reports: tuple[int, int]
+) -> None:
+    messages = publish(turn_indicators=turn_indicators, hazard_lights=hazard_lights)
+    status = [messages[f"/vehicle/status/{name}_status"]["report"] for name in ("turn_indicators", "hazard_lights")]
+    assert tuple(status) == reports
 
 
 def test_arbitration_is_told_in_numbers_and_words(publish: Callable[..., dict[str, Any]]) -> None:

@@ -13,7 +13,14 @@ from simconsole.profile_files import read_text
 from simconsole.signals import Event, GateLimit, Mode, Reason, Validity
 
 TEXT = read_text("can", "simconsole.dbc")
-GOOD = {"REQUEST": 1.0, "ROAD_WHEEL": -0.2, "ACCEL": -1.5, "DIRECTION": -1.0}
+GOOD = {
+    "REQUEST": 1.0,
+    "ROAD_WHEEL": -0.2,
+    "ACCEL": -1.5,
+    "DIRECTION": -1.0,
+    "TURN_INDICATORS": -1.0,
+    "HAZARD_LIGHTS": 1.0,
+}
 
 
 @pytest.fixture(scope="module")
@@ -114,6 +121,8 @@ def test_words_of_the_dbc_are_those_of_the_console(database: cantools.database.D
     named = {number: event.name.removeprefix("REQUEST_") for number, event in REQUESTS.items() if event.name}
     assert asked == named
     assert choices(database, COMMAND, "DIRECTION") == {1: "DRIVE", 0: "NEUTRAL", -1: "REVERSE"}
+    for message in ("SC_ACTUATION", COMMAND):
+        assert choices(database, message, "TURN_INDICATORS") == {1: "LEFT", 0: "OFF", -1: "RIGHT"}
     assert max(GateLimit) < 256
     assert set(REQUESTS.values()) <= set(Event)
 

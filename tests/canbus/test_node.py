@@ -14,7 +14,7 @@ from simconsole.rows import PLATFORM_AT, VEHICLE_AT, Snapshot
 from simconsole.signals import NEVER_TICKS, Event, Mode, Reason, RemoteKind
 
 Snapshots = Callable[[int], Snapshot]
-GOOD = {"REQUEST": 0.0, "ROAD_WHEEL": 0.1, "ACCEL": 1.5, "DIRECTION": 1.0}
+GOOD = {"REQUEST": 0.0, "ROAD_WHEEL": 0.1, "ACCEL": 1.5, "DIRECTION": 1.0, "TURN_INDICATORS": 0.0, "HAZARD_LIGHTS": 0.0}
 STEP_NS = 20_000_000
 
 
@@ -83,6 +83,8 @@ _EXPECTED = {
     "SC_ACTUATION.THROTTLE_COMMAND": 0.75,
     "SC_ACTUATION.BRAKE_COMMAND": 0.1,
     "SC_ACTUATION.GATE_LIMITS": 5.0,
+    "SC_ACTUATION.TURN_INDICATORS": -1.0,
+    "SC_ACTUATION.HAZARD_LIGHTS": 1.0,
     "SC_MOTION.SPEED": 15.0,
     "SC_MOTION.YAW_RATE": -0.4,
     "SC_MOTION.ACCEL_X": 1.25,
@@ -136,13 +138,13 @@ def test_good_command_is_an_acceleration_command(node: CanNode, sender: Sender) 
     sender.to(node)
     assert node.command.sequence == 0
     assert node.command.age_ticks == NEVER_TICKS
-    sender.to(node, ROAD_WHEEL=-0.25, ACCEL=-2.5, DIRECTION=-1.0)
+    sender.to(node, ROAD_WHEEL=-0.25, ACCEL=-2.5, DIRECTION=-1.0, TURN_INDICATORS=-1.0, HAZARD_LIGHTS=1.0)
     command = node.command
     assert command.kind == RemoteKind.ACCELERATION
     assert (command.sequence, command.refused, command.age_ticks) == (1.0, 0.0, 0.0)
     assert command.road_wheel_rad == pytest.approx(-0.25)
     assert command.accel_mps2 == pytest.approx(-2.5)
-    assert command.direction == -1.0
+    assert (command.direction, command.turn_indicators, command.hazard_lights) == (-1.0, -1.0, 1.0)
     assert node.receipt_ns == 2 * STEP_NS
 
 

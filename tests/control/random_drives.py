@@ -177,6 +177,7 @@ def random_inputs(rng: np.random.Generator, steps: int, stale_ticks: float) -> R
     put_column("gear", lasting(rng, steps, 200, np.array([-1.0, 0.0, 1.0, 2.0, 3.0])))
     put_column("pressed", lasting(rng, steps, 40, np.array([0.0] * 150 + [float(Button.EMERGENCY_STOP)])))
     edge_bits = [Button.AUTONOMOUS, Button.MANUAL, Button.RESET, Button.EMERGENCY_STOP, Button.MARK]
+    edge_bits += [Button.INDICATOR_LEFT, Button.INDICATOR_RIGHT, Button.HAZARD]
     edges = np.where(rng.random(steps) < 0.02, rng.choice(np.array(edge_bits, dtype=float), steps), 0.0)
     put_column("edges", edges)
     for name in ("wheel_validity", "throttle_validity", "brake_validity"):
@@ -218,6 +219,8 @@ def random_commands(rng: np.random.Generator, steps: int, stale_ticks: float) ->
         "speed_mps": lasting(rng, steps, 200, np.array([0.0, 3.0, 8.0, 12.0, -2.0])),
         "accel_mps2": lasting(rng, steps, 50, rng.normal(0.0, 1.5, 50)),
         "yaw_rate_radps": lasting(rng, steps, 50, rng.normal(0.0, 0.3, 50)),
+        "turn_indicators": lasting(rng, steps, 400, np.array([0.0, 0.0, 1.0, -1.0, 0.5])),
+        "hazard_lights": lasting(rng, steps, 400, np.array([0.0, 0.0, 0.0, 1.0])),
         "direction": lasting(rng, steps, 400, np.array([1.0] * 8 + [0.0, -1.0])),
         **{name: lasting(rng, steps, 50, rng.normal(0.0, 3.0, 50)) for name in ("x_m", "y_m", "yaw_rad")},
     }

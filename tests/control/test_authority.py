@@ -15,6 +15,7 @@ from simconsole.control.authority import (
     transmission_of,
 )
 from simconsole.control.decision import Decision
+from simconsole.control.lights import Lights
 from simconsole.control.moment import Moment
 from simconsole.control.person import Person
 from simconsole.control.remote import RemoteRequest
@@ -231,9 +232,9 @@ def test_the_blend_weighs_both_and_the_persons_brake_counts_in_full(now: Moment)
     driver = now.driver._replace(handbrake=0.6)
 
     def blended(mode: Mode, person: Person = person) -> Request:
-        return blend(float(mode), Shares(0.25, 0.75, 0.0), asked, person, shift, driver)
+        return blend(float(mode), Shares(0.25, 0.75, 0.0), asked, person, shift, Lights(-1.0, 1.0), driver)
 
-    assert blended(Mode.AUTONOMOUS) == pytest.approx((-0.025, 0.7, 0.0875, 0.2, 0.0, 3.0, 1.0))
+    assert blended(Mode.AUTONOMOUS) == pytest.approx((-0.025, 0.7, 0.0875, 0.2, 0.0, 3.0, 1.0, -1.0, 1.0))
     assert blended(Mode.AUTONOMOUS, person._replace(brake=0.9)).brake == 0.9
     for mode in Mode:
         handbrake = {Mode.PARKED: 1.0, Mode.STOPPED: 1.0, Mode.MANUAL: 0.6, Mode.SHARED: 0.6}.get(mode, 0.0)

@@ -86,6 +86,8 @@ def assert_inside(command: VehicleCommand, control: ControlSettings) -> None:
     for pedal in (command.throttle, command.brake, command.clutch, command.handbrake):
         assert 0.0 <= pedal <= 1.0
     assert command.gear in range(-1, int(control.gear_max) + 1)
+    assert command.turn_indicators in (-1.0, 0.0, 1.0)
+    assert command.hazard_lights in (0.0, 1.0)
     assert abs(command.target_speed_mps) <= control.target_speed_max_mps
     assert abs(command.target_x_m) <= control.target_position_max_m
     assert abs(command.target_y_m) <= control.target_position_max_m

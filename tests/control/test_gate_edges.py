@@ -216,3 +216,21 @@ def test_whose_target_it_is(mode: Mode, control: ControlSettings) -> None:
         lost = passed(control, mode, before, broken, remote)
         assert lost[8:11] == (7.0, 8.0, 0.5)
         assert active(lost) == GateLimit.NON_FINITE
+
+
+@pytest.mark.parametrize("mode", Mode)
+def test_a_lamp_is_on_or_off_and_one_that_is_no_number_stays(mode: Mode, control: ControlSettings) -> None:
+    for side in (-1.0, 0.0, 1.0):
+        shown = passed(control, mode, turn_indicators=side, hazard_lights=abs(side))
+        assert (shown.turn_indicators, shown.hazard_lights, active(shown)) == (side, abs(side), GateLimit(0))
+    half = passed(control, mode, turn_indicators=-0.25)
+    assert (half.turn_indicators, half.hazard_lights, active(half)) == (-1.0, 0.0, GateLimit.RANGE)
+    beyond = passed(control, mode, turn_indicators=2.0, hazard_lights=3.0)
+    assert (beyond.turn_indicators, beyond.hazard_lights, active(beyond)) == (1.0, 1.0, GateLimit.RANGE)
+    below = passed(control, mode, hazard_lights=-1.0)
+    assert (below.hazard_lights, active(below)) == (0.0, GateLimit.RANGE)
+    lit = BEFORE._replace(turn_indicators=-1.0, hazard_lights=1.0)
+    kept = passed(control, mode, lit, turn_indicators=math.nan, hazard_lights=math.inf)
+    assert (kept.turn_indicators, kept.hazard_lights, active(kept)) == (-1.0, 1.0, GateLimit.NON_FINITE)
+    unknown = passed(control, mode, BEFORE._replace(hazard_lights=math.nan), hazard_lights=math.nan)
+    assert (unknown.hazard_lights, active(unknown)) == (0.0, GateLimit.NON_FINITE)

@@ -29,10 +29,10 @@ def now(make_rig: MakeRig) -> Moment:
     return moment._replace(
         driver=moment.driver._replace(hand_wheel_rad=0.45, throttle=0.5, brake=0.04),
         ros=ros,
-        ecu=ros._replace(sequence=8.0, road_wheel_rad=0.04, throttle=0.0, brake=0.06),
+        ecu=ros._replace(turn_indicators=1.0, sequence=8.0, road_wheel_rad=0.04, throttle=0.0, brake=0.06),
         memory=moment.memory._replace(
             mode_ticks=41.0, engage_hand_wheel_rad=0.2, steering_ticks=5.0, refusal_ticks=9.0, standstill_ticks=0.0,
-            hold_road_wheel_rad=0.07, shared_trade=0.25,
+            hold_road_wheel_rad=0.07, shared_trade=0.25, stalk=-1.0, hazard_switch=1.0,
         ),
         vehicle=moment.vehicle._replace(vx_mps=12.0),
         ros_before=STEADY,
@@ -57,6 +57,8 @@ def test_what_is_remembered_and_shown(now: Moment) -> None:
         "hold_road_wheel_rad": 0.07,
         "shared_trade": 1.0,
         "stop_steered": 0.0,
+        "stalk": -1.0,
+        "hazard_switch": 1.0,
     }
     fields = shown._asdict()
     assert fields["mode"] == Mode.AUTONOMOUS
@@ -76,6 +78,7 @@ def test_what_is_remembered_and_shown(now: Moment) -> None:
     assert request.throttle == pytest.approx((1.0 - longitudinal) * 0.5)
     assert request.brake == pytest.approx(longitudinal * 0.06 + (1.0 - longitudinal) * 0.04)
     assert (request.gear, request.automatic) == (1.0, 1.0)
+    assert (request.turn_indicators, request.hazard_lights) == (1.0, 1.0)
 
 
 def test_a_change_of_mode_begins_its_time_anew(now: Moment) -> None:

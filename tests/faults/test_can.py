@@ -77,6 +77,7 @@ class EcuSeat:
             return
         engage = float(snapshot.tick > 60 and snapshot.row[MODE] != Mode.AUTONOMOUS and self._count % 2)
         values = {"REQUEST": engage, "ROAD_WHEEL": 0.0, "ACCEL": 1.0, "DIRECTION": 1.0}
+        values |= {"TURN_INDICATORS": 0.0, "HAZARD_LIGHTS": 0.0}
         frame = self._codec.encode(COMMAND, values, self._count)
         self._count += 1
         frames = [frame]

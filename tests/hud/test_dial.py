@@ -1,3 +1,5 @@
+from itertools import pairwise
+
 import pytest
 
 from simconsole.hud.draw import WARNING_LINE, Polygon, bounds
@@ -26,3 +28,25 @@ def test_the_red_zone_asks_for_a_shift_in_words_and_shape() -> None:
     assert colours(items, "dial.needle") == {WARNING_LINE}
     assert not by_role(layout(in_mode(Mode.MANUAL, rpm=5900.0), SCREEN), "shift")
     assert not by_role(layout(in_mode(Mode.AUTONOMOUS, rpm=6200.0, automatic=True), SCREEN), "shift")
+
+
+@pytest.mark.parametrize(
+    ("shown", "lit"),
+    [
+        ({"turn_indicators": 1.0}, {"indicator.left"}),
+        ({"turn_indicators": -1.0}, {"indicator.right"}),
+        ({"hazard_lights": 1.0}, {"indicator.left", "indicator.right"}),
+        ({"turn_indicators": 1.0, "hazard_lights": 1.0}, {"indicator.left", "indicator.right"}),
+        ({}, set()),
+        ({"turn_indicators": 1.0, "stale": True}, set()),
+    ],
+)
+def test_indicators_flash_ninety_times_a_minute_on_their_side(shown: dict[str, float], lit: set[str]) -> None:
+    frames = []
+    for tick in range(200):
+        items = layout(in_mode(Mode.MANUAL, t_s=0.03125 * tick, **shown), SCREEN)
+        frames.append({item.role for item in items if item.role.startswith("indicator")})
+        for item in by_role(items, "indicator.left"):
+            assert bounds(item).right < SCREEN.width_px / 2.0
+    assert {frozenset(frame) for frame in frames} == {frozenset(), frozenset(lit)}
+    assert sum(before == set() and now != set() for before, now in pairwise(frames)) == (9 if lit else 0)

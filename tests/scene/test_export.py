@@ -19,7 +19,8 @@ WORLD = {"/world/road/surface", "/world/road/paint", "/world/road/edges", "/worl
          "/world/path/theoretical", "/world/lights/posts", "/world/lights/lamps", "/map/road/edges",
          "/map/path/theoretical", "/map/lights"}  # fmt: skip
 DRIVE = {"/world/ego", "/world/ego/body", "/world/path/driven", "/map/ego", "/map/path/driven", "/lanes/mode",
-         "/lanes/remote", "/lanes/takeover", "/lanes/transmission", "/log",
+         "/lanes/remote", "/lanes/takeover", "/lanes/transmission", "/lanes/turn_indicators", "/lanes/hazard_lights",
+         "/log",
          *(f"/{plot.path}" for plot in PLOTS)}  # fmt: skip
 
 

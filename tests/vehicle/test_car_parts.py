@@ -189,14 +189,14 @@ def test_ratios_and_bite() -> None:
 
 def test_lever_between_two_gears_is_neutral() -> None:
     box = Gearbox(3.0, 0.0, 1.0, 3.0, 0.0, 1.0, 0.0)
-    request = Request(0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+    request = Request(0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     assert work_gearbox(CAR.gears, box, request, 150.0, 20.0, 6.0, STEP_S).gear == 0.0
     assert work_gearbox(CAR.gears, box, request._replace(gear=4.0), 150.0, 20.0, 6.0, STEP_S).gear == 4.0
 
 
 def test_automatic_taking_over_in_neutral_at_speed_finds_the_gear() -> None:
     box = Gearbox(0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0)
-    request = Request(0.0, 0.3, 0.0, 0.0, 0.0, 1.0, 1.0)
+    request = Request(0.0, 0.3, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0)
     shifting = work_gearbox(CAR.gears, box, request, 84.0, 25.0 / 0.306, 25.0, STEP_S)
     assert shifting.wanted_gear == 4.0, "3065 rpm, where fifth would have 2460 and third 4040"
     assert shifting.lever_adopted == 0.0

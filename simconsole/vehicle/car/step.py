@@ -134,6 +134,8 @@ def step(previous: Row, row: Row, parameters: Row, substeps: int) -> None:
         pedal(command.handbrake),
         lever(command.gear),
         command.automatic,
+        command.turn_indicators,
+        command.hazard_lights,
     )
     for _ in range(substeps):
         car = substep(car, p, grips, request)

@@ -1,0 +1,66 @@
+"""Turn indicators and hazard lights: the person's stalk, the controller's command, and when the console sets them.
+
+The person's stalk and hazard switch keep their position through every mode, as in a car. While the controller drives,
+its indicator goes before the stalk where it sets one, and either side may put the hazard lights on. A stop that the
+console makes itself always shows them: a minimal-risk manoeuvre (facts/reliability.md 2), what follows it, and an
+emergency stop.
+"""
+
+from typing import Final, NamedTuple
+
+from simconsole.control.person import mask
+from simconsole.kernels import kernel
+from simconsole.signals import ArbiterMemory, Button, DriverInput, Link, Mode, RemoteCommand
+
+_AUTONOMOUS: Final = float(Mode.AUTONOMOUS)
+_TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)
+_MINIMAL_RISK: Final = float(Mode.MINIMAL_RISK)
+_STOPPED: Final = float(Mode.STOPPED)
+_EMERGENCY_STOP: Final = float(Mode.EMERGENCY_STOP)
+_LEFT: Final = int(Button.INDICATOR_LEFT)
+_RIGHT: Final = int(Button.INDICATOR_RIGHT)
+_HAZARD: Final = int(Button.HAZARD)
+
+
+class Lights(NamedTuple):
+    """What one side wants to show: `turn_indicators` 1 left, -1 right, 0 off; `hazard_lights` 1 on, 0 off."""
+
+    turn_indicators: float
+    hazard_lights: float
+
+
+@kernel
+def switched(driver: DriverInput, memory: ArbiterMemory) -> Lights:
+    """Return the person's stalk and hazard switch after this tick; a second press switches off what the first did."""
+    pressed = mask(driver.edges)
+    stalk = memory.stalk
+    if pressed & _LEFT != 0:
+        stalk = 0.0 if stalk > 0.0 else 1.0
+    elif pressed & _RIGHT != 0:
+        stalk = 0.0 if stalk < 0.0 else -1.0
+    hazard = memory.hazard_switch
+    if pressed & _HAZARD != 0:
+        hazard = 1.0 - hazard
+    return Lights(stalk, hazard)
+
+
+@kernel
+def lights_of(mode: float, person: Lights, remote: RemoteCommand, link: Link) -> Lights:
+    """Return what the car shall show.
+
+    Args:
+        mode: Of this tick.
+        person: Stalk and hazard switch.
+        remote: The commander's command.
+        link: Whether that command counts.
+    """
+    turn_indicators = person.turn_indicators
+    hazard_lights = person.hazard_lights
+    if mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED) and link.fresh > 0.0:
+        if remote.turn_indicators != 0.0:
+            turn_indicators = remote.turn_indicators
+        if remote.hazard_lights > 0.0:
+            hazard_lights = 1.0
+    if mode in (_MINIMAL_RISK, _STOPPED, _EMERGENCY_STOP):
+        hazard_lights = 1.0
+    return Lights(turn_indicators, hazard_lights)
