@@ -39,6 +39,10 @@ class BodyProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     drag_area_m2: Annotated[float, msgspec.Meta(ge=0.0, le=5.0)]  # drag coefficient times frontal area
     front_lift_area_m2: Annotated[float, msgspec.Meta(ge=-3.0, le=3.0)]  # positive: up
     rear_lift_area_m2: Annotated[float, msgspec.Meta(ge=-3.0, le=3.0)]
+    # Coefficients of side force and yaw moment per sine of the air's angle, as SAE J1594 refers them: to the frontal
+    # area, the moment also to the wheelbase, at whose middle both act.
+    side_area_m2: Annotated[float, msgspec.Meta(ge=0.0, le=30.0)]
+    yaw_volume_m3: Annotated[float, msgspec.Meta(ge=-30.0, le=30.0)]  # positive: turns the nose out of the wind
     length_m: Length
     width_m: Length
     height_m: Length
@@ -70,8 +74,8 @@ class AxleProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     sliding_share: Annotated[float, msgspec.Meta(ge=0.5, le=0.99)]  # of the friction, fully sliding
     friction_fall: Annotated[float, msgspec.Meta(ge=0.0, le=0.5)]  # share lost per static load more
     stiffness_fall: Annotated[float, msgspec.Meta(ge=0.0, le=0.5)]
-    camber_slip_per_rad: Annotated[float, msgspec.Meta(ge=0.0, le=0.5)]
-    camber_offset_slip: Annotated[float, msgspec.Meta(ge=0.0, le=0.01)]  # of any camber, however small
+    camber_slip_per_rad: Annotated[float, msgspec.Meta(ge=-0.5, le=0.5)]  # positive: towards the lean
+    camber_offset_slip: Annotated[float, msgspec.Meta(ge=-0.01, le=0.01)]  # of any camber, however small
     camber_per_roll: Annotated[float, msgspec.Meta(ge=-1.5, le=1.5)]  # camber gained per roll against the axle
     rolling_resistance: Annotated[float, msgspec.Meta(ge=0.0, le=0.1)]
     brake_nm: Torque

@@ -36,6 +36,39 @@ def test_hill_hold_gives_two_seconds(hill_hold: bool) -> None:
     assert drive.hold(2.0).vx_mps < -1.0
 
 
+def test_hill_hold_keeps_the_pressure_of_a_foot_that_leaves_slowly() -> None:
+    drive = rolling(0.0, Ground(1.0, 0.2, 0.0))
+    start = drive.hold(2.0, brake=0.6).x_m
+    for tick in range(100):
+        drive.hold(TICK_S, brake=0.6 * (1.0 - 0.01 * tick))
+    assert abs(drive.hold(1.5).x_m - start) < 0.001
+    assert drive.hold(2.0).vx_mps < -1.0
+
+
+@pytest.mark.parametrize(("slope", "gear"), [(0.15, 1), (0.20, 1), (-0.20, -1)])
+def test_hill_hold_waits_for_the_drive_however_long_the_foot_hesitates(slope: float, gear: int) -> None:
+    """Throttle alone carries nothing: the hold bears the car until the clutch does, and lets it go uphill at once."""
+    drive = rolling(0.0, Ground(1.0, slope, 0.0))
+    drive.hold(1.0, brake=0.5, clutch=1.0, gear=gear)
+    start = drive.hold(0.5, clutch=1.0, throttle=0.3, gear=gear).x_m
+    uphill = math.copysign(1.0, slope)
+    least = 0.0
+    for clutch in (1.0, 1.0, 1.0, *(0.75 - 0.025 * n for n in range(12))):
+        for _ in range(250):
+            moved = drive.hold(TICK_S, clutch=clutch, throttle=0.6, gear=gear).x_m - start
+            least = min(least, uphill * moved)
+    print(f"rolled back {1000.0 * -least:.2f} mm, then drove {uphill * moved:.1f} m")
+    assert least > -0.002
+    assert uphill * moved > 1.0
+    assert drive.seen.engine_running == 1.0
+
+
+def test_hill_hold_lets_a_car_drive_downhill() -> None:
+    drive = rolling(0.0, Ground(1.0, -0.15, 0.0))
+    start = drive.hold(1.0, brake=0.5).x_m
+    assert drive.hold(1.5, automatic=1, gear=1, throttle=0.2).x_m - start > 0.5
+
+
 def test_hands_off_at_standstill_the_rim_is_quiet_and_in_bends_it_is_light() -> None:
     drive = Drive(platform())
     torques = [drive.hold(TICK_S, brake=0.3).hand_wheel_torque_nm for _ in range(1000)]

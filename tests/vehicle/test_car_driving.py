@@ -125,6 +125,8 @@ def test_coasts_down_to_rest_and_loses_energy_all_the_way() -> None:
 def test_energy_of_rolling_down_is_no_more_than_the_height_lost() -> None:
     drive = Drive(platform(ground=Ground(1.0, -0.08, 0.0)))
     seen = drive.hold(15.0)
+    assert seen.distance_m > 50.0
+    assert seen.z_m == pytest.approx(-seen.distance_m * math.sin(math.atan(0.08)), rel=1e-4)
     gained = 0.5 * seen.vx_mps**2
     lost = -STANDARD_GRAVITY_MPS2 * seen.z_m
     print(f"{gained / lost:.3f} of the height's energy is motion")

@@ -75,13 +75,14 @@ def test_a_tyre_in_the_air_gives_no_force() -> None:
 
 
 def test_camber_pulls_to_the_lean_only_when_rolling() -> None:
+    """ISO 8855: a lean to the right is positive, a force to the right negative."""
     omega = 20.0 / CAR.front.radius_m
     for lean in (0.1, -0.1):
         rolling = standing = Tyre(0.0, 0.0, 0.0, 0.0, 0.0)
         for _ in range(1000):
             rolling = tyre(CAR.front, 1.0, LOAD_N, 0.0, 0.0, omega, *rolling[2:4], lean, STEP_S)
             standing = tyre(CAR.front, 1.0, LOAD_N, 0.0, 0.0, 0.0, *standing[2:4], lean, STEP_S)
-        assert rolling.force_y_n == pytest.approx(12.0 * LOAD_N * 0.05 * lean, rel=0.02)
+        assert rolling.force_y_n == pytest.approx(-12.0 * LOAD_N * 0.05 * lean, rel=0.02)
         assert standing.force_y_n == 0.0
 
 

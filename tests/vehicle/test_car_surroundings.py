@@ -5,16 +5,23 @@ import math
 import pytest
 
 from simconsole.assembly import ground_of
+from simconsole.kernels import put
+from simconsole.profile_files import load
 from simconsole.profiles.session import Environment, FrictionPatch
+from simconsole.profiles.vehicle import CarProfile
+from simconsole.rows import PLATFORM_AT
 from simconsole.signals import GearFault
 from simconsole.units import KMH_PER_MPS
-from simconsole.vehicle.platform import MOST_PATCHES, Ground, Patch
+from simconsole.vehicle.car.state import CarState
+from simconsole.vehicle.platform import MOST_PATCHES, Ground, Patch, Pose
+from simconsole.vehicle.registry import build
 
-from .driving import TICK_S, Drive, platform
+from .driving import ORIGIN, TICK_S, Drive, platform
 from .rolling import rolling
 
 DRAG_AREA_M2 = 0.68
 MASS_KG = 1300.0
+SPINS = ("fl_radps", "fr_radps", "rl_radps", "rr_radps")
 
 
 def test_head_wind_slows_by_the_drag_of_the_air_that_meets_the_car() -> None:
@@ -37,6 +44,57 @@ def test_side_wind_pushes_to_its_side_and_mirrored_wind_to_the_other() -> None:
     assert ends[0].y_m > 0.05
     assert ends[0].y_m == -ends[1].y_m
     assert ends[0].roll_rad == -ends[1].roll_rad
+
+
+@pytest.mark.parametrize("name", ["hatchback", "light_van"])
+def test_wind_from_the_side_turns_the_nose_away_from_it(name: str) -> None:
+    """Side force and yaw moment of the air as their coefficients say, about the middle of the wheelbase."""
+    profile = load("vehicles", name, CarProfile)
+    body = profile.body
+    speed, wind = 25.0, -8.0
+    accelerations = []
+    for air in (0.0, wind):
+        vehicle = build(profile, ORIGIN, Ground(1.0, 0.0, 0.0, wind_y_mps=air))
+        drive = Drive(vehicle)
+        start = CarState(*vehicle.initial_state)._replace(vx_mps=speed)
+        put(drive.row, PLATFORM_AT, start._replace(**dict.fromkeys(SPINS, speed / profile.front.wheel_radius_m)))
+        drive.step(drive.row, drive.row, vehicle.parameters, 1)
+        accelerations.append((drive.state.ay_mps2, drive.state.yaw_rate_radps / 0.001))
+    pressure = 0.5 * 1.225
+    side_n = pressure * body.side_area_m2 * math.hypot(speed, wind) * wind
+    moment_nm = pressure * body.yaw_volume_m3 * speed * wind
+    behind_m = body.wheelbase_m * (body.front_mass_share - 0.5)  # the middle of the wheelbase, of the centre of gravity
+    moved, turned = (after - before for before, after in zip(*accelerations, strict=True))
+    assert moved == pytest.approx(side_n / body.mass_kg, rel=1e-6)
+    assert turned == pytest.approx(
+        (moment_nm - wind / abs(wind) * abs(side_n) * behind_m) / body.yaw_inertia_kgm2, rel=0.01
+    )
+    assert turned < 0.0, "wind to the right"
+
+
+def test_a_body_in_oblique_air_turns_broadside_also_when_it_comes_from_behind() -> None:
+    turned = []
+    for wind in (-20.0, 20.0):
+        drive = Drive(platform(ground=Ground(1.0, 0.0, 0.0, wind_x_mps=wind, wind_y_mps=-5.0)))
+        drive.step(drive.row, drive.row, drive.vehicle.parameters, 1)
+        turned.append(drive.state.yaw_rate_radps)
+    assert turned[0] < 0.0 < turned[1]
+
+
+def test_the_plane_tells_height_and_both_angles() -> None:
+    """A car that stands across a slope of two directions: the normal of its plane is that of the ground."""
+    for slope_x, slope_y, yaw in ((0.2, 0.0, 0.0), (0.1, -0.2, 0.9), (0.0, 0.3, -2.0)):
+        drive = Drive(platform(ground=Ground(1.0, slope_x, slope_y), pose=Pose(30.0, -20.0, yaw)))
+        seen = drive.vehicle.initial_vehicle
+        normal = math.sqrt(1.0 + slope_x**2 + slope_y**2)
+        assert seen.z_m == pytest.approx((slope_x * 30.0 - slope_y * 20.0) / normal, rel=1e-12)
+        assert -math.sin(seen.pitch_rad) == pytest.approx(
+            (slope_x * math.cos(yaw) + slope_y * math.sin(yaw)) / normal, rel=1e-6, abs=1e-12
+        )
+        assert math.cos(seen.pitch_rad) * math.cos(seen.roll_rad) == pytest.approx(1.0 / normal, rel=1e-6)
+        assert math.copysign(1.0, seen.roll_rad) == math.copysign(
+            1.0, slope_y * math.cos(yaw) - slope_x * math.sin(yaw)
+        )
 
 
 def test_a_storm_does_not_move_a_braked_car() -> None:

@@ -23,7 +23,7 @@ from simconsole.vehicle.platform import Ground, Platform
 
 from .driving import IDLE, Drive, platform
 
-SEED = 7
+SEED = 16
 FUSED = re.compile(r"\bv?f?n?m(?:add|sub)\d*[sp][sd]\b|\bfmadd\b|\bfmsub\b|\bfmla\b")
 
 

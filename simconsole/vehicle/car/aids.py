@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 from simconsole.kernels import approach, clip, kernel
 from simconsole.signals import Request
 from simconsole.vehicle.car.axles import Axles, Contact
-from simconsole.vehicle.car.parameters import AidParameters, BodyParameters, CarParameters
+from simconsole.vehicle.car.parameters import AidParameters, CarParameters
 from simconsole.vehicle.car.state import AidState, Car
 
 RELEASE_SLIP: Final = 0.12
@@ -25,7 +25,10 @@ STABILITY_FROM_MPS: Final = 4.0
 STABILITY_LAG_S: Final = 0.02
 HOLD_S: Final = 2.0
 HOLD_SLOPE: Final = 0.03
-RELEASE_THROTTLE: Final = 0.12
+LEAVING_THROTTLE: Final = 0.02
+"""Of the pedal beyond which somebody is about to leave: the hill hold waits for the drive instead of for the time."""
+DOWNHILL_SHARE: Final = 0.1
+"""Of the hill's pull with which a drive that goes down with it frees the hill hold."""
 
 
 class Brakes(NamedTuple):
@@ -88,17 +91,36 @@ def stability(car: Car, p: CarParameters, handbrake: float, step_s: float) -> fl
 
 
 @kernel
-def hill_hold(aids: AidParameters, body: BodyParameters, car: Car, request: Request, step_s: float) -> AidState:
-    """Return how long which brake is held: a latch set by braking at rest on a hill, freed by throttle or time."""
+def carried(drive_n: float, pull_n: float) -> bool:
+    """Return whether the drive bears what the tyres must push against the hill, or goes down with it."""
+    if pull_n < 0.0:
+        return drive_n <= pull_n or drive_n > -DOWNHILL_SHARE * pull_n
+    return drive_n >= pull_n or drive_n < -DOWNHILL_SHARE * pull_n
+
+
+@kernel
+def hill_hold(car: Car, p: CarParameters, request: Request, axles: Axles, ratio: float, step_s: float) -> AidState:
+    """Return how long which brake is held: a latch set by braking at rest on a hill, freed by the drive or by time.
+
+    While the car stands, its tyres together push what the hill pulls. As soon as the driven wheels bring that alone,
+    the brake has nothing left to hold.
+    """
     s = car.aids
-    left = s.hold_left_s - step_s if s.hold_left_s > step_s else 0.0
+    left = s.hold_left_s
     brake = s.hold_brake
-    steep = abs(body.slope_x) + abs(body.slope_y) > HOLD_SLOPE
-    if aids.hill_hold != 0.0 and steep and request.brake > 0.1 and abs(car.body.vx_mps) < 0.05:
+    steep = abs(p.body.slope_x) + abs(p.body.slope_y) > HOLD_SLOPE
+    drive_n = car.shafts.clutch_impulse_nms * ratio * (1.0 / (step_s * p.gears.wheel_radius_m))
+    if p.aids.hill_hold != 0.0 and steep and request.brake > 0.1 and abs(car.body.vx_mps) < 0.05:
+        # A foot that leaves the pedal slowly leaves its pressure behind.
+        if left == 0.0 or request.brake > brake:
+            brake = request.brake
         left = HOLD_S
-        brake = request.brake
-    elif request.throttle > RELEASE_THROTTLE or request.brake > brake:
+    elif request.brake > brake:
         left = clip(left, 0.0, 0.3)
+    elif request.throttle <= LEAVING_THROTTLE:
+        left = left - step_s if left > step_s else 0.0
+    elif carried(drive_n, axles.force_x_n):
+        left = 0.0
     return AidState(s.throttle_share, s.stability_nm, left, brake)
 
 

@@ -150,6 +150,8 @@ def _body(profile: CarProfile, ground: Ground, front: AxleParameters, rear: Axle
         drag_nsspmm=0.5 * AIR_KGPM3 * body.drag_area_m2,
         front_lift_nsspmm=0.5 * AIR_KGPM3 * body.front_lift_area_m2,
         rear_lift_nsspmm=0.5 * AIR_KGPM3 * body.rear_lift_area_m2,
+        side_nsspmm=0.5 * AIR_KGPM3 * body.side_area_m2,
+        yaw_nsspm=0.5 * AIR_KGPM3 * body.yaw_volume_m3,
         sway_npm=body.mass_kg * _gravity(ground) * arm,
         slope_x=ground.slope_x,
         slope_y=ground.slope_y,

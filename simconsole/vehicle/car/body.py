@@ -85,11 +85,15 @@ def move(car: Car, p: CarParameters, axles: Axles, step_s: float) -> Motion:
     per_kg = 1.0 / body.mass_kg
     ax = (axles.force_x_n - air * into_x) * per_kg - gravity * (body.slope_x * c + body.slope_y * s)
     side_n = axles.front_y_n + axles.rear_y_n
-    ay = (side_n - air * into_y) * per_kg - gravity * (body.slope_y * c - body.slope_x * s)
+    beside = body.side_nsspmm * speed
+    ay = (side_n - beside * into_y) * per_kg - gravity * (body.slope_y * c - body.slope_x * s)
     # One after the other, not both from the old values: turning the body then neither adds nor takes energy.
     vx = before.vx_mps + step_s * (ax + before.yaw_rate_radps * before.vy_mps)
     vy = before.vy_mps + step_s * (ay - before.yaw_rate_radps * vx)
-    yaw_rate = before.yaw_rate_radps + (axles.moment_nm + axles.aligning_nm) * (step_s / body.yaw_inertia_kgm2)
+    # Both act at the middle of the wheelbase. Oblique air turns a slender body broadside on (Munk, NACA TR 184).
+    weathering = body.yaw_nsspm * into_x + beside * (0.5 * (body.cg_to_front_m - body.cg_to_rear_m))
+    turning = axles.moment_nm + axles.aligning_nm - weathering * into_y
+    yaw_rate = before.yaw_rate_radps + turning * (step_s / body.yaw_inertia_kgm2)
     front_lift = body.front_lift_nsspmm * into_x * into_x
     rear_lift = body.rear_lift_nsspmm * into_x * into_x
     heave_mps = before.heave_mps + (front.force_n + rear.force_n + front_lift + rear_lift) * (step_s / body.sprung_kg)

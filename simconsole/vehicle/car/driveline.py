@@ -66,7 +66,8 @@ def turn(car: Car, p: CarParameters, request: Request, axles: Axles, step_s: flo
     left = axles.rl if at_rear else axles.fl
     right = axles.rr if at_rear else axles.fr
     share = traction(p.aids, car.aids.throttle_share, left, right, mean * driven_axle.radius_m, step_s)
-    held = hill_hold(p.aids, p.body, car, request, step_s)
+    ratio = gear_ratio(p.gears, box.gear)
+    held = hill_hold(car, p, request, axles, ratio, step_s)
     aids = AidState(share, stability(car, p, request.handbrake, step_s), held.hold_left_s, held.hold_brake)
     brakes = brake_torques(car, p, request, axles, aids, step_s)
     throttle = matched_throttle(p.gears, box, request.throttle * share, before.engine_radps, mean)
@@ -87,9 +88,7 @@ def turn(car: Car, p: CarParameters, request: Request, axles: Axles, step_s: flo
         step_s * p.gears.lock_nm,
         p.gears.lock_share,
     )
-    shafts = turn_driven(
-        car, p, drive, rl if at_rear else fl, rr if at_rear else fr, gear_ratio(p.gears, box.gear), most, step_s
-    )
+    shafts = turn_driven(car, p, drive, rl if at_rear else fl, rr if at_rear else fr, ratio, most, step_s)
     if at_rear:
         rl = shafts.left_radps
         rr = shafts.right_radps

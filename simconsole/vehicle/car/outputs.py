@@ -1,5 +1,6 @@
 """What others see of the car, and what its pedals would do now."""
 
+from math import sqrt
 from typing import Final, NamedTuple
 
 from simconsole.kernels import clip, kernel
@@ -78,14 +79,18 @@ def vehicle_state(car: Car, p: CarParameters, automatic: float) -> VehicleState:
     c = ahead.cos
     d = ahead.sin
     forecast = pedals(car, p, automatic)
+    ahead_slope = body.slope_x * c + body.slope_y * d
+    side_slope = body.slope_y * c - body.slope_x * d
+    tilt = sqrt(1.0 + side_slope * side_slope)
     return VehicleState(
         now.x_m,
         now.y_m,
-        body.slope_x * now.x_m + body.slope_y * now.y_m,
+        # x and y lie in the plane: one metre of it rises by the slope's sine.
+        (body.slope_x * now.x_m + body.slope_y * now.y_m) / sqrt(tilt * tilt + ahead_slope * ahead_slope),
         now.yaw_rad,
         # ISO 8855: pitch is positive nose down, roll is positive left side up.
-        -atan(body.slope_x * c + body.slope_y * d) + now.pitch_rad,
-        atan(body.slope_y * c - body.slope_x * d) + now.roll_rad,
+        -atan(ahead_slope / tilt) + now.pitch_rad,
+        atan(side_slope) + now.roll_rad,
         along_speed(now, body.cg_height_m),
         side_speed(p.rear, now, car.rl, car.rr),
         now.yaw_rate_radps,

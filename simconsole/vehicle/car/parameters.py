@@ -122,6 +122,8 @@ class BodyParameters(NamedTuple):
     drag_nsspmm: float  # force per squared speed
     front_lift_nsspmm: float  # positive: up
     rear_lift_nsspmm: float
+    side_nsspmm: float  # side force per speed of the air and its part from the side
+    yaw_nsspm: float  # moment about the middle of the wheelbase per speeds of the air along and from the side
     sway_npm: float  # sprung weight times the mean roll arm, per rad: rolling lets the body down
     slope_x: float
     slope_y: float

@@ -59,7 +59,8 @@ def tyre(
         wheel_radps: spin. Exactly 0 means that the brake holds the wheel (powertrain.py).
         deflection_x_m: deflection before the step.
         deflection_y_m: the same to the wheel's left.
-        camber_rad: lean of the wheel, positive to the right as a body's roll in a left bend.
+        camber_rad: lean of the wheel, positive to the right as a body's roll in a left bend (inclination angle
+            of ISO 8855). Camber thrust pushes to the side to which the wheel leans.
         step_s: length of the step.
     """
     rolled = step_s * abs(wheel_radps) * axle.radius_m
@@ -69,7 +70,7 @@ def tyre(
     if camber_rad < 0.0:
         lean -= axle.camber_offset
     x = (deflection_x_m - step_s * slip_x_mps) / (1.0 + rolled * axle.decay_x_per_m)
-    y = (deflection_y_m - step_s * slip_y_mps + rolled * lean) / (1.0 + rolled * axle.decay_y_per_m)
+    y = (deflection_y_m - step_s * slip_y_mps - rolled * lean) / (1.0 + rolled * axle.decay_y_per_m)
     over = clip(load_n * (1.0 / axle.static_n), 0.0, 4.0) - 1.0
     grip = friction * falling(axle.friction_fall, over)
     firm = falling(axle.stiffness_fall, over)
