@@ -8,6 +8,7 @@ from typing import Final, NamedTuple
 
 from simconsole.control.longitudinal import Pedals, integrate, known, pedals_for
 from simconsole.control.settings import ControlSettings
+from simconsole.control.stops import travel_of
 from simconsole.kernels import clip, is_finite, kernel
 from simconsole.signals import RemoteCommand, RemoteKind, VehicleState
 from simconsole.trigonometry import atan
@@ -106,11 +107,10 @@ def twist_road_wheel(
     """
     if abs(speed_mps) < _STANDING_MPS:
         return held_road_wheel_rad
-    speed = clip(speed_mps, -_MOST_MPS, _MOST_MPS)
-    if 0.0 <= speed < _STEERABLE_MPS:
-        speed = _STEERABLE_MPS
-    elif -_STEERABLE_MPS < speed < 0.0:
-        speed = -_STEERABLE_MPS
+    if speed_mps > 0.0:
+        speed = clip(speed_mps, _STEERABLE_MPS, _MOST_MPS)
+    else:
+        speed = clip(speed_mps, -_MOST_MPS, -_STEERABLE_MPS)
     return atan(settings.wheelbase_m * clip(yaw_rate_radps, -_MOST_RADPS, _MOST_RADPS) / speed)
 
 
@@ -123,11 +123,8 @@ def _pedals(
     settings: ControlSettings,
     tick_s: float,
 ) -> tuple[Pedals, float]:
-    forward_mps = clip(known(vehicle.vx_mps, 0.0), -_MOST_MPS, _MOST_MPS)
-    travel = direction
-    if direction == 0.0:
-        travel = -1.0 if forward_mps < 0.0 else 1.0
-    along_mps = travel * forward_mps
+    travel = direction if direction != 0.0 else travel_of(vehicle)
+    along_mps = clip(known(travel * vehicle.vx_mps, 0.0), -_MOST_MPS, _MOST_MPS)
     if along_mps < -_WRONG_WAY_MPS:
         return pedals_for(-settings.stop_decel_mps2, -travel, vehicle, settings), 0.0
     by_speed = remote.kind != _ACCELERATION
@@ -141,15 +138,15 @@ def _pedals(
     if by_speed:
         error = settings.speed_gain_per_s * (speed_mps - along_mps)
         limit = settings.accel_max_mps2
-        if 0.0 < remote.accel_mps2 < limit:
-            limit = remote.accel_mps2
+        if remote.accel_mps2 > 0.0:
+            limit = clip(remote.accel_mps2, 0.0, limit)
         wanted = clip(error, -settings.decel_max_mps2, limit)
         free = wanted == error
-        if stand and wanted > -_CLOSING_MPS2:
-            wanted = -_CLOSING_MPS2
-    if direction == 0.0 and wanted > 0.0:
-        return Pedals(0.0, 0.0), 0.0
+        if stand:
+            wanted = clip(wanted, -settings.decel_max_mps2, -_CLOSING_MPS2)
     pedals = pedals_for(wanted + integral_mps2, travel, vehicle, settings)
+    if direction == 0.0 and pedals.throttle > 0.0:
+        return Pedals(0.0, 0.0), 0.0
     if not free or pedals.throttle >= 1.0 or pedals.brake >= 1.0:
         return pedals, integral_mps2
     return pedals, integrate(integral_mps2, error, settings, tick_s)

@@ -57,6 +57,14 @@ def test_a_stop_by_numbers(speed: float, car: VehicleState, sign: float, control
     assert held == (control.hold_brake, -2.0, 0.0)
     pushing = safe_stop(-0.1, 0.8, at(speed, car, ax_mps2=sign * -0.1), control, TICK_S)
     assert pushing.brake == 0.0
+    downhill = at(speed, car, ax_mps2=sign * -0.1)._replace(coast_accel_mps2=sign * 1.0)
+    assert safe_stop(-0.1, 0.8, downhill, control, TICK_S).brake == pytest.approx(1.0 / 10.0), "never asked to speed up"
+
+
+def test_a_stop_of_a_car_that_states_no_figures_brakes_by_the_nominal_ones(control: ControlSettings) -> None:
+    mute = VehicleState(*(0.0,) * len(VehicleState._fields))._replace(vx_mps=9.0, ax_mps2=-2.5)
+    stop = safe_stop(-2.5, 0.0, mute, control, TICK_S)
+    assert stop.brake == pytest.approx(2.5 / control.nominal_brake_accel_mps2)
 
 
 def asked(kind: RemoteKind, **fields: float) -> RemoteCommand:
@@ -92,14 +100,15 @@ def test_directions(kind: RemoteKind) -> None:
 
 
 @pytest.mark.parametrize(
-    ("speed", "taken_as"),
-    [(0.04, None), (0.06, 0.5), (0.5, 0.5), (0.7, 0.7), (-0.04, None), (-0.06, -0.5), (-0.7, -0.7)],
+    ("speed", "taken_as"), [(0.04, None), (0.05, 0.5), (0.06, 0.5), (0.5, 0.5), (0.7, 0.7), (200.0, 100.0)]
 )
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
 def test_a_slow_twist_steers_as_at_half_a_metre_a_second(
-    speed: float, taken_as: float | None, control: ControlSettings
+    speed: float, taken_as: float | None, sign: float, control: ControlSettings
 ) -> None:
-    angle = twist_road_wheel(speed, 0.1, 0.2, control)
-    assert angle == (0.2 if taken_as is None else pytest.approx(math.atan(control.wheelbase_m * 0.1 / taken_as)))
+    angle = twist_road_wheel(sign * speed, 0.1, 0.2, control)
+    turned = None if taken_as is None else sign * math.atan(control.wheelbase_m * 0.1 / taken_as)
+    assert angle == (0.2 if turned is None else pytest.approx(turned))
 
 
 def test_a_speed_command_by_numbers(control: ControlSettings) -> None:
@@ -153,6 +162,34 @@ def test_in_neutral_it_brakes_in_whichever_way_the_car_rolls_and_never_drives(co
     assert request(control, slower, at(-4.0, BACK), integral=0.0)[1:] == pytest.approx(forward[1:])
     faster = asked(RemoteKind.SPEED, speed_mps=4.5, direction=0.0)
     assert request(control, faster, at(4.0)) == (0.0, 0.0, 0.0, 0.0, 0.0)
+    halt = asked(RemoteKind.SPEED, speed_mps=0.0, direction=0.0)
+    assert request(control, halt, at(0.8), integral=0.0)[2] == pytest.approx((-0.3 + 0.8) / 8.7)
+
+
+@pytest.mark.parametrize("accel", [2.0, 0.01, 0.0, -0.1, -0.29])
+def test_in_neutral_the_engine_is_never_revved(accel: float, control: ControlSettings) -> None:
+    """Less braking than coasting gives would be throttle in gear."""
+    gentle = asked(RemoteKind.ACCELERATION, accel_mps2=accel, direction=0.0)
+    for vehicle in (at(4.0, ax_mps2=-0.3), at(-4.0, BACK, ax_mps2=0.3)):
+        assert request(control, gentle, vehicle, integral=0.0) == (0.0, 0.0, 0.0, 0.0, 0.0)
+    assert request(control, gentle._replace(direction=1.0), at(4.0), integral=0.0)[1] > 0.0
+
+
+def test_a_speed_command_at_its_thresholds(control: ControlSettings) -> None:
+    """Standing, the wrong way and the least commanded speed: at the figure itself the car drives on."""
+    stand = asked(RemoteKind.SPEED, speed_mps=0.0)
+    closing = request(control, stand, at(control.standstill_speed_mps), integral=0.0)
+    assert closing[2] == pytest.approx((-0.3 + 0.5) / 8.7)
+    assert request(control, asked(RemoteKind.SPEED, speed_mps=0.05), at(0.0), integral=0.0)[2] == 0.0
+    back = request(control, asked(RemoteKind.SPEED, speed_mps=5.0), at(-0.5, BACK), integral=0.0)
+    assert (back[1] > 0.0, back[2]) == (True, 0.0)
+
+
+def test_a_vehicle_whose_speed_is_no_number_is_driven_as_if_it_stood(control: ControlSettings) -> None:
+    creep = asked(RemoteKind.SPEED, speed_mps=0.5)
+    assert request(control, creep, at(math.nan)) == request(control, creep, at(0.0))
+    assert request(control, creep, at(1e300)) == request(control, creep, at(100.0))
+    assert request(control, creep, at(-1e300)) == request(control, creep, at(-100.0))
 
 
 def test_the_wheel_takes_over_at_the_threshold_itself(control: ControlSettings) -> None:
@@ -182,3 +219,5 @@ def test_a_crossing_far_away_is_never(control: ControlSettings) -> None:
     vehicle = at(1.0)
     assert time_to_crossing(0.001, 0.0, vehicle, control) == pytest.approx(math.sqrt(1.5 * 2.6 / 0.001), rel=1e-4)
     assert time_to_crossing(0.0003, 0.0, vehicle, control) == 100.0
+    near = time_to_crossing(0.6, 0.0, at(20.0), control)
+    assert near == pytest.approx(math.sqrt(1.5 * 2.6 / math.tan(0.6)) / 20.0)
