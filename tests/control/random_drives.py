@@ -24,6 +24,8 @@ from simconsole.signals import (
     EventInput,
     Link,
     RemoteCommand,
+    RemoteKind,
+    Validity,
     VehicleCommand,
     VehicleState,
 )
@@ -103,7 +105,7 @@ def drive(inputs: Row, outputs: Row, row: Row, tick_s: float) -> None:
         )
         memory, ros_link, ecu_link, arbitration, request = arbitrate(now)
         remote = ecu if arbitration.commander == ECU else ros
-        command = gate(request, remote, arbitration, command, vehicle, s, tick_s)
+        command = gate(request, remote, arbitration, command, vehicle, s, tick_s, 0.0)
         put(before, 0, memory)
         put(before, ROS_LINK_AT, ros_link)
         put(before, ECU_LINK_AT, ecu_link)
@@ -229,7 +231,22 @@ def random_commands(rng: np.random.Generator, steps: int, stale_ticks: float) ->
 def random_drive(tick_hz: int, seed: int, steps: int, execution: object = compiled, **profile: object) -> Drive:
     print(f"seed {seed}")
     s = settings(ControlProfile(**profile), 15.0, 0.6, 2.6, tick_hz)  # type: ignore[arg-type]
-    inputs = random_inputs(np.random.default_rng(seed), steps, s.stale_ticks)
-    outputs = np.empty((steps, OUTPUT_WIDTH))
+    return driven(random_inputs(np.random.default_rng(seed), steps, s.stale_ticks), s, tick_hz, execution)
+
+
+def driven(inputs: Rows, s: ControlSettings, tick_hz: int, execution: object = compiled) -> Drive:
+    outputs = np.empty((len(inputs), OUTPUT_WIDTH))
     execution(drive)(inputs, outputs, np.array(s), 1.0 / tick_hz)  # type: ignore[operator]
     return Drive(s, 1.0 / tick_hz, inputs, outputs)
+
+
+def calm_inputs(ticks: int) -> Rows:
+    """Return a person who does nothing, a car that can drive, and a controller on the ROS side that commands 10 m/s."""
+    inputs = np.zeros((ticks, INPUT_WIDTH))
+    values = dict.fromkeys(("wheel_validity", "throttle_validity", "brake_validity"), float(Validity.LIVE))
+    values |= {"kind": float(RemoteKind.SPEED), "speed_mps": 10.0, "direction": 1.0, "vx_mps": KEEP_SPEED}
+    values |= {"coast_accel_mps2": -0.2, "full_throttle_accel_mps2": 3.8, "full_brake_accel_mps2": -9.2}
+    for name, value in {**values, "ecu_age_ticks": NEVER_TICKS}.items():
+        inputs[:, COLUMNS.index(name)] = value
+    inputs[:, COLUMNS.index("sequence")] = np.arange(1.0, ticks + 1.0)
+    return inputs

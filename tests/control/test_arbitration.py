@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from simconsole.control.gate import limits_of
 from simconsole.profiles.control import ControlProfile
 from simconsole.signals import Event, GateLimit, Mode, Reason, RemoteKind, Validity
 
@@ -239,37 +240,32 @@ def test_in_shared_control_the_controllers_part_is_limited_as_in_autonomy(make_r
     assert rig.arbitration.remote_throttle == 1.0
 
 
-def test_toggling_at_50_hz_never_jumps_and_never_locks_up(make_rig: MakeRig) -> None:
-    rig = make_rig().drive(Mode.MANUAL)
+@pytest.mark.parametrize("tick_hz", [50, 250, 1000])
+def test_toggling_at_50_hz_never_jumps_and_never_locks_up(tick_hz: int, make_rig: MakeRig) -> None:
+    """For 10 s; no step is larger than the limit of the mode in force."""
+    rig = make_rig(tick_hz).drive(Mode.MANUAL)
     rig.send(road_wheel_rad=0.1, accel_mps2=1.0)
     rig.driver = rig.driver._replace(hand_wheel_rad=-1.0)
     rig.run(1.0)
-    limit = rig.settings.manual_road_wheel_radps * rig.tick_s
-    pedal = rig.settings.manual_pedal_slew_per_s * rig.tick_s
-    seen = set()
-    for tick in range(2500):
-        before = rig.command
-        toggle = Event.REQUEST_MANUAL if tick % 10 == 0 else Event.REQUEST_AUTONOMOUS
-        rig.tick(toggle if tick % 5 == 0 else 0)
-        seen.add(rig.mode)
-        assert abs(rig.command.road_wheel_rad - before.road_wheel_rad) <= limit + 1e-12
-        for name in ("throttle", "brake", "clutch", "handbrake"):
-            assert abs(getattr(rig.command, name) - getattr(before, name)) <= pedal + 1e-12
-        target_step = rig.settings.target_accel_mps2 * rig.tick_s
-        assert abs(rig.command.target_speed_mps - before.target_speed_mps) <= target_step + 1e-12
-    assert seen == {Mode.MANUAL, Mode.AUTONOMOUS}
+    period = tick_hz // 50
+    changes = 0
+    for tick in range(10 * tick_hz):
+        before, mode = rig.command, rig.mode
+        toggle = Event.REQUEST_MANUAL if tick // period % 2 else Event.REQUEST_AUTONOMOUS
+        rig.tick(toggle if tick % period == 0 else 0)
+        changes += rig.mode is not mode
+        limits, step = limits_of(float(rig.mode), rig.settings), rig.tick_s
+        assert abs(rig.command.road_wheel_rad - before.road_wheel_rad) <= limits.road_wheel_radps * step + 1e-12
+        assert rig.command.throttle - before.throttle <= limits.throttle_slew_per_s * step + 1e-12
+        assert abs(rig.command.brake - before.brake) <= limits.brake_slew_per_s * step + 1e-12
+        assert abs(rig.command.target_speed_mps - before.target_speed_mps) <= limits.target_accel_mps2 * step + 1e-12
+        hand_step = rig.settings.manual_pedal_slew_per_s * step + 1e-12
+        for name in ("throttle", "clutch", "handbrake"):
+            assert abs(getattr(rig.command, name) - getattr(before, name)) <= hand_step
+    assert changes == 500
     rig.tick(Event.REQUEST_MANUAL)
     rig.run(0.7)
     assert rig.command.road_wheel_rad == pytest.approx(-1.0 / 15.0)
-
-
-def test_hands_resting_on_a_still_wheel_are_no_takeover_in_an_hour(make_rig: MakeRig) -> None:
-    rig = make_rig(50).drive(Mode.AUTONOMOUS)
-    rig.vehicle = rig.vehicle._replace(coast_accel_mps2=0.0)
-    for count in range(3600 * 5):
-        rig.driver = rig.driver._replace(hand_wheel_rad=math.radians(2.0) * math.sin(0.37 * count))
-        rig.tick()
-    assert rig.mode is Mode.AUTONOMOUS
 
 
 def test_values_that_are_no_numbers_from_the_cockpit_are_a_lost_cockpit(make_rig: MakeRig) -> None:

@@ -1,4 +1,4 @@
-"""Random drives through arbitration and gate, compiled: what must hold whatever happens, in any order."""
+"""Long drives through arbitration and gate, compiled: what holds whatever happens, in any order; an hour of calm."""
 
 import itertools
 
@@ -10,6 +10,8 @@ from simconsole.compiling import compiled, plain
 from simconsole.control.arbitration import arbitrate
 from simconsole.control.gate import gate, limits_of
 from simconsole.control.moment import Moment
+from simconsole.control.settings import settings
+from simconsole.profiles.control import ControlProfile
 from simconsole.signals import (
     NEVER_TICKS,
     ArbiterMemory,
@@ -29,6 +31,7 @@ from simconsole.signals import (
 )
 from tests.control.random_drives import (
     ARBITRATION_AT,
+    COLUMNS,
     COMMAND_AT,
     DRIVER_WIDTH,
     ECU_LINK_AT,
@@ -41,6 +44,8 @@ from tests.control.random_drives import (
     VEHICLE_WIDTH,
     VX,
     Drive,
+    calm_inputs,
+    driven,
     random_drive,
 )
 
@@ -212,7 +217,7 @@ def test_from_every_mode_a_person_gets_back_to_manual(long_drive: Drive) -> None
                     0.0, 0.0, 0.0, s, long_drive.tick_s,
                 )  # fmt: skip
                 memory, ros_link, ecu_link, arbitration, request = arbitrate(now)
-                command = gate(request, remote, arbitration, command, vehicle, s, long_drive.tick_s)
+                command = gate(request, remote, arbitration, command, vehicle, s, long_drive.tick_s, 0.0)
                 if arbitration.mode == Mode.MANUAL:
                     break
             assert arbitration.mode == Mode.MANUAL, mode
@@ -223,3 +228,26 @@ def test_plain_and_compiled_give_equal_bits(tick_hz: int) -> None:
     drives = [random_drive(tick_hz, SEED - tick_hz, 3000, execution) for execution in (plain, compiled)]
     assert drives[0].outputs.tobytes() == drives[1].outputs.tobytes()
     assert len(set(drives[0].modes)) >= 6
+
+
+def test_hands_resting_on_a_still_wheel_are_no_takeover_in_an_hour() -> None:
+    """They come within a degree of the threshold again and again.
+
+    The hour with a motor that turns the wheel under the hands: tests/devices/test_closed_loop.py.
+    """
+    tick_hz, engage = 50, 25
+    s = settings(ControlProfile(), 15.0, 0.6, 2.6, tick_hz)
+    inputs = calm_inputs(engage + 3600 * tick_hz)
+    time_s = (np.arange(len(inputs)) - engage) / tick_hz
+    slow, tremor = 2.0 * np.pi * 0.05, 2.0 * np.pi * 1.5
+    inputs[:, COLUMNS.index("hand_wheel_rad")] = np.radians(5.0 * np.sin(slow * time_s) + 2.0 * np.sin(tremor * time_s))
+    rate_degps = 5.0 * slow * np.cos(slow * time_s) + 2.0 * tremor * np.cos(tremor * time_s)
+    inputs[:, COLUMNS.index("hand_wheel_radps")] = np.radians(rate_degps)
+    inputs[engage, COLUMNS.index("events")] = float(Event.REQUEST_AUTONOMOUS)
+    hour = driven(inputs, s, tick_hz)
+    assert (hour.modes[:engage] == Mode.MANUAL).all()
+    assert (hour.modes[engage:] == Mode.AUTONOMOUS).all()
+    assert len(hour.modes) - engage == 3600 * tick_hz
+    moved_rad = np.abs(hour.given("hand_wheel_rad")).max()
+    assert s.steering_override_rad - np.radians(1.1) < moved_rad < s.steering_override_rad
+    assert hour.outputs[-1, SPEED_AT] == pytest.approx(10.0, abs=0.05)

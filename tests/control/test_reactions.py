@@ -48,6 +48,23 @@ def test_the_brake_takes_over_within_two_ticks(mode: Mode, tick_hz: int, make_ri
 
 
 @pytest.mark.parametrize("tick_hz", RATES)
+@pytest.mark.parametrize("mode", Mode)
+def test_the_brake_acts_from_the_next_tick_on_in_every_mode(
+    mode: Mode, tick_hz: int, make_rig: Callable[..., Any]
+) -> None:
+    """Also where the mode stays: an emergency stop, a stop that stands, and shared control brake no less for it."""
+    rig = make_rig(tick_hz).drive(mode)
+    rig.run(0.2)
+    live = dict.fromkeys(("wheel_validity", "throttle_validity", "brake_validity"), float(Validity.LIVE))
+    rig.driver = rig.driver._replace(brake=0.9, **live)
+    braking = rig.command.brake
+    rig.tick()
+    rig.tick()
+    assert rig.command.brake > braking or braking >= 0.9
+    assert rig.command.throttle == 0.0
+
+
+@pytest.mark.parametrize("tick_hz", RATES)
 @pytest.mark.parametrize("mode", AUTONOMOUS)
 def test_the_accelerator_overrides_pedals_only_within_two_ticks(
     mode: Mode, tick_hz: int, make_rig: Callable[..., Any]
@@ -80,12 +97,27 @@ def test_the_wheel_takes_over_after_50_ms_and_a_tick(mode: Mode, tick_hz: int, m
 @pytest.mark.parametrize("tick_hz", RATES)
 def test_a_lost_device_counts_in_the_tick_that_names_it_stale(tick_hz: int, make_rig: Callable[..., Any]) -> None:
     # calibrate names it stale after 100 ms (tests/devices); here nothing may be added.
+    after = {
+        Mode.MANUAL: Mode.MINIMAL_RISK,
+        Mode.SHARED: Mode.MINIMAL_RISK,
+        Mode.AUTONOMOUS: Mode.TAKEOVER_REQUESTED,
+    }
     for field in ("wheel_validity", "throttle_validity", "brake_validity"):
-        for mode, after in ((Mode.MANUAL, Mode.MINIMAL_RISK), (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED)):
+        for mode in after:
             rig = make_rig(tick_hz).drive(mode)
             rig.driver = rig.driver._replace(**{field: float(Validity.STALE)})
             rig.tick()
-            assert (rig.mode, rig.reason) == (after, Reason.DEVICE_LOST)
+            assert (rig.mode, rig.reason) == (after[mode], Reason.DEVICE_LOST)
+
+
+@pytest.mark.parametrize("tick_hz", RATES)
+@pytest.mark.parametrize("mode", [Mode.MANUAL, Mode.SHARED, *AUTONOMOUS])
+def test_a_loop_that_stood_still_is_a_safe_stop_in_the_same_tick(
+    mode: Mode, tick_hz: int, make_rig: Callable[..., Any]
+) -> None:
+    rig = make_rig(tick_hz).drive(mode)
+    rig.tick(Event.LOOP_STALL)
+    assert (rig.mode, rig.reason) == (Mode.MINIMAL_RISK, Reason.LOOP_STALL)
 
 
 @pytest.mark.parametrize("tick_hz", RATES)
