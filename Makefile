@@ -15,7 +15,7 @@ test: setup lint  ## All checks: format, lint, types, import contracts, tests
 	scripts/system-packages
 	$(BIN)/pytest
 
-mutation: setup  ## Mutation score of control/ into docs/mutation.md; half an hour on two cores
+mutation: setup  ## Mutation score of control/ into docs/mutation.md; some minutes on two cores
 	$(BIN)/python scripts/mutation.py
 
 lint: .venv/ready-to-test  ## Format, lint, types and import contracts only

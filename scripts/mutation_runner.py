@@ -18,10 +18,12 @@ from typing import Any, Final, NamedTuple
 import pytest
 from _pytest.runner import runtestprotocol
 
-LEFT_OUT: Final = ("test_random.py", "test_mutation_page.py")
-"""Runs kernels compiled; reads what is written at the end."""
-LEAST_S: Final = 20
-QUICK_S: Final = 0.02
+LEFT_OUT: Final = ("test_random.py", "test_coverage.py", "test_mutation_page.py")
+"""Runs kernels compiled; counts lines; reads what is written at the end."""
+QUICK: Final = 5000
+"""Calls of a quick test: the best part of all tests."""
+LEAST_CPU_S: Final = 10.0
+TIMES_SLOWER: Final = 10.0
 
 Function = Callable[..., Any]
 switches: dict[str, tuple[list[Function], dict[str, Function]]] = {}
@@ -44,38 +46,42 @@ def switch(mutants: dict[str, Function]) -> Callable[[Function], Function]:
 
 
 class Reach(NamedTuple):
-    """A test that reaches a function; they sort by what will most likely and soonest kill a mutant."""
+    """A test that reaches a function; they sort by what will most likely and soonest kill a mutant.
+
+    What a test costs is counted in calls of the functions under test, and so the same on any machine under any load.
+    """
 
     slow: bool
     stranger: bool  # not of the module's own tests
-    took_s: float
+    calls: int
     index: int
+    cpu_s: float
 
 
 class Runner:
     """One session: which test reaches which function, then the mutants."""
 
-    def __init__(self, items: list[pytest.Item], jobs: int, budget_s: float) -> None:
+    def __init__(self, items: list[pytest.Item], jobs: int, budget_calls: int) -> None:
         self.items = items
         self.jobs = jobs
-        self.budget_s = budget_s
+        self.budget_calls = budget_calls
         self.reached: dict[str, list[Reach]] = {name: [] for name in switches}
         self.done: dict[str, dict[str, Any]] = {}
         self.kills: dict[str, Counter[int]] = {}
         self.running: dict[int, tuple[str, int]] = {}
 
     def learn(self) -> None:
-        """Run every test once on the originals and note the functions it reaches and how long it takes.
+        """Run every test once on the originals and note the functions it reaches, and what it costs.
 
         Raises:
             SystemExit: a test fails without any mutant.
         """
-        seen: set[str] = set()
+        seen: Counter[str] = Counter()
         originals = {name: chosen[0] for name, (chosen, _) in switches.items()}
         for name, original in originals.items():
 
             def note(*arguments: Any, name: str = name, original: Function = original, **named: Any) -> Any:
-                seen.add(name)
+                seen[name] += 1
                 return original(*arguments, **named)
 
             switches[name][0][0] = note
@@ -84,17 +90,19 @@ class Runner:
             began_s = time.process_time()
             if fails(item):
                 sys.exit(f"{item.nodeid} fails without any mutant")
-            took_s = time.process_time() - began_s
+            cpu_s = time.process_time() - began_s
+            calls = seen.total()
             for name in seen:
                 own = item.path.stem == f"test_{name.partition('.')[0]}"
-                self.reached[name].append(Reach(took_s > QUICK_S, not own, took_s, index))
+                self.reached[name].append(Reach(calls > QUICK, not own, calls, index, cpu_s))
         for name, original in originals.items():
             switches[name][0][0] = original
+            self.reached[name] = self.affordable(sorted(self.reached[name]))
 
     def run(self, mutants: list[str]) -> None:
         """Run every mutant in a process of its own."""
         for count, name in enumerate(mutants):
-            tests = self.affordable(self.ordered(name.partition("__mutmut_")[0]))
+            tests = self.ordered(name.partition("__mutmut_")[0])
             if not tests:
                 self.done[name] = {"killed": False, "by": "no test reaches it"}
                 continue
@@ -115,31 +123,32 @@ class Runner:
 
     def save(self) -> None:
         """Write what is known by now."""
-        Path("done.json").write_text(json.dumps(self.done))
+        Path("done.json").write_text(json.dumps({"tests": len(self.items), "results": self.done}))
 
     def affordable(self, tests: list[Reach]) -> list[Reach]:
-        """Return the first of `tests` that together last no longer than the budget, and at least one of them."""
-        total_s = itertools.accumulate(test.took_s for test in tests)
-        return [test for test, sum_s in zip(tests, total_s, strict=True) if sum_s <= self.budget_s] or tests[:1]
+        """Return the first of `tests` that together cost no more than the budget, and at least one of them."""
+        totals = itertools.accumulate(test.calls for test in tests)
+        return [test for test, total in zip(tests, totals, strict=True) if total <= self.budget_calls] or tests[:1]
 
     def ordered(self, function: str) -> list[Reach]:
         """Return the tests that reach a function: those first that have killed most of its mutants so far."""
         kills = self.kills.setdefault(function, Counter())
-        return sorted(self.reached.get(function, []), key=lambda test: (-kills[test.index], test))
+        return sorted(self.reached[function], key=lambda test: (-kills[test.index], test))
 
     def child(self, name: str, tests: list[Reach], writing: int) -> None:
         """Run the tests of one mutant until one fails, and write its number; never returns. Exit code 0: all passed."""
         quiet = os.open(os.devnull, os.O_WRONLY)
         os.dup2(quiet, 1)
         os.dup2(quiet, 2)
-        signal.signal(signal.SIGALRM, signal.SIG_DFL)
-        signal.alarm(LEAST_S + int(20.0 * sum(test.took_s for test in tests)))
+        # In CPU time: an endless loop ends whatever else the machine does, and a loaded machine kills no mutant.
+        signal.signal(signal.SIGPROF, signal.SIG_DFL)
+        signal.setitimer(signal.ITIMER_PROF, LEAST_CPU_S + TIMES_SLOWER * sum(test.cpu_s for test in tests))
         function, _, mutant = name.partition("__mutmut_")
         chosen, mutants = switches[function]
         chosen[0] = mutants[f"{function.partition('.')[2]}__mutmut_{mutant}"]
         code = 1
         try:
-            killer = next((index for *_, index in tests if fails(self.items[index])), None)
+            killer = next((test.index for test in tests if fails(self.items[test.index])), None)
             code = 0 if killer is None else 1
             os.write(writing, b"" if killer is None else str(killer).encode())
         finally:
@@ -175,7 +184,7 @@ def pytest_runtestloop(session: pytest.Session) -> bool:
     if session.testsfailed:
         return False
     job = json.loads(Path("job.json").read_text())
-    runner = Runner(session.items, job["jobs"], job["budget_s"])
+    runner = Runner(session.items, job["jobs"], job["budget_calls"])
     runner.learn()
     gc.freeze()
     runner.run(job["wanted"])
