@@ -46,4 +46,4 @@ def gentle_step(
         return step_rad
     share = cos(angle_rad)
     most = lateral_jerk_mps3 * settings.wheelbase_m * share * share / (speed * speed) * tick_s
-    return most if most < step_rad else step_rad
+    return clip(step_rad, 0.0, most)

@@ -111,9 +111,9 @@ def remote_side(
     if mode in (_MANUAL, _SHARED, _AUTONOMOUS, _TAKEOVER_REQUESTED):
         if link.fresh == 0.0:
             return RemoteSide(now.command_before.road_wheel_rad, 0.0, 0.0, 0.0, 0.0, 0.0, hold)
-        integral = offered.speed_integral_mps2 if mode != _MANUAL and shares.longitudinal >= 1.0 else 0.0
         if mode == _SHARED:
             offered = _held_back(now, offered)
+        integral = offered.speed_integral_mps2 if mode != _MANUAL and shares.longitudinal >= 1.0 else 0.0
         return RemoteSide(
             offered.road_wheel_rad, offered.throttle, offered.brake, offered.direction, integral, 0.0, hold
         )

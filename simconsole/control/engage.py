@@ -4,7 +4,7 @@ from typing import Final
 
 from simconsole.control.person import Person
 from simconsole.control.settings import ControlSettings
-from simconsole.kernels import clip, kernel
+from simconsole.kernels import kernel
 from simconsole.signals import Link, Mode, Reason, RemoteCommand, RemoteKind, VehicleState
 
 _PARKED: Final = float(Mode.PARKED)
@@ -61,8 +61,7 @@ def engage_refusal(
     if not abs(vehicle.ay_mps2) <= settings.engage_lateral_accel_mps2:
         return _LATERAL
     speed_commanded = remote.kind in (_SPEED, _TWIST)
-    speed_apart = abs(clip(remote.speed_mps, -1e3, 1e3) - vehicle.vx_mps)
-    if speed_commanded and speed_apart > settings.engage_speed_deviation_mps:
+    if speed_commanded and abs(remote.speed_mps - vehicle.vx_mps) > settings.engage_speed_deviation_mps:
         return _DEVIATION
     if abs(vehicle.vx_mps) < settings.engage_deviation_speed_mps:
         return GRANTED

@@ -69,6 +69,15 @@ class Passed(NamedTuple):
     active: int
 
 
+class Pose(NamedTuple):
+    """A desired pose after the gate."""
+
+    x_m: float
+    y_m: float
+    yaw_rad: float
+    active: int
+
+
 class Target(NamedTuple):
     """A desired speed and pose after the gate."""
 
@@ -121,7 +130,7 @@ def gate(
     vehicle: VehicleState,
     settings: ControlSettings,
     tick_s: float,
-    events: float = 0.0,
+    events: float,
 ) -> VehicleCommand:
     """Return the one command that the vehicle gets: finite and inside every limit, whatever comes in.
 
@@ -208,7 +217,7 @@ def _road_wheel(
     wanted = wanted_rad
     if not is_finite(wanted):
         wanted = before_rad
-        active |= _NON_FINITE
+        active = _NON_FINITE
     ranged = clip(wanted, -limits.road_wheel_rad, limits.road_wheel_rad)
     if ranged != wanted:
         active |= _RANGE
@@ -225,14 +234,12 @@ def _road_wheel(
 
 @kernel
 def _pedal(wanted: float, safe: float, before: float, up: float, down: float) -> Passed:
-    active = 0
-    value = wanted
-    if not is_finite(value):
-        value = safe
-        active |= _NON_FINITE
-    ranged = clip(value, 0.0, 1.0)
-    if ranged != value:
-        active |= _RANGE
+    if is_finite(wanted):
+        ranged = clip(wanted, 0.0, 1.0)
+        active = 0 if ranged == wanted else _RANGE
+    else:
+        ranged = safe
+        active = _NON_FINITE
     held = clip(known(before, safe), 0.0, 1.0)
     moved = approach(held, ranged, up if ranged > held else down)
     if moved != ranged:
@@ -339,16 +346,16 @@ def _pose_target(
 
 
 @kernel
-def _finite_pose(x_m: float, y_m: float, yaw_rad: float, before: VehicleCommand, settings: ControlSettings) -> Target:
-    """Return the pose, or as a whole the one before if any part is not finite or out of range; speed is 0."""
+def _finite_pose(x_m: float, y_m: float, yaw_rad: float, before: VehicleCommand, settings: ControlSettings) -> Pose:
+    """Return the pose, or as a whole the one before if any part is not finite or out of range."""
     most = settings.target_position_max_m
     if is_finite(x_m) and is_finite(y_m) and is_finite(yaw_rad):
         if abs(x_m) <= most and abs(y_m) <= most and abs(yaw_rad) <= _MOST_YAW_RAD:
-            return Target(0.0, x_m, y_m, yaw_rad, 0)
+            return Pose(x_m, y_m, yaw_rad, 0)
         active = _RANGE
     else:
         active = _NON_FINITE
     x = clip(known(before.target_x_m, 0.0), -most, most)
     y = clip(known(before.target_y_m, 0.0), -most, most)
     yaw = clip(known(before.target_yaw_rad, 0.0), -_MOST_YAW_RAD, _MOST_YAW_RAD)
-    return Target(0.0, x, y, yaw, active)
+    return Pose(x, y, yaw, active)

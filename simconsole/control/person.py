@@ -23,8 +23,8 @@ class Person(NamedTuple):
 
 @kernel
 def mask(value: float) -> int:
-    """Return a bit mask that was stored as a float; nonsense is no bit at all."""
-    return int(value) if 0.0 <= value <= _MOST_MASK else 0
+    """Return a bit mask that was stored as a float; nonsense is no bit at all, nor is anything below the first bit."""
+    return int(value) if 1.0 <= value <= _MOST_MASK else 0
 
 
 @kernel

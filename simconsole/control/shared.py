@@ -19,7 +19,6 @@ BY_LINE_CROSSING: Final = 1.0
 TRADED: Final = 2.0
 NEVER_S: Final = 100.0
 _MOST_MPS: Final = 100.0
-_LEAST_CURVATURE_1PM: Final = 1e-6
 _MOST_RAD: Final = 1.5
 _MOST_NM: Final = 100.0
 
@@ -39,10 +38,9 @@ def time_to_crossing(person_rad: float, remote_rad: float, vehicle: VehicleState
     """
     speed = clip(known(vehicle.vx_mps, 0.0), -_MOST_MPS, _MOST_MPS)
     apart = abs(_curvature(person_rad, settings) - _curvature(remote_rad, settings)) * speed * speed
-    if apart <= _LEAST_CURVATURE_1PM:
+    if apart == 0.0:
         return NEVER_S
-    square = 2.0 * settings.shared_line_margin_m / apart
-    return math.sqrt(square) if square < NEVER_S * NEVER_S else NEVER_S
+    return math.sqrt(clip(2.0 * settings.shared_line_margin_m / apart, 0.0, NEVER_S * NEVER_S))
 
 
 @kernel

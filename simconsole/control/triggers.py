@@ -121,9 +121,7 @@ def person_triggers(mode: float, person: Person, steering: bool, settings: Contr
     if person.trusted == 0.0:
         needed = settings.person_required > 0.0 or mode in (_MANUAL, _SHARED)
         return _DEVICE_LOST if needed else 0
-    present = 0
-    if person.brake >= settings.brake_override:
-        present |= _BRAKE
+    present = _BRAKE if person.brake >= settings.brake_override else 0
     if person.throttle < settings.throttle_override:
         present |= _PERSON_READY
     if steering:
@@ -134,9 +132,7 @@ def person_triggers(mode: float, person: Person, steering: bool, settings: Contr
 @kernel
 def fault_triggers(link: Link, events: int, no_reaction: bool, standing: bool) -> int:
     """Return the triggers that nobody asked for."""
-    present = 0
-    if events & _EVENT_LOOP_STALL != 0:
-        present |= _LOOP_STALL
+    present = _LOOP_STALL if events & _EVENT_LOOP_STALL != 0 else 0
     if events & _EVENT_COMMANDER_LOST != 0:
         present |= _COMMANDER_LOST
     if link.invalid > 0.0:
@@ -153,9 +149,7 @@ def fault_triggers(link: Link, events: int, no_reaction: bool, standing: bool) -
 @kernel
 def asked_triggers(asked: Asked, manual: float, reset: float, engage: float, shared: float) -> int:
     """Return the triggers of what was asked for and is not refused (refusals: 0 or a `Reason`)."""
-    present = 0
-    if asked.emergency > 0.0:
-        present |= _EMERGENCY
+    present = _EMERGENCY if asked.emergency > 0.0 else 0
     if asked.takeover > 0.0:
         present |= _TAKEOVER_ASKED
     if asked.manual > 0.0 and manual == GRANTED:

@@ -104,7 +104,7 @@ class Rig:
         )
         remote = self.ecu if self.arbitration.commander == Commander.ECU else self.remote
         self.command = gate(
-            self.request, remote, self.arbitration, self.command, self.vehicle, self.settings, self.tick_s
+            self.request, remote, self.arbitration, self.command, self.vehicle, self.settings, self.tick_s, 0.0
         )
         self._move()
 

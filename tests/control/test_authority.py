@@ -12,6 +12,7 @@ from simconsole.control.authority import (
     blend,
     remote_side,
     shares_of,
+    steered_stop,
     transmission_of,
 )
 from simconsole.control.decision import Decision
@@ -20,7 +21,7 @@ from simconsole.control.moment import Moment
 from simconsole.control.person import Person
 from simconsole.control.remote import RemoteRequest
 from simconsole.control.settings import ControlSettings
-from simconsole.signals import Arbitration, Link, Mode, Request, VehicleCommand
+from simconsole.signals import Arbitration, Link, Mode, Reason, Request, VehicleCommand
 
 TICK_S = 0.004
 BEFORE = Arbitration(*(0.0,) * len(Arbitration._fields))._replace(
@@ -175,6 +176,41 @@ def test_a_safe_stop_begins_with_what_is_and_goes_on_from_its_memory(now: Moment
     assert later.speed_integral_mps2 == pytest.approx(0.3 + s.integral_gain_per_s * (-1.0 - step) * TICK_S)
     assert (later.road_wheel_rad, later.hold_road_wheel_rad) == (pytest.approx(0.07 - decay),) * 2
     assert (later.throttle, later.direction) == (0.0, 0.0)
+
+
+def test_a_safe_stop_that_the_controller_steers_takes_its_angle_and_the_consoles_brake(now: Moment) -> None:
+    moving = now._replace(vehicle=now.vehicle._replace(vx_mps=10.0))
+    steered = moving._replace(memory=moving.memory._replace(stop_steered=1.0))
+    asked = side(steered, Mode.MINIMAL_RISK)
+    assert (asked.road_wheel_rad, asked.hold_road_wheel_rad, asked.throttle) == (0.12, 0.12, 0.0)
+    assert asked.brake == side(moving, Mode.MINIMAL_RISK).brake
+    assert side(moving, Mode.MINIMAL_RISK).road_wheel_rad == 0.0
+
+
+def stop(mode: Mode, reason: Reason, entered: bool = True) -> Decision:
+    return Decision(float(mode), float(reason), float(entered), 0.0, 0.0)
+
+
+@pytest.mark.parametrize("before", Mode)
+@pytest.mark.parametrize("reason", [Reason.NO_REACTION, Reason.LOOP_STALL, Reason.COMMAND_STALE, Reason.DEVICE_LOST])
+def test_only_a_controller_that_drove_and_is_not_at_fault_steers_the_stop(
+    before: Mode, reason: Reason, now: Moment
+) -> None:
+    drove = now._replace(before=BEFORE._replace(mode=float(before)))
+    well = before in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED) and reason in (Reason.NO_REACTION, Reason.LOOP_STALL)
+    assert steered_stop(drove, stop(Mode.MINIMAL_RISK, reason), FRESH) == (1.0 if well else 0.0)
+
+
+def test_it_steers_until_it_fails_or_the_stop_is_over(now: Moment) -> None:
+    reason = Reason.LOOP_STALL
+    for steered in (0.0, 1.0):
+        during = now._replace(memory=now.memory._replace(stop_steered=steered))
+        assert steered_stop(during, stop(Mode.MINIMAL_RISK, reason, entered=False), FRESH) == steered
+    for link in (STALE, FRESH._replace(invalid=1.0), STALE._replace(invalid=1.0)):
+        assert steered_stop(during, stop(Mode.MINIMAL_RISK, reason, entered=False), link) == 0.0
+    for mode in Mode:
+        if mode is not Mode.MINIMAL_RISK:
+            assert steered_stop(during, stop(mode, reason, entered=False), FRESH) == 0.0
 
 
 @pytest.mark.parametrize(("mode", "brake"), [(Mode.EMERGENCY_STOP, 1.0), (Mode.STOPPED, 0.4), (Mode.PARKED, 0.4)])

@@ -55,6 +55,8 @@ def test_each_request_has_its_own_refusal(now: Moment) -> None:
 def test_requests_that_are_granted(now: Moment) -> None:
     for event, mode in ((Event.REQUEST_AUTONOMOUS, Mode.AUTONOMOUS), (Event.REQUEST_SHARED, Mode.SHARED)):
         assert decided(now, event) == (mode, Reason.OPERATOR_ASKED, 1.0, 0.0, 0.0)
+    driven = now._replace(before=now.before._replace(mode=float(Mode.AUTONOMOUS)))
+    assert decided(driven, Event.REQUEST_MANUAL) == (Mode.MANUAL, Reason.OPERATOR_ASKED, 1.0, 0.0, 0.0)
     shown = now._replace(before=now.before._replace(refusal=float(Reason.REFUSED_MOVING)))
     assert decided(shown, Event.EMERGENCY_STOP) == (Mode.EMERGENCY_STOP, Reason.EMERGENCY, 1.0, 0.0, 0.0)
 
@@ -65,6 +67,44 @@ def test_a_person_is_needed_where_the_profile_says_so(now: Moment) -> None:
     assert decided(driven, person=absent)[:2] == (Mode.TAKEOVER_REQUESTED, Reason.DEVICE_LOST)
     alone = driven._replace(settings=now.settings._replace(person_required=0.0))
     assert decided(alone, person=absent)[0] == Mode.AUTONOMOUS
+
+
+def test_in_manual_a_person_is_needed_whatever_the_profile_says(now: Moment) -> None:
+    alone = now._replace(settings=now.settings._replace(person_required=0.0))
+    assert decided(alone, person=THERE._replace(trusted=0.0))[:2] == (Mode.MINIMAL_RISK, Reason.DEVICE_LOST)
+
+
+def asked_to_take_over(now: Moment, reason: Reason, mode_ticks: float) -> Moment:
+    before = now.before._replace(mode=float(Mode.TAKEOVER_REQUESTED), reason=float(reason))
+    return now._replace(before=before, memory=now.memory._replace(mode_ticks=mode_ticks))
+
+
+def test_a_takeover_asked_for_again_is_from_then_on_the_askers(now: Moment) -> None:
+    requested = asked_to_take_over(now, Reason.DEVICE_LOST, 5.0)
+    requested = requested._replace(before=requested.before._replace(refusal=float(Reason.REFUSED_MOVING)))
+    again = decided(requested, Event.REQUEST_TAKEOVER)
+    assert again == (Mode.TAKEOVER_REQUESTED, Reason.REMOTE_ASKED, 0.0, 0.0, 0.0)
+    assert decided(requested)[:2] == (Mode.TAKEOVER_REQUESTED, Reason.DEVICE_LOST)
+    assert decided(now, Event.REQUEST_TAKEOVER)[:3] == (Mode.MANUAL, START, 0.0)
+
+
+@pytest.mark.parametrize("reason", [Reason.DEVICE_LOST, Reason.REMOTE_ASKED])
+@pytest.mark.parametrize("trusted", [0.0, 1.0])
+def test_nobodys_reaction_ends_in_a_stop_unless_what_was_lost_is_back(
+    reason: Reason, trusted: float, now: Moment
+) -> None:
+    person = THERE._replace(trusted=trusted)
+    last = now.settings.minimal_risk_ticks - 1.0
+    back = reason is Reason.DEVICE_LOST and trusted > 0.0
+    after = decided(asked_to_take_over(now, reason, last), person=person)
+    assert after[:2] == ((Mode.TAKEOVER_REQUESTED, reason) if back else (Mode.MINIMAL_RISK, Reason.NO_REACTION))
+    assert decided(asked_to_take_over(now, reason, last - 1.0), person=person)[0] == Mode.TAKEOVER_REQUESTED
+
+
+def test_what_the_commanding_ecu_asks_for_is_heard(now: Moment) -> None:
+    before = now.before._replace(mode=float(Mode.AUTONOMOUS), commander=float(Commander.ECU))
+    driven = now._replace(before=before, ecu=now.ros, ecu_before=STEADY)
+    assert decided(driven, ecu_event=Event.REQUEST_AUTONOMOUS)[:4] == (Mode.AUTONOMOUS, START, 0.0, 0.0)
 
 
 def test_an_ecu_that_does_not_command_is_refused_in_words(now: Moment) -> None:

@@ -40,7 +40,7 @@ def passed(
     **fields: float,
 ) -> VehicleCommand:
     arbitration = zeros(Arbitration)._replace(mode=float(mode))
-    return gate(zeros(Request)._replace(**fields), remote, arbitration, before, vehicle, control, TICK_S)
+    return gate(zeros(Request)._replace(**fields), remote, arbitration, before, vehicle, control, TICK_S, 0.0)
 
 
 def active(command: VehicleCommand) -> GateLimit:
@@ -158,7 +158,8 @@ def test_direction_may_change_up_to_two_metres_a_second(control: ControlSettings
     most = control.reverse_speed_max_mps
     assert passed(control, before=driving, vehicle=STANDING._replace(vx_mps=most), gear=-1.0).gear == -1.0
     assert passed(control, before=driving, vehicle=STANDING._replace(vx_mps=most + 0.01), gear=-1.0).gear == 1.0
-    assert passed(control, before=driving, vehicle=STANDING._replace(vx_mps=math.nan), gear=-1.0).gear == -1.0
+    walking = control._replace(reverse_speed_max_mps=0.5)
+    assert passed(walking, before=driving, vehicle=STANDING._replace(vx_mps=math.nan), gear=-1.0).gear == -1.0
     for wild in (-7.0, 30.0):
         kept = passed(control, before=BEFORE._replace(gear=wild), gear=2.5).gear
         assert kept == max(-1.0, min(control.gear_max, wild))
@@ -189,6 +190,10 @@ def test_targets_have_the_range_of_the_profile(sign: float, control: ControlSett
     kept = passed(control, Mode.AUTONOMOUS, wild, remote=pose._replace(x_m=math.nan))
     assert kept[7:11] == (sign * most, sign * far, sign * far, sign * 1000.0)
     assert active(kept) == GateLimit.NON_FINITE
+    both = passed(control, Mode.AUTONOMOUS, remote=pose._replace(x_m=sign * (far + 1.0), speed_mps=math.nan))
+    assert active(both) == GateLimit.RANGE | GateLimit.NON_FINITE
+    both = passed(control, Mode.AUTONOMOUS, at_most, remote=pose._replace(x_m=math.nan, speed_mps=sign * 99.0))
+    assert active(both) == GateLimit.RANGE | GateLimit.NON_FINITE
     for kind in (RemoteKind.POSE, RemoteKind.SPEED):
         nonsense = passed(control, Mode.AUTONOMOUS, remote=pose._replace(kind=float(kind), speed_mps=math.nan))
         assert (nonsense.target_speed_mps, active(nonsense)) == (0.0, GateLimit.NON_FINITE)

@@ -64,6 +64,10 @@ def test_state_in_one_word(control: ControlSettings) -> None:
     for _ in range(int(control.engage_stable_ticks)):
         link = watch_link(REMOTE, link, control)
     assert link.state == LinkState.STEADY
+    almost = NO_LINK._replace(sequence_seen=1.0, fresh_ticks=control.engage_stable_ticks - 2.0)
+    assert watch_link(REMOTE, almost, control).state == LinkState.UNSTEADY
+    steady = almost._replace(fresh_ticks=control.engage_stable_ticks - 1.0)
+    assert watch_link(REMOTE, steady, control).state == LinkState.STEADY
     assert watch_link(REMOTE._replace(age_ticks=50.0), link, control).state == LinkState.STALE
     assert watch_link(REMOTE._replace(refused=5.0), link, control).state == LinkState.INVALID
 

@@ -45,7 +45,12 @@ def test_what_is_no_number_commands_nothing(bad: float, control: ControlSettings
 
 @pytest.mark.parametrize(
     ("stored", "bits"),
-    [(0.0, 0), (5.0, 5), (2147483647.0, 2147483647), (2147483648.0, 0), (-1.0, 0), (math.nan, 0), (math.inf, 0)],
+    [(0.0, 0), (0.9, 0), (1.0, 1), (5.0, 5), (2147483647.0, 2147483647), (2147483648.0, 0), (-1.0, 0)],
 )
 def test_masks(stored: float, bits: int) -> None:
     assert mask(stored) == bits
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+def test_a_mask_that_is_no_number_is_empty(bad: float) -> None:
+    assert mask(bad) == 0

@@ -46,6 +46,12 @@ def test_angles_and_locks_are_converted() -> None:
     assert wide.automatic_road_wheel_rad == 1.0
 
 
+def test_what_is_chosen_by_name_becomes_a_number() -> None:
+    for steering, haptic in (("blended", 0.0), ("haptic", 1.0)):
+        s = settings(ControlProfile(shared_steering=steering), 15.0, 0.6, 2.6, 250)  # type: ignore[arg-type]
+        assert s.shared_haptic == haptic
+
+
 def test_every_setting_is_a_finite_float() -> None:
     for value in settings(ControlProfile(), 15.0, 0.6, 2.6, 250):
         assert type(value) is float

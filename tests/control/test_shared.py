@@ -7,19 +7,13 @@ from typing import Any
 import pytest
 
 from simconsole.control.settings import ControlSettings, settings
-from simconsole.control.shared import by_line_crossing, time_to_crossing, traded
+from simconsole.control.shared import by_line_crossing, consent, time_to_crossing, traded
 from simconsole.profiles.control import ControlProfile
-from simconsole.signals import Event, Mode, VehicleState
+from simconsole.signals import VehicleState
 
 MakeRig = Callable[..., Any]
 STANDING = VehicleState(*(0.0,) * len(VehicleState._fields))
 RULES = ["fixed", "line_crossing", "traded"]
-
-
-def shared_rig(make_rig: MakeRig, tick_hz: int = 250, speed_mps: float = 10.0, **profile: Any) -> Any:
-    rig = make_rig(tick_hz, ControlProfile(**profile)).drive(Mode.SHARED, speed_mps=speed_mps)
-    rig.vehicle = rig.vehicle._replace(coast_accel_mps2=0.0)  # keeps its speed
-    return rig
 
 
 @pytest.mark.parametrize("speed", [-15.0, 15.0])
@@ -75,89 +69,33 @@ def test_pushing_away_from_the_controllers_angle_moves_the_trade_to_the_person(
     assert traded(step, human_nm, person_rad, 0.05, control) == step
 
 
-@pytest.mark.parametrize("tick_hz", [50, 250, 1000])
-def test_consent_is_gone_after_a_second_of_pushing_and_back_after_another(tick_hz: int, make_rig: MakeRig) -> None:
-    rig = shared_rig(make_rig, tick_hz, shared_authority="traded", shared_lateral=0.8)
-    rig.send(road_wheel_rad=0.0)
-    rig.run(1.0)
-    assert rig.arbitration.remote_lateral == pytest.approx(0.8)
-    rig.driver = rig.driver._replace(hand_wheel_rad=1.5)
-    rig.human_nm = 3.0
-    rig.run(0.5)
-    assert rig.memory.shared_trade == pytest.approx(0.0, abs=2.1 / tick_hz)
-    assert rig.arbitration.remote_lateral == pytest.approx(0.4, abs=0.05)
-    rig.run(0.6)
-    assert rig.memory.shared_trade == -1.0
-    assert rig.arbitration.remote_lateral == pytest.approx(0.0, abs=1e-12)
-    assert rig.command.road_wheel_rad == pytest.approx(0.1)
-    rig.human_nm = 0.0
-    rig.run(1.1)
-    assert rig.memory.shared_trade == 1.0
-    assert rig.arbitration.remote_lateral == pytest.approx(0.8)
+@pytest.mark.parametrize(("trade", "part"), [(-1.0, 0.0), (-0.5, 0.15625), (0.0, 0.5), (0.5, 0.84375), (1.0, 1.0)])
+def test_consent_moves_smoothly_between_none_and_the_full_share(trade: float, part: float, make_rig: MakeRig) -> None:
+    now = make_rig(profile=ControlProfile(shared_authority="traded", shared_lateral=0.8)).moment()
+    still = now._replace(
+        memory=now.memory._replace(shared_trade=trade), settings=now.settings._replace(shared_trade_per_tick=0.0)
+    )
+    assert consent(still, 0.1, 0.0) == pytest.approx((0.8 * part, trade))
 
 
-def test_the_trade_begins_anew_with_every_engagement(make_rig: MakeRig) -> None:
-    rig = shared_rig(make_rig, shared_authority="traded")
-    rig.memory = rig.memory._replace(shared_trade=-1.0)
-    rig.driver = rig.driver._replace(brake=0.0)
-    rig.tick(Event.REQUEST_MANUAL)
-    assert (rig.mode, rig.memory.shared_trade) == (Mode.MANUAL, 1.0)
+def test_each_rule_gives_its_authority_and_only_the_traded_one_moves_the_trade(make_rig: MakeRig) -> None:
+    now = make_rig().moment()
+    now = now._replace(memory=now.memory._replace(shared_trade=0.25), human_nm=9.0)
+    now = now._replace(vehicle=now.vehicle._replace(vx_mps=15.0))
+    fixed, by_line, traded_away = (
+        consent(now._replace(settings=now.settings._replace(shared_rule=rule)), 0.1, 0.0) for rule in (0.0, 1.0, 2.0)
+    )
+    assert fixed == (now.settings.shared_lateral, 1.0)
+    crossing_s = time_to_crossing(0.1, 0.0, now.vehicle, now.settings)
+    assert by_line == (by_line_crossing(crossing_s, now.settings), 1.0)
+    assert by_line.lateral > fixed.lateral > traded_away.lateral
+    assert traded_away.trade == pytest.approx(0.25 - now.settings.shared_trade_per_tick)
 
 
-def test_a_torque_that_is_no_number_or_beyond_any_arm_counts_as_little_or_much(make_rig: MakeRig) -> None:
-    rig = shared_rig(make_rig, shared_authority="traded")
-    rig.driver = rig.driver._replace(hand_wheel_rad=1.5)
-    for human_nm, trade in ((math.nan, 1.0), (1e300, 1.0 - rig.settings.shared_trade_per_tick)):
-        rig.memory = rig.memory._replace(shared_trade=1.0)
-        rig.human_nm = human_nm
-        rig.tick()
-        assert rig.memory.shared_trade == pytest.approx(trade)
-
-
-def test_a_person_who_steers_off_the_lane_gets_more_help(make_rig: MakeRig) -> None:
-    rig = shared_rig(make_rig, shared_authority="line_crossing")
-    rig.send(road_wheel_rad=0.0)
-    rig.run(1.0)
-    assert rig.arbitration.remote_lateral == pytest.approx(0.5)
-    rig.driver = rig.driver._replace(hand_wheel_rad=15.0 * 0.15)
-    rig.run(1.0)
-    assert rig.arbitration.remote_lateral == pytest.approx(0.9)
-    assert rig.command.road_wheel_rad == pytest.approx(0.1 * 0.15)
-    assert rig.memory.shared_trade == 1.0
-
-
-@pytest.mark.parametrize("rule", RULES)
-def test_haptic_authority_is_over_the_wheels_motor_and_leaves_the_road_wheels_to_the_hands(
-    rule: str, make_rig: MakeRig
-) -> None:
-    rig = shared_rig(make_rig, shared_authority=rule, shared_steering="haptic")
-    rig.send(road_wheel_rad=0.0)
-    rig.driver = rig.driver._replace(hand_wheel_rad=0.15)
-    rig.run(1.0)
-    assert (rig.arbitration.remote_lateral, rig.arbitration.remote_guidance) == (0.0, pytest.approx(0.5, rel=0.01))
-    assert rig.command.road_wheel_rad == pytest.approx(0.01)
-    rig.tick(Event.REQUEST_AUTONOMOUS)
-    assert rig.mode is Mode.AUTONOMOUS
-    assert rig.arbitration.remote_lateral == pytest.approx(rig.settings.fade_per_tick)
-    rig.run(1.0)
-    assert (rig.arbitration.remote_lateral, rig.arbitration.remote_guidance) == (1.0, 0.0)
-
-
-@pytest.mark.parametrize("rule", RULES)
-@pytest.mark.parametrize("tick_hz", [50, 250, 1000])
-def test_authority_never_moves_faster_than_the_fade(rule: str, tick_hz: int, make_rig: MakeRig) -> None:
-    rig = shared_rig(make_rig, tick_hz, shared_authority=rule)
-    before = rig.arbitration
-    for tick in range(2 * tick_hz):
-        turning = math.sin(8.0 * tick / tick_hz)
-        rig.driver = rig.driver._replace(hand_wheel_rad=3.0 * turning)
-        rig.human_nm = 4.0 * turning
-        rig.tick()
-        for name in ("remote_lateral", "remote_guidance"):
-            step = abs(getattr(rig.arbitration, name) - getattr(before, name))
-            assert step <= rig.settings.fade_per_tick + 1e-12
-        before = rig.arbitration
-    assert rig.mode is Mode.SHARED
+def test_a_torque_that_is_no_number_is_no_push_however_small_the_threshold(make_rig: MakeRig) -> None:
+    now = make_rig(profile=ControlProfile(shared_authority="traded")).moment()
+    light = now._replace(settings=now.settings._replace(shared_trade_nm=0.5), human_nm=math.nan)
+    assert consent(light, 0.1, 0.0).trade == pytest.approx(now.settings.shared_trade_per_tick)
 
 
 def test_a_shares_most_is_never_less_than_its_least() -> None:

@@ -88,6 +88,7 @@ def test_a_wheel_that_comes_back_elsewhere_is_no_takeover(control: ControlSettin
 def test_what_the_motor_explains_is_not_the_persons(control: ControlSettings) -> None:
     assert watch_wheel(START, 1.0, 0.0, 1.0, True, True, control).past_ticks == 0.0
     assert watch_wheel(START, 1.2, 0.0, 1.0, True, True, control).past_ticks == 1.0
+    assert watch_wheel(START, 1.2, 0.0, 1.0, False, True, control) == (pytest.approx(0.2), 0.0)
 
 
 def test_a_wheel_that_reports_no_number_is_no_takeover(control: ControlSettings) -> None:

@@ -110,6 +110,7 @@ def test_triggers_that_nobody_asked_for() -> None:
     assert present(GOOD._replace(fresh=0.0)) == {"COMMAND_STALE"}
     assert present(GOOD._replace(invalid=1.0)) == {"COMMAND_INVALID"}
     assert present(GOOD._replace(invalid=1.0, fresh=0.0)) == {"COMMAND_INVALID"}
+    assert present(GOOD._replace(invalid=1.0), Event.COMMANDER_LOST) == {"COMMAND_INVALID", "COMMANDER_LOST"}
     assert present(no_reaction=True) == {"NO_REACTION"}
     assert present(standing=True) == {"STANDSTILL"}
     everything = present(
