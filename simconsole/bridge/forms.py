@@ -50,6 +50,8 @@ PLAIN: Final = Form()
 class Encoder:
     """One message on its way to many: each form made at most once."""
 
+    __slots__ = ("_json", "_made", "_message", "_now_ns", "_registry", "_sequence", "_type")
+
     def __init__(self, registry: Registry, type_name: str, message: Any, sequence: int, now_ns: int) -> None:
         """Take a typed message; `sequence` is ROS 1's header number, `now_ns` when cbor-raw says it was received."""
         self._registry = registry

@@ -156,17 +156,20 @@ class Router:
         return self._receive(session, text, now_ns, False)
 
     def _receive(self, session: Session, text: bytes, now_ns: int, assembled: bool) -> Outcome:
-        document = Document({}, False)
+        fields: dict[str, Any] = {}
         try:
             document = read(text)
-            operation = read_operation(document.fields)
+            fields = document.fields
+            operation = read_operation(fields)
+            if isinstance(operation, Publish):  # first: by far the most are
+                return self._publish(session, operation, document, text, now_ns)
             if not isinstance(operation, Fragment):
-                return self._apply(session, operation, document, text, now_ns)
+                return self._apply(session, operation, fields, now_ns)
             if assembled:
                 raise RemoteProtocolError("a fragment of fragments")
             whole = session.assembler.add(operation, now_ns)
         except BridgeError as error:
-            return self._refuse(session, document.fields, str(error), now_ns)
+            return self._refuse(session, fields, str(error), now_ns)
         return Outcome("done", "", "") if whole is None else self._receive(session, whole, now_ns, True)
 
     def receive_plain(self, session: Session, name: str, plain: dict[str, Any], now_ns: int) -> Outcome:
@@ -175,8 +178,7 @@ class Router:
         self.calls.expire(now_ns)
         fields = {"op": "publish", "topic": name, "msg": plain}
         try:
-            self._require(session, Role.PUBLISH)
-            return self._publish(session, name, Publish(name, plain), Document(fields, False), b"", now_ns)
+            return self._publish(session, Publish(name, plain), Document(fields, False), b"", now_ns)
         except BridgeError as error:
             return self._refuse(session, fields, str(error), now_ns)
 
@@ -198,7 +200,7 @@ class Router:
         session.remark("error", f"{place[:300]}: {reason}" if place else reason, id_of(fields))
         return Outcome("refused", name, reason)
 
-    def _apply(self, session: Session, operation: Operation, document: Document, text: bytes, now_ns: int) -> Outcome:
+    def _apply(self, session: Session, operation: Operation, fields: dict[str, Any], now_ns: int) -> Outcome:
         if isinstance(operation, Status):
             return Outcome("remark", "", f"{operation.level}: {operation.msg[:1000]}")
         if isinstance(operation, SetLevel):
@@ -211,16 +213,14 @@ class Router:
         try:
             self._require(session, needed)
         except RemoteProtocolError as error:
-            outcome = self._refuse(session, document.fields, str(error), now_ns)
+            outcome = self._refuse(session, fields, str(error), now_ns)
             if isinstance(operation, CallService | SendActionGoal):
                 self.calls.turn_away(session, operation, str(error))
             return outcome
         if isinstance(operation, CallOperation):
             return Outcome("done", self.calls.apply(session, operation, now_ns), "")
-        assert not isinstance(operation, Fragment)
+        assert not isinstance(operation, Fragment | Publish)
         name = resolve_topic(operation.topic)
-        if isinstance(operation, Publish):
-            return self._publish(session, name, operation, document, text, now_ns)
         if isinstance(operation, Subscribe):
             self.board.subscribe(session, name, operation, now_ns)
         elif isinstance(operation, Unsubscribe):
@@ -236,10 +236,10 @@ class Router:
             held = f"role {session.role.name.lower()}" if session.role else "no token"
             raise RemoteProtocolError(f"this needs the role {role.name.lower()}; you have {held}")
 
-    def _publish(
-        self, session: Session, name: str, operation: Publish, document: Document, text: bytes, now_ns: int
-    ) -> Outcome:
-        topic = self.board.find(name)
+    def _publish(self, session: Session, operation: Publish, document: Document, text: bytes, now_ns: int) -> Outcome:
+        self._require(session, Role.PUBLISH)
+        # A name that is known as it stands needs no other look.
+        topic = self.board.find(operation.topic) or self.board.find(resolve_topic(operation.topic))
         if topic is None:
             raise RemoteProtocolError("advertise the topic first: nobody has said its type")
         if not isinstance(operation.msg, dict):
@@ -253,7 +253,7 @@ class Router:
         if operation.latch or operation.qos is not None:
             self.board.settle(topic, operation)
         self.board.distribute(topic, message, now_ns)
-        return Outcome("done", name, "")
+        return Outcome("done", topic.name, "")
 
     def _command(
         self,
@@ -291,10 +291,11 @@ class Router:
 
     def _stamp(self, type_name: str, plain: dict[str, Any], message: Any) -> None:
         """Give a message that came without a stamp the present, as the protocol promises."""
+        header = plain.get("header")
+        if isinstance(header, dict) and "stamp" in header:
+            return
         if is_stamped(self.registry.definition(type_name)):
-            header = plain.get("header")
-            if not isinstance(header, dict) or "stamp" not in header:
-                message.header.stamp.sec, message.header.stamp.nanosec = divmod(self.ros_time_ns, NS_PER_S)
+            message.header.stamp.sec, message.header.stamp.nanosec = divmod(self.ros_time_ns, NS_PER_S)
 
 
 def _is_finite(value: Any) -> bool:

@@ -66,18 +66,23 @@ def check(words: Namespace) -> Outcome:
 
 def bench(words: Namespace) -> Outcome:
     """Measure what our server carries, beside a bare broker and the server at `words.url` if one is given."""
-    from simconsole.bridge import bench, bench_load
+    from simconsole.bridge import bench, bench_load, bench_peers
 
     found = bench.bench(url=words.url, seconds=words.duration_s or 1.0)
-    bare = {case[1:]: figures.rate_hz for case, figures in found.items() if case.server == "bare"}
+    rates_hz = {case: figures.rate_hz for case, figures in found.items()}
     rows, lines = [], []
-    for case, figures in sorted(found.items(), key=lambda pair: pair[0][1:]):
-        share = figures.rate_hz / bare[case[1:]]
-        rows.append({**case._asdict(), **figures._asdict(), "share_of_bare": share})
+    for case, figures in sorted(found.items(), key=lambda pair: (pair[0].message, pair[0].subscribers)):
+        # Each beside the bare broker of its own library, a foreign server beside that of websockets.
+        share = figures.rate_hz / rates_hz[case._replace(server="bare", library=case.library or "websockets")]
+        url_hz = rates_hz.get(case._replace(server="url", library=""))
+        times = {} if url_hz is None or case.server == "url" else {"times_url": figures.rate_hz / url_hz}
+        rows.append({**case._asdict(), **figures._asdict(), "share_of_bare": share, **times})
+        beside = "".join(f", {value:.1f} times url" for value in times.values())
+        cpu = "" if figures.cpu_us is None else f", {figures.cpu_us:.1f} us of processor each"
         lines.append(
             (
-                f"{case.message} to {case.subscribers}: {case.server}",
-                f"{figures.rate_hz:7.0f}/s each ({share:.2f} of bare, {figures.under_way:.0f} under way), "
+                f"{case.message} to {case.subscribers}: {case.server} {case.library}".rstrip(),
+                f"{figures.rate_hz:7.0f}/s each ({share:.2f} of bare{beside}, {figures.under_way:.0f} under way{cpu}), "
                 f"at 100 Hz p50 {figures.p50_ms:.2f} ms, p99 {figures.p99_ms:.2f} ms",
             )
         )
@@ -93,7 +98,7 @@ def bench(words: Namespace) -> Outcome:
             f"max {load.age_max_ms:.1f} ms",
         ),
     ]
-    return Outcome(0, {"rows": rows, "load": load._asdict()}, table(lines))
+    return Outcome(0, {"clients": bench_peers.library(), "rows": rows, "load": load._asdict()}, table(lines))
 
 
 def cert(words: Namespace) -> Outcome:

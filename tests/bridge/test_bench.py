@@ -2,7 +2,6 @@ import asyncio
 import threading
 from collections import deque
 from collections.abc import Callable, Iterator
-from typing import Any
 
 import orjson
 import pytest
@@ -10,17 +9,34 @@ from websockets.asyncio.server import ServerConnection, serve
 
 from simconsole.bridge.bench import UNDER_WAY, Case, bench
 from simconsole.errors import BridgeError
+from simconsole.profiles.bridge import BridgeProfile
+from tests.bridge.fixtures import Served
 
 
-def test_all_servers_are_measured_in_all_cases(serving: Callable[..., Any]) -> None:
-    found = bench(rounds=1, seconds=0.05, url=serving().url)
+@pytest.fixture(params=["websockets", "picows"])
+def clients(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The benchmark's own clients by either library."""
+    monkeypatch.setattr("simconsole.bridge.bench_peers.library", lambda: request.param)
+
+
+@pytest.mark.usefixtures("clients")
+def test_all_servers_are_measured_in_all_cases(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("simconsole.bridge.bench._SILENCE_S", 0.1)
+    other = Served(BridgeProfile(port=0))
+    try:
+        found = bench(rounds=1, seconds=0.05, url=other.url)
+    finally:
+        other.stop()
     cases = [("odometry", 1), ("odometry", 10), ("laser_scan", 1)]
-    assert set(found) == {Case(server, *case) for server in ("bare", "simconsole", "url") for case in cases}
-    for figures in found.values():
+    servers = [(name, library) for name in ("bare", "simconsole") for library in ("websockets", "picows")]
+    assert set(found) == {Case(*server, *case) for server in [*servers, ("url", "")] for case in cases}
+    for case, figures in found.items():
         assert figures.rate_hz > 0.0
+        assert (figures.cpu_us is None) == (case.server == "url")
         assert 0.0 < figures.p50_ms <= figures.p99_ms
 
 
+@pytest.mark.usefixtures("clients")
 def test_nobody_there() -> None:
     with pytest.raises(BridgeError, match=r"ws://127\.0\.0\.1:1"):
         bench(rounds=1, seconds=0.01, url="ws://127.0.0.1:1")
@@ -77,6 +93,6 @@ def test_a_server_with_short_queues_is_measured_with_fewer_under_way(short_queue
 
 def test_a_server_that_passes_nothing_on_is_left(short_queues: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("simconsole.bridge.bench._TRIES", 2)
-    monkeypatch.setattr("simconsole.bridge.bench._text", lambda *_: '{"op": "nothing"}')
+    monkeypatch.setattr("simconsole.bridge.bench._text", lambda *_: b'{"op": "nothing"}')
     with pytest.raises(BridgeError, match="loses messages"):
         bench(rounds=1, seconds=0.01, url=short_queues)
