@@ -112,7 +112,7 @@ class House(NamedTuple):
         path.write_text(f"{path.read_text()}\n{line}\n")
 
     def lint(self) -> tuple[int, str]:
-        command = [Path(sys.executable).parent / "lint-imports", "--no-logo", "--no-cache"]
+        command = [str(Path(sys.executable).parent / "lint-imports"), "--no-logo", "--no-cache"]
         done = subprocess.run(command, cwd=self.root, capture_output=True, text=True, check=False)
         return done.returncode, " ".join((done.stdout + done.stderr).split())
 

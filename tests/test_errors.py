@@ -23,4 +23,5 @@ def test_docstring_draws_exactly_the_tree() -> None:
 
 def test_every_error_ends_the_program_with_a_documented_code() -> None:
     for _, kind in inspect.getmembers(errors, inspect.isclass):
+        assert issubclass(kind, errors.SimConsoleError)
         assert kind.exit_code in (1, 2)

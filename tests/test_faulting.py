@@ -1,7 +1,7 @@
 """Faults of a scenario: when they are on, that every kind is served, that a drive with them replays bit for bit."""
 
 from pathlib import Path
-from typing import Any, NamedTuple, get_args
+from typing import Any, Final, NamedTuple, get_args
 
 import numpy as np
 import pytest
@@ -28,7 +28,7 @@ from simconsole.session import drive
 from simconsole.session_files import resolve
 from simconsole.signals import Event, Mode
 
-TICK_HZ = 100
+TICK_HZ: Final = 100
 ALL_KINDS = """\
 - {kind: unplug, device: shifter, at_s: 0.2, for_s: 0.2}
 - {kind: freeze, device: wheel, at_s: 0.5, for_s: 0.2}

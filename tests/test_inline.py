@@ -1,3 +1,5 @@
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -26,6 +28,12 @@ class Server:
 
     def counts(self) -> dict[str, int]:
         return {"sent": len(self.published)}
+
+    def stand(self, timeout_s: float) -> None:
+        """Nothing to serve."""
+
+    def acts(self) -> list[dict[str, Any]]:
+        return []
 
     def publish(self, snapshot: Snapshot) -> None:
         self.published.append(snapshot.tick)

@@ -109,10 +109,15 @@ def test_every_odometry_gets_one_command_with_its_stamp() -> None:
 
 
 def test_stop_ends_it() -> None:
-    asked = []
+    asked: list[int] = []
     server = Server(steps=30, engage_at=0)
+
+    def enough() -> bool:
+        asked.append(len(asked))
+        return len(asked) > 10
+
     with serving(server) as url:
-        results = run(url, "urban", stop=lambda: len(asked) >= 10 or asked.append(0) is not None)
+        results = run(url, "urban", stop=enough)
     assert results["ended"] == "stopped"
     assert results["commands"] <= 10
 

@@ -9,4 +9,4 @@ class _NoSocket(socket.socket):
         raise AssertionError("the test of a core makes a socket")
 
 
-socket.socket = _NoSocket  # type: ignore[misc]  # for the whole run, which is a process of its own
+socket.socket = _NoSocket  # type: ignore[misc, assignment]  # for the whole run, which is a process of its own

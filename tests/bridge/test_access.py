@@ -81,7 +81,7 @@ def test_each_role_may_do_its_part_and_no_more(
     client: Callable[[Role], Any], control: Callable[..., Any], role: Role
 ) -> None:
     peer = client(role)
-    asked = {
+    asked: dict[Role, list[dict[str, Any]]] = {
         Role.NONE: [{"op": "set_level", "level": "error"}],
         Role.VIEW: [{"op": "subscribe", "topic": "/odom"}, {"op": "unsubscribe", "topic": "/odom"}],
         Role.PUBLISH: [

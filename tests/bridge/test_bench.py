@@ -73,8 +73,12 @@ def short_queues() -> Iterator[str]:
     ports: list[int] = []
     ready, stop = threading.Event(), threading.Event()
 
+    def listening(port: int) -> None:
+        ports.append(port)
+        ready.set()
+
     def run() -> None:
-        asyncio.run(keep_the_newest(lambda port: (ports.append(port), ready.set())[0], stop))
+        asyncio.run(keep_the_newest(listening, stop))
 
     thread = threading.Thread(target=run)
     thread.start()

@@ -171,7 +171,8 @@ def test_requests_are_answered_and_none_is_left_open() -> None:
 
 
 def test_goals_are_told_of_cancelled_and_ended() -> None:
-    client, goals = ClientProtocol(), []
+    client = ClientProtocol()
+    goals: list[Any] = []
     client.advertise_action("/go", "a/Go", goals.append)
     client.receive(b'{"op":"send_action_goal","action":"/go","id":"1","args":{"far":3}}')
     client.receive(b'{"op":"send_action_goal","action":"/other","id":"2"}')

@@ -74,6 +74,10 @@ def test_own_message_type() -> None:
 def test_session_section() -> None:
     texts = [text.replace("outputs:\n", "") for text in blocks("yaml")]
     profile, joined, recorded = (parse(text, OutputsSection, "docs/rosbridge.md").bridge for text in texts)
+    assert profile is not None
+    assert joined is not None
+    assert joined.upstream is not None
+    assert recorded is not None
     assert joined.upstream.url == "ws://robot:9090"
     assert (recorded.messages, recorded.record) == ("messages", ("/odom", "/grip*"))
     names = ConsoleBridge(profile).names

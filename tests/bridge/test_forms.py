@@ -6,7 +6,8 @@ from typing import Any
 import cbor2
 import pytest
 
-from simconsole.bridge.forms import PLAIN, Binary, Encoder, Form, png, spell
+from simconsole.bridge.documents import Binary
+from simconsole.bridge.forms import PLAIN, Encoder, Form, png, spell
 from simconsole.bridge.messages import standard_registry
 from tests.bridge.reading import unpacked
 

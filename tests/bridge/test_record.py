@@ -79,7 +79,7 @@ def test_a_user_type_through_the_bridge_into_mcap_and_back(tmp_path: Path, snaps
             web.send(json.dumps({"op": "publish", "topic": "/grip", "msg": {**GRIP, "name": "much too long"}}))
             heard.append(json.loads(web.recv(timeout=10.0)))
             web.send(json.dumps({"op": "publish", "topic": "/grip", "msg": GRIP}))
-            heard.extend(cbor2.loads(peer.recv(timeout=10.0)) for peer in (web, other))
+            heard.extend(cbor2.loads(peer.recv(timeout=10.0, decode=False)) for peer in (web, other))
 
     with LockstepBridge(profile, folder=tmp_path) as bridge:
         client = threading.Thread(target=talk, args=(bridge.url,))

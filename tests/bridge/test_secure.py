@@ -99,7 +99,7 @@ def test_lockstep_asks_for_the_token_too(files: dict[str, str]) -> None:
 
 
 def test_lockstep_is_encrypted_too(
-    files: dict[str, str], snapshot: Callable[..., Any], control: Callable[..., Any]
+    files: dict[str, Any], snapshot: Callable[..., Any], control: Callable[..., Any]
 ) -> None:
     """Long messages both ways, so that several records are on their way at a time."""
     answered = 40
@@ -139,7 +139,7 @@ def test_lockstep_is_encrypted_too(
         assert not program.is_alive()
 
 
-def test_profiles_that_cannot_be_served(files: dict[str, str], tmp_path: Path) -> None:
+def test_profiles_that_cannot_be_served(files: dict[str, Any], tmp_path: Path) -> None:
     with pytest.raises(ProfileError, match="can be reached from other machines"):
         BridgeServer(BridgeProfile(host="0.0.0.0"))
     with pytest.raises(ProfileError, match=r"outputs\.bridge\.tokens"):

@@ -87,7 +87,7 @@ def test_it_speaks_with_python_can_itself(pair: tuple[LoopbackBus, LoopbackBus],
     theirs = can.Bus(interface="udp_multicast", channel=GROUP, port=port, hop_limit=0)
     try:
         group, loopback = socket.inet_aton(GROUP), socket.inet_aton("127.0.0.1")
-        inner = theirs._multicast._socket
+        inner = theirs._multicast._socket  # type: ignore[attr-defined]  # as python-can names it
         inner.setsockopt(socket.IPPROTO_IP, socket.IP_DROP_MEMBERSHIP, group + socket.inet_aton("0.0.0.0"))
         inner.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, group + loopback)
         inner.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, loopback)

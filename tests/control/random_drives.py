@@ -129,9 +129,10 @@ class Drive(NamedTuple):
     def given(self, name: str) -> Rows:
         return self.inputs[:, COLUMNS.index(name)]
 
-    def of(self, record: type, name: str) -> Rows:
+    def of(self, record: type[tuple[float, ...]], name: str) -> Rows:
         at = {ArbiterMemory: 0, Arbitration: ARBITRATION_AT, VehicleCommand: COMMAND_AT}[record]
-        return self.outputs[:, at + record._fields.index(name)]
+        fields: tuple[str, ...] = record._fields  # type: ignore[attr-defined]  # a NamedTuple
+        return self.outputs[:, at + fields.index(name)]
 
     @property
     def events(self) -> NDArray[np.int64]:

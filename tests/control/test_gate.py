@@ -63,7 +63,7 @@ def test_what_is_inside_every_limit_passes_unchanged(control: ControlSettings) -
 @pytest.mark.parametrize("bad", NASTY)
 def test_no_request_gets_a_bad_value_through(mode: Mode, field: str, bad: float, control: ControlSettings) -> None:
     before = zeros(VehicleCommand)._replace(road_wheel_rad=0.1, throttle=0.2, gear=1.0)
-    command = passed(control, mode, before, **{field: bad})
+    command = passed(control, mode, before, **{field: bad})  # type: ignore[arg-type]  # a field by its name
     assert_inside(command, control)
     if not math.isfinite(bad) and field != "automatic" and not (field == "throttle" and mode is Mode.MANUAL):
         assert GateLimit.NON_FINITE in active(command)
@@ -238,7 +238,7 @@ def test_gears(
 
 def pose(**fields: float) -> RemoteCommand:
     base = zeros(RemoteCommand)._replace(kind=float(RemoteKind.POSE), x_m=3.0, y_m=-4.0, yaw_rad=1.0, speed_mps=2.0)
-    return base._replace(**fields)
+    return base._replace(**fields)  # type: ignore[no-any-return]
 
 
 def test_targets_pass_while_a_pose_is_driven(control: ControlSettings) -> None:

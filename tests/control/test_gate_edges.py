@@ -80,12 +80,12 @@ def test_a_command_before_that_is_no_number_counts_as_the_middle_in_neutral(cont
 def test_what_only_hands_and_feet_move_has_their_rate_in_every_mode(name: str, control: ControlSettings) -> None:
     step = control.manual_pedal_slew_per_s * TICK_S
     for mode in Mode:
-        command = passed(control, mode, **{name: 1.0})
+        command = passed(control, mode, **{name: 1.0})  # type: ignore[arg-type]  # a field by its name
         assert getattr(command, name) == step
         assert GateLimit.RATE in active(command)
         pressed = BEFORE._replace(**{name: 1.0})
         assert getattr(passed(control, mode, pressed), name) == 1.0 - step
-        assert getattr(passed(control, mode, pressed, **{name: math.nan}), name) == 1.0 - step
+        assert getattr(passed(control, mode, pressed, **{name: math.nan}), name) == 1.0 - step  # type: ignore[arg-type]  # a field by its name
 
 
 def test_throttle_rises_slowly_and_falls_as_fast_as_a_foot(control: ControlSettings) -> None:
@@ -145,7 +145,7 @@ def test_a_wheel_beyond_the_lock_comes_back_to_it_at_once(control: ControlSettin
 def test_pedals_out_of_range_are_named(control: ControlSettings) -> None:
     pressed = BEFORE._replace(throttle=1.0, clutch=1.0, handbrake=1.0)
     for name in ("throttle", "clutch", "handbrake"):
-        command = passed(control, before=pressed, **{"throttle": 1.0, "clutch": 1.0, "handbrake": 1.0, name: 1.01})
+        command = passed(control, before=pressed, **{"throttle": 1.0, "clutch": 1.0, "handbrake": 1.0, name: 1.01})  # type: ignore[arg-type]  # a field by its name
         assert (getattr(command, name), active(command)) == (1.0, GateLimit.RANGE)
     assert active(passed(control, brake=-0.01)) == GateLimit.RANGE
     assert passed(control, before=BEFORE._replace(brake=7.0), brake=1.0).brake == 1.0

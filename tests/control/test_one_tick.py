@@ -26,7 +26,7 @@ def now(make_rig: MakeRig) -> Moment:
         mode=float(Mode.AUTONOMOUS), reason=float(Reason.PERSON_ASKED), commander=float(Commander.ECU),
         remote_lateral=0.9, remote_longitudinal=0.8, remote_guidance=0.4,
     )  # fmt: skip
-    return moment._replace(
+    return moment._replace(  # type: ignore[no-any-return]
         driver=moment.driver._replace(hand_wheel_rad=0.45, throttle=0.5, brake=0.04),
         ros=ros,
         ecu=ros._replace(turn_indicators=1.0, sequence=8.0, road_wheel_rad=0.04, throttle=0.0, brake=0.06),

@@ -136,10 +136,10 @@ def asked(long_drive: Drive, event: Event, button: Button | None) -> NDArray[np.
     """Return in which ticks a person or an operator asked."""
     by_event = long_drive.heard & int(event) != 0
     if button is None:
-        return by_event
+        return by_event  # type: ignore[no-any-return]
     given = np.nan_to_num(long_drive.given("edges"), nan=0.0, posinf=0.0, neginf=0.0)
     known = (given >= 0.0) & (given <= 2147483647.0)
-    return by_event | (np.where(known, given, 0.0).astype(np.int64) & int(button) != 0)
+    return by_event | (np.where(known, given, 0.0).astype(np.int64) & int(button) != 0)  # type: ignore[no-any-return]
 
 
 def test_emergency_stop_is_obeyed_at_once_and_latches(long_drive: Drive) -> None:

@@ -13,7 +13,9 @@ VEHICLE = VehicleState(*(0.0,) * len(VehicleState._fields))._replace(
 HELD_RAD = 0.123
 
 
-def request(control: ControlSettings, kind: RemoteKind, vx_mps: float = 10.0, integral: float = 0.0, **fields: float):  # noqa: ANN201
+def request(
+    control: ControlSettings, kind: RemoteKind, vx_mps: float = 10.0, integral: float = 0.0, **fields: float
+) -> Any:
     command = EMPTY._replace(**{"kind": float(kind), "sequence": 1.0, "direction": 1.0, **fields})
     vehicle = VEHICLE._replace(vx_mps=vx_mps, ax_mps2=fields.get("accel_mps2", 0.0))
     return remote_request(command, HELD_RAD, integral, vehicle, control, 0.004)

@@ -164,7 +164,7 @@ def test_a_device_that_is_late_from_its_first_tick_on_is_not_there_yet(cockpit: 
 def test_readings_that_are_no_numbers(cockpit: CockpitProfile) -> None:
     nan, inf, minus, huge = (
         driven(cockpit, Invalid(at_s=0.0, axis="wheel", reading=reading))[12].wheel_axis
-        for reading in ("not_a_number", "infinite", "minus_infinite", "huge")  # type: ignore[arg-type]  # literals
+        for reading in ("not_a_number", "infinite", "minus_infinite", "huge")
     )
     assert math.isnan(nan)
     assert (inf, minus, huge) == (math.inf, -math.inf, 1e308)

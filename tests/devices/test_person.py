@@ -37,7 +37,7 @@ class Scene(NamedTuple):
 
 
 def console(cockpit: CockpitProfile, pose: Pose, slope_x: float = 0.0) -> Console:
-    profile = load("vehicles", "hatchback", VehicleProfile)  # type: ignore[arg-type]  # a union
+    profile: VehicleProfile = load("vehicles", "hatchback", VehicleProfile)  # type: ignore[arg-type]  # a union
     platform = build(profile, pose, Ground(1.0, slope_x, 0.0))
     control = control_settings(
         ControlProfile(), platform.steering_ratio, platform.max_road_wheel_rad, platform.wheelbase_m, HZ

@@ -49,8 +49,8 @@ def test_every_value_that_describes_hardware_has_a_provenance(name: str) -> None
         steps = leaf.split(".")
         prefixes = {".".join(steps[:count]) for count in range(1, len(steps) + 1)}
         assert prefixes & profile.provenance.keys(), leaf
-    steps = [leaf.split(".") for leaf in leaves(plain)]
-    known = {".".join(leaf[:count]) for leaf in steps for count in range(1, len(leaf) + 1)}
+    paths = [leaf.split(".") for leaf in leaves(plain)]
+    known = {".".join(steps[:count]) for steps in paths for count in range(1, len(leaf) + 1)}
     assert profile.provenance.keys() <= known
 
 

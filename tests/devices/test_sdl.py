@@ -102,7 +102,7 @@ def test_roles_are_the_same_in_a_thousand_shuffled_enumerations(
         source = SdlSource(t500)
         bound.add(tuple(source.instance_id(role) for role in ("wheel", "pedals", "shifter")))
         source.close()
-    names = {entry.instance_id: entry.product_id for entry, _ in real(sdl_runtime.acquire())}
+    names: dict[int | None, int] = {entry.instance_id: entry.product_id for entry, _ in real(sdl_runtime.acquire())}
     sdl_runtime.release()
     cockpit.close()
     assert len(orders) > 500

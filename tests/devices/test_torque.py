@@ -12,10 +12,9 @@ from simconsole.devices.force_settings import NO_FORCE, ForceSettings, force_set
 from simconsole.devices.guidance import Wanted
 from simconsole.devices.rim import Rim, turn
 from simconsole.devices.torque import Parts, compose, end_stop, servo, soft_clip, wheel_torque
-from simconsole.pipeline import DriverInput
 from simconsole.profile_files import load
 from simconsole.profiles.device import CockpitProfile
-from simconsole.signals import Arbitration, Event, Mode, Validity, VehicleState, WheelMemory, WheelTorque
+from simconsole.signals import Arbitration, DriverInput, Event, Mode, Validity, VehicleState, WheelMemory, WheelTorque
 
 RATIO, LOCK_RAD, HZ, TICK_S = 15.5, math.radians(36.0), 250, 0.004
 PERSON = DriverInput(*(0.0,) * len(DriverInput._fields))._replace(wheel_validity=float(Validity.LIVE))
@@ -184,7 +183,12 @@ def test_no_drive_leaves_the_limits_and_both_executions_agree(seed: int, force: 
             wheel_validity=float(dice.choice([Validity.LIVE] * 9 + [Validity.STALE])),
         )
         before = slow.torque.torque_nm
-        arguments = {"driver": driver, "vehicle": vehicle, "mode": mode, "motor": float(dice.random() < 0.97)}
+        arguments: dict[str, Any] = {
+            "driver": driver,
+            "vehicle": vehicle,
+            "mode": mode,
+            "motor": float(dice.random() < 0.97),
+        }
         torque = slow.tick(**arguments)
         assert tuple(map(float.hex, torque)) == tuple(map(float.hex, fast.tick(**arguments)))
         assert tuple(map(float.hex, slow.memory)) == tuple(map(float.hex, fast.memory))

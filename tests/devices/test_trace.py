@@ -19,14 +19,16 @@ def samples(count: int) -> list[DeviceSample]:
     dice = random.Random(7)
     print("seed 7")
     return [
-        DeviceSample(
-            *(dice.uniform(-1, 1) for _ in range(5)),
-            float(dice.getrandbits(13)),
-            float(dice.getrandbits(10)),
-            float(dice.randint(-1, 1)),
-            float(dice.randint(-1, 1)),
-            *(dice.choice([0.0, 3.0, NEVER_TICKS]) for _ in range(4)),
-            float(dice.getrandbits(1)),
+        DeviceSample._make(
+            (
+                *(dice.uniform(-1, 1) for _ in range(5)),
+                float(dice.getrandbits(13)),
+                float(dice.getrandbits(10)),
+                float(dice.randint(-1, 1)),
+                float(dice.randint(-1, 1)),
+                *(dice.choice([0.0, 3.0, NEVER_TICKS]) for _ in range(4)),
+                float(dice.getrandbits(1)),
+            )
         )
         for _ in range(count)
     ]

@@ -7,7 +7,8 @@ feedback (D11 to D13) has a file of its own.
 import math
 import time
 from collections.abc import Callable
-from typing import Final, NamedTuple, get_args
+from dataclasses import dataclass
+from typing import Final, get_args
 
 import numpy as np
 import pytest
@@ -45,7 +46,8 @@ HANDED_OVER = """
 CONTROLLER = "[{start_s: 0.5, end_s: 100, kind: speed, speed_mps: 8}]"
 
 
-class Driven(NamedTuple):
+@dataclass(frozen=True)
+class Driven:
     """The rows of a drive by column."""
 
     rows: NDArray[np.float64]

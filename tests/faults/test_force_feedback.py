@@ -135,7 +135,7 @@ def let_go_s(log: list[dict[str, Any]]) -> float:
     plays = [call for call in log if call["what"] == "play"]
     started = max(i for i, call in enumerate(plays) if call["value"] == 1)
     stopped = {call["id"]: call["t_ns"] / 1e9 for call in reversed(plays[started:]) if call["value"] == 0}
-    return min(ends_s, max(stopped[0], stopped[1])) - plays[started]["t_ns"] / 1e9
+    return float(min(ends_s, max(stopped[0], stopped[1])) - plays[started]["t_ns"] / 1e9)
 
 
 def stopped_child(parent: int) -> int:

@@ -85,7 +85,7 @@ def test_n01_commander_that_closes_is_an_event_and_the_others_go_on(
 
 @pytest.mark.parametrize("subscribed", [False, True])
 def test_n04_client_that_went_without_a_word_is_freed_after_three_seconds(
-    snapshot: Callable[..., Any], control: Callable[..., Any], subscribed: bool, transport: str
+    snapshot: Callable[..., Any], control: Callable[..., Any], subscribed: bool, transport: Any
 ) -> None:
     """The clock is ours; what the kernel knows of the other side is real."""
     now_ns = 0
@@ -120,7 +120,7 @@ def test_n04_client_that_went_without_a_word_is_freed_after_three_seconds(
     asyncio.run(main())
 
 
-def test_n04_program_that_is_merely_slow_is_not_cut(control: Callable[..., Any], transport: str) -> None:
+def test_n04_program_that_is_merely_slow_is_not_cut(control: Callable[..., Any], transport: Any) -> None:
     now_ns = 0
 
     async def main() -> None:
@@ -141,7 +141,7 @@ def test_n04_program_that_is_merely_slow_is_not_cut(control: Callable[..., Any],
 
 def test_n05_stalled_subscriber_costs_the_others_nothing_and_no_memory(
     record_property: Callable[[str, object], None],
-    transport: str,
+    transport: Any,
 ) -> None:
     """A thousand messages of 20 kB: the others get every one, the stalled one's 20 MB are not kept anywhere."""
     messages, text = 1000, "x" * 20_000
@@ -295,7 +295,8 @@ def test_n06_commands_over_a_bad_network_arrive_in_order_or_not_at_all(
                 stamp_ns = received.message.header.stamp.nanosec + received.message.header.stamp.sec * S
                 client.publish(CONTROL, control(answered / 100, stamp_ns=stamp_ns))
                 answered += 1
-        angles, sequences = [], []
+        angles: list[float] = []
+        sequences: list[float] = []
         while not angles or angles[-1] != 0.09:
             command = server.command()
             angles.append(command.road_wheel_rad)

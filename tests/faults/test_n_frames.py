@@ -13,6 +13,7 @@ from typing import Any
 import pytest
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import ClientConnection, connect
+from websockets.typing import Origin
 
 from simconsole.profiles.bridge import BridgeLimits
 from tests.bridge.networks import BINARY, CLOSE, PING, PONG, TEXT, Raw, frame, handshake
@@ -129,7 +130,7 @@ def test_n15_page_from_elsewhere_is_turned_away(
     server = edge()
     with unharmed(server, control):
         with pytest.raises(InvalidStatus) as caught:
-            connect(server.url, origin=origin)  # type: ignore[arg-type]  # a NewType of str there
+            connect(server.url, origin=Origin(origin))
         assert caught.value.response.status_code == 403
 
 

@@ -16,7 +16,7 @@ from simconsole.bridge.fragments import MAX_OPEN, TIMEOUT_NS
 from simconsole.profiles.bridge import BridgeLimits, BridgeProfile
 
 CONTROL = "/control/command/control_cmd"
-ATOMS = [
+ATOMS: list[Any] = [
     None, True, -1, 0, 1e308, 5e-324, 2**63, 2**64, -(2**63) - 1, 10**400, "", "x", "NaN", "\u0000", [], {}, [[]], [{}],
     {"x": 1}, "1", 1.5, "/clock", "é€𝄞",
 ]  # fmt: skip

@@ -50,11 +50,12 @@ def test_n02_everything_is_there_again_after_each_of_many_restarts(
     snapshot: Callable[..., Any],
     control: Callable[..., Any],
     record_property: Callable[[str, object], None],
-    transport: str,
+    transport: Any,
 ) -> None:
     caplog.set_level(logging.CRITICAL)  # or what is kept of the log would count as growth
     # Classes that msgspec has generated are never freed; a server is restarted in a process of its own.
-    port, states, registry = free_port(), [], standard_registry()
+    port, registry = free_port(), standard_registry()
+    states: list[Any] = []
     times_s = []
     with BridgeClient(f"ws://127.0.0.1:{port}", on_state=states.append, first_s=0.005, cap_s=0.02) as client:
         client.subscribe("/odom", "nav_msgs/Odometry")
@@ -92,7 +93,7 @@ def test_n02_everything_is_there_again_after_each_of_many_restarts(
     record_property("restored after a server's restart", text)
 
 
-def test_n02_a_hundred_clients_that_come_and_go_leave_nothing_behind(transport: str) -> None:
+def test_n02_a_hundred_clients_that_come_and_go_leave_nothing_behind(transport: Any) -> None:
     wishes = [
         {"op": "subscribe", "topic": "/odom"},
         {"op": "subscribe", "topic": "/own", "type": "std_msgs/String", "queue_length": 5},

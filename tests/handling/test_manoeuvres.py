@@ -128,4 +128,4 @@ def test_a_watched_drive_is_described() -> None:
 )
 def test_every_description_finds_its_manoeuvre(spec: Observed | SineWithDwell | StraightBraking, kind: str) -> None:
     at_work = drive_manoeuvre(spec, CAR, 1.0)
-    assert at_work.gi_code.co_name == kind
+    assert at_work.gi_code.co_name == kind  # type: ignore[attr-defined]  # of a generator function

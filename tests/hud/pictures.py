@@ -1,5 +1,7 @@
 """Views to lay out, and what was drawn of them."""
 
+from typing import Any
+
 from simconsole.hud.draw import PALETTE, Colour, DrawItem, Text
 from simconsole.hud.layout import layout
 from simconsole.hud.screen import Screen
@@ -15,11 +17,11 @@ SCREENS = {
 SCREEN = SCREENS["4:3"]
 
 
-def in_mode(mode: Mode, **more: object) -> HudView:
+def in_mode(mode: Mode, **more: Any) -> HudView:
     return HudView(mode=float(mode), mode_words=mode_words(mode), reason_words="driver asked")._replace(**more)
 
 
-def asked(stage: int, **more: object) -> HudView:
+def asked(stage: int, **more: Any) -> HudView:
     return in_mode(Mode.TAKEOVER_REQUESTED, takeover_stage=stage, **{"remaining_s": 7.2, **more})
 
 

@@ -1,3 +1,5 @@
+from typing import Any
+
 import pytest
 
 from simconsole.hud.draw import bounds
@@ -10,13 +12,15 @@ from tests.hud.pictures import SCREEN, by_role, said, shape_of, texts
 def test_a_pedal_bar_is_as_high_as_the_pedal_is_deep(pedal: str) -> None:
     role = "gas" if pedal == "throttle" else pedal
     slot = bounds(by_role(layout(HudView(), SCREEN), f"pedal.{role}.slot")[0])
-    half = layout(HudView()._replace(**{pedal: 0.5}), SCREEN)
+    feet: dict[str, Any] = {pedal: 0.5}
+    half = layout(HudView()._replace(**feet), SCREEN)
     bar = bounds(by_role(half, f"pedal.{role}.bar")[0])
     assert bar.h == pytest.approx(0.5 * slot.h)
     assert bar.bottom == pytest.approx(slot.bottom)
     assert by_role(half, f"pedal.{role}.number")[0].text == "50"  # type: ignore[union-attr]
     assert not by_role(layout(HudView(), SCREEN), f"pedal.{role}.bar")
-    foot = bounds(by_role(layout(HudView()._replace(**{f"driver_{pedal}": 1.0}), SCREEN), f"pedal.{role}.foot")[0])
+    feet = {f"driver_{pedal}": 1.0}
+    foot = bounds(by_role(layout(HudView()._replace(**feet), SCREEN), f"pedal.{role}.foot")[0])
     assert foot.cy == pytest.approx(slot.y)
 
 

@@ -1,4 +1,5 @@
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -168,7 +169,7 @@ def test_can_is_shown_only_where_there_is_a_bus() -> None:
         ({"command__gate_active": float(GateLimit.RATE)}, ""),
     ],
 )
-def test_what_is_wrong_with_the_lever_is_said(fields: dict[str, float], words: str) -> None:
+def test_what_is_wrong_with_the_lever_is_said(fields: dict[str, Any], words: str) -> None:
     """D08: the gear is kept, and the driver is told why."""
     shown, _ = view(snapshot(**fields), 0.0, HudMemory(), HudSettings())
     assert shown.lever_words == words

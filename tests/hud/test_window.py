@@ -41,7 +41,8 @@ def picture(opened: Window) -> bytes:
 
 
 def test_the_window_runs_reports_keys_and_ends() -> None:
-    ticks, keys, ends = iter(range(100)), [], stop_after(5)
+    keys: list[int] = []
+    ticks, ends = iter(range(100)), stop_after(5)
     run(Ports(lambda: snapshot(next(ticks)), keys.append, lambda: next(ends)), PROFILE, HudSettings())
     assert keys == [0] * 6  # five frames, and the release at the end
     assert next(ticks) == 5

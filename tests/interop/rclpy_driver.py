@@ -16,7 +16,7 @@ from std_msgs.msg import String
 SPEED_MPS = 8.0
 
 
-class Driver(Node):
+class Driver(Node):  # type: ignore[misc]  # rclpy has no types here
     def __init__(self, seconds: float) -> None:
         super().__init__("driver")
         self._seconds = seconds

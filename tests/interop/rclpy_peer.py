@@ -25,7 +25,7 @@ LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 BEST_EFFORT = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
-class Peer(Node):
+class Peer(Node):  # type: ignore[misc]  # rclpy has no types here
     def __init__(self) -> None:
         super().__init__("peer")
         group = ReentrantCallbackGroup()

@@ -46,9 +46,9 @@ class Relay:
     def __init__(self, web: Any, table: Any) -> None:
         self._web = web
         self._lock = threading.Lock()
-        self._publishers: dict = {}
-        self._proxies: dict = {}
-        self._answers: dict = {}
+        self._publishers: dict[str, Any] = {}
+        self._proxies: dict[str, Any] = {}
+        self._answers: dict[Any, Any] = {}
         self._numbers = 0
         for topic, name in table["out"].items():
             self._publishers[topic] = rospy.Publisher(topic, load(name, "msg"), queue_size=10)

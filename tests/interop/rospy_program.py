@@ -16,7 +16,7 @@ from nav_msgs.msg import Odometry
 from std_msgs.msg import String
 from std_srvs.srv import SetBool, SetBoolResponse
 
-seen: dict = {"odometry": 0}
+seen: dict[str, Any] = {"odometry": 0}
 fast = threading.Event()
 
 

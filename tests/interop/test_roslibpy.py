@@ -82,6 +82,10 @@ def test_against_the_server_of_its_own_process(transport: str) -> None:
         last_tick = tick
         return snapshot(tick)
 
+    def listening(port: int) -> None:
+        ports.append(port)
+        ready.set()
+
     def run() -> None:
         serve(
             BridgeProfile(port=0),
@@ -89,7 +93,7 @@ def test_against_the_server_of_its_own_process(transport: str) -> None:
             lambda command, receipt_ns: commands.append(command),
             lambda events: None,
             stop.is_set,
-            on_ready=lambda port: (ports.append(port), ready.set())[1],
+            on_ready=listening,
         )
 
     thread = threading.Thread(target=run)

@@ -28,9 +28,13 @@ class Outside(HTMLParser):
                 self.fetched.append(value)
 
 
+def written(path: Path, sample: Any, course: Course | None, title: str, *more: Any, **options: Any) -> dict[str, Any]:
+    return write_report(path, sample.rows, sample.columns, sample.tick_hz, course, title, *more, **options)
+
+
 def test_latency_of_each_hop_stands_in_the_page_only(tmp_path: Path, sample: Any) -> None:
     hops = {"read": {"p50": 35.5, "p99": 56.25, "max": 113.0, "count": 1000}}
-    found = write_report(tmp_path / "r.html", *sample, None, "title", latency_us=hops)
+    found = written(tmp_path / "r.html", sample, None, "title", latency_us=hops)
     row = "<tr><td>read</td><td class=n>35.5</td><td class=n>56.2</td><td class=n>113.0</td><td class=n>1000</td></tr>"
     assert row in (tmp_path / "r.html").read_text("utf-8")
     assert "latency_us" not in found
@@ -38,7 +42,7 @@ def test_latency_of_each_hop_stands_in_the_page_only(tmp_path: Path, sample: Any
 
 def test_page_is_whole_and_needs_nothing_else(tmp_path: Path, sample: Any, course: Course) -> None:
     path = tmp_path / "report.html"
-    found = write_report(path, *sample, course, "Drive <1> & more", {"Vehicle": "hatchback", "Note": "a < b"})
+    found = written(path, sample, course, "Drive <1> & more", {"Vehicle": "hatchback", "Note": "a < b"})
     text = path.read_text()
     page = Outside()
     page.feed(text)
@@ -54,19 +58,19 @@ def test_page_is_whole_and_needs_nothing_else(tmp_path: Path, sample: Any, cours
 
 def test_same_drive_same_bytes(tmp_path: Path, sample: Any, course: Course) -> None:
     first, second = tmp_path / "a.html", tmp_path / "b.html"
-    assert write_report(first, *sample, course, "Drive") == write_report(second, *sample, course, "Drive")
+    assert written(first, sample, course, "Drive") == written(second, sample, course, "Drive")
     assert first.read_bytes() == second.read_bytes()
 
 
 def test_drive_without_course_is_reported_too(tmp_path: Path, sample: Any) -> None:
-    found = write_report(tmp_path / "ball.html", *sample, None, "Ball")
+    found = written(tmp_path / "ball.html", sample, None, "Ball")
     assert found["autonomous"]["lateral_rms_m"] is None
     assert "no course in this world" in (tmp_path / "ball.html").read_text()
 
 
 def test_unwritable_file_is_one_line(tmp_path: Path, sample: Any) -> None:
     with pytest.raises(RecordingError, match="cannot be written") as caught:
-        write_report(tmp_path / "no" / "report.html", *sample, None, "Drive")
+        written(tmp_path / "no" / "report.html", sample, None, "Drive")
     assert "\n" not in str(caught.value)
 
 

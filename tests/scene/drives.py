@@ -1,6 +1,7 @@
 """A short made-up drive with one of everything that the scene shows."""
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from simconsole.profiles.view import SceneProfile
 from simconsole.rows import columns
@@ -27,7 +28,7 @@ def rows(count: int) -> np.ndarray:
     tick = np.arange(1, count + 1)
     table = np.zeros((count, len(COLUMNS)))
 
-    def put(name: str, values: object) -> None:
+    def put(name: str, values: ArrayLike) -> None:
         table[:, COLUMNS.index(name)] = values
 
     speed = np.clip((tick - 300) / TICK_HZ * 2.0, 0.0, 10.0)

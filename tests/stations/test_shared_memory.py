@@ -121,7 +121,8 @@ def test_a_record_being_overwritten_is_not_returned(tmp_path: Path) -> None:
 
 def test_a_reader_lapped_again_and_again_gives_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     Ring.create(tmp_path / "ring", 1, 2).write(np.array([1.0]))
-    reader, tries = Ring.open(tmp_path / "ring"), []
+    reader = Ring.open(tmp_path / "ring")
+    tries: list[int] = []
     monkeypatch.setattr(reader, "_read", tries.append)
     assert reader.latest() is None
     assert len(tries) == shared_memory.READ_TRIES

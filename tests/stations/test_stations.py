@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from simconsole import stations
 from simconsole.errors import StationError
 from simconsole.rows import Snapshot
 from simconsole.shared_memory import Ring, make_run_folder
@@ -156,7 +155,7 @@ def test_a_killed_station_is_restarted_while_the_core_goes_on(
         before = said(supervisor.folder, "reader")
         assert before is not None
         os.kill(before["pid"], signal.SIGKILL)
-        drive_until(lambda before=before: (said(supervisor.folder, "reader") or before)["pid"] != before["pid"])
+        drive_until(lambda: (said(supervisor.folder, "reader") or before)["pid"] != before["pid"])  # noqa: B023
     drive_until(lambda: supervisor.counters().get("reader", 0) >= 2)
     assert said(supervisor.folder, "quiet") == quiet
     assert supervisor.counters()["quiet"] == 0
@@ -204,7 +203,7 @@ def test_a_warden_that_cannot_be_started_again_does_not_end_the_drive(
     supervisor._warden.kill()
     wait_until(lambda: not supervisor.alive())
     with monkeypatch.context() as patch:
-        patch.setattr(stations.sys, "executable", "/nowhere/python")
+        patch.setattr(sys, "executable", "/nowhere/python")
         supervisor.look()
         assert not supervisor.alive()
     supervisor.look()
@@ -223,7 +222,7 @@ def test_a_station_that_will_not_end_is_killed(
 
 
 def test_an_interpreter_that_is_not_there_is_one_line(run_base: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(stations.sys, "executable", "/nowhere/python")
+    monkeypatch.setattr(sys, "executable", "/nowhere/python")
     supervisor = Supervisor(make_run_folder(), [])
     with pytest.raises(StationError, match="warden: cannot be started: No such file"):
         supervisor.start()

@@ -56,7 +56,8 @@ def test_zebras_lie_across_the_road(course: Course, drawn: Drawing) -> None:
         point = course.at(crossing.s_m)
         near = [z for z in drawn.zebras if np.hypot(*(z.mean(axis=0) - point[:2])) < 6.0]
         assert len(near) == 7
-        laterals = sorted(course.project(*z.mean(axis=0).tolist(), crossing.s_m).lateral_m for z in near)
+        middles = [z.mean(axis=0) for z in near]
+        laterals = sorted(course.project(float(x), float(y), crossing.s_m).lateral_m for x, y in middles)
         assert laterals == pytest.approx([-1.25, -0.25, 0.75, 1.75, 2.75, 3.75, 4.75], abs=1e-6)
 
 
