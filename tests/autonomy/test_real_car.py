@@ -15,6 +15,7 @@ from simconsole.vehicle.registry import build
 from simconsole.world.course import Course
 
 TICK_HZ = 250
+NOTHING = VehicleCommand(*(0.0,) * len(VehicleCommand._fields))
 TICKS_PER_COMMAND = 5
 
 
@@ -42,11 +43,9 @@ def test_a_lap_in_the_hatchback_keeps_the_bars(course: Course) -> None:
             lateral.append(tracker.lateral_m)
         throttle, brake = pedals(accel, vehicle)
         after = row.copy()
-        after[COMMAND_AT:VEHICLE_AT] = VehicleCommand(
-            wheel, throttle, brake, 0.0, 0.0, gear=1.0, automatic=1.0,
-            target_speed_mps=0.0, target_x_m=0.0, target_y_m=0.0, target_yaw_rad=0.0,
-            gate_active=0.0, gate_active_ticks=0.0,
-        )  # fmt: skip
+        after[COMMAND_AT:VEHICLE_AT] = NOTHING._replace(
+            road_wheel_rad=wheel, throttle=throttle, brake=brake, gear=1.0, automatic=1.0
+        )
         step(row, after, car.parameters, 1000 // TICK_HZ)
         row, tick = after, tick + 1
         assert tick < 300 * TICK_HZ, "the lap takes too long"

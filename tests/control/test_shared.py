@@ -85,9 +85,9 @@ def test_each_rule_gives_its_authority_and_only_the_traded_one_moves_the_trade(m
     fixed, by_line, traded_away = (
         consent(now._replace(settings=now.settings._replace(shared_rule=rule)), 0.1, 0.0) for rule in (0.0, 1.0, 2.0)
     )
-    assert fixed == (now.settings.shared_lateral, 1.0)
+    assert tuple(fixed) == (now.settings.shared_lateral, 1.0)
     crossing_s = time_to_crossing(0.1, 0.0, now.vehicle, now.settings)
-    assert by_line == (by_line_crossing(crossing_s, now.settings), 1.0)
+    assert tuple(by_line) == (by_line_crossing(crossing_s, now.settings), 1.0)
     assert by_line.lateral > fixed.lateral > traded_away.lateral
     assert traded_away.trade == pytest.approx(0.25 - now.settings.shared_trade_per_tick)
 
