@@ -13,8 +13,6 @@ from simconsole.control.arbitration import arbitrate, watched
 from simconsole.control.commander import ECU
 from simconsole.control.gate import gate
 from simconsole.control.moment import Moment
-from simconsole.control.person import mask, person_of
-from simconsole.control.restart import GRANTED, NOT_ASKED, restart_refusal
 from simconsole.control.settings import ControlSettings
 from simconsole.devices.calibration import calibrate
 from simconsole.devices.cockpit import CockpitSettings
@@ -80,8 +78,6 @@ CONTROL_WIDTH: Final = len(ControlSettings._fields)
 FORCE_AT: Final = CONTROL_AT + CONTROL_WIDTH
 FORCE_WIDTH: Final = len(ForceSettings._fields)
 _RESTARTED_AT: Final = ARBITRATION_AT + Arbitration._fields.index("restarted")
-_REFUSAL_AT: Final = ARBITRATION_AT + Arbitration._fields.index("refusal")
-_REFUSAL_TICKS_AT: Final = MEMORY_AT + ArbiterMemory._fields.index("refusal_ticks")
 PHYSICS_HZ: Final = 1000
 """The vehicle integrates at a fixed 1 ms whatever the tick."""
 
@@ -168,6 +164,7 @@ def advance_row(previous: Row, inputs: Row | tuple[float, ...], console: Console
     if row[_RESTARTED_AT] > 0.0:
         previous = _start_again(previous, console)
         console.decide(previous, row, console.settings, console.tick_s)
+        row[_RESTARTED_AT] = 1.0
     mark(Hop.DECIDE)
     console.step(previous, row, console.platform.parameters, console.substeps)
     mark(Hop.STEP)
@@ -218,11 +215,9 @@ def decide(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
         motor.explained_rad,
         motor.explained_radps,
         WheelTorque(*take(previous, TORQUE_AT, TORQUE_WIDTH)).human_nm,
+        motor.live,
         control,
         tick_s,
-    )
-    restart = restart_refusal(
-        now.before.mode, driver, person_of(driver, 0.0, control), mask(now.events.events), control
     )
     memory, ros_link, ecu_link, arbitration, request = arbitrate(now)
     remote = ecu if arbitration.commander == ECU else ros
@@ -234,11 +229,6 @@ def decide(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
     put(row, ECU_LINK_AT, ecu_link)
     put(row, ARBITRATION_AT, arbitration)
     put(row, COMMAND_AT, command)
-    if restart == GRANTED:
-        row[_RESTARTED_AT] = 1.0
-    elif restart != NOT_ASKED:
-        row[_REFUSAL_AT] = restart
-        row[_REFUSAL_TICKS_AT] = 0.0
 
 
 @kernel

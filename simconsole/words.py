@@ -5,7 +5,7 @@ Words are short enough for a glance (facts: at most seven per alert) and never d
 
 from typing import Final
 
-from simconsole.signals import Commander, LinkState, Mode, Reason, Validity
+from simconsole.signals import Commander, LinkState, Mode, Notice, Reason, Validity
 
 _MODES: Final[dict[float, str]] = {
     Mode.PARKED: "PARKED",
@@ -52,6 +52,14 @@ _REASONS: Final[dict[float, str]] = {
     Reason.REFUSED_PEDAL_PRESSED: "refused: a pedal is pressed",
 }
 
+_NOTICES: Final[dict[float, str]] = {
+    Notice.NONE: "",
+    Notice.THROTTLE_HELD: "throttle is held: autopilot only steers",
+    Notice.CENTRING_WHEEL: "hands off: the wheel is being centred",
+    Notice.CENTRE_WHEEL: "centre the wheel to start again",
+    Notice.RELEASE_PEDALS: "release the pedals to start again",
+}
+
 LINK_NOBODY: Final = "nobody"
 LINK_LOST: Final = "lost"
 LINK_RETRYING: Final = "retrying"
@@ -87,6 +95,11 @@ def mode_words(mode: float) -> str:
 def reason_words(reason: float) -> str:
     """Return why the mode changed, or why a request was refused ("refused: ..."), in at most seven words."""
     return _REASONS.get(reason, f"reason {reason:g}")
+
+
+def notice_words(notice: float) -> str:
+    """Return what a person is told while it is so, in at most seven words; nothing where there is nothing to tell."""
+    return _NOTICES.get(notice, f"notice {notice:g}")
 
 
 def commander_words(commander: float) -> str:

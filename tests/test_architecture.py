@@ -41,7 +41,7 @@ UNITLESS = {
     *("anti_lock_off", "traction_off", "stability_off", "gear_fault"),
     *("turn_indicators", "hazard_lights", "stalk", "hazard_switch"),
     # members of an enumeration
-    *("kind", "mode", "reason", "refusal", "gear", "direction", "takeover_stage", "commander", "state"),
+    *("kind", "mode", "reason", "refusal", "notice", "gear", "direction", "takeover_stage", "commander", "state"),
     *("restarted", "stop_steered"),
     *("wheel_validity", "throttle_validity", "brake_validity", "clutch_validity", "shifter_validity"),
     "handbrake_validity",

@@ -18,7 +18,17 @@ from simconsole.profiles.device import ScriptProfile
 from simconsole.profiles.session import SessionProfile
 from simconsole.rows import INPUT_WIDTH, Snapshot
 from simconsole.session_files import resolve
-from simconsole.signals import NO_COMMAND, DeviceSample, Event, EventInput, Mode, Reason, RemoteCommand, RemoteKind
+from simconsole.signals import (
+    NO_COMMAND,
+    DeviceSample,
+    Event,
+    EventInput,
+    Mode,
+    Notice,
+    Reason,
+    RemoteCommand,
+    RemoteKind,
+)
 
 HZ = 250
 SESSION = "schema: 1\nscenario: {vehicle: hatchback}\ndevices: {driver: none}\n"
@@ -144,11 +154,23 @@ def test_back_to_the_start_from_speed_and_on_again(go: Callable[..., Driven]) ->
 def test_the_wheel_is_centred_and_the_pedals_are_released_first(
     go: Callable[..., Driven], points: str, plan: dict[tuple[int, int], Event], reason: str
 ) -> None:
-    driven = go({(1000, 1): Event.RESTART, **plan}, points, seconds=4.5)
-    after = driven.at(1000)
-    assert after.arbitration.restarted == 0.0
-    assert Reason(int(after.arbitration.refusal)) is Reason[f"REFUSED_{reason}"]
-    assert driven.at(1010).arbitration.refusal == after.arbitration.refusal, "shown for a while"
+    driven = go({(1000, 1): Event.RESTART, **plan}, points, seconds=14.5)
+    end = 1000 if plan else 1000 + 10 * HZ
+    assert driven.column("arbitration.restarted").sum() == 0.0
+    assert (driven.column("arbitration.notice")[999 : end - 1] > 0.0).all(), "waited for"
+    after = driven.at(end)
+    assert (Reason(int(after.arbitration.refusal)), after.arbitration.notice) == (Reason[f"REFUSED_{reason}"], 0.0)
+    assert driven.at(end + 10).arbitration.refusal == after.arbitration.refusal, "shown for a while"
+    assert driven.replayed()
+
+
+def test_a_restart_waits_for_the_pedals_and_is_replayed(go: Callable[..., Driven]) -> None:
+    points = "  - {time_s: 3.0, brake: 0}\n  - {time_s: 3.5, brake: 0.5}\n"
+    points += "  - {time_s: 5.0, brake: 0.5}\n  - {time_s: 5.5, brake: 0}\n"
+    driven = go({(1000, 1): Event.RESTART}, points)
+    (at,) = np.flatnonzero(driven.column("arbitration.restarted"))
+    assert 5.0 * HZ < at < 5.6 * HZ
+    assert (driven.column("arbitration.notice")[999:at] == Notice.RELEASE_PEDALS).all()
     assert driven.replayed()
 
 

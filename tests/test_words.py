@@ -1,9 +1,14 @@
-from simconsole.signals import Mode, Reason, Validity
-from simconsole.words import gear_words, mode_words, reason_words, validity_words
+from simconsole.signals import Mode, Notice, Reason, Validity
+from simconsole.words import gear_words, indicator_words, mode_words, notice_words, reason_words, validity_words
 
 
 def test_every_mode_reason_and_validity_has_words_of_its_own() -> None:
-    for words, members in ((mode_words, Mode), (reason_words, Reason), (validity_words, Validity)):
+    for words, members in (
+        (mode_words, Mode),
+        (reason_words, Reason),
+        (validity_words, Validity),
+        (notice_words, Notice),
+    ):
         texts = [words(float(member)) for member in members]
         assert len(set(texts)) == len(members), texts
         # An unknown number names itself; a known one must not.
@@ -11,8 +16,7 @@ def test_every_mode_reason_and_validity_has_words_of_its_own() -> None:
 
 
 def test_words_are_short_and_printable() -> None:
-    for reason in Reason:
-        text = reason_words(reason)
+    for text in (*map(reason_words, Reason), *map(notice_words, Notice)):
         assert len(text.split()) <= 7
         assert text.isascii()
         assert text.isprintable()
@@ -27,7 +31,12 @@ def test_an_unknown_number_names_itself() -> None:
     assert mode_words(99.0) == "MODE 99"
     assert reason_words(2.5) == "reason 2.5"
     assert validity_words(-1.0) == "validity -1"
+    assert notice_words(9.0) == "notice 9"
 
 
 def test_the_lever_reads_as_its_knob() -> None:
     assert [gear_words(gear) for gear in (-1.0, 0.0, 1.0, 6.0)] == ["R", "N", "1", "6"]
+
+
+def test_indicators_are_named_by_their_side() -> None:
+    assert [indicator_words(side) for side in (-1.0, 0.0, 1.0)] == ["right", "off", "left"]

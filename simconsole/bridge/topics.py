@@ -13,7 +13,7 @@ from simconsole.rows import Snapshot
 from simconsole.signals import NEVER_TICKS, Link, Mode, RemoteCommand
 from simconsole.trigonometry import cos, sin
 from simconsole.units import NS_PER_S
-from simconsole.words import commander_words, link_words, mode_words, reason_words
+from simconsole.words import commander_words, link_words, mode_words, notice_words, reason_words
 
 CLOCK: Final = "/clock"
 TF: Final = "/tf"
@@ -222,6 +222,8 @@ class Outputs:
             reason_words(decided.reason),
             int(decided.refusal),
             reason_words(decided.refusal) if decided.refusal else "",
+            int(decided.notice),
+            notice_words(decided.notice),
             decided.remote_lateral,
             decided.remote_longitudinal,
             decided.person_road_wheel_rad,

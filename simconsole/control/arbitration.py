@@ -21,16 +21,19 @@ from simconsole.control.decision import Decision, decide, takeover_stage
 from simconsole.control.lights import Lights, lights_of, switched
 from simconsole.control.moment import Moment
 from simconsole.control.person import Person, person_of
+from simconsole.control.restart import Restart, restart_of
+from simconsole.control.settings import ControlSettings
 from simconsole.control.shared import consent
 from simconsole.control.stops import slow
-from simconsole.control.takeover import WheelWatch, steering_taken, throttle_overrides, watch_wheel
+from simconsole.control.takeover import WheelWatch, steering_taken, throttle_held, throttle_overrides, watch_wheel
 from simconsole.kernels import kernel
-from simconsole.signals import ArbiterMemory, Arbitration, Link, Mode, Request
+from simconsole.signals import ArbiterMemory, Arbitration, Link, Mode, Notice, Request
 
 _SHARED: Final = float(Mode.SHARED)
 _AUTONOMOUS: Final = float(Mode.AUTONOMOUS)
 _TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)
 _MINIMAL_RISK: Final = float(Mode.MINIMAL_RISK)
+_THROTTLE_HELD: Final = float(Notice.THROTTLE_HELD)
 
 
 class Seen(NamedTuple):
@@ -60,6 +63,10 @@ def arbitrate(now: Moment) -> tuple[ArbiterMemory, Link, Link, Arbitration, Requ
         steering_taken(seen.watch, now.settings),
         seen.standstill_ticks >= now.settings.standstill_ticks,
     )
+    restart = restart_of(now, seen.person)
+    if restart.refusal > 0.0:
+        decision = Decision(decision.mode, decision.reason, decision.changed, restart.refusal, 0.0)
+    held_ticks = throttle_held(now.memory.throttle_held_ticks, seen.throttle_override, decision.mode)
     mode_ticks = 0.0 if decision.changed > 0.0 else now.memory.mode_ticks + 1.0
     shared = consent(now, seen.person.road_wheel_rad, controllers.offered.road_wheel_rad)
     shares = shares_of(decision.mode, seen.throttle_override, shared.lateral, now.before, now.settings)
@@ -69,11 +76,18 @@ def arbitrate(now: Moment) -> tuple[ArbiterMemory, Link, Link, Arbitration, Requ
     lights = lights_of(decision.mode, stalk, controllers.remote, controllers.link)
     steered = steered_stop(now, decision, controllers.link)
     return (
-        _remembered(seen, decision, side, mode_ticks, shared.trade, steered, stalk),
+        _remembered(seen, decision, side, mode_ticks, shared.trade, steered, stalk, held_ticks, restart.ticks),
         controllers.ros_link,
         controllers.ecu_link,
         _shown(
-            decision, shares, seen.person, side, controllers, takeover_stage(decision.mode, mode_ticks, now.settings)
+            decision,
+            shares,
+            seen.person,
+            side,
+            controllers,
+            takeover_stage(decision.mode, mode_ticks, now.settings),
+            restart,
+            _notice(restart, held_ticks, now.settings),
         ),
         blend(decision.mode, shares, side, seen.person, transmission, lights, now.driver),
     )
@@ -107,6 +121,13 @@ def _see(now: Moment) -> Seen:
 
 
 @kernel
+def _notice(restart: Restart, throttle_held_ticks: float, settings: ControlSettings) -> float:
+    if restart.notice > 0.0:
+        return restart.notice
+    return _THROTTLE_HELD if throttle_held_ticks > settings.throttle_held_ticks else 0.0
+
+
+@kernel
 def _remembered(
     seen: Seen,
     decision: Decision,
@@ -115,6 +136,8 @@ def _remembered(
     trade: float,
     stop_steered: float,
     stalk: Lights,
+    throttle_held_ticks: float,
+    restart_ticks: float,
 ) -> ArbiterMemory:
     return ArbiterMemory(
         mode_ticks,
@@ -130,12 +153,21 @@ def _remembered(
         trade if decision.mode == _SHARED else 1.0,
         stalk.turn_indicators,
         stalk.hazard_lights,
+        throttle_held_ticks,
+        restart_ticks,
     )
 
 
 @kernel
 def _shown(
-    decision: Decision, shares: Shares, person: Person, side: RemoteSide, controllers: Controllers, stage: float
+    decision: Decision,
+    shares: Shares,
+    person: Person,
+    side: RemoteSide,
+    controllers: Controllers,
+    stage: float,
+    restart: Restart,
+    notice: float,
 ) -> Arbitration:
     return Arbitration(
         decision.mode,
@@ -158,5 +190,6 @@ def _shown(
         controllers.ecu_offered.road_wheel_rad,
         controllers.ecu_offered.throttle,
         controllers.ecu_offered.brake,
-        0.0,
+        restart.granted,
+        notice,
     )

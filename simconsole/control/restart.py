@@ -1,15 +1,20 @@
-"""Back to the start, and when not: the hand wheel is centred and the pedals are released first.
+"""Back to the start, and when not: the hand wheel is centred first, then the pedals are released.
 
-A granted restart begins the drive anew from its first row: the vehicle at its start, everything engaged forgotten,
-only the devices stay armed. The tick goes on counting, and what was driven before stays in the record.
+In a car that stands a restart waits for both: the wheel's motor centres the wheel (devices/torque.py), or the person is
+asked to. In a car that moves it never waits: the motor must not turn a wheel by which somebody steers.
+
+A granted restart begins the drive anew from its first row: the vehicle at its start, everything engaged forgotten, only
+the devices stay armed. The tick goes on counting, and what was driven before stays in the record.
 """
 
-from typing import Final
+from typing import Final, NamedTuple
 
+from simconsole.control.moment import Moment
 from simconsole.control.person import Person, mask
 from simconsole.control.settings import ControlSettings
+from simconsole.control.stops import slow
 from simconsole.kernels import kernel
-from simconsole.signals import Button, DriverInput, Event, Mode, Reason
+from simconsole.signals import Button, DriverInput, Event, Mode, Notice, Reason
 
 NOT_ASKED: Final = -1.0
 GRANTED: Final = 0.0
@@ -22,11 +27,45 @@ _EMERGENCY_STOP: Final = float(Mode.EMERGENCY_STOP)
 _REFUSED_EMERGENCY: Final = float(Reason.REFUSED_EMERGENCY)
 _REFUSED_WHEEL: Final = float(Reason.REFUSED_WHEEL_NOT_CENTRED)
 _REFUSED_PEDAL: Final = float(Reason.REFUSED_PEDAL_PRESSED)
+_CENTRING_WHEEL: Final = float(Notice.CENTRING_WHEEL)
+_CENTRE_WHEEL: Final = float(Notice.CENTRE_WHEEL)
+_RELEASE_PEDALS: Final = float(Notice.RELEASE_PEDALS)
+
+
+class Restart(NamedTuple):
+    """What has become of a request to start again."""
+
+    ticks: float  # for how long it has waited; 0: none waits
+    granted: float
+    refusal: float  # `Reason`; 0: not refused in this tick
+    notice: float  # `Notice`: what it waits for
+
+
+@kernel
+def restart_of(now: Moment, person: Person) -> Restart:
+    """Grant a restart, refuse it, or let it wait, at most for the profile's time."""
+    waited = now.memory.restart_ticks
+    events = mask(now.events.events)
+    if waited > 0.0:
+        events |= _EVENT
+    hindrance = restart_refusal(now.before.mode, now.driver, person, events, now.settings)
+    if hindrance == NOT_ASKED:
+        return Restart(0.0, 0.0, 0.0, 0.0)
+    if hindrance == GRANTED:
+        return Restart(0.0, 1.0, 0.0, 0.0)
+    centred = abs(now.driver.hand_wheel_rad) <= now.settings.restart_wheel_rad
+    stays = slow(now.vehicle, now.settings) or (centred and waited > 0.0)
+    if hindrance == _REFUSED_EMERGENCY or not stays or waited >= now.settings.restart_wait_ticks:
+        return Restart(0.0, 0.0, hindrance, 0.0)
+    notice = _RELEASE_PEDALS
+    if not centred:
+        notice = _CENTRING_WHEEL if now.wheel_motor > 0.0 else _CENTRE_WHEEL
+    return Restart(waited + 1.0, 0.0, 0.0, notice)
 
 
 @kernel
 def restart_refusal(mode: float, driver: DriverInput, person: Person, events: int, settings: ControlSettings) -> float:
-    """Return NOT_ASKED, GRANTED, or the `Reason` that refuses a restart. A cockpit that is not there holds up nothing.
+    """Return NOT_ASKED, GRANTED, or the `Reason` against a restart now. A cockpit that is not there holds up nothing.
 
     Args:
         mode: Of the tick before: a latched emergency stop is reset first.

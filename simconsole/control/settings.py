@@ -26,6 +26,7 @@ class ControlSettings(NamedTuple):
     brake_override: float
     throttle_override: float
     throttle_release: float
+    throttle_held_ticks: float
     clutch_pressed: float
     fade_per_tick: float
     # Who is the remote side, faults of its command and take-over requests.
@@ -46,6 +47,7 @@ class ControlSettings(NamedTuple):
     standstill_speed_mps: float
     standstill_ticks: float
     restart_wheel_rad: float
+    restart_wait_ticks: float
     # Engaging autonomy.
     engage_stable_ticks: float
     reengage_stable_ticks: float
@@ -122,6 +124,7 @@ def settings(
         steering_override_radps=profile.steering_override_rate_degps * RAD_PER_DEG,
         steering_override_ticks=_at_least(profile.steering_override_hold_s, tick_hz),
         throttle_release=max(0.0, profile.throttle_override - profile.throttle_override_hysteresis),
+        throttle_held_ticks=_at_least(profile.throttle_held_s, tick_hz),
         fade_per_tick=1.0 / _at_least(profile.fade_s, tick_hz),
         preferred_commander=float(preferred),
         lease_ticks=_at_most(profile.commander_lease_s, tick_hz),
@@ -130,6 +133,7 @@ def settings(
         minimal_risk_ticks=_at_least(profile.minimal_risk_after_s, tick_hz),
         refusal_ticks=_at_least(profile.refusal_shown_s, tick_hz),
         restart_wheel_rad=profile.restart_wheel_deg * RAD_PER_DEG,
+        restart_wait_ticks=_at_least(profile.restart_wait_s, tick_hz),
         standstill_ticks=_at_least(profile.standstill_s, tick_hz),
         engage_stable_ticks=_at_least(profile.engage_stable_s, tick_hz),
         reengage_stable_ticks=_at_least(profile.reengage_stable_s, tick_hz),

@@ -10,8 +10,11 @@ from typing import Final, NamedTuple
 
 from simconsole.control.settings import ControlSettings
 from simconsole.kernels import kernel
+from simconsole.signals import Mode
 
 _UNREFERENCED: Final = -1.0
+_AUTONOMOUS: Final = float(Mode.AUTONOMOUS)
+_TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)
 
 
 class WheelWatch(NamedTuple):
@@ -64,3 +67,9 @@ def throttle_overrides(before: float, throttle: float, settings: ControlSettings
     """Return 1 while the person's accelerator overrides the remote side's pedals, with hysteresis; else 0."""
     threshold = settings.throttle_release if before > 0.0 else settings.throttle_override
     return 1.0 if throttle >= threshold and throttle > 0.0 else 0.0
+
+
+@kernel
+def throttle_held(before_ticks: float, override: float, mode: float) -> float:
+    """Return for how many ticks the accelerator has overridden a controller that drives; 0 while it does not."""
+    return before_ticks + 1.0 if override > 0.0 and mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED) else 0.0

@@ -12,13 +12,15 @@ from simconsole.devices.guidance import Wanted, guidance, wanted
 from simconsole.devices.rim import Rim, turn
 from simconsole.devices.validity import trusted
 from simconsole.kernels import approach, clip, is_finite, kernel
-from simconsole.signals import Arbitration, DriverInput, Event, Mode, VehicleState, WheelMemory, WheelTorque
+from simconsole.signals import Arbitration, DriverInput, Event, Mode, Notice, VehicleState, WheelMemory, WheelTorque
 from simconsole.trigonometry import sin
 
 _MANUAL: Final = float(Mode.MANUAL)
 _SHARED: Final = float(Mode.SHARED)
 _AUTONOMOUS: Final = float(Mode.AUTONOMOUS)
 _TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)
+_CENTRING_WHEEL: Final = float(Notice.CENTRING_WHEEL)
+_RELEASE_PEDALS: Final = float(Notice.RELEASE_PEDALS)
 _STANDING: Final = int(Event.LOOP_STALL | Event.PAUSE)
 
 FRICTION_RADPS: Final = 1.0
@@ -26,6 +28,10 @@ FRICTION_RADPS: Final = 1.0
 END_STOP_NMS: Final = 1.0
 RESTING_S: Final = 0.05
 """How fast what resting hands do is forgiven: as fast as the estimate tells resting hands from others."""
+CENTRING_RADPS: Final = 2.0
+"""How fast the motor centres the wheel before a restart: a turn in 3 s, which hands that rest on it can follow."""
+CENTRING_LEAD_RAD: Final = 0.15
+"""How far its target may be ahead of the wheel: hands that hold the wheel feel no more than this times the servo."""
 LONG_WAVE_RADPM: Final = 3.7
 SHORT_WAVE_RADPM: Final = 9.97
 """Two waves of rough road, 1.7 m and 0.63 m long: 6 to 32 Hz between 36 and 72 km/h, incommensurable."""
@@ -143,6 +149,12 @@ def estimate(
 
 
 @kernel
+def centring(arbitration: Arbitration) -> bool:
+    """Return whether the wheel is to be centred, and to be held there until the pedals are released."""
+    return arbitration.notice in (_CENTRING_WHEEL, _RELEASE_PEDALS)
+
+
+@kernel
 def aim(
     arbitration: Arbitration,
     vehicle: VehicleState,
@@ -160,6 +172,10 @@ def aim(
     if not known:
         return Aim(False, Rim(memory.target_rad, 0.0), Wanted(0.0, 0.0))
     asked = wanted(arbitration.remote_road_wheel_rad, memory.guide_rad, arbitration.mode, force, tick_s)
+    if centring(arbitration):
+        start = clip(memory.target_rad, felt.rad - CENTRING_LEAD_RAD, felt.rad + CENTRING_LEAD_RAD)
+        centred = approach(start, 0.0, CENTRING_RADPS * tick_s)
+        return Aim(True, Rim(centred, (centred - start) / tick_s), asked)
     target_rad = clip(wanted_rad, -lock, lock)
     radps = (target_rad - memory.target_rad) / tick_s if memory.live > 0.0 else 0.0
     return Aim(True, Rim(target_rad, radps), asked)
@@ -264,7 +280,7 @@ def wheel_torque(
     motor_nm = memory.motor_nm + force.motor_lag_share * (before.torque_nm - memory.motor_nm)
     felt = estimate(driver, live, motor_nm, before, memory, force, tick_s)
     rim = Rim(felt.rad, felt.radps)
-    follows = mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED)
+    follows = mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED) or centring(arbitration)
     target = aim(arbitration, vehicle, felt, memory, force, tick_s)
     driven = follows or mode in (_MANUAL, _SHARED)
     enabled = live and target.known and driven and int(events) & _STANDING == 0

@@ -35,12 +35,13 @@ class Alert(IntEnum):
     """All alerts, the weakest first: only the strongest is shown (rule 13)."""
 
     NONE = 0
-    REFUSED = 1
-    TAKE_OVER = 2
-    MINIMAL_RISK = 3
-    TAKE_OVER_NOW = 4
-    EMERGENCY = 5
-    NO_DATA = 6
+    NOTICE = 1
+    REFUSED = 2
+    TAKE_OVER = 3
+    MINIMAL_RISK = 4
+    TAKE_OVER_NOW = 5
+    EMERGENCY = 6
+    NO_DATA = 7
 
 
 ALERT_WORDS: Final[dict[Alert, tuple[str, str]]] = {
@@ -55,7 +56,9 @@ ALERT_WORDS: Final[dict[Alert, tuple[str, str]]] = {
 
 def alert_of(view: HudView) -> Alert:
     """Return the one alert to show."""
-    found = Alert.REFUSED if view.refusal_words else Alert.NONE
+    found = Alert.NOTICE if view.notice_words else Alert.NONE
+    if view.refusal_words:
+        found = Alert.REFUSED
     if view.mode == Mode.TAKEOVER_REQUESTED:
         found = Alert.TAKE_OVER_NOW if view.takeover_stage >= 2 else Alert.TAKE_OVER
     if view.mode == Mode.MINIMAL_RISK:
@@ -133,8 +136,8 @@ def slot(view: HudView, alert: Alert, box: Box, screen: Screen) -> list[DrawItem
     """Return the alert, or nothing. A take-over spans every screen; the words stand on each of them."""
     if alert is Alert.NONE:
         return _trip(view, box)
-    if alert is Alert.REFUSED:
-        return _refusal(view.refusal_words, box)
+    if alert in (Alert.NOTICE, Alert.REFUSED):
+        return _line(view.refusal_words or view.notice_words, box)
     ground, ink = _field(view, alert)
     safe = screen.safe()
     items: list[DrawItem] = [Rect(Box(safe.x, box.y, safe.w, box.h), ground, "alert", 0.1 * box.h)]
@@ -184,7 +187,7 @@ def _countdown(view: HudView, box: Box, ink: Colour) -> list[DrawItem]:
     return items
 
 
-def _refusal(words: str, box: Box) -> list[DrawItem]:
+def _line(words: str, box: Box) -> list[DrawItem]:
     field = box.row(0.1, 0.9)
     side = 0.6 * field.h
     sign = Box(field.x + 0.4 * field.h, field.cy - 0.5 * side, side, side)

@@ -13,8 +13,8 @@ from simconsole.hud.draw import BACKGROUND, Box, DrawItem, Rect, Text, bounds
 from simconsole.hud.panels import pedals, status, steering
 from simconsole.hud.screen import Screen
 from simconsole.hud.view import HudView
-from simconsole.signals import Mode, Reason
-from simconsole.words import LINK_COMMANDER, LINK_NOBODY, LINK_RETRYING, mode_words, reason_words
+from simconsole.signals import Mode, Notice, Reason
+from simconsole.words import LINK_COMMANDER, LINK_NOBODY, LINK_RETRYING, mode_words, notice_words, reason_words
 
 GAP: Final = 0.02
 
@@ -102,6 +102,7 @@ def sample_views() -> list[HudView]:
     for reason in Reason:
         words = reason_words(reason)
         views.append(wide._replace(reason_words=words, refusal_words=words))
+    views += [wide._replace(notice_words=notice_words(notice)) for notice in Notice]
     asked = wide._replace(mode=float(Mode.TAKEOVER_REQUESTED), mode_words=mode_words(Mode.TAKEOVER_REQUESTED))
     views += [asked._replace(takeover_stage=stage, remaining_s=10.0) for stage in (1, 2)]
     validities = (0.0, 1.0, 2.0, 3.0, 4.0)

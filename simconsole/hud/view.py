@@ -7,7 +7,7 @@ from simconsole.profiles.view import HudProfile
 from simconsole.rows import MEMORY_AT, MEMORY_WIDTH, Snapshot
 from simconsole.signals import NEVER_TICKS, ArbiterMemory, Event, GateLimit, Mode
 from simconsole.units import KMH_PER_MPS, RPM_PER_RADPS
-from simconsole.words import commander_words, gear_words, mode_words, reason_words
+from simconsole.words import commander_words, gear_words, mode_words, notice_words, reason_words
 
 STALE_S: Final = 0.5
 """Older snapshots are not shown: NO DATA."""
@@ -52,6 +52,7 @@ class HudView(NamedTuple):
     mode_words: str = "PARKED"
     reason_words: str = ""
     refusal_words: str = ""
+    notice_words: str = ""
     takeover_stage: int = 0
     remaining_s: float = 0.0
     throttle: float = 0.0
@@ -137,6 +138,7 @@ def view(
         mode_words="PAUSED" if paused else mode_words(arbitration.mode),
         reason_words=reason_words(arbitration.reason),
         refusal_words=reason_words(arbitration.refusal) if arbitration.refusal else "",
+        notice_words=notice_words(arbitration.notice),
         takeover_stage=int(arbitration.takeover_stage),
         remaining_s=_remaining_s(snapshot, settings),
         throttle=command.throttle,

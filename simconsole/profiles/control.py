@@ -30,6 +30,7 @@ class ControlProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_f
     brake_override: Threshold = 0.05  # R157 6.3.1; OD: any brake
     throttle_override: Threshold = 0.05  # longitudinal only, while held: OD "overriding"
     throttle_override_hysteresis: Annotated[float, msgspec.Meta(ge=0.0, le=0.05)] = 0.01
+    throttle_held_s: Seconds = 5.0  # longer than this the person is told that the accelerator overrides: chosen
     clutch_pressed: Annotated[float, msgspec.Meta(ge=0.1, le=1.0)] = (
         0.8  # after autonomy, the person's clutch takes the gears back
     )
@@ -54,6 +55,7 @@ class ControlProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_f
     standstill_s: Annotated[float, msgspec.Meta(ge=0.0, le=5.0)] = 0.3
 
     restart_wheel_deg: Annotated[float, msgspec.Meta(ge=1.0, le=90.0)] = 5.0  # off the centre, at most; as rearm_deg
+    restart_wait_s: Seconds = 10.0  # for the wheel to be centred and the pedals to be released: chosen
 
     # Engaging autonomy. AW engage_acceptable_limits where named.
     engage_stable_s: Seconds = 0.1  # AW stable_check.duration

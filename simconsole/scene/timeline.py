@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from simconsole.scene.entities import Array, Colour
 from simconsole.signals import Event, Mode
 from simconsole.units import DEG_PER_RAD, KMH_PER_MPS, NS_PER_S, RPM_PER_RADPS
-from simconsole.words import commander_words, gear_words, indicator_words, mode_words, reason_words
+from simconsole.words import commander_words, gear_words, indicator_words, mode_words, notice_words, reason_words
 
 Ticks = NDArray[np.int64]
 
@@ -95,6 +95,7 @@ NEEDED: Final[tuple[str, ...]] = tuple(
             *(column for _, column in _LANES),
             "arbitration.reason",
             "arbitration.refusal",
+            "arbitration.notice",
             "events.events",
             "events.ecu_events",
         )
@@ -220,7 +221,7 @@ def _lanes(
         words = [lane_words(path, float(values[index])) for index in changed]
         lanes.append(Lane(path, times_ns[changed].tolist(), words))
         last[column] = float(values[-1])
-    for column in ("arbitration.reason", "arbitration.refusal"):
+    for column in ("arbitration.reason", "arbitration.refusal", "arbitration.notice"):
         last[column] = float(table[column][-1])
     return tuple(lanes), last
 
@@ -244,12 +245,13 @@ def _entries(table: dict[str, Array], times_ns: Ticks, seen: dict[str, float] | 
     for index in _changes(mode, None if seen is None else seen["arbitration.mode"]).tolist():
         text = f"{mode_words(mode[index])}: {reason_words(reason[index])}"
         found.append((index, Entry(int(times_ns[index]), _LEVELS.get(mode[index], "INFO"), text)))
-    refusal = table["arbitration.refusal"]
-    refused = _changes(refusal, 0.0 if seen is None else seen["arbitration.refusal"])
-    found.extend(
-        (index, Entry(int(times_ns[index]), "WARN", reason_words(refusal[index])))
-        for index in refused[refusal[refused] != 0.0].tolist()
-    )
+    for column, words in (("arbitration.refusal", reason_words), ("arbitration.notice", notice_words)):
+        told = table[column]
+        changed = _changes(told, 0.0 if seen is None else seen[column])
+        found.extend(
+            (index, Entry(int(times_ns[index]), "WARN", words(told[index])))
+            for index in changed[told[changed] != 0.0].tolist()
+        )
     for who, column in (("event", "events.events"), ("event on CAN", "events.ecu_events")):
         events = table[column]
         for index in np.flatnonzero(events).tolist():

@@ -62,6 +62,16 @@ class Reason(IntEnum):
     REFUSED_PEDAL_PRESSED = 33
 
 
+class Notice(IntEnum):
+    """What a person is told for as long as it is so, without a change of mode."""
+
+    NONE = 0
+    THROTTLE_HELD = 1  # the accelerator has overridden the controller for long
+    CENTRING_WHEEL = 2  # by its motor, before a restart
+    CENTRE_WHEEL = 3  # the same, where it has no motor
+    RELEASE_PEDALS = 4
+
+
 class Commander(IntEnum):
     """Which controller is the remote side: control/commander.py holds the rule."""
 

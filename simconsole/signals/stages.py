@@ -56,6 +56,8 @@ class ArbiterMemory(NamedTuple):
     shared_trade: float  # -1: the person has pushed the controller away, 1: it has its full share
     stalk: float  # the person's turn indicators: 1 left, -1 right, 0 off
     hazard_switch: float  # the person's hazard lights, 1: on
+    throttle_held_ticks: float  # for how long the accelerator has overridden a controller that drives
+    restart_ticks: float  # for how long a restart has waited for wheel and pedals; 0: none does
 
 
 class Link(NamedTuple):
@@ -98,6 +100,7 @@ class Arbitration(NamedTuple):
     ecu_throttle: float
     ecu_brake: float
     restarted: float  # 1: back to the start in this tick
+    notice: float  # `Notice`
 
 
 class VehicleCommand(NamedTuple):

@@ -133,11 +133,12 @@ def test_arbitration_is_told_in_numbers_and_words(publish: Callable[..., dict[st
     told = publish(
         mode=float(Mode.AUTONOMOUS), reason=float(Reason.PERSON_ASKED), remote_lateral=1.0, sequence=7.0, refused=2.0,
         age_ticks=25.0, person_brake=0.5, takeover_stage=1.0, refusal=float(Reason.REFUSED_MOVING), commander=2.0,
-        ros_throttle=0.25, ecu_brake=0.75,
+        ros_throttle=0.25, ecu_brake=0.75, notice=1.0,
     )["/console/arbitration"]  # fmt: skip
     assert (told["mode"], told["mode_words"], told["reason_words"]) == (3, "AUTONOMOUS", "driver asked")
     assert (told["remote_lateral"], told["person_brake"], told["takeover_stage"]) == (1.0, 0.5, 1)
     assert (told["refusal"], told["refusal_words"]) == (29, "refused: car is moving")
+    assert (told["notice"], told["notice_words"]) == (1, "throttle is held: autopilot only steers")
     assert (told["commander"], told["commander_words"]) == (2, "CAN")
     ros, ecu = told["ros"], told["ecu"]
     assert (ros["commands_accepted"], ros["commands_refused"], ros["command_age"]) == (7, 2, 0.1)

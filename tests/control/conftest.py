@@ -74,6 +74,7 @@ class Rig:
         self.command = COMMAND
         self.request: Request | None = None
         self.human_nm = 0.0
+        self.wheel_motor = 0.0
         self.ticks = 0
 
     @property
@@ -124,6 +125,7 @@ class Rig:
             0.0,
             0.0,
             self.human_nm,
+            self.wheel_motor,
             self.settings,
             self.tick_s,
         )

@@ -33,6 +33,7 @@ def now(make_rig: MakeRig) -> Moment:
         memory=moment.memory._replace(
             mode_ticks=41.0, engage_hand_wheel_rad=0.2, steering_ticks=5.0, refusal_ticks=9.0, standstill_ticks=0.0,
             hold_road_wheel_rad=0.07, shared_trade=0.25, stalk=-1.0, hazard_switch=1.0,
+            throttle_held_ticks=30.0,
         ),
         vehicle=moment.vehicle._replace(vx_mps=12.0),
         ros_before=STEADY,
@@ -59,6 +60,8 @@ def test_what_is_remembered_and_shown(now: Moment) -> None:
         "stop_steered": 0.0,
         "stalk": -1.0,
         "hazard_switch": 1.0,
+        "throttle_held_ticks": 31.0,
+        "restart_ticks": 0.0,
     }
     fields = shown._asdict()
     assert fields["mode"] == Mode.AUTONOMOUS
@@ -70,7 +73,7 @@ def test_what_is_remembered_and_shown(now: Moment) -> None:
     assert person == [pytest.approx(0.03), 0.5, 0.04]
     for source, asked in (("remote", (0.04, 0.0, 0.06)), ("ecu", (0.04, 0.0, 0.06)), ("ros", (0.03, 0.31, 0.02))):
         assert tuple(fields[f"{source}_{name}"] for name in ("road_wheel_rad", "throttle", "brake")) == asked
-    assert (fields["commander"], fields["restarted"]) == (Commander.ECU, 0.0)
+    assert (fields["commander"], fields["restarted"], fields["notice"]) == (Commander.ECU, 0.0, 0.0)
     assert (ros_link.sequence_seen, ros_link.fresh_ticks) == (7.0, 91.0)
     assert (ecu_link.sequence_seen, ecu_link.fresh_ticks) == (8.0, 91.0)
     lateral, longitudinal = shown.remote_lateral, shown.remote_longitudinal

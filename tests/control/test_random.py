@@ -214,7 +214,7 @@ def test_from_every_mode_a_person_gets_back_to_manual(long_drive: Drive) -> None
                 happened = EventInput(float(event))
                 now = Moment(
                     driver, remote, remote, happened, vehicle, memory, ros_link, ecu_link, arbitration, command,
-                    0.0, 0.0, 0.0, s, long_drive.tick_s,
+                    0.0, 0.0, 0.0, 0.0, s, long_drive.tick_s,
                 )  # fmt: skip
                 memory, ros_link, ecu_link, arbitration, request = arbitrate(now)
                 command = gate(request, remote, arbitration, command, vehicle, s, long_drive.tick_s, 0.0)

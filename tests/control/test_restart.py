@@ -1,14 +1,18 @@
-"""Back to the start: who may ask, and what must be so first."""
+"""Back to the start: who may ask, what must be so first, and for how long that is waited for."""
+
+from collections.abc import Callable
+from typing import Any
 
 import pytest
 
 from simconsole.control.person import person_of
 from simconsole.control.restart import GRANTED, NOT_ASKED, restart_refusal
 from simconsole.control.settings import ControlSettings
-from simconsole.signals import Button, DriverInput, Event, Mode, Reason
+from simconsole.signals import Button, DriverInput, Event, Mode, Notice, Reason
 from tests.control.conftest import NOBODY, PERSON
 
 RESTART = int(Event.RESTART)
+MakeRig = Callable[..., Any]
 
 
 def asked(control: ControlSettings, driver: DriverInput, events: int, mode: Mode = Mode.AUTONOMOUS) -> float:
@@ -50,3 +54,84 @@ def test_the_limits_themselves_are_allowed(control: ControlSettings) -> None:
 def test_an_emergency_stop_is_reset_first(control: ControlSettings) -> None:
     assert asked(control, PERSON, RESTART, Mode.EMERGENCY_STOP) == Reason.REFUSED_EMERGENCY
     assert asked(control, PERSON, RESTART | int(Event.EMERGENCY_STOP)) == Reason.REFUSED_EMERGENCY
+
+
+def standing(make_rig: MakeRig, motor: float = 0.0, **fields: float) -> Any:
+    """A person in a car that stands."""
+    rig = make_rig().drive(Mode.MANUAL, 0.0)
+    rig.driver = rig.driver._replace(**fields)
+    rig.wheel_motor = motor
+    return rig
+
+
+def shown(rig: Any) -> tuple[Notice, float, Reason | None]:
+    return Notice(int(rig.arbitration.notice)), rig.arbitration.restarted, rig.refusal
+
+
+@pytest.mark.parametrize(("motor", "notice"), [(1.0, Notice.CENTRING_WHEEL), (0.0, Notice.CENTRE_WHEEL)])
+def test_the_wheel_comes_first_then_the_pedals_then_the_start(motor: float, notice: Notice, make_rig: MakeRig) -> None:
+    rig = standing(make_rig, motor, hand_wheel_rad=-1.0, brake=0.5)
+    rig.tick(Event.RESTART)
+    assert (*shown(rig), rig.memory.restart_ticks) == (notice, 0.0, None, 1.0)
+    rig.driver = rig.driver._replace(brake=0.0)
+    rig.tick()
+    assert shown(rig) == (notice, 0.0, None)
+    rig.driver = rig.driver._replace(hand_wheel_rad=rig.settings.restart_wheel_rad, brake=0.5)
+    rig.tick()
+    assert (*shown(rig), rig.memory.restart_ticks) == (Notice.RELEASE_PEDALS, 0.0, None, 3.0)
+    rig.driver = rig.driver._replace(brake=0.0)
+    rig.tick()
+    assert (*shown(rig), rig.memory.restart_ticks) == (Notice.NONE, 1.0, None, 0.0)
+    rig.tick()
+    assert shown(rig) == (Notice.NONE, 0.0, None)
+
+
+@pytest.mark.parametrize(
+    ("fields", "reason"),
+    [({"hand_wheel_rad": 1.0}, Reason.REFUSED_WHEEL_NOT_CENTRED), ({"clutch": 0.5}, Reason.REFUSED_PEDAL_PRESSED)],
+)
+def test_it_is_waited_for_ten_seconds_and_then_refused_in_words(
+    fields: dict[str, float], reason: Reason, make_rig: MakeRig
+) -> None:
+    rig = standing(make_rig, **fields)
+    rig.tick(Event.RESTART)
+    for _ in range(10 * rig.tick_hz - 1):
+        rig.tick(Event.RESTART if rig.ticks % 7 == 0 else 0)
+        assert (rig.refusal, rig.arbitration.restarted) == (None, 0.0)
+        assert rig.arbitration.notice > 0.0
+    rig.tick()
+    assert (*shown(rig), rig.memory.restart_ticks) == (Notice.NONE, 0.0, reason, 0.0)
+    rig.tick()
+    assert shown(rig) == (Notice.NONE, 0.0, reason)
+
+
+def test_a_car_that_moves_waits_for_nothing_but_released_pedals(make_rig: MakeRig) -> None:
+    rig = standing(make_rig, 1.0, hand_wheel_rad=1.0)
+    rig.vehicle = rig.vehicle._replace(vx_mps=5.0)
+    rig.tick(Event.RESTART)
+    assert (*shown(rig), rig.memory.restart_ticks) == (Notice.NONE, 0.0, Reason.REFUSED_WHEEL_NOT_CENTRED, 0.0)
+    rig = standing(make_rig, brake=0.5)
+    rig.vehicle = rig.vehicle._replace(vx_mps=5.0)
+    rig.tick(Event.RESTART)
+    assert shown(rig) == (Notice.NONE, 0.0, Reason.REFUSED_PEDAL_PRESSED)
+
+
+def test_a_car_that_rolls_off_ends_the_centring_and_not_the_wait_for_the_pedals(make_rig: MakeRig) -> None:
+    rig = standing(make_rig, 1.0, hand_wheel_rad=1.0)
+    rig.tick(Event.RESTART)
+    rig.vehicle = rig.vehicle._replace(vx_mps=5.0)
+    rig.tick()
+    assert shown(rig) == (Notice.NONE, 0.0, Reason.REFUSED_WHEEL_NOT_CENTRED)
+    rig = standing(make_rig, brake=0.5)
+    rig.tick(Event.RESTART)
+    rig.vehicle = rig.vehicle._replace(vx_mps=5.0)
+    rig.tick()
+    assert shown(rig) == (Notice.RELEASE_PEDALS, 0.0, None)
+
+
+def test_an_emergency_stop_ends_the_wait_at_once(make_rig: MakeRig) -> None:
+    rig = standing(make_rig, 1.0, hand_wheel_rad=1.0)
+    rig.tick(Event.RESTART)
+    rig.tick(Event.EMERGENCY_STOP)
+    assert rig.mode is Mode.EMERGENCY_STOP
+    assert (*shown(rig), rig.memory.restart_ticks) == (Notice.NONE, 0.0, Reason.REFUSED_EMERGENCY, 0.0)

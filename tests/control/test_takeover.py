@@ -1,10 +1,13 @@
 import math
+from collections.abc import Callable
+from typing import Any
 
 import pytest
 
 from simconsole.control.settings import ControlSettings, settings
-from simconsole.control.takeover import WheelWatch, steering_taken, throttle_overrides, watch_wheel
+from simconsole.control.takeover import WheelWatch, steering_taken, throttle_held, throttle_overrides, watch_wheel
 from simconsole.profiles.control import ControlProfile
+from simconsole.signals import Event, Mode, Notice
 
 RATES = [50, 100, 125, 200, 250, 500, 1000]
 START = WheelWatch(0.0, 0.0)
@@ -101,3 +104,36 @@ def test_the_accelerator_overrides_with_hysteresis(control: ControlSettings) -> 
     assert [throttle_overrides(1.0, throttle, control) for throttle in (0.045, 0.03, 0.0)] == [1.0, 0.0, 0.0]
     always = control._replace(throttle_release=0.0)
     assert throttle_overrides(1.0, 0.0, always) == 0.0
+
+
+@pytest.mark.parametrize("mode", Mode)
+def test_an_override_is_only_held_over_a_controller_that_drives(mode: Mode) -> None:
+    driven = mode in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED)
+    assert throttle_held(7.0, 1.0, float(mode)) == (8.0 if driven else 0.0)
+    assert throttle_held(7.0, 0.0, float(mode)) == 0.0
+
+
+@pytest.mark.parametrize("tick_hz", [50, 250, 1000])
+def test_an_accelerator_held_for_more_than_five_seconds_is_told_until_it_is_released(
+    tick_hz: int, make_rig: Callable[..., Any]
+) -> None:
+    rig = make_rig(tick_hz).drive(Mode.AUTONOMOUS)
+    rig.driver = rig.driver._replace(throttle=0.5)
+    for _ in range(5 * tick_hz):
+        rig.tick()
+        assert (rig.mode, rig.arbitration.notice) == (Mode.AUTONOMOUS, Notice.NONE)
+    rig.tick()
+    assert (rig.mode, rig.arbitration.notice) == (Mode.AUTONOMOUS, Notice.THROTTLE_HELD)
+    rig.tick(Event.REQUEST_TAKEOVER)
+    assert (rig.mode, rig.arbitration.notice) == (Mode.TAKEOVER_REQUESTED, Notice.THROTTLE_HELD)
+    rig.driver = rig.driver._replace(throttle=0.0)
+    rig.tick()
+    assert (rig.arbitration.notice, rig.memory.throttle_held_ticks) == (Notice.NONE, 0.0)
+
+
+def test_what_a_restart_waits_for_is_told_before_a_held_accelerator(make_rig: Callable[..., Any]) -> None:
+    rig = make_rig().drive(Mode.AUTONOMOUS, 0.0)
+    rig.memory = rig.memory._replace(throttle_held_ticks=1e6, throttle_override=1.0)
+    rig.driver = rig.driver._replace(throttle=0.5)
+    rig.tick(Event.RESTART)
+    assert rig.arbitration.notice == Notice.RELEASE_PEDALS

@@ -11,10 +11,29 @@ from simconsole.compiling import compiled
 from simconsole.devices.force_settings import NO_FORCE, ForceSettings, force_settings
 from simconsole.devices.guidance import Wanted
 from simconsole.devices.rim import Rim, turn
-from simconsole.devices.torque import Parts, compose, end_stop, servo, soft_clip, wheel_torque
+from simconsole.devices.torque import (
+    CENTRING_LEAD_RAD,
+    CENTRING_RADPS,
+    Parts,
+    compose,
+    end_stop,
+    servo,
+    soft_clip,
+    wheel_torque,
+)
 from simconsole.profile_files import load
 from simconsole.profiles.device import CockpitProfile
-from simconsole.signals import Arbitration, DriverInput, Event, Mode, Validity, VehicleState, WheelMemory, WheelTorque
+from simconsole.signals import (
+    Arbitration,
+    DriverInput,
+    Event,
+    Mode,
+    Notice,
+    Validity,
+    VehicleState,
+    WheelMemory,
+    WheelTorque,
+)
 
 RATIO, LOCK_RAD, HZ, TICK_S = 15.5, math.radians(36.0), 250, 0.004
 PERSON = DriverInput(*(0.0,) * len(DriverInput._fields))._replace(wheel_validity=float(Validity.LIVE))
@@ -44,9 +63,10 @@ class Motor:
         events: float = 0.0,
         ticks: int = 1,
         remote: tuple[float, float] = (0.0, 0.0),
+        notice: Notice = Notice.NONE,
     ) -> WheelTorque:
         arbitration = Arbitration(*(0.0,) * len(Arbitration._fields))._replace(
-            mode=mode, remote_road_wheel_rad=remote[0], remote_guidance=remote[1]
+            mode=mode, remote_road_wheel_rad=remote[0], remote_guidance=remote[1], notice=float(notice)
         )
         watching = mode in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED, Mode.MINIMAL_RISK)
         for _ in range(ticks):
@@ -206,3 +226,22 @@ def test_rim_sticks_until_more_than_friction_pulls() -> None:
         coasting = turn(coasting, 0.0, 0.05, 0.0, 0.2, 0.001)
     assert coasting.radps == 0.0
     assert coasting.rad == pytest.approx(0.5 * 0.05 * 4.0 / 0.2, rel=0.01), "the energy went into friction"
+
+
+@pytest.mark.parametrize("mode", [Mode.PARKED, Mode.MANUAL, Mode.STOPPED])
+def test_a_wheel_that_is_centred_is_pulled_no_harder_than_its_lead(mode: Mode, motor: Motor) -> None:
+    """Held fast a turn aside: the target goes ahead by its lead, and no further however long that lasts."""
+    held = PERSON._replace(hand_wheel_rad=2.0 * math.pi)
+    standing = CAR._replace(vx_mps=0.0, hand_wheel_torque_nm=0.0)
+    torque = motor.tick(held, standing, float(mode), ticks=1500, notice=Notice.CENTRING_WHEEL)
+    pull = -CENTRING_LEAD_RAD * motor.force.servo_nm_per_rad
+    assert torque.torque_nm == pytest.approx(pull, abs=CENTRING_RADPS * motor.force.servo_damping_nms)
+    assert abs(torque.torque_nm) < motor.force.max_torque_nm
+    assert motor.tick(held, standing, float(mode), notice=Notice.CENTRE_WHEEL).servo_nm == 0.0
+
+
+def test_a_centred_wheel_is_held_until_the_pedals_are_released(motor: Motor) -> None:
+    aside = PERSON._replace(hand_wheel_rad=0.05)
+    torque = motor.tick(aside, mode=float(Mode.MANUAL), ticks=500, notice=Notice.RELEASE_PEDALS)
+    assert torque.torque_nm == pytest.approx(-0.05 * motor.force.servo_nm_per_rad, abs=0.1)
+    assert motor.tick(aside, events=float(Event.PAUSE), notice=Notice.RELEASE_PEDALS).torque_nm == 0.0

@@ -73,7 +73,9 @@ def test_the_countdown_is_a_number_and_a_shrinking_bar() -> None:
 
 
 def test_only_the_strongest_alert_is_shown() -> None:
-    refusal = {"refusal_words": "refused: too fast"}
+    held = {"notice_words": "throttle is held: autopilot only steers"}
+    assert said(in_mode(Mode.AUTONOMOUS, **held), "alert.words") == [held["notice_words"]]
+    refusal = {"refusal_words": "refused: too fast", **held}
     assert said(in_mode(Mode.MANUAL, **refusal), "alert.words") == ["refused: too fast"]
     assert said(asked(1, **refusal), "alert.words") == ["TAKE OVER"]
     assert said(in_mode(Mode.MINIMAL_RISK, **refusal), "alert.words") == ["CAR IS STOPPING"]

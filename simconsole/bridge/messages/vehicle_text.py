@@ -23,6 +23,9 @@ string reason_words
 # Why the latest request was refused, shown for a while; 0 and empty: none.
 uint8 refusal
 string refusal_words
+# What the person is told for as long as it is so; 0 and empty: nothing.
+uint8 notice
+string notice_words
 # Share of the remote side, 0 to 1; the person has the rest.
 float64 remote_lateral
 float64 remote_longitudinal
