@@ -20,6 +20,7 @@ CONTROL: Final = "/control/command/control_cmd"
 GEAR: Final = "/control/command/gear_cmd"
 TURN_INDICATORS: Final = "/control/command/turn_indicators_cmd"
 HAZARD_LIGHTS: Final = "/control/command/hazard_lights_cmd"
+ACTUATION: Final = "/control/command/actuation_cmd"
 ACKERMANN: Final = "/ackermann_cmd"
 TWIST: Final = "/cmd_vel"
 TWIST_STAMPED: Final = "/cmd_vel_stamped"
@@ -93,6 +94,7 @@ class CommandIntake:
             CommandTopic(GEAR, "autoware_vehicle_msgs/GearCommand", self._gear),
             CommandTopic(TURN_INDICATORS, "autoware_vehicle_msgs/TurnIndicatorsCommand", self._turn_indicators),
             CommandTopic(HAZARD_LIGHTS, "autoware_vehicle_msgs/HazardLightsCommand", self._hazard_lights),
+            CommandTopic(ACTUATION, "tier4_vehicle_msgs/ActuationCommandStamped", self._actuation),
             CommandTopic(ACKERMANN, "ackermann_msgs/AckermannDriveStamped", self._ackermann),
             CommandTopic(TWIST, "geometry_msgs/Twist", self._twist),
             CommandTopic(TWIST_STAMPED, "geometry_msgs/TwistStamped", self._twist_stamped),
@@ -136,6 +138,20 @@ class CommandIntake:
             direction=_sign(speed_mps),
         )
         self._inputs.accept(command, self._order(ACKERMANN, message.header.stamp), now_ns)
+
+    def _actuation(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
+        """Take pedals 0 to 1 and, as raw_vehicle_cmd_converter passes it on unconverted, the road-wheel angle."""
+        _require(plain, "actuation.accel_cmd", "actuation.brake_cmd", "actuation.steer_cmd")
+        _in_frame(message.header, _BODY_FRAMES)
+        asked = message.actuation
+        command = NO_COMMAND._replace(
+            kind=float(RemoteKind.ACTUATION),
+            road_wheel_rad=_within("actuation.steer_cmd", asked.steer_cmd, self._limits.road_wheel_rad),
+            throttle=_within("actuation.accel_cmd", asked.accel_cmd, 1.0, 0.0),
+            brake=_within("actuation.brake_cmd", asked.brake_cmd, 1.0, 0.0),
+            direction=0.0,
+        )
+        self._inputs.accept(command, self._order(ACTUATION, message.header.stamp), now_ns)
 
     def _twist(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
         _require(plain, "linear.x", "angular.z")
@@ -249,11 +265,13 @@ def _in_frame(header: Any, frames: tuple[str, ...]) -> None:
         raise RemoteProtocolError(f"{header.frame_id[:64]!r} is not {named} - at `$.header.frame_id`")
 
 
-def _within(path: str, value: float, limit: float) -> float:
+def _within(path: str, value: float, most: float, least: float | None = None) -> float:
+    """Return the value if it is finite and in its range; `least` is `-most` unless given."""
+    least = -most if least is None else least
     if not is_finite(value):
         raise RemoteProtocolError(f"not finite - at `$.{path}`")
-    if abs(value) > limit:
-        raise RemoteProtocolError(f"{value:g} is not within -{limit:g} to {limit:g} - at `$.{path}`")
+    if not least <= value <= most:
+        raise RemoteProtocolError(f"{value:g} is not within {least:g} to {most:g} - at `$.{path}`")
     return value
 
 

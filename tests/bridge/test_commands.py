@@ -41,6 +41,27 @@ def test_ackermann_is_a_speed_and_its_sign_a_direction(peer: Any) -> None:
     assert command(peer).direction == -1.0
 
 
+def test_actuation_is_pedals_and_the_road_wheel(peer: Any) -> None:
+    topic = "/control/command/actuation_cmd"
+    asked = {"accel_cmd": 0.25, "brake_cmd": 0.0, "steer_cmd": -0.5}
+    stamped = {"header": {"stamp": {"sec": 3}, "frame_id": "base_link"}, "actuation": asked}
+    assert peer.publish("/control/command/gear_cmd", {"command": 20}).kind == "command"
+    assert peer.publish(topic, stamped).kind == "command"
+    got = command(peer)
+    assert (got.kind, got.throttle, got.brake, got.road_wheel_rad) == (RemoteKind.ACTUATION, 0.25, 0.0, -0.5)
+    assert (got.sequence, got.direction, peer.bridge.inputs.stamp_ns) == (1.0, -1.0, 3_000_000_000)
+    for name, value, text in (
+        ("accel_cmd", 1.01, "1.01 is not within 0 to 1"),
+        ("accel_cmd", -0.01, "-0.01 is not within 0 to 1"),
+        ("brake_cmd", -0.5, "-0.5 is not within 0 to 1"),
+        ("steer_cmd", 1.3, "1.3 is not within -1.2 to 1.2"),
+    ):
+        outcome = peer.publish(topic, {"actuation": {**asked, name: value}})
+        assert f"{text} - at `$.actuation.{name}`" in outcome.text
+    assert "is not base_link" in peer.publish(topic, {**stamped, "header": {"frame_id": "map"}}).text
+    assert command(peer) == got._replace(refused=5.0)
+
+
 def test_twist_and_its_stamped_form(peer: Any) -> None:
     twist = {"linear": {"x": 3.0, "y": 0.0, "z": 0.0}, "angular": {"x": 0.0, "y": 0.0, "z": 0.4}}
     assert peer.publish("/cmd_vel", twist).kind == "command"
@@ -136,6 +157,11 @@ def test_unknown_request_is_refused(peer: Any) -> None:
         (CONTROL, {"lateral": {"steering_tire_angle": 0.1}}, "$.longitudinal.acceleration"),
         (CONTROL, {"lateral": {}, "longitudinal": {"acceleration": 1}}, "$.lateral.steering_tire_angle"),
         ("/ackermann_cmd", {"drive": {"speed": 1.0}}, "$.drive.steering_angle"),
+        (
+            "/control/command/actuation_cmd",
+            {"actuation": {"brake_cmd": 0.0}},
+            "$.actuation.accel_cmd",
+        ),
         ("/cmd_vel", {"linear": {"x": 1.0}}, "$.angular.z"),
         ("/cmd_vel_stamped", {"twist": {"angular": {"z": 1.0}}}, "$.twist.linear.x"),
         ("/ball/desired_pose", {"pose": {"position": {"x": 1.0}}}, "$.pose.position.y"),

@@ -44,6 +44,7 @@ CONTROL = publish("/control/command/control_cmd", {"lateral": LATERAL, "longitud
 VALID: list[dict[str, Any]] = [
     *[CONTROL] * 6,
     publish("/control/command/gear_cmd", {"command": 2}),
+    publish("/control/command/actuation_cmd", {"actuation": {"accel_cmd": 0.5, "brake_cmd": 0.0, "steer_cmd": 0.1}}),
     publish("/ackermann_cmd", {"header": HEADER, "drive": {"steering_angle": 0.1, "speed": 1.0}}),
     publish("/cmd_vel", {"linear": VECTOR, "angular": VECTOR}),
     publish("/ball/desired_pose", {"header": HEADER, "pose": POSE}),

@@ -98,6 +98,10 @@ COMMANDS: dict[str, dict[str, Any]] = {
             "steering_angle": 0.1, "steering_angle_velocity": 0.1, "speed": 1.0, "acceleration": 1.0, "jerk": 0.1,
         },
     },
+    "/control/command/actuation_cmd": {
+        "header": {"frame_id": "base_link"},
+        "actuation": {"accel_cmd": 0.5, "brake_cmd": 0.5, "steer_cmd": 0.1},
+    },
     "/cmd_vel": {"linear": {"x": 1.0, "y": 0.0, "z": 0.0}, "angular": {"x": 0.0, "y": 0.0, "z": 0.1}},
     "/cmd_vel_stamped": {
         "header": {"frame_id": "base_link"},

@@ -1,4 +1,4 @@
-"""autoware_control_msgs and autoware_vehicle_msgs: names, types and constants."""
+"""autoware_control_msgs, autoware_vehicle_msgs and, of tier4_vehicle_msgs, the actuation command."""
 
 from typing import Final
 
@@ -120,4 +120,13 @@ std_msgs/Header header
 float32 longitudinal_velocity
 float32 lateral_velocity
 float32 heading_rate
+===
+MSG: tier4_vehicle_msgs/ActuationCommand
+float64 accel_cmd
+float64 brake_cmd
+float64 steer_cmd
+===
+MSG: tier4_vehicle_msgs/ActuationCommandStamped
+std_msgs/Header header
+tier4_vehicle_msgs/ActuationCommand actuation
 """
