@@ -176,7 +176,7 @@ def _await_stations(
     if bridge is not None:
         address = bridge_address(folder, alive)
         if session.features.autopilot is not None:
-            programs.append(start_autopilot(address, session.features.autopilot, token, bridge.certificate))
+            programs.append(start_autopilot(address, session.features.autopilot, bridge, token))
     if session.outputs.can is not None:
         wait_for_can(folder, lambda: alive() and not supervisor.counters().get("canbus"))
     return address
@@ -217,7 +217,7 @@ def _open_lockstep(
     course = session.features.autopilot
     program = None
     if course is not None:
-        program = start_autopilot(bridge.url, course, token, session.outputs.bridge.certificate)
+        program = start_autopilot(bridge.url, course, session.outputs.bridge, token)
         stack.callback(end_program, program)
     stack.callback(bridge.close)  # before the program's end is waited for: it is what ends it
     _wait_for_controller(bridge, program, session.mode.wait_for_controller_s, check)

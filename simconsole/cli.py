@@ -103,14 +103,20 @@ def _driving(commands: Any) -> None:
     operate.add_argument("--note", default="", metavar="TEXT", help="kept with the drive")
     operate.add_argument("--participant", default="", metavar="ID")
     operate.add_argument("--trial", default="", metavar="ID")
-    operate.add_argument("--url", default="ws://127.0.0.1:9090", metavar="URL", help="the console's rosbridge server")
+    operate.add_argument(
+        "--url",
+        default="ws://127.0.0.1:9090",
+        metavar="URL",
+        help="the console's rosbridge server (a token of role control, if it asks for one: SIMCONSOLE_TOKEN)",
+    )
     operate.add_argument("--namespace", default="", metavar="NS", help="of the console's topics")
-    operate.add_argument("--token", metavar="T", help="of role control, where the server asks for one")
 
     autopilot = _command(commands, "autopilot", "remote:autopilot", "the path tracker, as a ROS-side program")
     autopilot.add_argument("--url", default="ws://127.0.0.1:9090", metavar="URL")
     autopilot.add_argument("--course", default="urban", metavar="WORLD")
     autopilot.add_argument("--wait", type=float, default=10.0, metavar="S", help="how long to wait for the server")
+    autopilot.add_argument("--namespace", default="", metavar="NS", help="of the console's topics")
+    autopilot.add_argument("--rename", action="append", default=[], metavar="/TOPIC=/NAME", help="what one is called")
     autopilot.add_argument("--certificate", metavar="PEM", help="of a wss:// server; a token: SIMCONSOLE_TOKEN")
 
 
@@ -160,8 +166,9 @@ def _tools(commands: Any) -> None:
 
     bridge = _command(commands, "bridge", "rosbridge:bridge", "rosbridge: serve it alone, check any server")
     bridge.add_argument("action", choices=("serve", "check", "bench", "cert"))
-    bridge.add_argument("url", nargs="?", metavar="URL", help="the server to `check` or `bench`, any rosbridge server")
-    bridge.add_argument("--token", metavar="T", help="shown to the server to `check`")
+    bridge.add_argument(
+        "url", nargs="?", metavar="URL", help="the server to `check` (a token: SIMCONSOLE_TOKEN) or `bench`"
+    )
     bridge.add_argument("--host", default="127.0.0.1", metavar="H")
     bridge.add_argument("--port", type=int, default=9090, metavar="P")
     bridge.add_argument("--for", dest="duration_s", type=float, metavar="S")

@@ -6,13 +6,14 @@ import sys
 from typing import Any, Protocol
 
 from simconsole.ledger import Hop
+from simconsole.profiles.bridge import BridgeProfile
 from simconsole.rows import Snapshot
 from simconsole.signals import Event, EventInput, RemoteCommand
 
 PROGRAM_END_S = 5.0
 STAND_S = 0.02
 TOKEN_VARIABLE = "SIMCONSOLE_TOKEN"
-"""The environment's variable with the token that `simconsole autopilot` shows."""
+"""The environment's variable with the token that the commands show which connect to a server."""
 
 
 class LockstepServer(Protocol):
@@ -96,19 +97,23 @@ class LockstepLink:
 
 
 def start_autopilot(
-    url: str, course: str, token: str | None = None, certificate: str | None = None
+    url: str, course: str, bridge: BridgeProfile, token: str | None = None
 ) -> "subprocess.Popen[bytes]":
     """Start `simconsole autopilot` as a program of its own; `end_program` ends it.
 
     Args:
         url: the console's own server.
         course: what to follow.
+        bridge: what its topics are called, and its certificate.
         token: what the server asks for; it goes by the environment, for everyone can read a program's arguments.
-        certificate: the PEM file of a wss:// server.
     """
     words = [sys.executable, "-m", "simconsole", "autopilot", "--url", _here(url), "--course", course]
-    if certificate is not None:
-        words += ["--certificate", certificate]
+    if bridge.namespace:
+        words += ["--namespace", bridge.namespace]
+    for standard, name in bridge.rename.items():
+        words += ["--rename", f"{standard}={name}"]
+    if bridge.certificate is not None:
+        words += ["--certificate", bridge.certificate]
     environment = dict(os.environ) if token is None else {**os.environ, TOKEN_VARIABLE: token}
     # A group of its own: a terminal's Ctrl-C reaches the core only, which then ends the drive in order.
     return subprocess.Popen(

@@ -62,11 +62,12 @@ _NOTICES: Final[dict[float, str]] = {
 
 LINK_NOBODY: Final = "nobody"
 LINK_LOST: Final = "lost"
+LINK_CONNECTING: Final = "connecting"
 LINK_RETRYING: Final = "retrying"
 LINK_DOWN: Final = "down"
 LINK_COMMANDER: Final = "commander"
-"""How the rosbridge link stands, beside `2 clients`: nobody has come yet, all have gone, the upstream server is being
-tried, the bridge itself does not run, somebody commands."""
+"""How the rosbridge link stands, beside `2 clients`: nobody has come yet, all have gone, the upstream server was
+never reached yet, it was lost and is tried again, the bridge itself does not run, somebody commands."""
 
 _COMMANDERS: Final[dict[float, str]] = {Commander.NOBODY: "none", Commander.ROS: "ROS", Commander.ECU: "CAN"}
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from simconsole.inline import TOKEN_VARIABLE, LockstepLink, end_program, start_autopilot
+from simconsole.profiles.bridge import BridgeProfile
 from simconsole.rows import Snapshot
 from simconsole.signals import NO_COMMAND, Event, EventInput, RemoteCommand
 
@@ -103,7 +104,7 @@ def test_a_missing_answer_does_not_hide_other_events(server: Server) -> None:
 
 
 def test_an_autopilot_with_nobody_to_drive_for_is_ended() -> None:
-    program = start_autopilot("ws://127.0.0.1:9", "urban")
+    program = start_autopilot("ws://127.0.0.1:9", "urban", BridgeProfile())
     assert program.poll() is None
     program.terminate()
     end_program(program)
@@ -116,10 +117,12 @@ def test_a_token_goes_by_the_environment_and_a_server_on_all_addresses_is_reache
     started: list[tuple[list[str], dict[str, str]]] = []
     monkeypatch.setattr("subprocess.Popen", lambda words, **options: started.append((words, options["env"])))
     monkeypatch.delenv(TOKEN_VARIABLE, raising=False)
-    start_autopilot("wss://0.0.0.0:9", "urban", "secret", "b.pem")
-    start_autopilot("ws://[::]:9", "urban")
+    named = BridgeProfile(certificate="b.pem", namespace="/ego", rename={"/odom": "/here"})
+    start_autopilot("wss://0.0.0.0:9", "urban", named, "secret")
+    start_autopilot("ws://[::]:9", "urban", BridgeProfile())
     (words, environment), (plain, without) = started
-    assert words[4:] == ["--url", "wss://127.0.0.1:9", "--course", "urban", "--certificate", "b.pem"]
+    names = ["--namespace", "/ego", "--rename", "/odom=/here"]
+    assert words[4:] == ["--url", "wss://127.0.0.1:9", "--course", "urban", *names, "--certificate", "b.pem"]
     assert environment[TOKEN_VARIABLE] == "secret"
     assert "secret" not in words
     assert plain[4:] == ["--url", "ws://[::1]:9", "--course", "urban"]

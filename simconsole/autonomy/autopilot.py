@@ -6,7 +6,7 @@ which state the command was made for; also while a person drives, so that engage
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 from simconsole.autonomy.tally import Tally
@@ -35,6 +35,7 @@ def run(
     *,
     stop: Callable[[], bool] | None = None,
     namespace: str = "",
+    rename: Mapping[str, str] | None = None,
     patience_s: float = _PATIENCE_S,
     token: str | None = None,
     certificate: str | None = None,
@@ -46,6 +47,7 @@ def run(
         course_name: a world profile, by name or path.
         stop: asked after every message and four times a second.
         namespace: put before every topic, `/car1`.
+        rename: names of topics in place of the standard ones; they win over the namespace.
         patience_s: how long to try to connect, at the start and after a connection was lost.
         token: shown to the server.
         certificate: a PEM file that a wss:// server is checked against.
@@ -57,12 +59,15 @@ def run(
     tracker = Tracker(Course(load("worlds", course_name, WorldProfile, max_bytes=MAX_DATA_BYTES)))
     tally = Tally()
     with BridgeClient(url, token=token, certificate=certificate, until_good_bye=True) as client:
-        client.advertise(namespace + COMMAND, CONTROL)
-        client.subscribe(namespace + ODOMETRY, "nav_msgs/Odometry")
-        client.subscribe(namespace + ARBITRATION, "simconsole_msgs/Arbitration")
+        odometry, arbitration, command = (
+            (rename or {}).get(topic, namespace + topic) for topic in (ODOMETRY, ARBITRATION, COMMAND)
+        )
+        client.advertise(command, CONTROL)
+        client.subscribe(odometry, "nav_msgs/Odometry")
+        client.subscribe(arbitration, "simconsole_msgs/Arbitration")
         client.connect(patience_s)
         try:
-            ended = _answer(client, tracker, tally, namespace, stop or _never, patience_s)
+            ended = _answer(client, tracker, tally, (odometry, command), stop or _never, patience_s)
         except BridgeError as error:
             ended = str(error)
         results = {"url": url, "course": course_name, "ended": ended, "connections": client.connections}
@@ -73,17 +78,19 @@ def _answer(
     client: BridgeClient,
     tracker: Tracker,
     tally: Tally,
-    namespace: str,
+    topics: tuple[str, str],
     stop: Callable[[], bool],
     patience_s: float,
 ) -> str:
-    """Answer odometry, through lost connections, until `stop` or nobody is there any more; return which.
+    """Answer odometry by commands (`topics`), until `stop` or nobody is there any more; return which.
+
+    A lost connection is made again.
 
     Raises:
         BridgeError: the server has said good-bye.
     """
     command = client.registry.struct(CONTROL)()
-    odometry_topic, command_topic = namespace + ODOMETRY, namespace + COMMAND
+    odometry_topic, command_topic = topics
     # A console says who drives; a server that says nothing has given us the car.
     engaged = True
     heard_s = time.monotonic()

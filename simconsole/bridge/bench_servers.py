@@ -81,7 +81,8 @@ def _serve_ours(pipe: Connection, transport: Literal["websockets", "picows"] = "
     from simconsole.profiles.bridge import BridgeProfile
 
     profile = BridgeProfile(port=0, transport=transport)
-    serve(profile, lambda: None, lambda *_: None, lambda _: None, pipe.poll, on_ready=pipe.send)
+    # Until it is terminated: asking a pipe every millisecond would be measured too.
+    serve(profile, lambda: None, lambda *_: None, lambda _: None, lambda: False, on_ready=pipe.send)
 
 
 def _serve_ours_picows(pipe: Connection) -> None:

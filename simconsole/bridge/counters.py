@@ -1,10 +1,12 @@
 """What passed between a server and its clients, as it is published on a topic and reported at a drive's end."""
 
-from typing import Any
+from typing import Any, Final
 
 from simconsole.bridge.protocol import Router
 from simconsole.bridge.session import Session
-from simconsole.words import LINK_COMMANDER, LINK_LOST, LINK_NOBODY, LINK_RETRYING
+from simconsole.words import LINK_COMMANDER, LINK_CONNECTING, LINK_LOST, LINK_NOBODY, LINK_RETRYING
+
+_UPSTREAM: Final = {"connecting": LINK_CONNECTING, "lost": LINK_RETRYING}
 
 
 def counted(router: Router, now_ns: int) -> dict[str, Any]:
@@ -23,8 +25,8 @@ def counted(router: Router, now_ns: int) -> dict[str, Any]:
 
 def standing(router: Router, now_ns: int) -> str:
     """Return how the link stands, in the word that driver and operator read (`simconsole.words`)."""
-    if router.upstream == "connecting":
-        return LINK_RETRYING
+    if router.upstream in _UPSTREAM:
+        return _UPSTREAM[router.upstream]
     if router.lease.holder(now_ns) is not None:
         return LINK_COMMANDER
     count = len(router.sessions)

@@ -64,8 +64,9 @@ class Router:
         self._sessions: dict[int, Session] = {}
         self._numbers = 0
         self._gone = Counts()
-        self.upstream: Literal["", "connecting", "connected"] = ""
-        """How it stands with another server that the console is a client of; empty without one."""
+        self.upstream: Literal["", "connecting", "connected", "lost"] = ""
+        """How it stands with another server that the console is a client of: empty without one, lost once it was there
+        and is tried again."""
         self.calls = Calls(registry, limits)
         self.access = OPEN
 

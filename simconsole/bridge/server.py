@@ -34,6 +34,9 @@ _POLL_S: Final = 0.001
 _COUNT_S: Final = 1.0
 _STANDING_S: Final = 0.1
 _WRITE_BYTES: Final = 32_768
+_TOGETHER: Final = 3
+"""Messages for each client there is that one may have waiting before they are sent: with few clients soon, so that the
+reader works while we do; with many in longer pieces, for then somebody works in any case, and system calls cost."""
 _QUIET: Final = ("done", "command")
 """What becomes of most messages, and is not logged."""
 
@@ -54,6 +57,7 @@ class _Client:
         self._clock_ns = server.clock_ns
         self._loop = asyncio.get_running_loop()
         self._is_woken = False
+        self._queued = 0
         self._alarm: asyncio.TimerHandle | None = None
         self.session = self._console.router.connect(peer, self._wake, admission.dialect, admission.role)
 
@@ -75,13 +79,20 @@ class _Client:
         self._server.leave(self)
 
     def _wake(self) -> None:
-        """Send in a moment: what is queued until then goes in one piece."""
-        if not self._is_woken:
+        """Send in a moment what is queued until then, in one piece; of more than a few, the first at once."""
+        self._queued += 1
+        if self._queued >= _TOGETHER * self._server.clients:
+            self._send()
+        elif not self._is_woken:
             self._is_woken = True
-            self._loop.call_soon(self._send)
+            self._loop.call_soon(self._send_rest)
+
+    def _send_rest(self) -> None:
+        self._is_woken = False
+        self._send()
 
     def _send(self) -> None:
-        self._is_woken = False
+        self._queued = 0
         transport, now_ns = self.transport, self._clock_ns()
         while transport.is_open and transport.takes_more:
             messages = self._due(now_ns)

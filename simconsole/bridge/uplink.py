@@ -82,7 +82,8 @@ class Uplink:
             finally:
                 if self._upstream.lost(self._clock_ns()):
                     _logger.warning("%s was commanding and is gone", self._profile.url)
-                self._tell("connecting")
+                if self._console.router.upstream == "connected":
+                    self._tell("lost")
             _logger.info("%s: not connected: %s", self._profile.url, reason)
             await asyncio.sleep(self._backoff.pause_s(chance.random()))
 
@@ -118,7 +119,7 @@ class Uplink:
                 wait_s = max(0, due_ns - self._clock_ns()) / NS_PER_S
                 asyncio.get_running_loop().call_later(wait_s, self._ready.set)
 
-    def _tell(self, state: Literal["connecting", "connected"]) -> None:
+    def _tell(self, state: Literal["connecting", "connected", "lost"]) -> None:
         self._console.router.upstream = state
 
 

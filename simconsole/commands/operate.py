@@ -5,6 +5,7 @@ from argparse import Namespace
 from typing import Any
 
 from simconsole.commands.outcome import Outcome
+from simconsole.commands.remote import own_token
 from simconsole.errors import BridgeError
 
 _PATIENCE_S = 5.0
@@ -21,7 +22,7 @@ def operate(words: Namespace) -> Outcome:
 
     args = {"act": words.act, "note": words.note, "participant": words.participant, "trial": words.trial}
     answers: list[tuple[Any, bool]] = []
-    with BridgeClient(words.url, token=words.token, comes_back=False) as client:
+    with BridgeClient(words.url, token=own_token(), comes_back=False) as client:
         client.connect()
         client.call_service(words.namespace + OPERATE, args, lambda values, good: answers.append((values, good)))
         deadline_s = time.monotonic() + _PATIENCE_S

@@ -4,13 +4,38 @@ import os
 from argparse import Namespace
 
 from simconsole.commands.outcome import Outcome, table
+from simconsole.errors import ProfileError
 from simconsole.inline import TOKEN_VARIABLE
 
 
+def own_token() -> str | None:
+    """Return the token to show a server: from the environment, for everyone can read a program's arguments."""
+    return os.environ.pop(TOKEN_VARIABLE, None)
+
+
 def autopilot(words: Namespace) -> Outcome:
-    """Follow a course over rosbridge until the console closes the connection."""
+    """Follow a course over rosbridge until the console closes the connection.
+
+    Raises:
+        ProfileError: a topic is renamed in no way.
+    """
     from simconsole.autonomy.autopilot import run
 
-    token = os.environ.pop(TOKEN_VARIABLE, None)
-    results = run(words.url, words.course, patience_s=words.wait, token=token, certificate=words.certificate)
+    results = run(
+        words.url,
+        words.course,
+        namespace=words.namespace,
+        rename=_renamed(words.rename),
+        patience_s=words.wait,
+        token=own_token(),
+        certificate=words.certificate,
+    )
     return Outcome(0, results, table([(name, str(value)) for name, value in results.items()]))
+
+
+def _renamed(given: list[str]) -> dict[str, str]:
+    pairs = [one.partition("=") for one in given]
+    for one, (standard, _, name) in zip(given, pairs, strict=True):
+        if not (standard.startswith("/") and name.startswith("/")):
+            raise ProfileError(f"--rename: {one}: expected /TOPIC=/NAME")
+    return {standard: name for standard, _, name in pairs}

@@ -6,6 +6,7 @@ from argparse import Namespace
 from pathlib import Path
 
 from simconsole.commands.outcome import INTERRUPTED, Outcome, table
+from simconsole.commands.remote import own_token
 
 
 def bridge(words: Namespace) -> Outcome:
@@ -55,7 +56,7 @@ def check(words: Namespace) -> Outcome:
     from simconsole.bridge import conformance
 
     url = words.url or f"ws://{words.host}:{words.port}"
-    rows = conformance.check(url, words.token)
+    rows = conformance.check(url, own_token())
     passed = sum(row.passed for row in rows)
     lines = [
         ("pass" if row.passed else "DEVIATION", f"{row.name}: {row.found}" if row.found else row.name) for row in rows

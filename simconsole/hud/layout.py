@@ -14,7 +14,7 @@ from simconsole.hud.panels import pedals, status, steering
 from simconsole.hud.screen import Screen
 from simconsole.hud.view import HudView
 from simconsole.signals import Mode, Notice, Reason
-from simconsole.words import LINK_COMMANDER, LINK_NOBODY, LINK_RETRYING, mode_words, notice_words, reason_words
+from simconsole.words import LINK_COMMANDER, LINK_CONNECTING, LINK_NOBODY, mode_words, notice_words, reason_words
 
 GAP: Final = 0.02
 
@@ -108,7 +108,7 @@ def sample_views() -> list[HudView]:
     validities = (0.0, 1.0, 2.0, 3.0, 4.0)
     views += [wide._replace(wheel_validity=v, pedals_validity=v, shifter_validity=v) for v in validities]
     views.append(wide._replace(can_up=False, link="64 clients", force="limit"))
-    views += [wide._replace(can_up=True, link=link) for link in (LINK_NOBODY, LINK_COMMANDER, LINK_RETRYING)]
+    views += [wide._replace(can_up=True, link=link) for link in (LINK_NOBODY, LINK_COMMANDER, LINK_CONNECTING)]
     views += [wide._replace(force=force, can_up=up) for force, up in (("limit", False), ("lost", True), ("on", None))]
     views += [wide._replace(turn_indicators=1.0), wide._replace(turn_indicators=-1.0), wide._replace(hazard_lights=1.0)]
     views += [wide._replace(lever_words=words) for words in ("two gears", "not now")]

@@ -24,12 +24,14 @@ from simconsole.hud.shapes import exclamation
 from simconsole.hud.view import HudView
 from simconsole.signals import Validity
 from simconsole.units import DEG_PER_RAD
-from simconsole.words import LINK_DOWN, LINK_LOST, LINK_NOBODY, LINK_RETRYING, validity_words
+from simconsole.words import LINK_CONNECTING, LINK_DOWN, LINK_LOST, LINK_NOBODY, LINK_RETRYING, validity_words
 
 FULL_STEERING_DEG: Final = 40.0
 """Road-wheel angle at the end of the steering scale."""
 
-_LINK_LEVELS: Final = {LINK_NOBODY: "plain", LINK_LOST: "warn", LINK_RETRYING: "warn", LINK_DOWN: "warn"}
+_LINK_LEVELS: Final = {
+    LINK_NOBODY: "plain", LINK_LOST: "warn", LINK_CONNECTING: "warn", LINK_RETRYING: "warn", LINK_DOWN: "warn",
+}  # fmt: skip
 _FORCE_LEVELS: Final = {"none": "plain", "on": "good", "limit": "warn", "lost": "warn"}
 
 

@@ -57,4 +57,8 @@ def test_link_goes_from_nobody_over_clients_and_a_commander_to_lost(
     bridge.disconnect(second.session, 10**9)
     assert now(10**9) == "lost"
     bridge.router.upstream = "connecting"
+    assert now(10**9) == "connecting", "it was never there"
+    bridge.router.upstream = "lost"
     assert now(10**9) == "retrying"
+    bridge.router.upstream = "connected"
+    assert now(10**9) == "lost"

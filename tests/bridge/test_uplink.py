@@ -88,7 +88,7 @@ def test_it_comes_back_with_everything_and_nobody_engaged(
                 await double.peers[-1].send(json.dumps({"op": "publish", "topic": CONTROL, "msg": control(number / 9)}))
                 await until(lambda: server.console.inputs.command.sequence == number + 1)  # noqa: B023  (ends here)
                 double.peers[-1].transport.abort()
-                await until(lambda: server.console.router.upstream == "connecting")
+                await until(lambda: server.console.router.upstream == "lost")
             assert server.console.router.lease.holder(0) is None
             await until(lambda: server.console.router.upstream == "connected")
             server.publish(snapshot(5))

@@ -1,4 +1,4 @@
-"""A session that asks for tokens, or speaks TLS only, is driven by its own autopilot all the same."""
+"""A session with tokens, TLS only, or other names of topics is driven by its own autopilot all the same."""
 
 import subprocess
 from collections.abc import Callable
@@ -49,13 +49,22 @@ def files(tmp_path: Path) -> Callable[..., dict[str, Any]]:
     return written
 
 
-@pytest.mark.parametrize("kinds", [("tokens",), ("certificate",), ("tokens", "certificate")])
+NAMES = {"namespace": "/ego", "rename": {"/odom": "/localization/kinematic_state"}}
+
+
+@pytest.mark.parametrize(
+    ("kinds", "names"), [(("tokens",), {}), (("certificate",), {}), (("tokens", "certificate"), {}), ((), NAMES)]
+)
 def test_own_autopilot_drives(
-    kinds: tuple[str, ...], files: Callable[..., dict[str, Any]], started: list[list[str]], tmp_path: Path
+    kinds: tuple[str, ...],
+    names: dict[str, Any],
+    files: Callable[..., dict[str, Any]],
+    started: list[list[str]],
+    tmp_path: Path,
 ) -> None:
     session = override(
         load_session("demo"),
-        outputs={"bridge": {"port": 0, **files(*kinds)}, "hud": None, "scene": None, "report": False},
+        outputs={"bridge": {"port": 0, **names, **files(*kinds)}, "hud": None, "scene": None, "report": False},
         scenario={"duration_s": LIMIT_S},
     )
     session = override(session, devices={"person": {"sit_s": 1.0, "cruise_kmh": 20, "autonomy": {"distance_m": 15}}})

@@ -111,7 +111,16 @@ def test_bus_that_is_down_warns_and_none_is_not_shown() -> None:
 
 @pytest.mark.parametrize(
     ("link", "lamp"),
-    [("nobody", 0), ("1 client", 1), ("64 clients", 1), ("commander", 1), ("lost", 3), ("retrying", 3), ("down", 3)],
+    [
+        ("nobody", 0),
+        ("1 client", 1),
+        ("64 clients", 1),
+        ("commander", 1),
+        ("lost", 3),
+        ("connecting", 3),
+        ("retrying", 3),
+        ("down", 3),
+    ],
 )
 def test_link_is_told_in_words_with_a_warning_where_nobody_is_left(link: str, lamp: int) -> None:
     items = layout(HudView(link=link), SCREEN)

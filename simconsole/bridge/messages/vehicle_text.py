@@ -60,9 +60,10 @@ MSG: simconsole_msgs/Bridge
 std_msgs/Header header
 # Who holds the commander's lease; empty: nobody.
 string commander
-# How it stands with the server that the console is a client of: connecting, connected; empty: there is none.
+# How it stands with the server that the console is a client of: connecting, connected, lost; empty: none.
 string upstream
-# How the link stands, as the driver reads it: nobody, N clients, commander, lost (all have gone), retrying (upstream).
+# How the link stands, as the driver reads it: nobody, N clients, commander, lost (all have gone), connecting or
+# retrying (upstream was never there, or was lost).
 string state
 # How many clients there have been, and messages of all of them, also of those that are gone.
 uint64 connections
