@@ -1,7 +1,8 @@
 """Runs behind the mocked kernel: the console's own motor on SDL's own driver, 250 ticks a second.
 
 python haptic_program.py HOW [BACK_END [watched]]      HOW: drive, hang (SIGSTOP to itself), kill (SIGKILL to itself),
-contract (port_contract.py), motion (read what the kernel plays) or limits (what it says of the axes)
+contract (port_contract.py), pause (of a drive, under force), motion (read what the kernel plays) or limits (what it
+says of the axes)
 """
 
 import json
@@ -13,8 +14,11 @@ import time
 import msgspec
 import numpy as np
 
+from simconsole.assembly import assemble
+from simconsole.compiling import plain
 from simconsole.devices import sdl_runtime
 from simconsole.devices.back_ends import open_motor
+from simconsole.devices.cockpit import NOBODY
 from simconsole.devices.kernel_limits import notes, problems, read_limits
 from simconsole.devices.motor import WheelMotor
 from simconsole.devices.sdl import Found, SdlSource, found
@@ -22,10 +26,25 @@ from simconsole.devices.watched import Watchdog, watched
 from simconsole.profile_files import load
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.force_feedback import ForceFeedback
-from simconsole.rows import MOTOR_AT, PLATFORM_AT, TORQUE_AT, Snapshot
-from simconsole.signals import NO_TORQUE
+from simconsole.rows import (
+    ARBITRATION_AT,
+    DRIVER_AT,
+    ECU_AT,
+    EVENTS_AT,
+    MEMORY_AT,
+    MOTOR_AT,
+    PLATFORM_AT,
+    ROS_AT,
+    SAMPLE_AT,
+    TORQUE_AT,
+    VEHICLE_AT,
+    Snapshot,
+)
+from simconsole.session_files import load_session, resolve
+from simconsole.signals import NO_SAMPLE, NO_TORQUE, Event, EventInput, Mode, Validity
 from tests.devices.port_contract import CHECKS
 
+PAUSE_S = 0.4
 LEVELS = [0.0, 0.5, 1.0, -1.0, -0.25, 9.0, -9.0, 0.0]
 BACK_END = sys.argv[2] if len(sys.argv) > 2 else "sdl"
 FORCE = ForceFeedback(max_torque_nm=4.0, back_end=BACK_END)  # type: ignore[arg-type]  # sdl or evdev
@@ -71,6 +90,11 @@ def main(how: str) -> None:
         time.sleep(0.5)  # until it has opened the device
         print("watchdog", watchdog.process_id, flush=True)
     motor = WheelMotor(port, FORCE, lambda snapshot: time.monotonic())
+    if how == "pause":
+        pause(motor)
+        motor.close()
+        sdl_runtime.release()
+        return
     for level in LEVELS:
         for _ in range(5):
             motor.publish(shot(4.0 * level))
@@ -86,6 +110,29 @@ def main(how: str) -> None:
     if watchdog is not None:
         watchdog.close()
     sdl_runtime.release()
+
+
+def pause(motor: WheelMotor) -> None:
+    """A car in a bend pulls at the wheel; time stands for PAUSE_S, as `drive.run` lets it stand, and goes on."""
+    console, state = assemble(resolve(load_session("demo")), plain)
+    assert console.feel is not None
+    row = state.row
+    for tick in range(1, 401):
+        before, row = row, row.copy()
+        events = {301: Event.PAUSE, 302: Event.START}.get(tick, Event(0))
+        row[EVENTS_AT:ECU_AT] = EventInput(float(events))
+        row[SAMPLE_AT:ROS_AT] = NO_SAMPLE._replace(wheel_motor=1.0)
+        row[DRIVER_AT:MEMORY_AT] = NOBODY._replace(wheel_validity=float(Validity.LIVE))
+        row[ARBITRATION_AT] = float(Mode.MANUAL)
+        row[VEHICLE_AT:TORQUE_AT] = console.platform.initial_vehicle._replace(vx_mps=20.0, hand_wheel_torque_nm=3.0)
+        console.feel(before, row, console.settings, console.tick_s)
+        if tick > 250:
+            motor.publish(Snapshot(tick, 250, row))
+            time.sleep(0.004)
+        if tick == 301:
+            print("stands", time.monotonic_ns(), flush=True)
+            time.sleep(PAUSE_S)
+            print("goes on", time.monotonic_ns(), flush=True)
 
 
 def contract(entry: Found) -> None:

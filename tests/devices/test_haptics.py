@@ -167,3 +167,28 @@ def test_joystick_that_is_not_there_has_no_motor(sdl: None) -> None:
         assert not open_haptics(4711, FORCE).capability.constant
     finally:
         sdl_runtime.release()
+
+
+@pytest.mark.parametrize("back_end", ["sdl", "evdev"])
+def test_in_a_pause_there_is_no_force_and_after_it_force_comes_slowly(back_end: str, tmp_path: Path) -> None:
+    """The car's pull through the console's own kernel and motor to the device's driver, paused and started again."""
+    log = tmp_path / "calls.jsonl"
+    done = start(log, "pause", back_end)
+    out, err = done.communicate(timeout=60.0)
+    assert done.returncode == 0, out + err
+    said = {line.rpartition(" ")[0]: line.rpartition(" ")[2] for line in out.splitlines()}
+    stands_ns, on_ns = int(said["stands"]), int(said["goes on"])
+    assert on_ns - stands_ns > 0.35e9, "longer than an effect lasts: nothing may keep it going"
+    told = calls(log)
+    (slot,) = {call["id"] for call in told if call["what"] == "upload" and call["type"] == FF_CONSTANT}
+    force = [call for call in told if call.get("id") == slot and call["what"] in ("upload", "play")]
+    before = [call for call in force if call["t_ns"] <= stands_ns]
+    pulls = [abs(call["level"]) for call in before if call["what"] == "upload"]
+    assert max(pulls) > 0.5 * 32767, "there was force to end"
+    assert pulls[-1] == 0
+    assert [call["value"] for call in before if call["what"] == "play"][-1] == 0
+    assert [call for call in force if stands_ns < call["t_ns"] < on_ns] == []
+    after = [call for call in force if call["t_ns"] >= on_ns]
+    soon = [abs(call["level"]) for call in after if call["what"] == "upload" and call["t_ns"] < on_ns + 0.1e9]
+    assert any(call["what"] == "play" and call["value"] == 1 for call in after)
+    assert max(soon) < 0.35 * max(pulls)
