@@ -158,8 +158,8 @@ def gate(
     gear = _gear(request.gear, known(before.gear, 0.0), automatic, vehicle, settings)
     target = _target(remote, mode, before, vehicle, limits, settings, tick_s)
     active = wheel.active | brake.active | throttle.active | clutch.active | handbrake.active
-    turn = _switch(request.turn_indicators, before.turn_indicators, -1.0)
-    hazard = _switch(request.hazard_lights, before.hazard_lights, 0.0)
+    turn = _switch(request.turn_indicators, before.turn_indicators, True)
+    hazard = _switch(request.hazard_lights, before.hazard_lights, False)
     active |= gear.active | target.active | turn.active | hazard.active
     return VehicleCommand(
         wheel.value,
@@ -275,15 +275,15 @@ def _gear(wanted: float, before: float, automatic: float, vehicle: VehicleState,
 
 
 @kernel
-def _switch(wanted: float, before: float, lowest: float) -> Passed:
+def _switch(wanted: float, before: float, two_sided: bool) -> Passed:
     """Pass a switch's position, fully to one side or off (0); one that is not finite stays where it was."""
     active = 0
     value = wanted
-    if not is_finite(value):
+    if not is_finite(wanted):
         value = known(before, 0.0)
-        active |= _NON_FINITE
+        active = _NON_FINITE
     position = 1.0 if value > 0.0 else 0.0
-    if value < 0.0 and lowest < 0.0:
+    if two_sided and value < 0.0:
         position = -1.0
     if position != value:
         active |= _RANGE

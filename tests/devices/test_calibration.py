@@ -102,6 +102,18 @@ def test_first_wheel_position_is_no_motion() -> None:
     assert driver.hand_wheel_radps == 0.0
 
 
+@pytest.mark.parametrize("tick_hz", [50, 250, 1000])
+def test_silence_counts_from_the_first_tick_after_100_ms_at_every_rate(tick_hz: int) -> None:
+    seat = Seat(settings(PROFILE, tick_hz))
+    seat.do(ticks=2)
+    for age in range(1, tick_hz):
+        seat.do(wheel_age_ticks=age, pedals_age_ticks=age, shifter_age_ticks=age)
+        if validities(seat) != {LIVE}:
+            break
+    assert validities(seat) == {STALE}
+    assert age == 0.1 * tick_hz + 1
+
+
 def test_silent_device_is_held_then_stale_and_returns_without_arming_again(seat: Seat) -> None:
     """D03: 100 ms."""
     pressed = Intent(throttle=0.6, hand_wheel_rad=1.0, gear=3)
