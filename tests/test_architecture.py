@@ -38,6 +38,7 @@ UNITLESS = {
     *("sequence", "refused", "refused_seen", "sequence_seen", "invalid_run", "automatic", "engine_running"),
     *("wheel_buttons", "shifter_buttons", "pressed", "edges", "events", "faults", "gate_active", "throttle_override"),
     *("wheel_motor", "ramp", "clipped", "enabled", "hands_on", "live", "ecu_events", "fresh", "invalid", "lever_fault"),
+    "implausible",
     *("anti_lock_off", "traction_off", "stability_off", "gear_fault"),
     *("turn_indicators", "hazard_lights", "stalk", "hazard_switch"),
     # members of an enumeration

@@ -255,7 +255,7 @@ class Outputs:
             throttle,
             brake,
             int(command.sequence),
-            int(command.refused),
+            int(command.refused + link.implausible),
             -1.0 if command.age_ticks >= NEVER_TICKS else command.age_ticks / tick_hz,
         )
 

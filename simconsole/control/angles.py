@@ -6,9 +6,24 @@ from simconsole.control.longitudinal import known
 from simconsole.control.settings import ControlSettings
 from simconsole.kernels import clip, kernel
 from simconsole.signals import VehicleState
-from simconsole.trigonometry import atan, cos
+from simconsole.trigonometry import atan, cos, sin
 
 _MOST_MPS: Final = 100.0
+_MOST_RAD: Final = 1.5
+
+
+@kernel
+def curvature(road_wheel_rad: float, settings: ControlSettings) -> float:
+    """Return the curvature in 1/m that a finite angle steers: kinematic single track, tan(angle) / wheelbase."""
+    angle = clip(road_wheel_rad, -_MOST_RAD, _MOST_RAD)
+    return sin(angle) / (cos(angle) * settings.wheelbase_m)
+
+
+@kernel
+def lateral_apart(first_rad: float, second_rad: float, vehicle: VehicleState, settings: ControlSettings) -> float:
+    """Return by how many m/s2 of lateral acceleration two angles differ at the present speed."""
+    speed = clip(known(vehicle.vx_mps, 0.0), -_MOST_MPS, _MOST_MPS)
+    return abs(curvature(first_rad, settings) - curvature(second_rad, settings)) * speed * speed
 
 
 @kernel

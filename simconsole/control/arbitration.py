@@ -74,7 +74,7 @@ def arbitrate(now: Moment) -> tuple[ArbiterMemory, Link, Link, Arbitration, Requ
     transmission = transmission_of(now, decision.mode, side.direction)
     stalk = switched(now.driver, now.memory)
     lights = lights_of(decision.mode, stalk, controllers.remote, controllers.link)
-    steered = steered_stop(now, decision, controllers.link)
+    steered = steered_stop(now, decision, controllers.offered, controllers.link)
     return (
         _remembered(seen, decision, side, mode_ticks, shared.trade, steered, stalk, held_ticks, restart.ticks),
         controllers.ros_link,

@@ -2,7 +2,7 @@
 
 from typing import Final, NamedTuple
 
-from simconsole.control.angles import gentle_angle, gentle_step
+from simconsole.control.angles import gentle_angle, gentle_step, lateral_apart
 from simconsole.control.decision import Decision
 from simconsole.control.lights import Lights
 from simconsole.control.moment import Moment
@@ -118,7 +118,7 @@ def remote_side(
             offered.road_wheel_rad, offered.throttle, offered.brake, offered.direction, integral, 0.0, hold
         )
     if mode == _MINIMAL_RISK:
-        return _safe_side(now, entered, hold, offered.road_wheel_rad, steered_stop(now, decision, link) > 0.0)
+        return _safe_side(now, entered, hold, offered.road_wheel_rad, steered_stop(now, decision, offered, link) > 0.0)
     brake = now.settings.emergency_brake if mode == _EMERGENCY_STOP else now.settings.hold_brake
     return RemoteSide(hold, 0.0, brake, 0.0, 0.0, 0.0, hold)
 
@@ -183,24 +183,28 @@ def _held_back(now: Moment, offered: RemoteRequest) -> RemoteRequest:
 
 
 @kernel
-def steered_stop(now: Moment, decision: Decision, link: Link) -> float:
-    """Return 1 while the controller goes on steering a safe stop: it drove, nothing is wrong with it, and never was.
+def steered_stop(now: Moment, decision: Decision, offered: RemoteRequest, link: Link) -> float:
+    """Return 1 while the controller steers a safe stop: nothing is wrong with it, and never was during this stop.
 
-    So a car whose person did not react, or whose loop stood still, stops in its lane.
+    If it drove, it goes on: a car whose person did not react, or whose loop stood still, stops in its lane. If a person
+    drove (their wheel is lost, or the loop stood still), it steers if it is steady and asks for about what they did.
     """
     if decision.mode != _MINIMAL_RISK or link.fresh == 0.0 or link.invalid > 0.0:
         return 0.0
     if decision.changed == 0.0:
         return now.memory.stop_steered
-    drove = now.before.mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED)
-    return 1.0 if drove and decision.reason in (_NO_REACTION, _LOOP_STALL) else 0.0
+    if now.before.mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED):
+        return 1.0 if decision.reason in (_NO_REACTION, _LOOP_STALL) else 0.0
+    apart = lateral_apart(offered.road_wheel_rad, now.command_before.road_wheel_rad, now.vehicle, now.settings)
+    steady = link.fresh_ticks >= now.settings.engage_stable_ticks
+    return 1.0 if steady and apart <= now.settings.stop_steering_apart_mps2 else 0.0
 
 
 @kernel
 def _safe_side(now: Moment, entered: bool, hold_rad: float, offered_rad: float, steered: bool) -> RemoteSide:
     accel = stop_start(now.vehicle, now.settings) if entered else now.memory.stop_accel_mps2
     integral = 0.0 if entered else now.memory.speed_integral_mps2
-    stop = safe_stop(accel, integral, now.vehicle, now.settings, now.tick_s)
+    stop = safe_stop(accel, integral, steered, now.vehicle, now.settings, now.tick_s)
     road_wheel_rad = offered_rad
     if not steered:
         road_wheel_rad = approach(hold_rad, 0.0, now.settings.stop_road_wheel_decay_radps * now.tick_s)

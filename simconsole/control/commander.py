@@ -54,13 +54,13 @@ class Controllers(NamedTuple):
 @kernel
 def look(now: Moment) -> Controllers:
     """Look at both controllers, by the same rules, and say which of them commands."""
-    ros_link = watch_link(now.ros, now.ros_before, now.settings)
-    ecu_link = watch_link(now.ecu, now.ecu_before, now.settings)
+    ros_link = watch_link(now.ros, now.ros_before, now.vehicle, now.settings)
+    ecu_link = watch_link(now.ecu, now.ecu_before, now.vehicle, now.settings)
     commander = commander_of(now.before, ros_link, ecu_link, now.settings)
     by_ecu = commander == ECU
     integral_mps2 = now.memory.speed_integral_mps2
-    ros_offered = _offered(now.ros, 0.0 if by_ecu else integral_mps2, now)
-    ecu_offered = _offered(now.ecu, integral_mps2 if by_ecu else 0.0, now)
+    ros_offered = _offered(now.ros, ros_link, 0.0 if by_ecu else integral_mps2, now)
+    ecu_offered = _offered(now.ecu, ecu_link, integral_mps2 if by_ecu else 0.0, now)
     return Controllers(
         commander,
         ros_link,
@@ -76,11 +76,17 @@ def look(now: Moment) -> Controllers:
 
 
 @kernel
-def _offered(command: RemoteCommand, integral_mps2: float, now: Moment) -> RemoteRequest:
+def _offered(command: RemoteCommand, link: Link, integral_mps2: float, now: Moment) -> RemoteRequest:
+    """Return what a controller asks for. Steering that it cannot mean is not followed: the angle in force is held."""
     held_rad = now.command_before.road_wheel_rad
     if command.sequence <= 0.0 or not command_finite(command):
         return RemoteRequest(held_rad, 0.0, 0.0, 0.0, 0.0)
-    return remote_request(command, held_rad, integral_mps2, now.vehicle, now.settings, now.tick_s)
+    asked = remote_request(command, held_rad, integral_mps2, now.vehicle, now.settings, now.tick_s)
+    if link.implausible_ticks == 0.0:
+        return asked
+    if now.before.mode == _SHARED:
+        held_rad = now.before.remote_road_wheel_rad  # its own part: that in force is the person's, too
+    return RemoteRequest(held_rad, asked.throttle, asked.brake, asked.direction, asked.speed_integral_mps2)
 
 
 @kernel

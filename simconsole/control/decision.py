@@ -21,11 +21,14 @@ from simconsole.control.triggers import (
 from simconsole.kernels import kernel
 from simconsole.signals import Mode, Reason
 
+_SHARED: Final = float(Mode.SHARED)
+_AUTONOMOUS: Final = float(Mode.AUTONOMOUS)
 _TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)
 _PERSON_ASKED: Final = float(Reason.PERSON_ASKED)
 _REMOTE_ASKED: Final = float(Reason.REMOTE_ASKED)
 _DEVICE_LOST: Final = float(Reason.DEVICE_LOST)
 _OPERATOR_ASKED: Final = float(Reason.OPERATOR_ASKED)
+_REFUSED_IMPLAUSIBLE: Final = float(Reason.REFUSED_IMPLAUSIBLE)
 _REFUSED_NOT_COMMANDER: Final = float(Reason.REFUSED_NOT_COMMANDER)
 
 
@@ -82,6 +85,8 @@ def decide(now: Moment, person: Person, controllers: Controllers, steering: bool
     refusal = refusal_of(mode, asked, manual, reset, engage, shared)
     if refusal == GRANTED and controllers.unheard:
         refusal = _REFUSED_NOT_COMMANDER
+    if refusal == GRANTED and link.implausible_ticks > 0.0 and mode in (_SHARED, _AUTONOMOUS, _TAKEOVER_REQUESTED):
+        refusal = _REFUSED_IMPLAUSIBLE
     if refusal != GRANTED:
         return Decision(mode, now.before.reason, 0.0, refusal, 0.0)
     shown = now.memory.refusal_ticks + 1.0 < settings.refusal_ticks

@@ -1,11 +1,11 @@
-"""Whether a controller's commands may be relied on: age, finiteness, refused ones in a row, stable for how long."""
+"""Whether a controller's commands may be relied on: age, finiteness, plausibility, refusals in a row, steadiness."""
 
 from typing import Final
 
-from simconsole.control.remote import command_finite, known_kind
+from simconsole.control.remote import command_finite, implausible, known_kind
 from simconsole.control.settings import ControlSettings
 from simconsole.kernels import kernel
-from simconsole.signals import Link, LinkState, RemoteCommand
+from simconsole.signals import Link, LinkState, RemoteCommand, VehicleState
 
 _MANY: Final = 1e9
 _NEVER: Final = float(LinkState.NEVER)
@@ -16,23 +16,42 @@ _INVALID: Final = float(LinkState.INVALID)
 
 
 @kernel
-def watch_link(remote: RemoteCommand, before: Link, settings: ControlSettings) -> Link:
-    """Follow one controller by one tick. A restarted counter (smaller than before) counts as nothing refused."""
+def watch_link(remote: RemoteCommand, before: Link, vehicle: VehicleState, settings: ControlSettings) -> Link:
+    """Follow one controller by one tick. A restarted counter (smaller than before) counts as nothing refused.
+
+    A command that steers too hard to be meant at the vehicle's speed counts as a refused one, and what was asked for
+    before is as old as it would be had the command not come: after the time of a stale command nothing is valid.
+    """
     lease = before.lease_ticks - 1.0 if before.lease_ticks > 0.0 else 0.0
     if not command_finite(remote):
-        return Link(before.sequence_seen, before.refused_seen, before.invalid_run, 0.0, 0.0, 1.0, lease, _INVALID)
+        return Link(
+            before.sequence_seen,
+            before.refused_seen,
+            before.invalid_run,
+            0.0,
+            0.0,
+            1.0,
+            lease,
+            _INVALID,
+            before.implausible,
+            0.0,
+        )
     refused = remote.refused - before.refused_seen
     if refused < 0.0:
         refused = 0.0
-    run = before.invalid_run + refused
-    if remote.sequence != before.sequence_seen:
-        run = 0.0
-    elif run > _MANY:
-        run = _MANY
     in_time = 0.0 <= remote.age_ticks < settings.stale_ticks
     fresh = in_time and remote.sequence > 0.0 and known_kind(remote.kind)
-    fresh_ticks = before.fresh_ticks + 1.0 if fresh and refused == 0.0 else 0.0
-    invalid = run >= settings.invalid_commands_max
+    wild = fresh and implausible(remote, vehicle, settings)
+    wild_ticks = before.implausible_ticks + 1.0 if wild else 0.0
+    wild_count = before.implausible
+    run = before.invalid_run + refused
+    if remote.sequence != before.sequence_seen:
+        run = run + 1.0 if wild else 0.0
+        wild_count += 1.0 if wild else 0.0
+    if run > _MANY:
+        run = _MANY
+    fresh_ticks = before.fresh_ticks + 1.0 if fresh and refused == 0.0 and not wild else 0.0
+    invalid = run >= settings.invalid_commands_max or wild_ticks >= settings.stale_ticks
     if fresh and not invalid:
         lease = settings.lease_ticks
     return Link(
@@ -44,6 +63,8 @@ def watch_link(remote: RemoteCommand, before: Link, settings: ControlSettings) -
         1.0 if invalid else 0.0,
         lease,
         _state(remote.sequence, fresh, invalid, fresh_ticks >= settings.engage_stable_ticks),
+        wild_count,
+        wild_ticks,
     )
 
 

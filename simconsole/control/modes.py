@@ -44,7 +44,8 @@ MEANING: Final[dict[Trigger, str]] = {
     Trigger.DEVICE_LOST: "wheel or pedals are not trusted (any more) and a person is needed",
     Trigger.COMMANDER_LOST: "the controller's connection closed",
     Trigger.COMMAND_STALE: "no command for 200 ms, or no answer in lockstep",
-    Trigger.COMMAND_INVALID: "five refused commands in a row, or one that is not finite",
+    Trigger.COMMAND_INVALID: "five commands in a row that were refused or steer too hard to be meant at the speed, "
+    "nothing else for 200 ms, or one that is not finite",
     Trigger.TAKEOVER_ASKED: "the controller or an operator asks the person to take over",
     Trigger.NO_REACTION: "ten seconds after a take-over request nobody has reacted; where it was made because wheel or "
     "pedals were lost, only as long as they are not back",

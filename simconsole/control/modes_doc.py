@@ -22,9 +22,13 @@ _AUTHORITY = """## What each mode does
 | SHARED | both: blended, or haptic | blended, fixed authority | person, or the car if the controller has a share |
 | AUTONOMOUS | controller | controller; person while the accelerator is pressed | car |
 | TAKEOVER_REQUESTED | as AUTONOMOUS; escalates after 4 s, MINIMAL_RISK after 10 s | as AUTONOMOUS | car |
-| MINIMAL_RISK | last angle, slowly to straight; the controller if it is well | 2.5 m/s2 by 1.5 m/s3, at most 4 | car |
+| MINIMAL_RISK | the controller if it is well | 2.5 m/s2 by 1.5 m/s3, at most 4 | car |
+| the same, with nobody to steer | last angle, slowly to straight | 3.5 m/s2 by 5 m/s3, at most 4 | car |
 | STOPPED | held | brake and handbrake on | neutral |
 | EMERGENCY_STOP | held | full service brake | car |
+
+A controller steers a safe stop that is not its fault: if it drove; or if a person did and their wheel is lost, and it
+is steady and differs from what they steered by at most 2 m/s2 of lateral acceleration.
 
 The person's brake counts in full in every mode, and the brake always beats the throttle. Authority moves from one side
 to the other over 0.6 s, starting from the command in force. Every figure is a setting of
@@ -50,6 +54,14 @@ The time to line crossing is that of the person's steering against the line that
 part by `shared_line_margin_m`. `shared_steering` says what authority is over: `blended` weighs the two angles (the
 weights sum to one) and guides the hands through the motor as well; `haptic` acts through the motor alone, and the road
 wheels follow the hand wheel.
+
+## Steering that cannot be meant
+
+A command that asks for more than twice the gate's lateral acceleration at the present speed, 10 m/s2 (a road tyre
+gives less), is a mistake of its sender: full lock is one at 13 m/s and none at walking pace. It is not followed: the
+angle in force is held, its pedals count. It is refused in words (`REFUSED_IMPLAUSIBLE`) and counts as a refused
+command: five in a row, or nothing else for 200 ms, and the controller is invalid. How hard a command brakes is no such
+sign: an emergency may mean it.
 
 ## What the last gate lets pass
 

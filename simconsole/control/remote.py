@@ -6,6 +6,7 @@ pid_longitudinal_controller publishes them. A vehicle that rolls the wrong way i
 
 from typing import Final, NamedTuple
 
+from simconsole.control.angles import gentle_angle
 from simconsole.control.longitudinal import Pedals, integrate, known, pedals_for
 from simconsole.control.settings import ControlSettings
 from simconsole.control.stops import travel_of
@@ -52,6 +53,20 @@ def command_finite(remote: RemoteCommand) -> bool:
 def known_kind(kind: float) -> bool:
     """Return whether the command's kind is one that can be turned into a request."""
     return kind in (_ACCELERATION, _SPEED, _TWIST, _ACTUATION, _POSE)
+
+
+@kernel
+def implausible(remote: RemoteCommand, vehicle: VehicleState, settings: ControlSettings) -> bool:
+    """Return whether a finite command asks for more lateral acceleration than it can mean at the present speed.
+
+    An angle by the kinematic single track, as the gate judges it; a twist says its yaw rate itself. Full lock is
+    plausible at walking pace and a mistake of the sender at speed.
+    """
+    most_mps2 = settings.implausible_lateral_accel_mps2
+    if remote.kind == _TWIST:
+        speed_mps = clip(known(vehicle.vx_mps, 0.0), -_MOST_MPS, _MOST_MPS)
+        return abs(speed_mps * remote.yaw_rate_radps) > most_mps2
+    return gentle_angle(remote.road_wheel_rad, most_mps2, vehicle, settings) != remote.road_wheel_rad
 
 
 @kernel

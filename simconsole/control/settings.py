@@ -34,6 +34,7 @@ class ControlSettings(NamedTuple):
     lease_ticks: float
     stale_ticks: float
     invalid_commands_max: float
+    implausible_lateral_accel_mps2: float  # a command that steers harder than this cannot be meant
     escalation_ticks: float
     minimal_risk_ticks: float
     refusal_ticks: float
@@ -41,6 +42,9 @@ class ControlSettings(NamedTuple):
     stop_decel_mps2: float
     stop_jerk_mps3: float
     stop_decel_max_mps2: float
+    blind_stop_decel_mps2: float
+    blind_stop_jerk_mps3: float
+    stop_steering_apart_mps2: float
     stop_road_wheel_decay_radps: float
     emergency_brake: float
     hold_brake: float
@@ -129,6 +133,7 @@ def settings(
         preferred_commander=float(preferred),
         lease_ticks=_at_most(profile.commander_lease_s, tick_hz),
         stale_ticks=_at_most(profile.command_stale_s, tick_hz),
+        implausible_lateral_accel_mps2=(profile.implausible_lateral_accel_ratio * profile.automatic_lateral_accel_mps2),
         escalation_ticks=_at_least(profile.escalation_s, tick_hz),
         minimal_risk_ticks=_at_least(profile.minimal_risk_after_s, tick_hz),
         refusal_ticks=_at_least(profile.refusal_shown_s, tick_hz),

@@ -8,18 +8,16 @@ controller (traded control after the method of tud-hri/joan: a torque threshold 
 import math
 from typing import Final, NamedTuple
 
+from simconsole.control.angles import lateral_apart
 from simconsole.control.longitudinal import known
 from simconsole.control.moment import Moment
 from simconsole.control.settings import ControlSettings
 from simconsole.kernels import clip, kernel
 from simconsole.signals import VehicleState
-from simconsole.trigonometry import cos, sin
 
 BY_LINE_CROSSING: Final = 1.0
 TRADED: Final = 2.0
 NEVER_S: Final = 100.0
-_MOST_MPS: Final = 100.0
-_MOST_RAD: Final = 1.5
 _MOST_NM: Final = 100.0
 
 
@@ -36,17 +34,10 @@ def time_to_crossing(person_rad: float, remote_rad: float, vehicle: VehicleState
 
     Both as constant curvatures tan(angle) / wheelbase from here: they are 1/2 (difference) speed^2 t^2 apart after t.
     """
-    speed = clip(known(vehicle.vx_mps, 0.0), -_MOST_MPS, _MOST_MPS)
-    apart = abs(_curvature(person_rad, settings) - _curvature(remote_rad, settings)) * speed * speed
+    apart = lateral_apart(person_rad, remote_rad, vehicle, settings)
     if apart == 0.0:
         return NEVER_S
     return math.sqrt(clip(2.0 * settings.shared_line_margin_m / apart, 0.0, NEVER_S * NEVER_S))
-
-
-@kernel
-def _curvature(road_wheel_rad: float, settings: ControlSettings) -> float:
-    angle = clip(road_wheel_rad, -_MOST_RAD, _MOST_RAD)
-    return sin(angle) / (cos(angle) * settings.wheelbase_m)
 
 
 @kernel

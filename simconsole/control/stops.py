@@ -41,12 +41,23 @@ def stop_start(vehicle: VehicleState, settings: ControlSettings) -> float:
 
 @kernel
 def safe_stop(
-    stop_accel_mps2: float, integral_mps2: float, vehicle: VehicleState, settings: ControlSettings, tick_s: float
+    stop_accel_mps2: float,
+    integral_mps2: float,
+    steered: bool,
+    vehicle: VehicleState,
+    settings: ControlSettings,
+    tick_s: float,
 ) -> Stopping:
-    """Brake to a standstill: 2.5 m/s2 reached with 1.5 m/s3, corrected by a bounded integral, never beyond 4 m/s2."""
+    """Brake to a standstill, corrected by a bounded integral, never beyond 4 m/s2.
+
+    By the book (2.5 m/s2 reached with 1.5 m/s3) while somebody steers; harder where nobody knows the way: what is left
+    of it then decides whether the car stays in its lane (docs/decisions/0009-stops-that-nobody-steers.md).
+    """
     if slow(vehicle, settings):
         return Stopping(settings.hold_brake, stop_accel_mps2, 0.0)
-    accel = approach(stop_accel_mps2, -settings.stop_decel_mps2, settings.stop_jerk_mps3 * tick_s)
+    decel = settings.stop_decel_mps2 if steered else settings.blind_stop_decel_mps2
+    jerk = settings.stop_jerk_mps3 if steered else settings.blind_stop_jerk_mps3
+    accel = approach(stop_accel_mps2, -decel, jerk * tick_s)
     travel = travel_of(vehicle)
     measured = clip(known(travel * vehicle.ax_mps2, accel), -_MOST_MPS2, _MOST_MPS2)
     integral = integrate(integral_mps2, accel - measured, settings, tick_s)

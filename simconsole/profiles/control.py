@@ -40,6 +40,9 @@ class ControlProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_f
     command_stale_s: Annotated[float, msgspec.Meta(ge=0.02, le=2.0)] = 0.2  # AW and ros2_control: 0.5 s
     commander_lease_s: Annotated[float, msgspec.Meta(ge=0.1, le=60.0)] = 0.5  # as the lease among clients of the bridge
     invalid_commands_max: Annotated[int, msgspec.Meta(ge=1, le=100)] = 5  # OD: 5 wrong counters
+    implausible_lateral_accel_ratio: Annotated[float, msgspec.Meta(ge=1.0, le=10.0)] = (
+        2.0  # of automatic_lateral_accel_mps2: 10 m/s2, more than a road tyre gives (friction 1: 9.8)
+    )
     escalation_s: Seconds = 4.0  # R157 5.4.3.2
     minimal_risk_after_s: Seconds = 10.0  # R157 5.4.4.1
     refusal_shown_s: Seconds = 3.0
@@ -48,7 +51,11 @@ class ControlProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_f
     stop_decel_mps2: Acceleration = 2.5  # AW mrm_emergency_stop -2.5
     stop_jerk_mps3: Acceleration = 1.5  # AW mrm_emergency_stop -1.5
     stop_decel_max_mps2: Acceleration = 4.0  # R157 5.5: demand of at most 4.0
-    stop_road_wheel_decay_radps: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)] = 0.05  # curvature held, slowly to 0
+    # Where nobody steers the stop, it is short: decisions/0009 has the measurements behind these three.
+    blind_stop_decel_mps2: Acceleration = 3.5  # with the integral at most 4.0, as above
+    blind_stop_jerk_mps3: Acceleration = 5.0  # AW lon_jerk_lim
+    stop_road_wheel_decay_radps: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)] = 0.01  # angle held, slowly to 0
+    stop_steering_apart_mps2: Acceleration = 2.0  # AW on_transition lat_acc_lim: a controller that steers as the person
     emergency_brake: Annotated[float, msgspec.Meta(ge=0.5, le=1.0)] = 1.0  # full service brake: 6 m/s2 class or more
     hold_brake: Annotated[float, msgspec.Meta(ge=0.1, le=1.0)] = 0.4  # holds a 24 % slope on a car of 6 m/s2 brakes
     standstill_speed_mps: Annotated[float, msgspec.Meta(gt=0.0, le=0.5)] = 0.1

@@ -60,6 +60,7 @@ class Reason(IntEnum):
     REFUSED_NOT_COMMANDER = 31
     REFUSED_WHEEL_NOT_CENTRED = 32
     REFUSED_PEDAL_PRESSED = 33
+    REFUSED_IMPLAUSIBLE = 34
 
 
 class Notice(IntEnum):

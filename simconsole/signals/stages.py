@@ -65,12 +65,14 @@ class Link(NamedTuple):
 
     sequence_seen: float
     refused_seen: float
-    invalid_run: float  # refused commands in a row
-    fresh_ticks: float  # how long commands have been fresh with none refused
+    invalid_run: float  # refused or implausible commands in a row
+    fresh_ticks: float  # how long commands have been fresh, plausible and none refused
     fresh: float  # 1: there is a command, it is finite, of a known kind and young enough
-    invalid: float  # 1: it is not finite, or too many in a row were refused
+    invalid: float  # 1: it is not finite, or too many in a row were refused or implausible
     lease_ticks: float  # for how long it may still be the commander without a fresh command
     state: float  # `LinkState`
+    implausible: float  # commands since the start that steered too hard to be meant, and were not followed
+    implausible_ticks: float  # how long the newest command has been such a one; 0: it is not
 
 
 class Arbitration(NamedTuple):

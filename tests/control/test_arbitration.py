@@ -43,7 +43,7 @@ def test_parked_holds_until_every_control_is_ready(make_rig: MakeRig) -> None:
 
 def test_manual_is_the_person_alone(make_rig: MakeRig) -> None:
     rig = make_rig().drive(Mode.MANUAL)
-    rig.send(road_wheel_rad=-0.3, accel_mps2=2.0)
+    rig.send(road_wheel_rad=-0.2, accel_mps2=2.0)
     rig.driver = rig.driver._replace(hand_wheel_rad=1.5, throttle=0.4, clutch=0.9, gear=2.0, handbrake=0.2)
     rig.run(0.5)
     command = rig.command
@@ -57,7 +57,7 @@ def test_manual_is_the_person_alone(make_rig: MakeRig) -> None:
     )
     assert (rig.arbitration.remote_lateral, rig.arbitration.remote_longitudinal) == (0.0, 0.0)
     # What the controller would ask for is shown all the same.
-    assert rig.arbitration.remote_road_wheel_rad == -0.3
+    assert rig.arbitration.remote_road_wheel_rad == -0.2
     assert rig.arbitration.remote_throttle > 0.0
     rig.driver = rig.driver._replace(brake=0.3)
     rig.tick()
@@ -87,11 +87,11 @@ def test_autonomy_takes_over_without_a_jump(make_rig: MakeRig) -> None:
 
 def test_a_person_takes_back_without_a_jump(make_rig: MakeRig) -> None:
     rig = make_rig().drive(Mode.AUTONOMOUS)
-    rig.send(road_wheel_rad=0.3, accel_mps2=1.0)
-    rig.run(2.0)
+    rig.send(road_wheel_rad=0.2, accel_mps2=1.0)
+    rig.run(1.0)
     rig.driver = rig.driver._replace(hand_wheel_rad=math.radians(-10.0))
     in_force = rig.command.road_wheel_rad
-    assert 0.05 < in_force < 0.29  # the gate held the controller back: the hand-over starts from there
+    assert 0.05 < in_force < 0.19  # the gate held the controller back: the hand-over starts from there
     rig.until(Mode.MANUAL)
     wheel, brake, throttle = steps(rig, 0.7)
     assert wheel <= (in_force + math.radians(10.0) / 15.0) / 150 + 1e-12

@@ -1,10 +1,12 @@
 """Authority, the remote side's part, transmission and blend, function by function."""
 
+import math
 from collections.abc import Callable
 from typing import Any
 
 import pytest
 
+from simconsole.control.angles import lateral_apart
 from simconsole.control.authority import (
     RemoteSide,
     Shares,
@@ -164,7 +166,7 @@ def test_a_safe_stop_begins_with_what_is_and_goes_on_from_its_memory(now: Moment
     vehicle = now.vehicle._replace(vx_mps=10.0, ax_mps2=-1.0)
     memory = now.memory._replace(stop_accel_mps2=-2.0, speed_integral_mps2=0.3, hold_road_wheel_rad=0.07)
     now = now._replace(vehicle=vehicle, memory=memory)
-    s, step = now.settings, now.settings.stop_jerk_mps3 * TICK_S
+    s, step = now.settings, now.settings.blind_stop_jerk_mps3 * TICK_S
     first = side(now, Mode.MINIMAL_RISK, entered=True)
     assert first.stop_accel_mps2 == pytest.approx(-1.0 - step)
     assert first.speed_integral_mps2 == pytest.approx(s.integral_gain_per_s * -step * TICK_S)
@@ -178,39 +180,67 @@ def test_a_safe_stop_begins_with_what_is_and_goes_on_from_its_memory(now: Moment
     assert (later.throttle, later.direction) == (0.0, 0.0)
 
 
-def test_a_safe_stop_that_the_controller_steers_takes_its_angle_and_the_consoles_brake(now: Moment) -> None:
-    moving = now._replace(vehicle=now.vehicle._replace(vx_mps=10.0))
-    steered = moving._replace(memory=moving.memory._replace(stop_steered=1.0))
-    asked = side(steered, Mode.MINIMAL_RISK)
-    assert (asked.road_wheel_rad, asked.hold_road_wheel_rad, asked.throttle) == (0.12, 0.12, 0.0)
-    assert asked.brake == side(moving, Mode.MINIMAL_RISK).brake
-    assert side(moving, Mode.MINIMAL_RISK).road_wheel_rad == 0.0
+def test_a_steered_stop_follows_the_controller_and_brakes_by_the_book(now: Moment) -> None:
+    vehicle = now.vehicle._replace(vx_mps=10.0, ax_mps2=-1.0)
+    now = now._replace(vehicle=vehicle, memory=now.memory._replace(stop_steered=1.0, stop_accel_mps2=-2.0))
+    steered = side(now, Mode.MINIMAL_RISK)
+    assert steered.stop_accel_mps2 == pytest.approx(-2.0 - now.settings.stop_jerk_mps3 * TICK_S)
+    assert (steered.road_wheel_rad, steered.hold_road_wheel_rad) == (OFFERED.road_wheel_rad,) * 2
+    blind = side(now, Mode.MINIMAL_RISK, link=STALE)
+    assert blind.stop_accel_mps2 == pytest.approx(-2.0 - now.settings.blind_stop_jerk_mps3 * TICK_S)
+    assert blind.road_wheel_rad < 0.0 + 1e-12, "from what was held in memory"
 
 
-def stop(mode: Mode, reason: Reason, entered: bool = True) -> Decision:
-    return Decision(float(mode), float(reason), float(entered), 0.0, 0.0)
+def steers(now: Moment, mode: Mode, before: Mode, reason: Reason, link: Link = FRESH, entered: bool = True) -> float:
+    decision = decided(mode, entered)._replace(reason=float(reason))
+    return steered_stop(now._replace(before=BEFORE._replace(mode=float(before))), decision, OFFERED, link)
 
 
-@pytest.mark.parametrize("before", Mode)
-@pytest.mark.parametrize("reason", [Reason.NO_REACTION, Reason.LOOP_STALL, Reason.COMMAND_STALE, Reason.DEVICE_LOST])
-def test_only_a_controller_that_drove_and_is_not_at_fault_steers_the_stop(
-    before: Mode, reason: Reason, now: Moment
-) -> None:
-    drove = now._replace(before=BEFORE._replace(mode=float(before)))
-    well = before in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED) and reason in (Reason.NO_REACTION, Reason.LOOP_STALL)
-    assert steered_stop(drove, stop(Mode.MINIMAL_RISK, reason), FRESH) == (1.0 if well else 0.0)
+STOP = Mode.MINIMAL_RISK
 
 
-def test_it_steers_until_it_fails_or_the_stop_is_over(now: Moment) -> None:
-    reason = Reason.LOOP_STALL
-    for steered in (0.0, 1.0):
-        during = now._replace(memory=now.memory._replace(stop_steered=steered))
-        assert steered_stop(during, stop(Mode.MINIMAL_RISK, reason, entered=False), FRESH) == steered
-    for link in (STALE, FRESH._replace(invalid=1.0), STALE._replace(invalid=1.0)):
-        assert steered_stop(during, stop(Mode.MINIMAL_RISK, reason, entered=False), link) == 0.0
+@pytest.mark.parametrize("before", [Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED])
+def test_a_controller_that_drove_steers_a_stop_that_is_not_its_fault(before: Mode, now: Moment) -> None:
+    for reason in Reason:
+        expected = 1.0 if reason in (Reason.NO_REACTION, Reason.LOOP_STALL) else 0.0
+        assert steers(now, STOP, before, reason) == expected
+    for link in (STALE, FRESH._replace(invalid=1.0)):
+        assert steers(now, STOP, before, Reason.LOOP_STALL, link) == 0.0
     for mode in Mode:
-        if mode is not Mode.MINIMAL_RISK:
-            assert steered_stop(during, stop(mode, reason, entered=False), FRESH) == 0.0
+        if mode is not STOP:
+            assert steers(now, mode, before, Reason.LOOP_STALL) == 0.0
+
+
+@pytest.mark.parametrize("steered", [0.0, 1.0])
+def test_who_steers_a_stop_is_decided_once(steered: float, now: Moment) -> None:
+    now = now._replace(memory=now.memory._replace(stop_steered=steered))
+    assert steers(now, STOP, STOP, Reason.NO_REACTION, entered=False) == steered
+    for link in (STALE, FRESH._replace(invalid=1.0)):
+        assert steers(now, STOP, STOP, Reason.NO_REACTION, link, entered=False) == 0.0
+
+
+@pytest.mark.parametrize("before", [Mode.MANUAL, Mode.SHARED])
+def test_a_controller_that_did_not_drive_steers_it_if_it_is_steady_and_agrees(before: Mode, now: Moment) -> None:
+    """OFFERED asks for 0.12 rad, 0.1 rad is in force: 2 m/s2 apart at 16.06 m/s."""
+    steady = FRESH._replace(fresh_ticks=now.settings.engage_stable_ticks)
+    unsteady = FRESH._replace(fresh_ticks=now.settings.engage_stable_ticks - 1.0)
+    apart = (math.tan(0.12) - math.tan(0.1)) / now.settings.wheelbase_m
+    bound_mps = math.sqrt(now.settings.stop_steering_apart_mps2 / apart)
+    near = now._replace(vehicle=now.vehicle._replace(vx_mps=bound_mps - 1e-6))
+    far = now._replace(vehicle=now.vehicle._replace(vx_mps=bound_mps + 1e-6))
+    for reason in (Reason.DEVICE_LOST, Reason.LOOP_STALL):
+        assert steers(near, STOP, before, reason, steady) == 1.0
+        assert steers(near, STOP, before, reason, unsteady) == 0.0
+        assert steers(far, STOP, before, reason, steady) == 0.0
+        assert steers(near, STOP, before, reason, steady._replace(fresh=0.0)) == 0.0
+        assert steers(near, STOP, before, reason, steady._replace(invalid=1.0)) == 0.0
+
+
+def test_agreeing_to_the_last_bit_is_agreeing(now: Moment) -> None:
+    vehicle = now.vehicle._replace(vx_mps=10.0)
+    apart = lateral_apart(OFFERED.road_wheel_rad, IN_FORCE.road_wheel_rad, vehicle, now.settings)
+    same = now._replace(vehicle=vehicle, settings=now.settings._replace(stop_steering_apart_mps2=apart))
+    assert steers(same, STOP, Mode.MANUAL, Reason.DEVICE_LOST, FRESH._replace(fresh_ticks=1e3)) == 1.0
 
 
 @pytest.mark.parametrize(("mode", "brake"), [(Mode.EMERGENCY_STOP, 1.0), (Mode.STOPPED, 0.4), (Mode.PARKED, 0.4)])

@@ -13,7 +13,7 @@ from simconsole.control.person import Person
 from simconsole.signals import Commander, Event, Link, LinkState, Mode, Reason, RemoteKind
 
 THERE = Person(1.0, 1.0, 0.0, 0.0, 0.0)
-STEADY = Link(7.0, 0.0, 0.0, 900.0, 1.0, 0.0, 100.0, float(LinkState.STEADY))
+STEADY = Link(7.0, 0.0, 0.0, 900.0, 1.0, 0.0, 100.0, float(LinkState.STEADY), 0.0, 0.0)
 START = float(Reason.START)
 
 

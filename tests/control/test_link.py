@@ -4,9 +4,10 @@ import pytest
 
 from simconsole.control.link import watch_link
 from simconsole.control.settings import ControlSettings
-from simconsole.signals import NEVER_TICKS, Link, LinkState, RemoteCommand, RemoteKind
+from simconsole.signals import NEVER_TICKS, Link, LinkState, RemoteCommand, RemoteKind, VehicleState
 
 NO_LINK = Link(*(0.0,) * len(Link._fields))
+VEHICLE = VehicleState(*(0.0,) * len(VehicleState._fields))
 REMOTE = RemoteCommand(*(0.0,) * len(RemoteCommand._fields))._replace(kind=float(RemoteKind.SPEED), sequence=1.0)
 
 
@@ -24,63 +25,110 @@ REMOTE = RemoteCommand(*(0.0,) * len(RemoteCommand._fields))._replace(kind=float
     ],
 )
 def test_fresh(fields: dict[str, float], fresh: float, control: ControlSettings) -> None:
-    link = watch_link(REMOTE._replace(**fields), NO_LINK, control)
+    link = watch_link(REMOTE._replace(**fields), NO_LINK, VEHICLE, control)
     assert (link.fresh, link.fresh_ticks, link.invalid) == (fresh, fresh, 0.0)
 
 
 def test_refused_commands_count_in_a_row(control: ControlSettings) -> None:
-    link = watch_link(REMOTE, NO_LINK, control)
+    link = watch_link(REMOTE, NO_LINK, VEHICLE, control)
     for refused in range(1, 6):
-        link = watch_link(REMOTE._replace(refused=float(refused)), link, control)
+        link = watch_link(REMOTE._replace(refused=float(refused)), link, VEHICLE, control)
         assert (link.invalid_run, link.fresh_ticks) == (float(refused), 0.0)
         assert link.invalid == (1.0 if refused == 5 else 0.0)
-    link = watch_link(REMOTE._replace(refused=5.0, sequence=2.0), link, control)
+    link = watch_link(REMOTE._replace(refused=5.0, sequence=2.0), link, VEHICLE, control)
     assert (link.invalid_run, link.invalid, link.fresh_ticks) == (0.0, 0.0, 1.0)
 
 
 def test_many_refused_in_one_tick_count_at_once(control: ControlSettings) -> None:
-    link = watch_link(REMOTE, NO_LINK, control)
-    assert watch_link(REMOTE._replace(refused=5.0), link, control).invalid == 1.0
-    huge = watch_link(REMOTE._replace(refused=1e308), link, control)
+    link = watch_link(REMOTE, NO_LINK, VEHICLE, control)
+    assert watch_link(REMOTE._replace(refused=5.0), link, VEHICLE, control).invalid == 1.0
+    huge = watch_link(REMOTE._replace(refused=1e308), link, VEHICLE, control)
     assert (huge.invalid_run, huge.invalid) == (1e9, 1.0)
 
 
 def test_a_counter_that_starts_anew_is_no_refusal(control: ControlSettings) -> None:
-    link = watch_link(REMOTE._replace(refused=0.0), NO_LINK._replace(refused_seen=7.0, sequence_seen=1.0), control)
+    link = watch_link(
+        REMOTE._replace(refused=0.0), NO_LINK._replace(refused_seen=7.0, sequence_seen=1.0), VEHICLE, control
+    )
     assert (link.refused_seen, link.invalid_run, link.fresh) == (0.0, 0.0, 1.0)
 
 
 def test_a_command_that_is_no_number_is_invalid_and_remembered_as_nothing(control: ControlSettings) -> None:
     before = NO_LINK._replace(sequence_seen=3.0, refused_seen=2.0, invalid_run=1.0, fresh_ticks=99.0)
     for field in ("sequence", "refused", "speed_mps"):
-        link = watch_link(REMOTE._replace(**{field: math.nan}), before, control)
-        assert link == (3.0, 2.0, 1.0, 0.0, 0.0, 1.0, 0.0, LinkState.INVALID)
+        link = watch_link(REMOTE._replace(**{field: math.nan}), before, VEHICLE, control)
+        assert link == (3.0, 2.0, 1.0, 0.0, 0.0, 1.0, 0.0, LinkState.INVALID, 0.0, 0.0)
 
 
 def test_state_in_one_word(control: ControlSettings) -> None:
-    assert watch_link(REMOTE._replace(sequence=0.0), NO_LINK, control).state == LinkState.NEVER
-    link = watch_link(REMOTE, NO_LINK, control)
+    assert watch_link(REMOTE._replace(sequence=0.0), NO_LINK, VEHICLE, control).state == LinkState.NEVER
+    link = watch_link(REMOTE, NO_LINK, VEHICLE, control)
     assert link.state == LinkState.UNSTEADY
     for _ in range(int(control.engage_stable_ticks)):
-        link = watch_link(REMOTE, link, control)
+        link = watch_link(REMOTE, link, VEHICLE, control)
     assert link.state == LinkState.STEADY
     almost = NO_LINK._replace(sequence_seen=1.0, fresh_ticks=control.engage_stable_ticks - 2.0)
-    assert watch_link(REMOTE, almost, control).state == LinkState.UNSTEADY
+    assert watch_link(REMOTE, almost, VEHICLE, control).state == LinkState.UNSTEADY
     steady = almost._replace(fresh_ticks=control.engage_stable_ticks - 1.0)
-    assert watch_link(REMOTE, steady, control).state == LinkState.STEADY
-    assert watch_link(REMOTE._replace(age_ticks=50.0), link, control).state == LinkState.STALE
-    assert watch_link(REMOTE._replace(refused=5.0), link, control).state == LinkState.INVALID
+    assert watch_link(REMOTE, steady, VEHICLE, control).state == LinkState.STEADY
+    assert watch_link(REMOTE._replace(age_ticks=50.0), link, VEHICLE, control).state == LinkState.STALE
+    assert watch_link(REMOTE._replace(refused=5.0), link, VEHICLE, control).state == LinkState.INVALID
 
 
 def test_a_fresh_command_renews_the_lease_and_nothing_else_does(control: ControlSettings) -> None:
-    link = watch_link(REMOTE, NO_LINK, control)
+    link = watch_link(REMOTE, NO_LINK, VEHICLE, control)
     assert link.lease_ticks == control.lease_ticks == 125.0
-    link = watch_link(REMOTE._replace(age_ticks=50.0), link, control)
+    link = watch_link(REMOTE._replace(age_ticks=50.0), link, VEHICLE, control)
     assert link.lease_ticks == 124.0
-    link = watch_link(REMOTE._replace(speed_mps=math.inf), link, control)
+    link = watch_link(REMOTE._replace(speed_mps=math.inf), link, VEHICLE, control)
     assert link.lease_ticks == 123.0
-    link = watch_link(REMOTE._replace(refused=9.0), link, control)
+    link = watch_link(REMOTE._replace(refused=9.0), link, VEHICLE, control)
     assert link.lease_ticks == 122.0
     for _ in range(200):
-        link = watch_link(REMOTE._replace(age_ticks=NEVER_TICKS), link, control)
+        link = watch_link(REMOTE._replace(age_ticks=NEVER_TICKS), link, VEHICLE, control)
     assert link.lease_ticks == 0.0
+
+
+# At 10 m/s and a wheelbase of 2.6 m, 10 m/s2 of lateral acceleration are tan(angle) = 0.26.
+AT_SPEED = VEHICLE._replace(vx_mps=10.0)
+MEANT_RAD, WILD_RAD = math.atan(0.26) - 1e-6, math.atan(0.26) + 1e-6
+
+
+def test_steering_that_cannot_be_meant_counts_as_refused(control: ControlSettings) -> None:
+    """Each new command counts once, however long it is in force; a plausible one ends the row."""
+    link = watch_link(REMOTE._replace(road_wheel_rad=MEANT_RAD), NO_LINK, AT_SPEED, control)
+    assert (link.invalid_run, link.implausible, link.implausible_ticks, link.fresh_ticks) == (0.0, 0.0, 0.0, 1.0)
+    for count in range(1, 6):
+        wild = REMOTE._replace(road_wheel_rad=WILD_RAD, sequence=1.0 + count)
+        link = watch_link(wild, link, AT_SPEED, control)
+        assert (link.invalid_run, link.implausible, link.fresh, link.fresh_ticks) == (count, count, 1.0, 0.0)
+        assert link.invalid == (1.0 if count == 5 else 0.0)
+        again = watch_link(wild, link, AT_SPEED, control)
+        assert again == link._replace(implausible_ticks=link.implausible_ticks + 1.0, lease_ticks=again.lease_ticks)
+    assert (link.implausible_ticks, link.state, link.lease_ticks) == (5.0, LinkState.INVALID, 124.0)
+    link = watch_link(REMOTE._replace(road_wheel_rad=MEANT_RAD, sequence=9.0), link, AT_SPEED, control)
+    assert (link.invalid_run, link.implausible, link.implausible_ticks, link.fresh_ticks) == (0.0, 5.0, 0.0, 1.0)
+    assert link.state == LinkState.UNSTEADY
+
+
+def test_refused_and_implausible_ones_make_one_row(control: ControlSettings) -> None:
+    link = watch_link(REMOTE, NO_LINK, AT_SPEED, control)
+    link = watch_link(REMOTE._replace(refused=3.0), link, AT_SPEED, control)
+    wild = REMOTE._replace(refused=3.0, sequence=2.0, road_wheel_rad=1.0)
+    link = watch_link(wild, link, AT_SPEED, control)
+    assert (link.invalid_run, link.invalid) == (4.0, 0.0)
+    assert watch_link(wild._replace(refused=4.0), link, AT_SPEED, control).invalid == 1.0
+    huge = watch_link(wild._replace(refused=1e308, sequence=3.0), link, AT_SPEED, control)
+    assert (huge.invalid_run, huge.implausible) == (1e9, 2.0)
+
+
+def test_one_that_stays_in_force_is_invalid_when_the_one_before_would_be_stale(control: ControlSettings) -> None:
+    wild = REMOTE._replace(road_wheel_rad=1.0, sequence=2.0)
+    link = watch_link(REMOTE, NO_LINK, AT_SPEED, control)
+    for ticks in range(1, int(control.stale_ticks) + 1):
+        link = watch_link(wild._replace(age_ticks=ticks - 1.0), link, AT_SPEED, control)
+        assert (link.implausible_ticks, link.invalid) == (ticks, 1.0 if ticks == control.stale_ticks else 0.0)
+    silent = watch_link(wild._replace(age_ticks=control.stale_ticks), link, AT_SPEED, control)
+    assert (silent.implausible_ticks, silent.state) == (0.0, LinkState.STALE), "silent is the truer word"
+    lost = watch_link(wild._replace(speed_mps=math.nan), link, AT_SPEED, control)
+    assert (lost.implausible, lost.implausible_ticks, lost.state) == (1.0, 0.0, LinkState.INVALID)

@@ -44,26 +44,41 @@ def test_a_stop_begins_with_the_deceleration_there_is(control: ControlSettings) 
 @pytest.mark.parametrize(("speed", "car", "sign"), [(9.0, CAR, 1.0), (-9.0, BACK, -1.0)])
 def test_a_stop_by_numbers(speed: float, car: VehicleState, sign: float, control: ControlSettings) -> None:
     step = control.stop_jerk_mps3 * TICK_S
-    stop = safe_stop(-1.0, 0.2, at(speed, car, ax_mps2=sign * -1.25), control, TICK_S)
+    stop = safe_stop(-1.0, 0.2, True, at(speed, car, ax_mps2=sign * -1.25), control, TICK_S)
     integral = 0.2 + control.integral_gain_per_s * (-1.0 - step + 1.25) * TICK_S
     assert stop == pytest.approx(((-0.3 + 1.0 + step - integral) / 8.7, -1.0 - step, integral))
-    blind = safe_stop(-1.0, 0.2, at(speed, car, ax_mps2=math.nan), control, TICK_S)
+    blind = safe_stop(-1.0, 0.2, True, at(speed, car, ax_mps2=math.nan), control, TICK_S)
     assert blind.integral_mps2 == 0.2
-    wild = safe_stop(-2.5, 0.0, at(speed, car, ax_mps2=sign * 1e9), control, TICK_S)
+    wild = safe_stop(-2.5, 0.0, True, at(speed, car, ax_mps2=sign * 1e9), control, TICK_S)
     assert wild.integral_mps2 == pytest.approx(-control.integral_gain_per_s * control.decel_max_mps2 * TICK_S)
-    most = safe_stop(-2.5, -3.0, at(speed, car, ax_mps2=sign * -2.5), control._replace(integral_max_mps2=3.0), TICK_S)
+    most = safe_stop(
+        -2.5, -3.0, True, at(speed, car, ax_mps2=sign * -2.5), control._replace(integral_max_mps2=3.0), TICK_S
+    )
     assert most.brake == pytest.approx((control.stop_decel_max_mps2 - 0.3) / 8.7)
-    held = safe_stop(-2.0, 0.5, at(0.0, car), control, TICK_S)
+    held = safe_stop(-2.0, 0.5, True, at(0.0, car), control, TICK_S)
     assert held == (control.hold_brake, -2.0, 0.0)
-    pushing = safe_stop(-0.1, 0.8, at(speed, car, ax_mps2=sign * -0.1), control, TICK_S)
+    pushing = safe_stop(-0.1, 0.8, True, at(speed, car, ax_mps2=sign * -0.1), control, TICK_S)
     assert pushing.brake == 0.0
     downhill = at(speed, car, ax_mps2=sign * -0.1)._replace(coast_accel_mps2=sign * 1.0)
-    assert safe_stop(-0.1, 0.8, downhill, control, TICK_S).brake == pytest.approx(1.0 / 10.0), "never asked to speed up"
+    assert safe_stop(-0.1, 0.8, True, downhill, control, TICK_S).brake == pytest.approx(1.0 / 10.0), (
+        "never asked to speed up"
+    )
+
+
+def test_a_stop_that_nobody_steers_asks_for_more_sooner(control: ControlSettings) -> None:
+    rolling = at(9.0, CAR, ax_mps2=-2.0)
+    for steered, jerk, most in (
+        (True, control.stop_jerk_mps3, control.stop_decel_mps2),
+        (False, control.blind_stop_jerk_mps3, control.blind_stop_decel_mps2),
+    ):
+        stop = safe_stop(-2.0, 0.0, steered, rolling, control, TICK_S)
+        assert stop.stop_accel_mps2 == pytest.approx(-2.0 - jerk * TICK_S)
+        assert safe_stop(-most, 0.0, steered, rolling, control, TICK_S).stop_accel_mps2 == -most
 
 
 def test_a_stop_of_a_car_that_states_no_figures_brakes_by_the_nominal_ones(control: ControlSettings) -> None:
     mute = VehicleState(*(0.0,) * len(VehicleState._fields))._replace(vx_mps=9.0, ax_mps2=-2.5)
-    stop = safe_stop(-2.5, 0.0, mute, control, TICK_S)
+    stop = safe_stop(-2.5, 0.0, True, mute, control, TICK_S)
     assert stop.brake == pytest.approx(2.5 / control.nominal_brake_accel_mps2)
 
 

@@ -11,7 +11,7 @@ from simconsole.control.moment import Moment
 from simconsole.signals import Commander, Event, Link, LinkState, Mode, Reason, RemoteKind, Validity
 
 MakeRig = Callable[..., Any]
-STEADY = Link(7.0, 3.0, 0.0, 90.0, 1.0, 0.0, 100.0, float(LinkState.STEADY))
+STEADY = Link(7.0, 3.0, 0.0, 90.0, 1.0, 0.0, 100.0, float(LinkState.STEADY), 0.0, 0.0)
 
 
 @pytest.fixture

@@ -3,7 +3,14 @@ from typing import Any
 
 import pytest
 
-from simconsole.control.remote import command_finite, commanded_direction, known_kind, remote_request, twist_road_wheel
+from simconsole.control.remote import (
+    command_finite,
+    commanded_direction,
+    implausible,
+    known_kind,
+    remote_request,
+    twist_road_wheel,
+)
 from simconsole.control.settings import ControlSettings
 from simconsole.signals import RemoteCommand, RemoteKind, VehicleState
 
@@ -141,3 +148,44 @@ def test_kinds() -> None:
     assert [known_kind(float(kind)) for kind in RemoteKind] == [False, True, True, True, True, True]
     assert not known_kind(2.5)
     assert not known_kind(6.0)
+
+
+ANGLES = (RemoteKind.ACCELERATION, RemoteKind.SPEED, RemoteKind.ACTUATION)
+
+
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+@pytest.mark.parametrize("kind", ANGLES)
+@pytest.mark.parametrize("vx_mps", [4.0, 13.0, 30.0, -13.0])
+def test_an_angle_is_implausible_beyond_twice_the_gates_limit(
+    vx_mps: float, kind: RemoteKind, sign: float, control: ControlSettings
+) -> None:
+    assert control.implausible_lateral_accel_mps2 == 2.0 * control.automatic_lateral_accel_mps2 == 10.0
+    vehicle = VEHICLE._replace(vx_mps=vx_mps)
+    bound = math.atan(10.0 * control.wheelbase_m / vx_mps**2)
+    command = EMPTY._replace(kind=float(kind), road_wheel_rad=sign * (bound - 1e-9))
+    assert not implausible(command, vehicle, control)
+    assert implausible(command._replace(road_wheel_rad=sign * (bound + 1e-9)), vehicle, control)
+    assert implausible(command._replace(road_wheel_rad=sign * 1e308), vehicle, control)
+
+
+def test_full_lock_is_plausible_at_walking_pace_and_while_the_speed_is_unknown(control: ControlSettings) -> None:
+    lock = EMPTY._replace(kind=float(RemoteKind.ACCELERATION), road_wheel_rad=1.2)
+    for vx_mps in (0.0, 1.4, -1.4, 3.1, math.nan, math.inf):
+        assert not implausible(lock, VEHICLE._replace(vx_mps=vx_mps), control)
+    assert implausible(lock, VEHICLE._replace(vx_mps=3.3), control)
+
+
+@pytest.mark.parametrize("vx_mps", [10.0, -10.0])
+def test_a_twist_is_judged_by_its_yaw_rate_at_the_present_speed(vx_mps: float, control: ControlSettings) -> None:
+    """However slow the speed that it asks for: a sender that brakes may turn meanwhile."""
+    vehicle = VEHICLE._replace(vx_mps=vx_mps)
+    twist = EMPTY._replace(kind=float(RemoteKind.TWIST), speed_mps=0.1)
+    for sign in (-1.0, 1.0):
+        assert not implausible(twist._replace(yaw_rate_radps=sign * 1.0), vehicle, control)
+        assert implausible(twist._replace(yaw_rate_radps=sign * 1.001), vehicle, control)
+    assert implausible(twist._replace(yaw_rate_radps=1e308), vehicle._replace(vx_mps=1e308), control)
+    assert not implausible(twist._replace(yaw_rate_radps=9.0), vehicle._replace(vx_mps=math.nan), control)
+    assert implausible(
+        twist._replace(yaw_rate_radps=0.11), vehicle._replace(vx_mps=math.copysign(1e9, vx_mps)), control
+    )
+    assert not implausible(twist._replace(yaw_rate_radps=0.09), vehicle._replace(vx_mps=1e9), control)

@@ -1,6 +1,6 @@
 """Drives over the urban course with the path tracker inline: whole, and from any row of a drive that went before."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from copy import copy
 from functools import cache
 from typing import Any, NamedTuple
@@ -13,12 +13,13 @@ from simconsole.autonomy.tracker import Sighting, Tracker
 from simconsole.compiling import compiled
 from simconsole.devices.settings import settings
 from simconsole.devices.uncalibrate import Intent, uncalibrate
-from simconsole.drive import Cast, run
+from simconsole.drive import Cast, Pace, run
 from simconsole.faulting import with_faults
 from simconsole.isolation import isolated
 from simconsole.memory import MemoryRecorder
 from simconsole.pacing import UnpacedPacer
 from simconsole.pipeline import Console, ConsoleState
+from simconsole.ports import Station
 from simconsole.profile_files import parse
 from simconsole.profiles.faults import Fault
 from simconsole.profiles.session import SessionProfile
@@ -51,6 +52,22 @@ PLACES = {"straight": 150.0, "bend": 330.0, "roundabout": 1010.0}
 REACTION_S = 1.15
 """The benchmark driver of UN R157: 0.4 s to see the risk, 0.75 s to the first deceleration."""
 BRAKE = 0.4
+CRUISING = 0.2
+"""Throttle of a person who holds the speed; they give more by 1 per m/s that is missing."""
+
+
+class Crew(NamedTuple):
+    """Who is there. The controller drives, or the person `by_hand`; an `attentive` person answers the alarm."""
+
+    controller: bool = True
+    by_hand: bool = False
+    attentive: bool = False
+
+
+AUTOPILOT = Crew()
+WATCHED = Crew(attentive=True)
+BY_HAND = Crew(by_hand=True)
+BY_HAND_ALONE = Crew(controller=False, by_hand=True)
 
 
 class Person:
@@ -87,11 +104,51 @@ class Person:
         pass
 
 
-class InlineTracker:
-    """The path tracker as command source and as reader of the state: one command every 20 ms, one tick later."""
+class PersonAtTheWheel:
+    """Has taken over by hand before the first tick, and steers along the lane at the speed that the car had.
 
-    def __init__(self, tracker: Tracker) -> None:
+    When the console stops the car, feet off the pedals and hands with the wheels; an attentive one brakes then.
+    """
+
+    def __init__(
+        self, resolved: ResolvedSession, tracker: Tracker, ratio: float, start: Snapshot, attentive: bool
+    ) -> None:
+        self._settings = settings(resolved.cockpit, HZ)
         self._tracker = tracker
+        self._ratio = ratio
+        self._attentive = attentive
+        self._alarmed = 0
+        self._speed_mps = start.vehicle.vx_mps
+        self._intent = Intent(hand_wheel_rad=ratio * start.command.road_wheel_rad)
+
+    def publish(self, snapshot: Snapshot) -> None:
+        if snapshot.tick % PERIOD_TICKS:
+            return
+        v = snapshot.vehicle
+        answer = self._tracker.step(Sighting(v.x_m, v.y_m, v.yaw_rad, v.vx_mps, v.vy_mps, v.yaw_rate_radps))
+        stopping = snapshot.arbitration.mode == Mode.MINIMAL_RISK
+        self._alarmed += PERIOD_TICKS if stopping or self._alarmed else 0
+        throttle = 0.0 if self._alarmed else min(1.0, max(0.0, CRUISING + self._speed_mps - v.vx_mps))
+        brake = BRAKE if self._attentive and self._alarmed >= REACTION_S * HZ else 0.0
+        angle = snapshot.command.road_wheel_rad if stopping else answer.road_wheel_rad
+        self._intent = Intent(throttle=throttle, brake=brake, hand_wheel_rad=self._ratio * angle)
+
+    def poll(self, tick: int) -> DeviceSample:
+        return uncalibrate(self._intent, self._settings)
+
+    def close(self) -> None:
+        pass
+
+
+class InlineTracker:
+    """The path tracker as command source and as reader of the state: one command every 20 ms, one tick later.
+
+    What operators ask for comes the same way: `asks` by tick.
+    """
+
+    def __init__(self, tracker: Tracker, asks: Mapping[int, Event], silent: bool) -> None:
+        self._tracker = tracker
+        self._asks, self._silent = asks, silent
         self._command, self._received = NO_COMMAND, 0
         self._sequence = 0.0
 
@@ -113,9 +170,10 @@ class InlineTracker:
         )
 
     def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
-        age = float(tick - self._received) if self._sequence else NO_COMMAND.age_ticks
-        events = EventInput(float(Event.REQUEST_AUTONOMOUS)) if tick == ENGAGE_TICK else NO_EVENTS
-        return self._command._replace(age_ticks=age), events
+        events = EventInput(float(self._asks[tick])) if tick in self._asks else NO_EVENTS
+        if self._silent or not self._sequence:
+            return NO_COMMAND, events
+        return self._command._replace(age_ticks=float(tick - self._received)), events
 
 
 class Driven(NamedTuple):
@@ -163,24 +221,41 @@ class Circuit:
         self.resolved = resolve(parse(SESSION, SessionProfile, "session"))
         assert self.resolved.world is not None
         self.course = Course(self.resolved.world)
-        self._tracker = Tracker(self.course)  # fresh: its copies drive
+        self.tracker = Tracker(self.course)  # fresh: its copies drive
         self.console: Console
         self.console, self.start = assemble(self.resolved, compiled)
         self.whole = self.drive(self.start, 300.0)
 
     def drive(
-        self, state: ConsoleState, seconds: float, faults: Sequence[Fault] = (), attentive: bool = False
+        self,
+        state: ConsoleState,
+        seconds: float,
+        faults: Sequence[Fault] = (),
+        crew: Crew = AUTOPILOT,
+        pace: Pace | None = None,
+        stations: Sequence[Station] = (),
+        controller: InlineTracker | None = None,
     ) -> Driven:
         """Drive on from a state."""
         scenario = msgspec.structs.replace(self.resolved.session.scenario, faults=tuple(faults))
         session = msgspec.structs.replace(self.resolved.session, scenario=scenario)
         resolved = msgspec.structs.replace(self.resolved, session=session)
-        tracker = InlineTracker(copy(self._tracker))
+        start = Snapshot(state.tick, HZ, state.row)
+        asks = {
+            ENGAGE_TICK: Event.REQUEST_AUTONOMOUS,
+            **({state.tick + 1: Event.REQUEST_MANUAL} if crew.by_hand else {}),
+        }
+        tracker = controller or InlineTracker(copy(self.tracker), asks, not crew.controller)
         recorder = MemoryRecorder(round(seconds * HZ), self.console.width)
-        person = Person(resolved, copy(self._tracker) if attentive else None, self.console.platform.steering_ratio)
-        cast = Cast(person, tracker, recorder, (tracker, person), UnpacedPacer())
+        ratio = self.console.platform.steering_ratio
+        person = (
+            PersonAtTheWheel(resolved, copy(self.tracker), ratio, start, crew.attentive)
+            if crew.by_hand
+            else Person(resolved, copy(self.tracker) if crew.attentive else None, ratio)
+        )
+        cast = Cast(person, tracker, recorder, (tracker, person, *stations), pace or UnpacedPacer())
         if state.tick:
-            tracker.publish(Snapshot(state.tick, HZ, state.row))
+            tracker.publish(start)
         run(self.console, state, isolated(with_faults(cast, resolved, HZ)), round(seconds * HZ))
         return Driven(recorder.rows, state.tick + 1, self.console.columns, self.course)
 

@@ -52,6 +52,7 @@ float64 road_wheel
 float64 throttle
 float64 brake
 uint64 commands_accepted
+# Not taken at the bridge, or not followed because they steer too hard to be meant at the car's speed.
 uint64 commands_refused
 # Seconds since the newest accepted command was received; -1 before the first.
 float64 command_age

@@ -1,0 +1,145 @@
+"""Commands that steer too hard to be meant: not followed, told, and after five of them the controller is invalid."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from simconsole.signals import Commander, Event, GateLimit, LinkState, Mode, Reason, RemoteKind
+from tests.control.conftest import LOCK_RAD, Rig
+
+SEED = 20_261
+DRIVEN = [Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED, Mode.SHARED]
+
+
+@pytest.mark.parametrize("tick_hz", [50, 250, 1000])
+@pytest.mark.parametrize("mode", DRIVEN)
+def test_five_in_a_row_are_not_followed_and_end_the_controllers_part(
+    mode: Mode, tick_hz: int, make_rig: Callable[..., Rig]
+) -> None:
+    rig = make_rig(tick_hz).drive(mode, speed_mps=13.0)
+    rig.send(road_wheel_rad=0.01)
+    rig.run(1.0)
+    angle, throttle = rig.command.road_wheel_rad, rig.command.throttle
+    assert angle > 0.004
+    rig.remote = rig.remote._replace(road_wheel_rad=LOCK_RAD)
+    rig.run(0.02)
+    began, ticks = rig.ros_link.implausible, 0
+    assert began == 1.0
+    while rig.mode is mode:
+        assert rig.command.road_wheel_rad == pytest.approx(angle, abs=1e-12), "the angle in force is held"
+        assert rig.refusal is Reason.REFUSED_IMPLAUSIBLE
+        assert rig.command.throttle == pytest.approx(throttle, abs=0.1)
+        assert rig.ros_link.state != LinkState.STEADY
+        rig.tick()
+        ticks += 1
+    assert rig.reason is Reason.COMMAND_INVALID
+    assert rig.mode is (Mode.MANUAL if mode is Mode.SHARED else Mode.MINIMAL_RISK)
+    assert rig.ros_link.implausible == 5.0
+    assert ticks / tick_hz <= 0.1
+    if mode is not Mode.SHARED:
+        rig.run(3.0)
+        assert 0.0 <= rig.command.road_wheel_rad <= angle, "nor afterwards"
+
+
+def test_a_slow_sender_ends_within_the_time_of_a_stale_command(make_rig: Callable[..., Rig]) -> None:
+    """At 6 Hz five commands take most of a second; nothing valid has come for 200 ms by then."""
+    rig = make_rig().drive(Mode.AUTONOMOUS, speed_mps=13.0)
+    rig.period_ticks = 41
+    rig.run(0.5)
+    rig.remote = rig.remote._replace(road_wheel_rad=LOCK_RAD, sequence=rig.remote.sequence + 1.0, age_ticks=0.0)
+    ticks = rig.until(Mode.MINIMAL_RISK)
+    assert (rig.reason, ticks) == (Reason.COMMAND_INVALID, rig.settings.stale_ticks)
+
+
+def test_full_lock_at_walking_pace_is_followed(make_rig: Callable[..., Rig]) -> None:
+    rig = make_rig().drive(Mode.AUTONOMOUS, speed_mps=1.4)
+    rig.send(RemoteKind.SPEED, road_wheel_rad=LOCK_RAD, speed_mps=1.4)
+    rig.run(2.0)
+    assert (rig.mode, rig.refusal, rig.command.road_wheel_rad) == (Mode.AUTONOMOUS, None, pytest.approx(LOCK_RAD))
+    assert rig.ros_link.implausible == 0.0
+
+
+def test_what_brakes_while_it_steers_too_hard_still_brakes(make_rig: Callable[..., Rig]) -> None:
+    rig = make_rig().drive(Mode.AUTONOMOUS, speed_mps=13.0)
+    rig.run(0.7)
+    assert rig.command.brake == 0.0
+    rig.send(road_wheel_rad=LOCK_RAD, accel_mps2=-6.0)
+    rig.run(0.06)
+    assert rig.refusal is Reason.REFUSED_IMPLAUSIBLE
+    assert rig.command.brake > 0.3
+
+
+@pytest.mark.parametrize("mode", [Mode.MANUAL, Mode.MINIMAL_RISK, Mode.STOPPED, Mode.PARKED])
+def test_who_does_not_drive_is_not_told_of(mode: Mode, make_rig: Callable[..., Rig]) -> None:
+    """It only cannot be engaged: it is not steady, and soon invalid."""
+    rig = make_rig().drive(mode, speed_mps=13.0)
+    rig.vehicle = rig.vehicle._replace(vx_mps=13.0)
+    rig._move = lambda: None  # type: ignore[method-assign]
+    rig.send(road_wheel_rad=LOCK_RAD)
+    rig.run(0.05)
+    assert (rig.mode, rig.refusal) == (mode, None)
+    assert rig.ros_link.implausible_ticks > 0.0
+    if mode is Mode.MANUAL:
+        rig.tick(Event.REQUEST_AUTONOMOUS)
+        assert (rig.mode, rig.refusal) == (mode, Reason.REFUSED_NOT_STABLE)
+        rig.run(0.1)
+        rig.tick(Event.REQUEST_AUTONOMOUS)
+        assert (rig.mode, rig.refusal) == (mode, Reason.REFUSED_NO_COMMAND)
+
+
+def test_only_the_commanders_count(make_rig: Callable[..., Rig]) -> None:
+    for preferred, told in ((Commander.ROS, None), (Commander.ECU, Reason.REFUSED_IMPLAUSIBLE)):
+        rig = make_rig(preferred=preferred)
+        rig.run(1.0)
+        rig.vehicle = rig.vehicle._replace(vx_mps=13.0)
+        rig.send(road_wheel_rad=0.001)
+        rig.send_ecu(road_wheel_rad=0.001)
+        rig.run(0.3)
+        rig.tick(Event.REQUEST_AUTONOMOUS)
+        rig.ecu = rig.ecu._replace(road_wheel_rad=-LOCK_RAD)
+        rig.run(0.036)
+        in_force = rig.command.road_wheel_rad
+        rig.tick()
+        assert (rig.mode, rig.refusal) == (Mode.AUTONOMOUS, told)
+        assert rig.ecu_link.implausible >= 1.0
+        assert rig.ros_link.implausible == 0.0
+        assert rig.arbitration.ecu_road_wheel_rad == in_force
+
+
+def test_no_refused_command_ever_moves_the_wheels(make_rig: Callable[..., Rig]) -> None:
+    """10,000 random steering steps at random speeds: in a tick with a refused one, the angle is the one before."""
+    print("seed", SEED)
+    rng = np.random.default_rng(SEED)
+
+    def engaged() -> Rig:
+        rig = make_rig().drive(Mode.AUTONOMOUS, speed_mps=10.0)
+        rig._move = lambda: None  # type: ignore[method-assign]
+        rig.run(0.7)
+        return rig
+
+    rig = engaged()
+    refused = followed = 0
+    for _ in range(10_000):
+        speed = float(rng.uniform(0.0, 25.0))
+        rig.vehicle = rig.vehicle._replace(vx_mps=speed)
+        rig.remote = rig.remote._replace(
+            road_wheel_rad=float(rng.uniform(-1.2, 1.2)) * float(rng.choice([1.0, 0.1, 0.01])),
+            sequence=rig.remote.sequence + 1.0,
+            age_ticks=0.0,
+        )
+        before = rig.command.road_wheel_rad
+        asked = speed**2 * math.tan(rig.remote.road_wheel_rad) / rig.settings.wheelbase_m
+        rig.tick()
+        if rig.mode is not Mode.AUTONOMOUS:
+            rig = engaged()
+        elif abs(asked) > 10.0:
+            refused += 1
+            gate = GateLimit(int(rig.command.gate_active))
+            assert rig.command.road_wheel_rad == before or GateLimit.LATERAL_ACCELERATION in gate
+            assert abs(rig.command.road_wheel_rad) <= abs(before)
+        else:
+            followed += 1
+            assert rig.ros_link.implausible_ticks == 0.0
+    assert min(refused, followed) > 1000

@@ -1,0 +1,115 @@
+"""P05 and P06: the wall clock jumps, the loop really stands still."""
+
+import time
+from pathlib import Path
+
+import numpy as np
+
+from simconsole.pacing import CATCH_UP_TICKS, Pacer
+from simconsole.recording.bundle import open_bundle
+from simconsole.rows import Snapshot
+from simconsole.signals import Event, Mode, Reason
+from tests.drives.console import results, simconsole
+from tests.faults.course import BY_HAND, HZ, PLACES, circuit
+from tests.faults.test_whole_drives import PERSON
+
+JUMPING = '''
+"""Python runs this before anything else: whoever reads the wall clock finds it an hour ahead, then an hour back."""
+import atexit, datetime, os, time
+
+reads = 0
+time_s, time_ns = time.time, time.time_ns
+
+def jump_s():
+    global reads
+    reads += 1
+    return 3600 if reads % 2 else -3600
+
+time.time = lambda: time_s() + jump_s()
+time.time_ns = lambda: time_ns() + jump_s() * 10**9
+
+class Jumping(datetime.datetime):
+    @classmethod
+    def now(cls, tz=None):
+        return super().now(tz) + datetime.timedelta(seconds=jump_s())
+
+datetime.datetime = Jumping
+
+@atexit.register
+def tell():
+    with open(os.environ["JUMPS"], "a") as file:
+        file.write(f"{reads}\\n")
+'''
+SESSION = """schema: 1
+environment: {world: urban}
+scenario: {vehicle: hatchback, duration_s: 12}
+features: {autopilot: urban}
+outputs: {bridge: {port: 0}, hud: null, scene: null, report: false}
+devices: {driver: "script:person.yaml"}
+mode: {pacing: lockstep}
+"""
+
+
+def test_p05_wall_clock_that_jumps_by_an_hour_changes_not_one_bit(tmp_path: Path) -> None:
+    """The console and the autopilot's own process, over a WebSocket: with a clock that jumps at every look."""
+    (tmp_path / "sitecustomize.py").write_text(JUMPING)
+    (tmp_path / "session.yaml").write_text(SESSION)
+    (tmp_path / "person.yaml").write_text(PERSON)
+    jumps = tmp_path / "jumps"
+    root = str(Path(__file__).parents[2])
+    digests = []
+    for name, changes in (
+        ("steady", {}),
+        ("jumping", {"PYTHONPATH": f"{tmp_path}:{root}", "JUMPS": str(jumps)}),
+    ):
+        done = simconsole("drive", tmp_path / "session.yaml", "--out", tmp_path / name, "--json", **changes)
+        assert done.returncode == 0, done.stderr
+        digests.append(results(done)["digest"])
+    reads = [int(line) for line in jumps.read_text().split()]
+    print(f"the clock jumped {reads} times")
+    assert len(reads) >= 2, "the console and the autopilot both had that clock"
+    assert digests[0] == digests[1]
+    modes = open_bundle(tmp_path / "jumping").log.table().column("arbitration.mode")
+    assert modes[-1] == Mode.AUTONOMOUS
+
+
+class Sleeper:
+    """A station that really holds the loop up, once."""
+
+    def __init__(self, tick: int, sleep_s: float) -> None:
+        self._tick, self._sleep_s = tick, sleep_s
+
+    def publish(self, snapshot: Snapshot) -> None:
+        if snapshot.tick == self._tick:
+            time.sleep(self._sleep_s)
+
+
+def test_p06_loop_that_really_stands_for_half_a_second_is_answered_in_its_next_tick() -> None:
+    """Real time, the real pacer: five late ticks run at once, the rest never happens, the car stops in its lane."""
+    track = circuit()
+    state = track.state_at(PLACES["bend"])
+    held = state.tick + 100
+    pacer = Pacer(HZ)
+    driven = track.drive(state, 8.0, pace=pacer, stations=(Sleeper(held, 0.5),))
+    stalled = driven.column("events.events").astype(int) & int(Event.LOOP_STALL) != 0
+    after = held - state.tick  # the row of the tick after it
+    assert stalled[after]
+    assert pacer.stalls == stalled.sum()
+    assert pacer.slipped_ticks >= 0.5 * HZ - CATCH_UP_TICKS - 2
+    first = int(np.flatnonzero(stalled)[0])
+    mode, reason = driven.column("arbitration.mode"), driven.column("arbitration.reason")
+    assert (mode[first], reason[first]) == (Mode.MINIMAL_RISK, Reason.LOOP_STALL)
+    assert set(mode[:first]) <= {Mode.AUTONOMOUS}
+    assert (driven.column("command.throttle")[first:] == 0.0).all()
+    assert driven.at_rest
+    assert abs(driven.lateral_m) < 0.5
+
+
+def test_p06_a_person_at_the_wheel_is_stopped_too_and_has_it_back_at_once() -> None:
+    """By hand the stop is steered by the controller that agrees; the person's brake ends it."""
+    track = circuit()
+    state = track.state_at(PLACES["bend"])
+    crew = BY_HAND._replace(attentive=True)
+    driven = track.drive(state, 8.0, crew=crew, pace=Pacer(HZ), stations=(Sleeper(state.tick + 250, 0.3),))
+    assert driven.modes[:3] == [Mode.MANUAL, Mode.MINIMAL_RISK, Mode.MANUAL]
+    assert driven.reasons[1] == Reason.LOOP_STALL
