@@ -101,6 +101,25 @@ def test_nobodys_reaction_ends_in_a_stop_unless_what_was_lost_is_back(
     assert decided(asked_to_take_over(now, reason, last - 1.0), person=person)[0] == Mode.TAKEOVER_REQUESTED
 
 
+@pytest.mark.parametrize("mode", [Mode.MANUAL, Mode.AUTONOMOUS, Mode.SHARED])
+def test_steering_that_cannot_be_meant_is_replaced_and_nothing_else(mode: Mode, now: Moment) -> None:
+    """By the angle in force; in SHARED by the controller's own part: the angle in force is the person's, too."""
+    before = now.before._replace(mode=float(mode), remote_road_wheel_rad=0.03)
+    fast = now._replace(before=before, vehicle=now.vehicle._replace(vx_mps=20.0, ax_mps2=1.0))
+    fast = fast._replace(command_before=now.command_before._replace(road_wheel_rad=0.02))
+    fast = fast._replace(memory=now.memory._replace(speed_integral_mps2=0.25))
+    command = now.ros._replace(kind=float(RemoteKind.ACCELERATION), direction=1.0, road_wheel_rad=0.01)
+    for accel in (1.5, -1.5):
+        asked = command._replace(accel_mps2=accel)
+        meant = look(fast._replace(ros=asked)).ros_offered
+        wild = look(fast._replace(ros=asked._replace(road_wheel_rad=0.5))).ros_offered
+        assert meant.road_wheel_rad == 0.01
+        assert wild.road_wheel_rad == (0.03 if mode is Mode.SHARED else 0.02)
+        assert wild[1:] == meant[1:]
+        assert (meant.throttle > 0.0, meant.brake > 0.0, meant.direction) == (accel > 0.0, accel < 0.0, 1.0)
+        assert meant.speed_integral_mps2 not in (0.0, 0.25)
+
+
 def test_what_the_commanding_ecu_asks_for_is_heard(now: Moment) -> None:
     before = now.before._replace(mode=float(Mode.AUTONOMOUS), commander=float(Commander.ECU))
     driven = now._replace(before=before, ecu=now.ros, ecu_before=STEADY)

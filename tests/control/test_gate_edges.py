@@ -234,6 +234,8 @@ def test_a_lamp_is_on_or_off_and_one_that_is_no_number_stays(mode: Mode, control
     assert (beyond.turn_indicators, beyond.hazard_lights, active(beyond)) == (1.0, 1.0, GateLimit.RANGE)
     below = passed(control, mode, hazard_lights=-1.0)
     assert (below.hazard_lights, active(below)) == (0.0, GateLimit.RANGE)
+    between = passed(control, mode, BEFORE._replace(turn_indicators=0.5), turn_indicators=math.nan)
+    assert (between.turn_indicators, active(between)) == (1.0, GateLimit.NON_FINITE | GateLimit.RANGE)
     lit = BEFORE._replace(turn_indicators=-1.0, hazard_lights=1.0)
     kept = passed(control, mode, lit, turn_indicators=math.nan, hazard_lights=math.inf)
     assert (kept.turn_indicators, kept.hazard_lights, active(kept)) == (-1.0, 1.0, GateLimit.NON_FINITE)

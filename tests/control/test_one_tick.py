@@ -91,6 +91,18 @@ def test_a_change_of_mode_begins_its_time_anew(now: Moment) -> None:
     assert memory.hold_road_wheel_rad == 0.02
 
 
+def test_a_controller_that_asks_for_what_the_person_steered_takes_over_their_stop(now: Moment) -> None:
+    stalled = now._replace(
+        before=now.before._replace(mode=float(Mode.MANUAL)),
+        events=now.events._replace(events=float(Event.LOOP_STALL)),
+        driver=now.driver._replace(brake=0.0),
+    )
+    memory, _, _, shown, _ = arbitrate(stalled)
+    assert (shown.mode, memory.stop_steered, memory.hold_road_wheel_rad) == (Mode.MINIMAL_RISK, 1.0, 0.03)
+    other = stalled._replace(ros=now.ros._replace(road_wheel_rad=0.1))
+    assert arbitrate(other)[0].stop_steered == 0.0
+
+
 def test_the_motors_own_motion_is_taken_off_the_hand_wheels(now: Moment) -> None:
     still = now._replace(memory=now.memory._replace(steering_ticks=0.0), explained_rad=0.25)
     assert arbitrate(still)[0].steering_ticks == 0.0

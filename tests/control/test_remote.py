@@ -184,7 +184,7 @@ def test_a_twist_is_judged_by_its_yaw_rate_at_the_present_speed(vx_mps: float, c
         assert not implausible(twist._replace(yaw_rate_radps=sign * 1.0), vehicle, control)
         assert implausible(twist._replace(yaw_rate_radps=sign * 1.001), vehicle, control)
     assert implausible(twist._replace(yaw_rate_radps=1e308), vehicle._replace(vx_mps=1e308), control)
-    assert not implausible(twist._replace(yaw_rate_radps=9.0), vehicle._replace(vx_mps=math.nan), control)
+    assert not implausible(twist._replace(yaw_rate_radps=11.0), vehicle._replace(vx_mps=math.nan), control)
     assert implausible(
         twist._replace(yaw_rate_radps=0.11), vehicle._replace(vx_mps=math.copysign(1e9, vx_mps)), control
     )
