@@ -1,4 +1,4 @@
-"""Write the JSON Schema of vehicle profiles: `python scripts/make_schemas.py [docs/schemas]`.
+"""Write the JSON Schema of every kind of profile: `python scripts/make_schemas.py [docs/schemas]`.
 
 An editor that knows the schema completes keys and shows bounds:
 `# yaml-language-server: $schema=docs/schemas/vehicle.schema.json` as the first line of a profile.
@@ -10,15 +10,30 @@ from pathlib import Path
 
 import msgspec
 
+from simconsole.profiles.device import CockpitProfile
+from simconsole.profiles.scenario import ScenarioProfile
+from simconsole.profiles.session import SessionProfile
 from simconsole.profiles.vehicle import VehicleProfile
+from simconsole.profiles.world import WorldProfile
 
 FOLDER = Path(__file__).resolve().parents[1] / "docs" / "schemas"
+KINDS = {
+    "device": CockpitProfile,
+    "scenario": ScenarioProfile,
+    "session": SessionProfile,
+    "vehicle": VehicleProfile,
+    "world": WorldProfile,
+}
+"""By the folder of `profiles/`, less its s."""
 
 
 def schemas() -> dict[str, str]:
     """Return the text of each schema by its file name."""
-    vehicle = {"$schema": "https://json-schema.org/draft/2020-12/schema", **msgspec.json.schema(VehicleProfile)}
-    return {"vehicle.schema.json": json.dumps(vehicle, indent=1) + "\n"}
+    dialect = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
+    return {
+        f"{kind}.schema.json": json.dumps(dialect | msgspec.json.schema(profile), indent=1) + "\n"
+        for kind, profile in KINDS.items()
+    }
 
 
 def main() -> None:

@@ -10,7 +10,7 @@ from simconsole.profile_errors import convert
 from simconsole.profile_files import MAX_DATA_BYTES, find, load
 from simconsole.profiles.device import CockpitProfile, ScriptProfile
 from simconsole.profiles.scenario import ScenarioProfile
-from simconsole.profiles.session import SessionProfile
+from simconsole.profiles.session import VEHICLE_FILES, SessionProfile
 from simconsole.profiles.world import WorldProfile
 from simconsole.vehicle_files import load_vehicle
 
@@ -31,21 +31,22 @@ def resolve(session: SessionProfile, cockpit: str | None = None) -> ResolvedSess
 
 
 def load_session(name_or_path: str) -> SessionProfile:
-    """Return the session profile of that name or file; a script or trace that they name lies beside it.
+    """Return the session profile of that name or file; a script, trace or vehicle's file that it names lies beside it.
 
     Raises:
-        ProfileError: missing or wrong, or its script or trace lies outside its folder.
+        ProfileError: missing or wrong, or such a file lies outside its folder.
     """
     return _files_beside(load("sessions", name_or_path, SessionProfile), find("sessions", name_or_path))
 
 
 def load_scenario(name_or_path: str) -> tuple[ScenarioProfile, Path]:
-    """Return the scenario and its file, beside which its golden lies.
+    """Return the scenario and its file, beside which its golden and its own vehicle lie.
 
     Raises:
-        ProfileError: missing, wrong, or it checks a column that no row has.
+        ProfileError: missing, wrong, or its vehicle's file lies outside its folder.
     """
-    return load("scenarios", name_or_path, ScenarioProfile), find("scenarios", name_or_path)
+    scenario, path = load("scenarios", name_or_path, ScenarioProfile), find("scenarios", name_or_path)
+    return msgspec.structs.replace(scenario, session=_vehicle_beside(scenario.session, path)), path
 
 
 def load_script(name_or_path: str) -> ScriptProfile:
@@ -80,7 +81,16 @@ def _files_beside(session: SessionProfile, path: Path) -> SessionProfile:
         beside = _beside(path, "outputs.bridge.messages", bridge.messages, bridge.messages)
         changed = {**msgspec.to_builtins(bridge), "messages": str(beside)}
         session = override(session, outputs={"bridge": changed})
-    return session
+    return _vehicle_beside(session, path)
+
+
+def _vehicle_beside(session: SessionProfile, path: Path) -> SessionProfile:
+    """Return `session` with the whole path of a vehicle that is not a shipped one."""
+    vehicle = session.scenario.vehicle
+    if not vehicle.endswith(VEHICLE_FILES):
+        return session
+    beside = _beside(path, "scenario.vehicle", vehicle, vehicle)
+    return override(session, scenario={"vehicle": str(beside)})
 
 
 def _beside(path: Path, key: str, value: str, name: str) -> Path:

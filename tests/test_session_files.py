@@ -4,8 +4,9 @@ import pytest
 
 from simconsole import profile_files
 from simconsole.errors import ProfileError
-from simconsole.profile_files import names
+from simconsole.profile_files import names, profiles_folder
 from simconsole.profiles.session import SessionProfile
+from simconsole.profiles.vehicle import CarProfile
 from simconsole.session_files import load_scenario, load_session, override, resolve
 
 
@@ -92,3 +93,24 @@ def test_a_profile_that_is_named_but_missing_is_one_line(tmp_path: Path) -> None
     with pytest.raises(ProfileError, match=f"'spaceship': one of {', '.join(names('vehicles'))}") as caught:
         resolve(load_session(path))
     assert "\n" not in str(caught.value)
+
+
+def test_a_vehicles_own_file_lies_beside_the_session_or_the_scenario_that_names_it(tmp_path: Path) -> None:
+    mine = (profiles_folder() / "vehicles" / "hatchback.yaml").read_text().replace("mass_kg: 1300 ", "mass_kg: 1234 ")
+    (tmp_path / "mine.yaml").write_text(mine)
+    session = tmp_path / "session.yaml"
+    session.write_text("schema: 1\nscenario: {vehicle: mine.yaml}\n")
+    vehicle = resolve(load_session(str(session))).vehicle
+    assert isinstance(vehicle, CarProfile)
+    assert vehicle.body.mass_kg == 1234.0
+    scenario = tmp_path / "scenario.yaml"
+    text = (profiles_folder() / "scenarios" / "launch_and_stop.yaml").read_text()
+    scenario.write_text(text.replace("vehicle: hatchback", "vehicle: mine.yaml"))
+    assert resolve(load_scenario(str(scenario))[0].session).vehicle == vehicle
+    for outside in ("../mine.yaml", "/etc/mine.yaml"):
+        session.write_text(f"schema: 1\nscenario: {{vehicle: {outside}}}\n")
+        with pytest.raises(ProfileError, match=r"scenario.vehicle: value .*: a file inside"):
+            load_session(str(session))
+    session.write_text("schema: 1\nscenario: {vehicle: ../mine}\n")
+    with pytest.raises(ProfileError, match=r"scenario.vehicle"):
+        load_session(str(session))

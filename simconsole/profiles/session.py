@@ -1,6 +1,6 @@
 """The session profile: one drive, in the paper's six sections."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Final, Literal
 
 from msgspec import Meta, Struct
 
@@ -13,6 +13,11 @@ from simconsole.profiles.view import HudProfile, SceneProfile
 
 Name = Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$")]
 """A bare profile name: no path, so that one profile can never reach outside the profile folder."""
+
+
+VEHICLE_FILES: Final = (".yaml", ".yml")
+Vehicle = Annotated[str, Meta(pattern=r"^([A-Za-z0-9][A-Za-z0-9_-]{0,63}|.{1,1000}\.ya?ml)$")]
+"""A shipped vehicle's bare name, or a file in the folder of the session or scenario that names it."""
 
 
 class Section(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -53,7 +58,7 @@ class Environment(Section, frozen=True, kw_only=True):
 class Scenario(Section, frozen=True, kw_only=True):
     """What is driven: the vehicle, from where, how long, and what goes wrong on the way."""
 
-    vehicle: Name = "hatchback"
+    vehicle: Vehicle = "hatchback"
     start: Start = Start()
     duration_s: Annotated[float, Meta(gt=0.0, le=86_400.0)] | None = None
     faults: Faults = ()

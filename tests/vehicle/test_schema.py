@@ -1,13 +1,16 @@
-"""The published JSON Schema of vehicle profiles is that of the profiles."""
+"""The published JSON Schemas are those of the profiles, and the shipped profiles keep to them."""
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from simconsole import profile_text
-from simconsole.profile_files import names, read_text
+from simconsole.profile_files import MAX_DATA_BYTES, names, read_text
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -19,24 +22,47 @@ def test_the_published_schema_is_the_present_one(tmp_path: Path) -> None:
         assert published.read_text() == path.read_text(), "run: python scripts/make_schemas.py"
 
 
-def test_shipped_profiles_use_only_keys_of_the_schema() -> None:
-    schema = json.loads((ROOT / "docs" / "schemas" / "vehicle.schema.json").read_text())
+TYPES: dict[str, tuple[type, ...]] = {
+    **{"object": (dict,), "array": (list,), "string": (str,), "boolean": (bool,), "null": (type(None),)},
+    **{"number": (int, float), "integer": (int,)},
+}
 
-    def check(value: Any, kind: dict[str, Any]) -> int:
-        if "$ref" in kind:
-            kind = schema["$defs"][kind["$ref"].rpartition("/")[2]]
-        for low, high in (("minimum", "maximum"),):
-            if low in kind:
-                assert kind[low] <= value <= kind[high]
-        if isinstance(value, dict):
-            assert set(kind["required"]) <= set(value) <= set(kind["properties"])
-            return sum(check(part, kind["properties"][key]) for key, part in value.items())
-        if isinstance(value, list) and "items" in kind:
-            return sum(check(part, kind["items"]) for part in value)
-        return 1
 
-    for name in names("vehicles"):
-        profile = profile_text.parse(read_text("vehicles", f"{name}.yaml"), name)
+def fits(value: Any, kind: dict[str, Any], schema: dict[str, Any]) -> bool:
+    """Return whether a value is what the schema allows, as far as our schemas say it."""
+    if "$ref" in kind:
+        return fits(value, schema["$defs"][kind["$ref"].rpartition("/")[2]], schema)
+    if "anyOf" in kind:
+        return any(fits(value, one, schema) for one in kind["anyOf"])
+    if "enum" in kind:
+        return value in kind["enum"]
+    wanted = TYPES[kind["type"]]
+    if not isinstance(value, wanted) or (isinstance(value, bool) and bool not in wanted):
+        return False
+    if isinstance(value, dict):
+        known, more = kind.get("properties", {}), kind.get("additionalProperties", True)
+        return set(kind.get("required", [])) <= set(value) and all(
+            fits(part, known[key], schema) if key in known else isinstance(more, dict) and fits(part, more, schema)
+            for key, part in value.items()
+        )
+    if isinstance(value, list):
+        counted = kind.get("minItems", 0) <= len(value) <= kind.get("maxItems", len(value))
+        return counted and all(fits(part, kind.get("items", kind), schema) for part in value)
+    if isinstance(value, str):
+        return re.search(kind.get("pattern", ""), value) is not None
+    if isinstance(value, int | float):
+        return kind.get("minimum", value) <= value <= kind.get("maximum", value)
+    return True
+
+
+@pytest.mark.parametrize("kind", ["device", "scenario", "session", "vehicle", "world"])
+def test_shipped_profiles_keep_to_their_schema_and_misspelt_ones_do_not(kind: str) -> None:
+    schema = json.loads((ROOT / "docs" / "schemas" / f"{kind}.schema.json").read_text())
+    found = [name for name in names(f"{kind}s") if "." not in name]  # a plan of a world is no world
+    assert found
+    for name in found:
+        profile = profile_text.parse(read_text(f"{kind}s", f"{name}.yaml", max_bytes=MAX_DATA_BYTES), name)
         assert isinstance(profile, dict)
-        kind = schema["discriminator"]["mapping"][profile["platform"]]
-        assert check(profile, {"$ref": kind}) >= len(profile)
+        assert fits(profile, schema, schema), name
+        assert not fits(profile | {"wheelbaes_m": 2.6}, schema, schema)
+        assert not fits(dict.fromkeys(profile), schema, schema)
