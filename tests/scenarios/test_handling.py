@@ -13,7 +13,14 @@ from tests.drives.console import results, simconsole
 FOLDER = profiles_folder() / "scenarios" / "handling"
 SHIPPED = sorted(FOLDER.glob("*.yaml"))
 KINDS = {
-    *("steady_state_circle", "step_steer", "sine_with_dwell", "double_lane_change", "severe_double_lane_change"),
+    *(
+        "steady_state_circle",
+        "step_steer",
+        "sine_with_dwell",
+        "sine_with_dwell_van",
+        "double_lane_change",
+        "severe_double_lane_change",
+    ),
     *("straight_braking", "split_friction_braking", "coast_down", "launch", "stall", "hill_start", "reverse"),
     *("parking_creep", "parking_hold"),
 }
