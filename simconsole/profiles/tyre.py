@@ -9,15 +9,19 @@ from simconsole.errors import ProfileError
 
 NEEDED: Final = (
     *("FNOMIN", "UNLOADED_RADIUS", "PCX1", "PDX1", "PKX1", "PCY1", "PDY1", "PKY1", "PKY2"),
-    *("QBZ1", "QCZ1", "QDZ1", "RBX1", "RCX1", "RBY1", "RCY1"),
+    *("QBZ1", "QCZ1", "QDZ1"),
 )
 """Without these there is no curve; any other coefficient may be absent."""
+
+COMBINED: Final = ("RBX1", "RCX1", "RBY1", "RCY1")
+"""Of combined slip: all of them, or none, and both slips share a friction ellipse."""
 
 ZERO: Final = (
     *("PDX2", "PDX3", "PEX1", "PEX2", "PEX3", "PEX4", "PKX2", "PKX3", "PHX1", "PHX2", "PVX1", "PVX2"),
     *("PDY2", "PDY3", "PEY1", "PEY2", "PEY3", "PEY4", "PKY3", "PHY1", "PHY2", "PHY3", "PVY1", "PVY2", "PVY3", "PVY4"),
     *("QBZ2", "QBZ3", "QBZ4", "QBZ5", "QBZ9", "QBZ10", "QDZ2", "QDZ3", "QDZ4", "QDZ6", "QDZ7", "QDZ8", "QDZ9"),
     *("QEZ1", "QEZ2", "QEZ3", "QEZ4", "QEZ5", "QHZ1", "QHZ2", "QHZ3", "QHZ4", "SSZ1", "SSZ2", "SSZ3", "SSZ4"),
+    *COMBINED,
     *("RBX2", "REX1", "REX2", "RHX1", "RBY2", "RBY3", "REY1", "REY2", "RHY1", "RHY2"),
     *("RVY1", "RVY2", "RVY3", "RVY4", "RVY5", "RVY6"),
 )
@@ -25,9 +29,9 @@ ZERO: Final = (
 
 ONE: Final = (
     *("LFZO", "LCX", "LMUX", "LEX", "LKX", "LHX", "LVX", "LCY", "LMUY", "LEY", "LKY", "LHY", "LVY", "LGAX", "LGAY"),
-    *("LGAZ", "LTR", "LRES", "LXAL", "LYKA", "LVYKA", "LS"),
+    *("LGAZ", "LTR", "LRES", "LXAL", "LYKA", "LVYKA", "LS", "TYRESIDE"),
 )
-"""Scale factors: 1 where the file does not give them."""
+"""Scale factors: 1 where the file does not give them. So is the side on which it was measured: 1 left, -1 right."""
 
 POSITIVE: Final = ("FNOMIN", "UNLOADED_RADIUS", "PCX1", "PDX1", "PKX1", "PCY1", "PDY1", "LFZO", "LCX", "LMUX", "LKX")
 POSITIVE_Y: Final = ("LCY", "LMUY", "LKY")
@@ -38,6 +42,7 @@ _UNITS: Final = {
     "MASS": ("kg", "kilogram"),
     "TIME": ("second", "sec", "s"),
 }
+_SIDES: Final = {"left": 1.0, "right": -1.0, "unknown": 1.0}
 
 
 class TirTyre(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -73,6 +78,11 @@ def check(values: dict[str, float]) -> None:
             raise ValueError(f"{key}: value {value}: a finite number of at most 1e6")
         if key in POSITIVE + POSITIVE_Y and value <= 0.0:
             raise ValueError(f"{key}: value {value}: above 0")
+    if values.get("TYRESIDE", 1.0) not in (1.0, -1.0):
+        raise ValueError(f"TYRESIDE: value {values['TYRESIDE']}: 1 (left) or -1 (right)")
+    given = [key for key in COMBINED if values.get(key, 0.0) != 0.0]
+    if given and len(given) < len(COMBINED):
+        raise ValueError(f"{given[0]}: value {values[given[0]]}: with {', '.join(COMBINED)} all given, or none of them")
     if values["PKY1"] >= 0.0:
         raise ValueError(f"PKY1: value {values['PKY1']}: below 0, as in the ISO frame of PAC2002")
     if values["PKY2"] <= 0.0:
@@ -93,9 +103,12 @@ def parse_tir(text: str, origin: str) -> dict[str, float]:
         unit = entries.get(("UNITS", key), "missing")
         if _word(unit) not in allowed:
             raise ProfileError(f"{origin}: {key}: value {unit}: '{allowed[0]}'")
-    values: dict[str, float] = {}
+    side = entries.get(("MODEL", "TYRESIDE"), "left")
+    if _word(side) not in _SIDES:
+        raise ProfileError(f"{origin}: TYRESIDE: value {side}: 'LEFT' or 'RIGHT'")
+    values = {"TYRESIDE": _SIDES[_word(side)]}
     for (_, key), shown in entries.items():
-        if key in NEEDED + ZERO + ONE:
+        if key in NEEDED + ZERO + ONE and key != "TYRESIDE":
             if key in values:
                 raise ProfileError(f"{origin}: {key}: value {shown}: given once")
             values[key] = _number(shown, key, origin)

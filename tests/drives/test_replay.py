@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from simconsole.profile_files import profiles_folder
 from simconsole.recording.bundle import open_bundle, verify
 from simconsole.replaying import replay_bundle
 
@@ -51,6 +52,28 @@ def test_the_plain_functions_replay_what_compiled_code_drove(short: Path, monkey
     found = replay_bundle(short)
     assert found.equal, str(found.difference)
     assert found.ticks == 750
+
+
+def test_a_drive_on_a_tir_tyre_replays_without_the_file(script: Path, tmp_path: Path) -> None:
+    """The bundle holds the tyre's coefficients: the file may change or go, the drive is equal to the bit."""
+    vehicles = profiles_folder() / "vehicles"
+    shutil.copy(vehicles / "tyres" / "example.tir", tmp_path / "mine.tir")
+    (tmp_path / "mine.yaml").write_text((vehicles / "hatchback.yaml").read_text() + "tyre: {tir: mine.tir}\n")
+    session = tmp_path / "session.yaml"
+    session.write_text("schema: 1\nscenario: {vehicle: mine.yaml}\n")
+    bundle = tmp_path / "bundle"
+    done = simconsole(
+        "drive", session, "--headless", "--driver", f"script:{script}", "--for", 3, "--out", bundle, "--json"
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    (tmp_path / "mine.tir").unlink()
+    found = replay_bundle(bundle)
+    assert found.equal, str(found.difference)
+    assert (found.ticks, found.digest.hex()) == (750, results(done)["digest"])
+    table = open_bundle(bundle).log.table()
+    assert table.column("vehicle.vx_mps").max() > 1.0
+    plain_tyre = simconsole("drive", "--headless", "--driver", f"script:{script}", "--for", 3, "--json")
+    assert results(plain_tyre)["digest"] != found.digest.hex()
 
 
 def test_one_forged_brake_value_is_named_with_tick_and_field(

@@ -1,4 +1,4 @@
-"""Millions of steps of cars that anything happens to: `python -m tests.vehicle.fuzzing [--steps N] [--seed N]`.
+"""Millions of steps of cars that anything happens to: `python -m tests.vehicle.fuzzing --steps N --seed N --car tir`.
 
 A fleet of cars on any ground, in any wind, with any commands (all axes, gears and both modes, nonsense and NaN among
 them), hit now and then: velocities of up to 60 m/s out of nothing, spins, leans. After every tick each state is
@@ -10,17 +10,25 @@ import math
 import random
 import sys
 import time
+from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple
 
+import msgspec
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from simconsole.compiling import compiled
 from simconsole.fleet import Fleet
+from simconsole.profile_files import load, profiles_folder
+from simconsole.profiles.tyre import TirTyre, parse_tir
+from simconsole.profiles.vehicle import CarProfile
+from simconsole.rows import COMMAND_AT, COMMAND_WIDTH, PLATFORM_AT, VEHICLE_AT, VEHICLE_WIDTH
 from simconsole.signals import VehicleCommand
 from simconsole.vehicle.car.state import CarState
-from simconsole.vehicle.platform import Ground, Patch
+from simconsole.vehicle.platform import Ground, Patch, Platform
+from simconsole.vehicle.registry import build
 
-from .driving import platform
+from .driving import LEVEL, ORIGIN, platform
 
 CARS: Final = 1024
 SUBSTEPS: Final = 4
@@ -73,6 +81,64 @@ BOUNDS: Final[dict[str, tuple[float, float]]] = {
 }
 """What each state of the hatchback may be, and why."""
 
+# slide_demand 3.59 * peak / stiffness * relaxation length, largest along without load: 1.08 * 1.2 / 14.7 * 0.25 m;
+# across at twice the nominal load with 0.6 rad of camber: 0.91 * 1.2 / 6.4 * 0.3 m (tir_tyre.py, example.tir)
+TIR_BOUNDS: Final = BOUNDS | {
+    **dict.fromkeys([f"{wheel}_deflection_x_m" for wheel in WHEELS], (-0.0795, 0.0795)),
+    **dict.fromkeys([f"{wheel}_deflection_y_m" for wheel in WHEELS], (-0.2, 0.2)),
+}
+"""The same of the hatchback on example.tir: all but its contact patches is the same car."""
+
+
+def on_tir(ground: Ground = LEVEL) -> Platform:
+    """Return the hatchback on the shipped example of a PAC2002 tyre."""
+    path = profiles_folder() / "vehicles" / "tyres" / "example.tir"
+    tyre = TirTyre(tir=path.name, coefficients=parse_tir(path.read_text(), path.name))
+    return build(msgspec.structs.replace(load("vehicles", "hatchback", CarProfile), tyre=tyre), ORIGIN, ground)
+
+
+class Singles:
+    """Cars with the ways of a `Fleet`, stepped one by one: a tyre's code is long, and lanes would compile it anew."""
+
+    def __init__(self, platforms: Sequence[Platform]) -> None:
+        self._parameters = [one.parameters for one in platforms]
+        self._step = compiled(platforms[0].step)
+        self._rows = np.zeros((len(platforms), PLATFORM_AT + len(AT)))
+        self.restore([one.initial_state for one in platforms])
+
+    @property
+    def states(self) -> Table:
+        return self._rows[:, PLATFORM_AT:].copy()
+
+    @property
+    def vehicles(self) -> Table:
+        return self._rows[:, VEHICLE_AT : VEHICLE_AT + VEHICLE_WIDTH].copy()
+
+    def command(self, commands: ArrayLike) -> None:
+        self._rows[:, COMMAND_AT : COMMAND_AT + COMMAND_WIDTH] = commands
+
+    def restore(self, states: ArrayLike) -> None:
+        self._rows[:, PLATFORM_AT:] = states
+
+    def step(self, substeps: int) -> None:
+        for row, parameters in zip(self._rows, self._parameters, strict=True):
+            self._step(row, row, parameters, substeps)
+
+
+class Subject(NamedTuple):
+    """What is fuzzed."""
+
+    build: Callable[..., Platform]
+    bounds: dict[str, tuple[float, float]]
+    cars: int
+    fleet: Callable[[Sequence[Platform]], Fleet | Singles]
+
+
+SUBJECTS: Final = {
+    "hatchback": Subject(platform, BOUNDS, CARS, Fleet),
+    "tir": Subject(on_tir, TIR_BOUNDS, 32, Singles),
+}
+
 
 class Report(NamedTuple):
     """What a run found."""
@@ -115,22 +181,23 @@ def hit(rng: np.random.Generator, states: Table) -> Table:
     return struck
 
 
-def fuzz(steps: int, seed: int) -> Report:
-    """Drive CARS hatchbacks for `steps` steps of 1 ms in all, then let them come to rest."""
-    assert BOUNDS.keys() == AT.keys(), f"every state needs a bound: {BOUNDS.keys() ^ AT.keys()}"
+def fuzz(steps: int, seed: int, subject: Subject = SUBJECTS["hatchback"]) -> Report:
+    """Drive cars for `steps` steps of 1 ms in all, then let them come to rest."""
+    bounds, cars = subject.bounds, subject.cars
+    assert bounds.keys() == AT.keys(), f"every state needs a bound: {bounds.keys() ^ AT.keys()}"
     began = time.perf_counter()
     rng = np.random.default_rng(seed)
     spread = random.Random(seed)
-    fleet = Fleet([platform(ground=ground(spread)) for _ in range(CARS)])
-    asked = commands(rng, CARS)
+    fleet = subject.fleet([subject.build(ground=ground(spread)) for _ in range(cars)])
+    asked = commands(rng, cars)
     seen = True
     lowest, highest = np.full((2, len(AT)), [[np.inf], [-np.inf]])
-    ticks = -(-steps // (CARS * SUBSTEPS))
+    ticks = -(-steps // (cars * SUBSTEPS))
     for _ in range(ticks):
-        new = rng.random(CARS) < 0.01
+        new = rng.random(cars) < 0.01
         asked[new] = commands(rng, int(new.sum()))
         fleet.command(asked)
-        struck = rng.random(CARS) < 0.0005
+        struck = rng.random(cars) < 0.0005
         if struck.any():
             states = fleet.states
             states[struck] = hit(rng, states[struck])
@@ -141,18 +208,18 @@ def fuzz(steps: int, seed: int) -> Report:
         lowest = np.minimum(lowest, states.min(axis=0))  # a NaN stays one
         highest = np.maximum(highest, states.max(axis=0))
     beyond = [
-        f"{name}: {lowest[at]:.6g} to {highest[at]:.6g}, allowed {BOUNDS[name][0]:g} to {BOUNDS[name][1]:g}"
+        f"{name}: {lowest[at]:.6g} to {highest[at]:.6g}, allowed {bounds[name][0]:g} to {bounds[name][1]:g}"
         for name, at in AT.items()
-        if not BOUNDS[name][0] <= lowest[at] <= highest[at] <= BOUNDS[name][1]
+        if not bounds[name][0] <= lowest[at] <= highest[at] <= bounds[name][1]
     ]
     if not seen:
         beyond.append("what others see of the car (VehicleState) is no number somewhere")
     return Report(
-        ticks * CARS * SUBSTEPS,
+        ticks * cars * SUBSTEPS,
         dict(zip(AT, lowest.tolist(), strict=True)),
         dict(zip(AT, highest.tolist(), strict=True)),
         beyond,
-        rest(fleet.states),
+        rest(fleet.states, subject),
         time.perf_counter() - began,
     )
 
@@ -171,9 +238,9 @@ def ground(spread: random.Random) -> Ground:
     )
 
 
-def rest(states: Table) -> float:
+def rest(states: Table, subject: Subject) -> float:
     """Return how fast the fastest car still is when all have braked on level asphalt."""
-    fleet = Fleet([platform()] * len(states))
+    fleet = subject.fleet([subject.build()] * len(states))
     fleet.restore(states)
     stop = np.zeros((len(states), len(COMMAND)))
     stop[:, [COMMAND["brake"], COMMAND["clutch"]]] = 1.0
@@ -186,12 +253,14 @@ def rest(states: Table) -> float:
 def main() -> int:
     words = argparse.ArgumentParser(description=__doc__)
     words.add_argument("--steps", type=int, default=100_000_000)
+    words.add_argument("--car", choices=SUBJECTS, default="hatchback")
     words.add_argument("--seed", type=int, default=random.SystemRandom().randrange(2**32))
     given = words.parse_args()
     print(f"seed {given.seed}")
-    found = fuzz(given.steps, given.seed)
+    subject = SUBJECTS[given.car]
+    found = fuzz(given.steps, given.seed, subject)
     for name in AT:
-        low, high = BOUNDS[name]
+        low, high = subject.bounds[name]
         print(f"  {name:22} {found.lowest[name]:12.5g} to {found.highest[name]:12.5g}   allowed {low:g} to {high:g}")
     print(f"{found.steps} steps in {found.seconds:.0f} s; at rest within {REST_S:g} s to {found.rest_mps:.2g} m/s")
     for line in found.beyond:

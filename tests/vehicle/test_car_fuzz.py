@@ -9,6 +9,7 @@ import pytest
 from . import fuzzing
 
 STEPS = 10_000_000
+TIR_STEPS = 400_000
 
 
 def test_ten_million_steps_of_anything_stay_physical_and_end_at_rest(
@@ -26,9 +27,22 @@ def test_ten_million_steps_of_anything_stay_physical_and_end_at_rest(
     assert found.lowest["engine_running"] == 0.0
 
 
+def test_four_hundred_thousand_steps_on_a_tir_tyre_stay_physical_and_end_at_rest(
+    record_property: Callable[[str, object], None],
+) -> None:
+    seed = random.SystemRandom().randrange(2**32)
+    print(f"seed {seed}")
+    found = fuzzing.fuzz(TIR_STEPS, seed, fuzzing.SUBJECTS["tir"])
+    record_property("car on a .tir, fuzzed", f"{found.steps} in {found.seconds:.1f} s, rest {found.rest_mps:.1e} m/s")
+    assert found.steps >= TIR_STEPS
+    assert not found.beyond
+    assert found.rest_mps < fuzzing.REST_MPS
+    assert min(found.lowest["vx_mps"], found.lowest["vy_mps"]) < -fuzzing.HIT_MPS * 0.5, "nothing was hit"
+
+
 def test_a_state_beyond_its_bound_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(fuzzing.BOUNDS, "vx_mps", (-10.0, 10.0))
-    monkeypatch.setattr(fuzzing, "rest", lambda states: 0.0)
+    monkeypatch.setattr(fuzzing, "rest", lambda states, subject: 0.0)
     (line,) = fuzzing.fuzz(200_000, 3).beyond
     assert line.startswith("vx_mps: -")
 
@@ -39,5 +53,5 @@ def test_a_state_that_is_no_number_is_seen(monkeypatch: pytest.MonkeyPatch) -> N
         return states
 
     monkeypatch.setattr(fuzzing, "hit", broken)
-    monkeypatch.setattr(fuzzing, "rest", lambda states: 0.0)
+    monkeypatch.setattr(fuzzing, "rest", lambda states, subject: 0.0)
     assert any(line.startswith("heave_m: nan") for line in fuzzing.fuzz(200_000, 3).beyond)

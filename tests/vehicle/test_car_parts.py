@@ -29,7 +29,7 @@ def settled(vx: float, vy: float, omega: float, seconds: float = 1.0, load_n: fl
     now = Tyre(0.0, 0.0, 0.0, 0.0, 0.0)
     for _ in range(round(seconds / STEP_S)):
         slip = vx - omega * CAR.front.radius_m
-        now = tyre(CAR.front, 1.0, load_n, slip, vy, omega, now.deflection_x_m, now.deflection_y_m, 0.0, STEP_S)
+        now = tyre(CAR.front, 1.0, load_n, slip, vy, omega, now.deflection_x_m, now.deflection_y_m, 0.0, 1.0, STEP_S)
     return now
 
 
@@ -80,8 +80,8 @@ def test_camber_pulls_to_the_lean_only_when_rolling() -> None:
     for lean in (0.1, -0.1):
         rolling = standing = Tyre(0.0, 0.0, 0.0, 0.0, 0.0)
         for _ in range(1000):
-            rolling = tyre(CAR.front, 1.0, LOAD_N, 0.0, 0.0, omega, *rolling[2:4], lean, STEP_S)
-            standing = tyre(CAR.front, 1.0, LOAD_N, 0.0, 0.0, 0.0, *standing[2:4], lean, STEP_S)
+            rolling = tyre(CAR.front, 1.0, LOAD_N, 0.0, 0.0, omega, *rolling[2:4], lean, 1.0, STEP_S)
+            standing = tyre(CAR.front, 1.0, LOAD_N, 0.0, 0.0, 0.0, *standing[2:4], lean, 1.0, STEP_S)
         assert rolling.force_y_n == pytest.approx(-12.0 * LOAD_N * 0.05 * lean, rel=0.02)
         assert standing.force_y_n == 0.0
 
@@ -93,10 +93,12 @@ def test_rolling_backwards_is_rolling_forwards_turned_round() -> None:
 
 
 def test_standing_tyre_is_a_spring_that_keeps_its_force() -> None:
-    pushed = tyre(CAR.front, 1.0, LOAD_N, 0.0, 0.0, 0.0, 0.001, 0.0, 0.0, STEP_S)
+    pushed = tyre(CAR.front, 1.0, LOAD_N, 0.0, 0.0, 0.0, 0.001, 0.0, 0.0, 1.0, STEP_S)
     later = pushed
     for _ in range(10_000):
-        later = tyre(CAR.front, 1.0, LOAD_N, 0.0, 0.0, 0.0, later.deflection_x_m, later.deflection_y_m, 0.0, STEP_S)
+        later = tyre(
+            CAR.front, 1.0, LOAD_N, 0.0, 0.0, 0.0, later.deflection_x_m, later.deflection_y_m, 0.0, 1.0, STEP_S
+        )
     assert later.force_x_n == pushed.force_x_n > 250.0
 
 

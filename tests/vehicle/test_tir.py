@@ -1,5 +1,6 @@
 """PAC2002 tyres: the file, the formulas against a second writing of them, and the car that stands and drives."""
 
+import math
 import random
 import shutil
 from pathlib import Path
@@ -12,14 +13,16 @@ import pytest
 from simconsole.compiling import compiled, digest, plain
 from simconsole.errors import ProfileError
 from simconsole.fleet import Fleet
-from simconsole.kernels import rebound
-from simconsole.profile_files import profiles_folder
+from simconsole.kernels import put, rebound
+from simconsole.profile_files import load, profiles_folder
 from simconsole.profiles.tyre import NEEDED, ONE, ZERO, parse_tir
 from simconsole.profiles.vehicle import CarProfile
 from simconsole.rows import PLATFORM_AT
+from simconsole.vehicle.car.assembly import car_parameters
 from simconsole.vehicle.car.pac2002 import Pac2002, Slip, coefficients, exp, pac2002
+from simconsole.vehicle.car.state import CarState
 from simconsole.vehicle.car.step import step
-from simconsole.vehicle.car.tir_tyre import step_on
+from simconsole.vehicle.car.tir_tyre import COEFFICIENTS, step_on, tir_tyre
 from simconsole.vehicle.platform import Ground, Platform
 from simconsole.vehicle.registry import build
 from simconsole.vehicle_files import load_vehicle
@@ -29,17 +32,18 @@ from .driving import IDLE, LEVEL, ORIGIN, SUBSTEPS, Drive
 FOLDER = profiles_folder() / "vehicles"
 TEXT = (FOLDER / "tyres" / "example.tir").read_text()
 EXAMPLE = parse_tir(TEXT, "example.tir")
+ADAMS = parse_tir((Path(__file__).parent / "adams_205_60r15.tir").read_text(), "adams_205_60r15.tir")
 
 
-def car(ground: Ground = LEVEL) -> Platform:
+def car(ground: Ground = LEVEL, values: dict[str, float] = EXAMPLE) -> Platform:
     profile: Any = load_vehicle("hatchback")
-    tyre = msgspec.convert({"tir": "example.tir", "coefficients": EXAMPLE}, type=dict[str, Any])
+    tyre = msgspec.convert({"tir": "example.tir", "coefficients": values}, type=dict[str, Any])
     raw = msgspec.to_builtins(profile)
     return build(msgspec.convert(raw | {"tyre": tyre}, CarProfile), ORIGIN, ground)
 
 
 def published(v: dict[str, float], kappa: float, tangent: float, fz: float, gamma: float, mu: float) -> np.ndarray:
-    """Return Fx, Fy, Mz by Pacejka 2006, 4.E1 to 4.E78 as PAC2002 files use them, with numpy's functions."""
+    """Return Fx, Fy, Mz with all coefficients and scale factors, written again with numpy's functions."""
     g = {**dict.fromkeys(ZERO, 0.0), **dict.fromkeys(ONE, 1.0), **v}
 
     def magic(b: float, c: float, e: float, x: float) -> float:
@@ -77,7 +81,7 @@ def published(v: dict[str, float], kappa: float, tangent: float, fz: float, gamm
     e = min(1.0, g["REY1"] + g["REY2"] * d)
     shift = g["RHY1"] + g["RHY2"] * d
     fy_plain = fy0 * np.cos(magic(b, g["RCY1"], e, kappa + shift)) / np.cos(magic(b, g["RCY1"], e, shift))
-    dv = dy * (g["RVY1"] + g["RVY2"] * d + g["RVY3"] * gy) * np.cos(np.arctan(g["RVY4"] * alpha))
+    dv = dy * (g["RVY1"] + g["RVY2"] * d + g["RVY3"] * gamma) * np.cos(np.arctan(g["RVY4"] * alpha))
     fy = fy_plain + dv * np.sin(g["RVY5"] * np.arctan(g["RVY6"] * kappa)) * g["LVYKA"]
     # aligning
     gz = gamma * g["LGAZ"]
@@ -93,7 +97,7 @@ def published(v: dict[str, float], kappa: float, tangent: float, fz: float, gamm
     trail = dt * np.cos(magic(bt, g["QCZ1"], min(1.0, et), at_eq)) * np.cos(alpha)
     dr = fz * ((g["QDZ6"] + g["QDZ7"] * d) * g["LRES"] + (g["QDZ8"] + g["QDZ9"] * d) * gz) * r0 * lmy
     br = g["QBZ9"] * g["LKY"] / lmy + g["QBZ10"] * by * cy
-    arm = r0 * (g["SSZ1"] + g["SSZ2"] * fy / fz0 + (g["SSZ3"] + g["SSZ4"] * d) * gz) * g["LS"]
+    arm = r0 * (g["SSZ1"] + g["SSZ2"] * fy / fz0 + (g["SSZ3"] + g["SSZ4"] * d) * gamma) * g["LS"]
     mz = -trail * fy_plain + dr * np.cos(np.arctan(br * ar_eq)) * np.cos(alpha) + arm * fx
     return np.array([fx, fy, mz])
 
@@ -101,10 +105,10 @@ def published(v: dict[str, float], kappa: float, tangent: float, fz: float, gamm
 def every_coefficient(rng: random.Random) -> dict[str, float]:
     """Return the example with every absent coefficient given a small value and the scale factors near 1."""
     small = {key: rng.uniform(-0.05, 0.05) for key in ZERO}
-    return small | {key: rng.uniform(0.9, 1.1) for key in ONE} | EXAMPLE
+    return small | {key: rng.uniform(0.9, 1.1) for key in ONE} | {"TYRESIDE": 1.0} | EXAMPLE
 
 
-def test_force_and_moment_are_those_of_the_published_equations() -> None:
+def test_force_and_moment_are_those_of_a_second_writing() -> None:
     seed = random.randrange(10**9)
     print("seed", seed)
     rng = random.Random(seed)
@@ -211,6 +215,39 @@ def test_plain_and_compiled_agree_to_the_bit() -> None:
         assert slow.row.tobytes() == fast.row.tobytes()
 
 
+def rolling(vehicle: Platform, speed_mps: float) -> Drive:
+    """Return the car as it rolls, in plain Python: another tyre would be compiled for half a minute."""
+    drive = Drive(vehicle, plain)
+    spins = dict.fromkeys(("fl_radps", "fr_radps", "rl_radps", "rr_radps"), speed_mps / 0.306)
+    put(drive.row, PLATFORM_AT, CarState(*vehicle.initial_state)._replace(vx_mps=speed_mps, **spins))
+    return drive
+
+
+def test_a_tyre_with_plysteer_is_mounted_mirrored_so_the_car_runs_straight() -> None:
+    """A real tyre pulls aside; left and right pull apart, and a drive and its mirror image are equal to the bit."""
+    vehicle = car(values=ADAMS)
+    assert rolling(vehicle, 20.0).hold(0.2, clutch=1.0).y_m == 0.0
+    left, right = rolling(vehicle, 20.0), rolling(vehicle, 20.0)
+    for angle in (0.02, -0.05):
+        a = left.hold(0.3, clutch=1.0, road_wheel_rad=angle)
+        b = right.hold(0.3, clutch=1.0, road_wheel_rad=-angle)
+        assert (a.x_m, a.y_m, a.yaw_rad, a.roll_rad) == (b.x_m, -b.y_m, -b.yaw_rad, -b.roll_rad)
+        assert a.hand_wheel_torque_nm == -b.hand_wheel_torque_nm
+    assert abs(left.state.vy_mps) > 0.01
+    turned = [
+        rolling(car(values=ADAMS | {"TYRESIDE": side}), 20.0).hold(0.2, clutch=1.0, road_wheel_rad=0.05).yaw_rate_radps
+        for side in (1.0, -1.0)
+    ]
+    assert turned[0] != turned[1], "measured on the other side, toe and camber forces are turned over"
+
+
+def test_camber_pushes_to_the_lean_as_the_default_tyre_does() -> None:
+    for lean in (0.05, -0.05):
+        force = pac2002(coefficients(EXAMPLE), Slip(0.0, 0.0, 3600.0, lean, 1.0))
+        assert math.copysign(1.0, force.y_n) == -math.copysign(1.0, lean)
+        assert abs(force.y_n) > 50.0
+
+
 def test_a_fleet_on_such_tyres_steps_as_one_car_does() -> None:
     vehicle = car()
     fleet = Fleet([vehicle] * 3)
@@ -227,6 +264,22 @@ def test_other_coefficients_are_other_code() -> None:
     other = step_on(coefficients(EXAMPLE | {"PDX1": 1.03}))
     assert digest(other) != digest(car().step) != digest(step)
     assert rebound(step, {}) is step
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize(("kappa", "tangent"), [(0.1, 0.0), (-0.15, 0.0), (0.0, 0.08), (-0.08, 0.06), (0.05, -0.05)])
+def test_in_steady_motion_the_slip_is_that_of_pac2002(kappa: float, tangent: float, way: float) -> None:
+    """Over the speed of travel, in both directions: what was not divided by it comes out as if it were."""
+    axle = car_parameters(load("vehicles", "hatchback", CarProfile), LEVEL).front
+    own = rebound(tir_tyre, {id(COEFFICIENTS): coefficients(EXAMPLE)})
+    speed = 15.0 * way
+    spin = speed * (1.0 + way * kappa) / axle.radius_m
+    x = y = 0.0
+    for _ in range(400):
+        now = own(axle, 1.0, 3600.0, speed - spin * axle.radius_m, 15.0 * tangent, spin, x, y, 0.0, 1.0, 0.001)
+        x, y = now.deflection_x_m, now.deflection_y_m
+    steady = pac2002(coefficients(EXAMPLE), Slip(kappa, tangent, 3600.0, 0.0, 1.0))
+    assert (now.force_x_n, now.force_y_n) == pytest.approx((steady.x_n, steady.y_n), rel=1e-6, abs=1e-3)
 
 
 @pytest.mark.parametrize("slope", [-0.15, 0.15])

@@ -71,6 +71,7 @@ def contact(
     s: float,
     turned_rad: float,
     camber_rad: float,
+    side: float,
     step_s: float,
 ) -> Contact:
     """Return one tyre one step later, its wheel pointing along (c, s), its contact patch moving with (vx, vy)."""
@@ -90,6 +91,7 @@ def contact(
         kept_x,
         kept_y,
         camber_rad,
+        side,
         step_s,
     )
     force_x = t.force_x_n * c - t.force_y_n * s
@@ -138,14 +140,14 @@ def push(car: Car, p: CarParameters, grips: Grips, points: Heading, turned_rad: 
     side = front.half_track_m * body.yaw_rate_radps
     lean = camber(front, body, car.fl, car.fr)
     mu = front.friction_left * grips.fl
-    fl = contact(front, mu, car.fl, vx - side, vy, points.left_cos, points.left_sin, turned_rad, lean, step_s)
+    fl = contact(front, mu, car.fl, vx - side, vy, points.left_cos, points.left_sin, turned_rad, lean, 1.0, step_s)
     mu = front.friction_right * grips.fr
-    fr = contact(front, mu, car.fr, vx + side, vy, points.right_cos, points.right_sin, turned_rad, lean, step_s)
+    fr = contact(front, mu, car.fr, vx + side, vy, points.right_cos, points.right_sin, turned_rad, lean, -1.0, step_s)
     vy = side_speed(rear, body, car.rl, car.rr)
     side = rear.half_track_m * body.yaw_rate_radps
     lean = camber(rear, body, car.rl, car.rr)
-    rl = contact(rear, rear.friction_left * grips.rl, car.rl, vx - side, vy, 1.0, 0.0, 0.0, lean, step_s)
-    rr = contact(rear, rear.friction_right * grips.rr, car.rr, vx + side, vy, 1.0, 0.0, 0.0, lean, step_s)
+    rl = contact(rear, rear.friction_left * grips.rl, car.rl, vx - side, vy, 1.0, 0.0, 0.0, lean, 1.0, step_s)
+    rr = contact(rear, rear.friction_right * grips.rr, car.rr, vx + side, vy, 1.0, 0.0, 0.0, lean, -1.0, step_s)
     front_y = fl.force_y_n + fr.force_y_n
     rear_y = rl.force_y_n + rr.force_y_n
     steering = p.steering

@@ -1,10 +1,15 @@
 """PAC2002: force and aligning moment of a tyre in steady slip, pure and combined.
 
-Equations as published in Pacejka, Tyre and Vehicle Dynamics (2nd edition, 2006, 4.3.2) and in the form of the PAC2002
-property files (ISO frame: a slip angle is positive where the contact patch slides to the left, and `PKY1` is negative).
-Turn slip and inflation pressure are left out.
+The equations of Adams/Tire PAC2002 (MSC Software; after Pacejka, Tyre and Vehicle Dynamics, 2002), as the files' frame
+has them: ISO, a slip angle is positive where the contact patch slides to the left, and `PKY1` is negative. A number in
+brackets is that of the equation in the Adams manual, as OpenTirePython names it. The manual itself was not at hand:
+checked are the numbers, against OpenTirePython (all of force and moment, to 1e-13 of the load, tests/vehicle/
+test_tir_published.py), and against CommonRoad's tyre (forces); and by reading, against Project Chrono's ChPac02Tire
+(`LFZO`, friction ellipse). Where Chrono differs it is alone: `1 + PDY3 gamma^2`, the sign of the equivalent slip.
+Not here: turn slip, inflation pressure, overturning couple and rolling resistance of the file.
 """
 
+from collections.abc import Callable
 from math import sqrt
 from typing import Final, NamedTuple
 
@@ -32,10 +37,6 @@ class Pac2002(NamedTuple):
     qbz1: float
     qcz1: float
     qdz1: float
-    rbx1: float
-    rcx1: float
-    rby1: float
-    rcy1: float
     pdx2: float
     pdx3: float
     pex1: float
@@ -88,6 +89,10 @@ class Pac2002(NamedTuple):
     ssz2: float
     ssz3: float
     ssz4: float
+    rbx1: float
+    rcx1: float
+    rby1: float
+    rcy1: float
     rbx2: float
     rex1: float
     rex2: float
@@ -126,6 +131,7 @@ class Pac2002(NamedTuple):
     lyka: float
     lvyka: float
     ls: float
+    tyreside: float  # on which the tyre was measured: 1 left, -1 right
 
 
 class Slip(NamedTuple):
@@ -156,10 +162,11 @@ class Side(NamedTuple):
     stiffness_n: float  # per rad, negative
     bc: float
     shift: float  # of the slip angle where the residual moment is
+    lift_n: float  # of the force where the shifted angle is none
 
 
 def coefficients(values: dict[str, float]) -> Pac2002:
-    """Return the coefficients with those that the file leaves out: 0, scale factors 1."""
+    """Return the coefficients with those that the file leaves out: 0, scale factors 1, measured left."""
     full = dict.fromkeys(ZERO, 0.0) | dict.fromkeys(ONE, 1.0) | values
     return Pac2002(**{key.lower(): float(full[key]) for key in (*NEEDED, *ZERO, *ONE)})
 
@@ -204,14 +211,14 @@ def over_nominal(p: Pac2002, load_n: float) -> float:
 
 @kernel
 def stiffness_x(p: Pac2002, load_n: float) -> float:
-    """Return the slope of the longitudinal force over slip at none, in N."""
+    """Return the slope of the longitudinal force over slip at none, in N (25)."""
     dfz = over_nominal(p, load_n)
     return load_n * (p.pkx1 + p.pkx2 * dfz) * exp(p.pkx3 * dfz) * p.lkx
 
 
 @kernel
 def stiffness_y(p: Pac2002, load_n: float, camber_rad: float) -> float:
-    """Return the slope of the side force over slip angle at none, in N/rad: negative."""
+    """Return the slope of the side force over slip angle at none, in N/rad: negative (37, 38)."""
     nominal = p.fnomin * p.lfzo
     upright = p.pky1 * nominal * sin(2.0 * atan(load_n / (p.pky2 * nominal))) * p.lky
     return upright * (1.0 - p.pky3 * abs(camber_rad * p.lgay))
@@ -219,28 +226,28 @@ def stiffness_y(p: Pac2002, load_n: float, camber_rad: float) -> float:
 
 @kernel
 def peak(first: float, second: float, third: float, dfz: float, camber_rad: float) -> float:
-    """Return the friction of one direction; falling loads and cambers leave a little."""
+    """Return the friction of one direction (23, 35); falling loads and cambers leave a little."""
     value = (first + second * dfz) * (1.0 - third * camber_rad * camber_rad)
     return value if value > 0.01 else 0.01
 
 
 @kernel
 def peak_x(p: Pac2002, s: Slip) -> float:
-    """Return the largest longitudinal force in N, shifts aside."""
+    """Return the largest longitudinal force in N, shifts aside (22)."""
     share = peak(p.pdx1, p.pdx2, p.pdx3, over_nominal(p, s.load_n), s.camber_rad * p.lgax)
     return share * (p.lmux * s.friction) * s.load_n
 
 
 @kernel
 def peak_y(p: Pac2002, s: Slip) -> float:
-    """Return the largest side force in N, shifts aside."""
+    """Return the largest side force in N, shifts aside (34)."""
     share = peak(p.pdy1, p.pdy2, p.pdy3, over_nominal(p, s.load_n), s.camber_rad * p.lgay)
     return share * (p.lmuy * s.friction) * s.load_n
 
 
 @kernel
 def pure_x(p: Pac2002, s: Slip) -> Force:
-    """Return the longitudinal force without side slip, and its peak."""
+    """Return the longitudinal force without side slip, and its peak (18 to 28)."""
     dfz = over_nominal(p, s.load_n)
     scale = p.lmux * s.friction
     d = peak_x(p, s)
@@ -254,7 +261,7 @@ def pure_x(p: Pac2002, s: Slip) -> Force:
 
 @kernel
 def pure_y(p: Pac2002, s: Slip, alpha_rad: float) -> Side:
-    """Return the side force without longitudinal slip."""
+    """Return the side force without longitudinal slip (30 to 41)."""
     dfz = over_nominal(p, s.load_n)
     scale = p.lmuy * s.friction
     lean = s.camber_rad * p.lgay
@@ -266,24 +273,24 @@ def pure_y(p: Pac2002, s: Slip, alpha_rad: float) -> Side:
     k = stiffness_y(p, s.load_n, s.camber_rad)
     b = k / (c * d)
     lift = s.load_n * ((p.pvy1 + p.pvy2 * dfz) * p.lvy + (p.pvy3 + p.pvy4 * dfz) * lean) * scale
-    return Side(d * sin(c * bend(b * angle, e)) + lift, d, k, b * c, shift + lift / k)
+    return Side(d * sin(c * bend(b * angle, e)) + lift, d, k, b * c, shift + lift / k, lift)
 
 
 @kernel
 def weight(b: float, c: float, e: float, slip: float, shift: float) -> float:
-    """Return the share of the pure force that the other slip leaves: 1 without it."""
+    """Return the share of the pure force that the other slip leaves: 1 without it (66, 77)."""
     return cos(c * bend(b * (slip + shift), e)) / cos(c * bend(b * shift, e))
 
 
 @kernel
 def combined_angle(tangent: float, other: float) -> float:
-    """Return the slip angle, of the side of `tangent`, that stands for both slips."""
+    """Return the slip angle, of the side of `tangent`, that stands for both slips (84, 85)."""
     return atan(sqrt(tangent * tangent + other * other)) * sign(tangent)
 
 
 @kernel
 def moment(p: Pac2002, s: Slip, alpha_rad: float, side: Side, plain_y_n: float, x_n: float, y_n: float) -> float:
-    """Return the aligning moment: pneumatic trail, residual moment and the longitudinal force's arm."""
+    """Return the aligning moment: pneumatic trail, residual moment and the longitudinal force's arm (44 to 56)."""
     dfz = over_nominal(p, s.load_n)
     lean = s.camber_rad * p.lgaz
     scale = p.lmuy * s.friction
@@ -301,7 +308,7 @@ def moment(p: Pac2002, s: Slip, alpha_rad: float, side: Side, plain_y_n: float, 
     b_left = p.qbz9 * p.lky / scale + p.qbz10 * side.bc
     angle_left = combined_angle(tan(alpha_rad + side.shift), other)
     residual = s.load_n * left * p.unloaded_radius * scale * cos(atan(b_left * angle_left)) * along
-    lever = p.ssz1 + p.ssz2 * y_n / (p.fnomin * p.lfzo) + (p.ssz3 + p.ssz4 * dfz) * lean
+    lever = p.ssz1 + p.ssz2 * y_n / (p.fnomin * p.lfzo) + (p.ssz3 + p.ssz4 * dfz) * s.camber_rad
     return -trail * plain_y_n + residual + lever * p.unloaded_radius * p.ls * x_n
 
 
@@ -313,11 +320,45 @@ def tan(angle_rad: float) -> float:
 
 
 @kernel
+def shared(own: float, other: float, used: float) -> float:
+    """Return the share of a pure force that both slips leave, `used` of the other direction's grip per slip of it."""
+    both = sqrt(own * own + other * used * (other * used))
+    return abs(own) / both if both > 0.0 else 1.0
+
+
+@kernel
+def loaded(given: Slip) -> Slip:
+    """Return the slip with a load of at least LEAST_LOAD_N."""
+    load = given.load_n if given.load_n > LEAST_LOAD_N else LEAST_LOAD_N
+    return Slip(given.along, given.across, load, given.camber_rad, given.friction)
+
+
+@kernel
+def elliptic(p: Pac2002, given: Slip) -> Force:
+    """Return force and moment of a file that has no coefficients of combined slip: the friction ellipse of Adams.
+
+    As Chrono's ChPac02Tire writes it, with the tangent of its angle beta for the angle: sin(alpha) over kappa, shifts
+    included. Its moment is that of pure side slip with the side force that is left.
+    """
+    s = loaded(given)
+    dfz = over_nominal(p, s.load_n)
+    alpha = atan(s.across)
+    ahead = pure_x(p, s)
+    side = pure_y(p, s, alpha)
+    lift_x = s.load_n * (p.pvx1 + p.pvx2 * dfz) * p.lvx * (p.lmux * s.friction)
+    along = s.along + (p.phx1 + p.phx2 * dfz) * p.lhx + lift_x / stiffness_x(p, s.load_n)
+    across = sin(alpha + side.shift)
+    x = ahead.x_n * shared(along, across, (ahead.x_n - lift_x) / side.peak_n)
+    y = side.force_n * shared(across, along, (side.force_n - side.lift_n) / ahead.peak_x_n)
+    pure = Slip(0.0, s.across, s.load_n, s.camber_rad, s.friction)
+    return Force(x, y, moment(p, pure, alpha, side, y, x, y), ahead.peak_x_n, side.peak_n)
+
+
+@kernel
 def pac2002(p: Pac2002, given: Slip) -> Force:
     """Return force and moment under both slips; the load counts as at least LEAST_LOAD_N."""
-    load = given.load_n if given.load_n > LEAST_LOAD_N else LEAST_LOAD_N
-    s = Slip(given.along, given.across, load, given.camber_rad, given.friction)
-    dfz = over_nominal(p, load)
+    s = loaded(given)
+    dfz = over_nominal(p, s.load_n)
     alpha = atan(s.across)
     ahead = pure_x(p, s)
     side = pure_y(p, s, alpha)
@@ -325,6 +366,11 @@ def pac2002(p: Pac2002, given: Slip) -> Force:
     x = ahead.x_n * weight(b, p.rcx1, below_one(p.rex1 + p.rex2 * dfz), alpha, p.rhx1)
     b = p.rby1 * cos(atan(p.rby2 * (alpha - p.rby3))) * p.lyka
     plain = side.force_n * weight(b, p.rcy1, below_one(p.rey1 + p.rey2 * dfz), s.along, p.rhy1 + p.rhy2 * dfz)
-    steer = side.peak_n * (p.rvy1 + p.rvy2 * dfz + p.rvy3 * s.camber_rad * p.lgay) * cos(atan(p.rvy4 * alpha))
+    steer = side.peak_n * (p.rvy1 + p.rvy2 * dfz + p.rvy3 * s.camber_rad) * cos(atan(p.rvy4 * alpha))
     y = plain + steer * sin(p.rvy5 * atan(p.rvy6 * s.along)) * p.lvyka
     return Force(x, y, moment(p, s, alpha, side, plain, x, y), ahead.peak_x_n, side.peak_n)
+
+
+def steady(p: Pac2002) -> Callable[[Pac2002, Slip], Force]:
+    """Return how a tyre of these coefficients combines both slips."""
+    return elliptic if p.rbx1 == 0.0 and p.rby1 == 0.0 else pac2002

@@ -18,6 +18,7 @@ from simconsole.vehicle.car.pac2002 import (
     pac2002,
     peak_x,
     peak_y,
+    steady,
     stiffness_x,
     stiffness_y,
 )
@@ -55,12 +56,20 @@ def tir_tyre(
     deflection_x_m: float,
     deflection_y_m: float,
     camber_rad: float,
+    side: float,
     step_s: float,
 ) -> TirForce:
-    """Advance the deflection by one step and return the force: `tyre`, with PAC2002 for the curve."""
-    rolled = step_s * abs(wheel_radps) * axle.radius_m
-    x = (deflection_x_m - step_s * slip_x_mps) / (1.0 + rolled * axle.decay_x_per_m)
-    y = (deflection_y_m - step_s * slip_y_mps) / (1.0 + rolled * axle.decay_y_per_m)
+    """Advance the deflection by one step and return the force: `tyre`, with PAC2002 for the curve.
+
+    The deflection fades over the way that the wheel travels, du/dt = -V - |Vx| u / L: in steady motion u / L is then
+    the slip as PAC2002 has it, over the speed of travel, and nothing was divided by that speed. Over the speed of
+    rolling, as `tyre` has it, 10 % of slip would be 11 % when braking. A wheel that the brake holds is a spring.
+
+    Plysteer and conicity belong to the side on which the tyre was measured: on the other it is mounted mirrored.
+    """
+    way = step_s * abs(slip_x_mps + wheel_radps * axle.radius_m) if wheel_radps != 0.0 else 0.0
+    x = (deflection_x_m - step_s * slip_x_mps) / (1.0 + way * axle.decay_x_per_m)
+    y = (deflection_y_m - step_s * slip_y_mps) / (1.0 + way * axle.decay_y_per_m)
     load = load_n if load_n > LEAST_LOAD_N else LEAST_LOAD_N
     along = x * axle.decay_x_per_m
     across = -y * axle.decay_y_per_m
@@ -77,22 +86,24 @@ def tir_tyre(
         x = x * share
         y = y * share
         demand = axle.slide_demand
-    steady = pac2002(COEFFICIENTS, Slip(x * axle.decay_x_per_m, -y * axle.decay_y_per_m, load, camber_rad, friction))
+    turned = side * COEFFICIENTS.tyreside
+    across = -turned * y * axle.decay_y_per_m
+    given = pac2002(COEFFICIENTS, Slip(x * axle.decay_x_per_m, across, load, turned * camber_rad, friction))
     damping = axle.locked_damping_nspm
     if wheel_radps != 0.0:
         held = clip(1.0 - demand / PEAK_DEMAND, 0.0, 1.0)
         damping = axle.damping_nspm * held * held
     touching = clip(load_n * (1.0 / LEAST_LOAD_N), 0.0, 1.0)
     rate = damping * clip(load_n * (1.0 / axle.static_n), 0.0, 4.0) * (1.0 / step_s)
-    force_x = steady.x_n * touching + rate * (x - deflection_x_m)
-    force_y = steady.y_n * touching + rate * (y - deflection_y_m)
+    force_x = given.x_n * touching + rate * (x - deflection_x_m)
+    force_y = turned * given.y_n * touching + rate * (y - deflection_y_m)
     force = sqrt(force_x * force_x + force_y * force_y)
-    limit = touching * (steady.peak_x_n if steady.peak_x_n > steady.peak_y_n else steady.peak_y_n)
+    limit = touching * (given.peak_x_n if given.peak_x_n > given.peak_y_n else given.peak_y_n)
     if force > limit:
         share = limit / force
         force_x = force_x * share
         force_y = force_y * share
-    return TirForce(force_x, force_y, x, y, demand, steady.moment_nm * touching)
+    return TirForce(force_x, force_y, x, y, demand, turned * given.moment_nm * touching)
 
 
 @kernel
@@ -105,5 +116,5 @@ def tir_moment(p: SteeringParameters, tyre_force: TirForce, rolling_mps: float) 
 @cache
 def step_on(coefficients: Pac2002) -> Any:
     """Return the car's step on this tyre. Equal coefficients give the same step: it compiles once."""
-    own = rebound(tir_tyre, {id(COEFFICIENTS): coefficients})
+    own = rebound(tir_tyre, {id(COEFFICIENTS): coefficients, id(pac2002): steady(coefficients)})
     return rebound(step, {id(tyre): own, id(rim_moment): tir_moment})

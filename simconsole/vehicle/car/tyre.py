@@ -46,6 +46,7 @@ def tyre(
     deflection_x_m: float,
     deflection_y_m: float,
     camber_rad: float,
+    side: float,
     step_s: float,
 ) -> Tyre:
     """Advance the deflection by one step and return the force of one tyre.
@@ -61,6 +62,7 @@ def tyre(
         deflection_y_m: the same to the wheel's left.
         camber_rad: lean of the wheel, positive to the right as a body's roll in a left bend (inclination angle
             of ISO 8855). Camber thrust pushes to the side to which the wheel leans.
+        side: of the car, 1 left, -1 right. This tyre is the same on both.
         step_s: length of the step.
     """
     rolled = step_s * abs(wheel_radps) * axle.radius_m
