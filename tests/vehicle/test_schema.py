@@ -51,7 +51,7 @@ def fits(value: Any, kind: dict[str, Any], schema: dict[str, Any]) -> bool:
     if isinstance(value, str):
         return re.search(kind.get("pattern", ""), value) is not None
     if isinstance(value, int | float):
-        return kind.get("minimum", value) <= value <= kind.get("maximum", value)
+        return bool(kind.get("minimum", value) <= value <= kind.get("maximum", value))
     return True
 
 
