@@ -7,7 +7,7 @@ seen at rest (else unknown), and only then scaled.
 from typing import NamedTuple
 
 from simconsole.devices.cockpit import NOBODY, CockpitSettings
-from simconsole.devices.lever import TWO_GEARS, held_roles, lever_gear, shown_gear, stepped_gear
+from simconsole.devices.lever import HANDBRAKE, TWO_GEARS, hat_mask, held_roles, lever_gear, shown_gear, stepped_gear
 from simconsole.devices.settings import settings
 from simconsole.devices.validity import LOST, axis_good, heard, mask_good, next_validity, trusted
 from simconsole.kernels import clip, is_finite, kernel
@@ -248,7 +248,7 @@ def calibrate(
         feet.throttle.pressed,
         feet.brake.pressed,
         feet.clutch.pressed,
-        feet.handbrake.pressed,
+        1.0 if held & HANDBRAKE != 0 else feet.handbrake.pressed,
         shift.gear,
         float(held),
         float(edges),
@@ -277,10 +277,12 @@ def _held(sample: DeviceSample, now: DeviceSample, otherwise: int, settings: Coc
         return otherwise
     wheel_buttons = 0.0
     shifter_buttons = 0.0
+    hat = 0
     if heard(now.wheel_age_ticks, settings.stale_ticks):
         then = heard(sample.wheel_age_ticks, settings.stale_ticks)
         wheel_buttons = sample.wheel_buttons if then else now.wheel_buttons
+        hat = hat_mask(sample.hat_x, sample.hat_y) if then else hat_mask(now.hat_x, now.hat_y)
     if heard(now.shifter_age_ticks, settings.stale_ticks):
         then = heard(sample.shifter_age_ticks, settings.stale_ticks)
         shifter_buttons = sample.shifter_buttons if then else now.shifter_buttons
-    return held_roles(wheel_buttons, shifter_buttons, settings)
+    return held_roles(wheel_buttons, shifter_buttons, hat, settings)

@@ -6,7 +6,7 @@ from simconsole.signals import DriverInput
 
 
 class CockpitSettings(NamedTuple):
-    """A device profile as plain numbers; `settings.py` makes it. Masks are `wheel | shifter << 24`."""
+    """A device profile as plain numbers; `settings.py` makes it. Masks: `wheel | shifter << 24 | hat << 48`."""
 
     wheel_centre_raw: float
     wheel_dead_raw: float
@@ -58,6 +58,7 @@ class CockpitSettings(NamedTuple):
     shared_mask: float
     fault_mask: float
     hazard_mask: float
+    handbrake_button_mask: float
 
 
 NOBODY: Final = DriverInput(*(0.0,) * len(DriverInput._fields))

@@ -206,7 +206,7 @@ def drawn(seed: int, tick: int, place: int, event: int = 0) -> float:
 
 
 def _second_gear(gear: int, cockpit: CockpitProfile, settings: CockpitSettings) -> Effect:
-    masks = (0, 0) if settings.sequential else button_masks(float(gear), 0, settings)
+    masks = (0, 0) if settings.sequential else button_masks(float(gear), 0, settings)[:2]
     if not any(masks):
         raise ProfileError(f"{cockpit.title}: faults: gear: value {gear}: a gear that the H pattern of the shifter has")
     wheel, shifter = masks[0] & WHEEL_MASK, masks[1] & (1 << SHIFTER_SHIFT) - 1

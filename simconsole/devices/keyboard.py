@@ -37,6 +37,11 @@ _BUTTONS: Final = (
     (Key.INDICATOR_RIGHT, Button.INDICATOR_RIGHT),
     (Key.MARK, Button.MARK),
     (Key.HAZARD, Button.HAZARD),
+    (Key.PAUSE, Button.PAUSE),
+    (Key.RESTART, Button.RESTART),
+    (Key.TAKEOVER, Button.TAKEOVER),
+    (Key.SHARED, Button.SHARED),
+    (Key.FAULT, Button.FAULT),
 )
 
 

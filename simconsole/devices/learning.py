@@ -19,6 +19,9 @@ CLEAR: Final = 2.0
 """The axis that was meant moved this many times as far as any other."""
 LEAST_DEAD_ZONE: Final = 0.02
 MOST_DEAD_ZONE: Final = 0.3
+BUTTONS: Final = 24
+"""As many of a device are looked at; beyond them lie the four directions of its hat (lever.py)."""
+HATS: Final = ("left", "right", "up", "down")
 END_MARGIN: Final = 0.01
 """Share of a pedal's travel that is left out at its end, so that a foot reaches all of it every time."""
 
@@ -27,7 +30,7 @@ class Reading(NamedTuple):
     """One device at one instant."""
 
     axes: tuple[float, ...]  # -1 to 1
-    buttons: int  # mask
+    buttons: int  # mask, from bit `BUTTONS` on that of the hat
 
 
 class Held(NamedTuple):
@@ -103,8 +106,10 @@ def moved_axis(rest: Moment, now: Moment, taken: Sequence[tuple[DeviceKey, int]]
     return moves[0][1]
 
 
-def pressed_button(rest: Moment, now: Moment, taken: Sequence[ButtonAt] = ()) -> ButtonAt:
-    """Return the one button that is held and was not at rest.
+def pressed_button(
+    rest: Moment, now: Moment, taken: Sequence[ButtonAt] = (), buttons: int = BUTTONS + len(HATS)
+) -> ButtonAt:
+    """Return the one of the first `buttons` that is held and was not at rest.
 
     Raises:
         DeviceError: none is, several are, or it has a meaning already.
@@ -113,12 +118,12 @@ def pressed_button(rest: Moment, now: Moment, taken: Sequence[ButtonAt] = ()) ->
         ButtonAt(key, button)
         for key, held in now.items()
         if key in rest
-        for button in range(24)
+        for button in range(buttons)
         if (held.buttons & ~rest[key].buttons) >> button & 1
     ]
     if len(found) != 1:
         numbers = " and ".join(str(at.button) for at in found) or "none"
-        raise DeviceError(f"buttons: value {numbers} held: one, from the first 24 of its device")
+        raise DeviceError(f"buttons: value {numbers} held: one, from the first {BUTTONS} of its device or its hat")
     if found[0] in taken:
         raise DeviceError(f"buttons: value {found[0].button}: another one, this has a meaning already")
     return found[0]

@@ -8,16 +8,38 @@ from simconsole.signals import Button
 
 SHIFT_UP: Final = int(Button.SHIFT_UP)
 SHIFT_DOWN: Final = int(Button.SHIFT_DOWN)
+HANDBRAKE: Final = int(Button.HANDBRAKE_BUTTON)
 SHIFTER_SHIFT: Final = 24
 """In a role's mask the shifter's buttons lie above the wheel's: `wheel | shifter << 24`."""
+HAT_SHIFT: Final = 48
+"""Above both lie the four directions of the wheel's hat: left 1, right 2, up 4, down 8."""
+HAT_LEFT: Final = 1
+HAT_RIGHT: Final = 2
+HAT_UP: Final = 4
+HAT_DOWN: Final = 8
 TWO_GEARS: Final = 99.0
 """What `shown_gear` answers when the lever shows two gears at once: a fault, the last gear is kept."""
 
 
 @kernel
-def held_roles(wheel_buttons: float, shifter_buttons: float, settings: CockpitSettings) -> int:
+def hat_mask(hat_x: float, hat_y: float) -> int:
+    """Return the directions in which a hat is held, right and up positive; what is no number is none."""
+    held = 0
+    if hat_x < 0.0:
+        held |= HAT_LEFT
+    if hat_x > 0.0:
+        held |= HAT_RIGHT
+    if hat_y > 0.0:
+        held |= HAT_UP
+    if hat_y < 0.0:
+        held |= HAT_DOWN
+    return held
+
+
+@kernel
+def held_roles(wheel_buttons: float, shifter_buttons: float, hat: int, settings: CockpitSettings) -> int:
     """Return the `Button` mask that good raw masks mean."""
-    held = int(wheel_buttons) | (int(shifter_buttons) << SHIFTER_SHIFT)
+    held = int(wheel_buttons) | (int(shifter_buttons) << SHIFTER_SHIFT) | (hat << HAT_SHIFT)
     roles = 0
     bit = 1
     for mask in (
@@ -36,6 +58,7 @@ def held_roles(wheel_buttons: float, shifter_buttons: float, settings: CockpitSe
         settings.shared_mask,
         settings.fault_mask,
         settings.hazard_mask,
+        settings.handbrake_button_mask,
     ):
         if held & int(mask) != 0:
             roles |= bit

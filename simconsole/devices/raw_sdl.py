@@ -3,11 +3,10 @@
 from typing import Self
 
 from simconsole.devices import sdl_runtime
-from simconsole.devices.learning import DeviceKey, Reading
+from simconsole.devices.learning import BUTTONS, DeviceKey, Reading
+from simconsole.devices.lever import hat_mask
 from simconsole.devices.sdl import Found, found
 from simconsole.errors import DeviceError
-
-BUTTONS = 24
 
 
 class RawDevices:
@@ -46,6 +45,8 @@ class RawDevices:
                 raise DeviceError(f"{entry.name}: value unplugged: plugged in until the end")
             axes = tuple(joystick.get_axis(axis) for axis in range(entry.axes))
             mask = sum(1 << button for button in range(min(entry.buttons, BUTTONS)) if joystick.get_button(button))
+            if entry.hats:
+                mask |= hat_mask(*map(float, joystick.get_hat(0))) << BUTTONS
             readings[key] = Reading(axes, mask)
         return readings
 

@@ -4,11 +4,12 @@ import math
 from typing import Final
 
 from simconsole.devices.cockpit import CockpitSettings
-from simconsole.devices.lever import SHIFTER_SHIFT
+from simconsole.devices.lever import HAT_DOWN, HAT_LEFT, HAT_RIGHT, HAT_SHIFT, HAT_UP, SHIFTER_SHIFT
 from simconsole.profiles.device import ButtonBinding, Buttons, CockpitProfile, PedalAxis
 from simconsole.units import RAD_PER_DEG
 
 GEARS: Final = 7
+HATS: Final = {"left": HAT_LEFT, "right": HAT_RIGHT, "up": HAT_UP, "down": HAT_DOWN}
 
 
 def settings(profile: CockpitProfile, tick_hz: int) -> CockpitSettings:
@@ -45,7 +46,11 @@ def _ends(pedal: PedalAxis | None) -> tuple[float, float, float, float]:
 
 
 def _role_mask(binding: ButtonBinding | None) -> float:
-    return 0.0 if binding is None else _mask(binding.on, binding.button)
+    if binding is None:
+        return 0.0
+    if binding.button is not None:
+        return _mask(binding.on, binding.button)
+    return float(HATS[str(binding.hat)] << HAT_SHIFT)
 
 
 def _mask(on: str, button: int) -> float:

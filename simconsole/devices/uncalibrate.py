@@ -4,7 +4,7 @@ from typing import Final, NamedTuple
 
 from simconsole.devices.calibration import curved
 from simconsole.devices.cockpit import CockpitSettings
-from simconsole.devices.lever import SHIFTER_SHIFT
+from simconsole.devices.lever import HAT_DOWN, HAT_LEFT, HAT_RIGHT, HAT_SHIFT, HAT_UP, SHIFTER_SHIFT
 from simconsole.signals import DeviceSample
 
 WHEEL_MASK: Final = (1 << SHIFTER_SHIFT) - 1
@@ -39,8 +39,8 @@ def wheel_raw(hand_wheel_rad: float, settings: CockpitSettings) -> float:
     return min(1.0, max(-1.0, settings.wheel_centre_raw + offset + dead))
 
 
-def button_masks(gear: float, pressed: int, settings: CockpitSettings) -> tuple[int, int]:
-    """Return the raw masks (wheel, shifter) of a lever in this gear and these roles held."""
+def button_masks(gear: float, pressed: int, settings: CockpitSettings) -> tuple[int, int, int]:
+    """Return the raw masks (wheel, shifter, hat) of a lever in this gear and these roles held."""
     mask = 0
     if pressed:
         for bit, role in enumerate(settings[ROLES_AT:]):
@@ -48,12 +48,12 @@ def button_masks(gear: float, pressed: int, settings: CockpitSettings) -> tuple[
                 mask |= int(role)
     if gear and not settings.sequential:
         mask |= int(settings.gear_reverse_mask if gear < 0.0 else settings[GEAR_1_AT + int(gear) - 1])
-    return mask & WHEEL_MASK, mask >> SHIFTER_SHIFT
+    return mask & WHEEL_MASK, mask >> SHIFTER_SHIFT & WHEEL_MASK, mask >> HAT_SHIFT
 
 
 def uncalibrate(intent: Intent, settings: CockpitSettings) -> DeviceSample:
     """Return the raw sample, of age 0, from which `calibrate` reads `intent` back."""
-    wheel_buttons, shifter_buttons = button_masks(intent.gear, intent.pressed, settings)
+    wheel_buttons, shifter_buttons, hat = button_masks(intent.gear, intent.pressed, settings)
     s = settings
     return DeviceSample(
         wheel_raw(intent.hand_wheel_rad, s),
@@ -63,8 +63,8 @@ def uncalibrate(intent: Intent, settings: CockpitSettings) -> DeviceSample:
         pedal_raw(intent.handbrake, s.handbrake_rest_raw, s.handbrake_full_raw, s.handbrake_dead, s.handbrake_curve),
         float(wheel_buttons),
         float(shifter_buttons),
-        0.0,
-        0.0,
+        float((hat & HAT_RIGHT != 0) - (hat & HAT_LEFT != 0)),
+        float((hat & HAT_UP != 0) - (hat & HAT_DOWN != 0)),
         0.0,
         0.0,
         0.0,

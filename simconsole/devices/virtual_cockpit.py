@@ -28,6 +28,7 @@ class VirtualCockpit:
         self.plugged = 0  # how often a device was plugged in: then it is at rest, whatever was written before
         self._axes: dict[tuple[RoleName, int], float] = {}
         self._buttons: dict[RoleName, float] = {}
+        self._hat = (0, 0)
         try:
             for key in sorted(self._specs, reverse=reverse_order):
                 self._devices[key] = VirtualDevice(self._specs[key])
@@ -45,6 +46,7 @@ class VirtualCockpit:
             self._set_axis("pedals", pedals.clutch.axis, sample.clutch_axis)
         if pedals.handbrake is not None:
             self._set_axis(self._profile.played_by("handbrake"), pedals.handbrake.axis, sample.handbrake_axis)
+        self._set_hat(int(sample.hat_x), int(sample.hat_y))
         if self._keys["wheel"] == self._keys["shifter"]:  # one device plays both: its buttons are those of both
             self._set_buttons("wheel", float(int(sample.wheel_buttons) | int(sample.shifter_buttons)))
             return
@@ -75,6 +77,8 @@ class VirtualCockpit:
             self._devices.popitem()[1].detach()
 
     def _forget(self, key: tuple[int, int]) -> None:
+        if self._keys["wheel"] == key:
+            self._hat = (0, 0)
         self._axes = {at: value for at, value in self._axes.items() if self._keys[at[0]] != key}
         self._buttons = {role: mask for role, mask in self._buttons.items() if self._keys[role] != key}
 
@@ -89,3 +93,9 @@ class VirtualCockpit:
         if device is not None and self._buttons.get(role) != mask:
             device.set_buttons(int(mask))
             self._buttons[role] = mask
+
+    def _set_hat(self, x: int, y: int) -> None:
+        device = self._devices.get(self._keys["wheel"])
+        if device is not None and self._hat != (x, y) and self.spec("wheel").hats:
+            device.set_hat(0, x, y)
+            self._hat = (x, y)

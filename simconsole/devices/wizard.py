@@ -4,11 +4,13 @@ The world outside is three functions: ask a question, say a line, look at the de
 """
 
 from collections.abc import Callable
-from typing import Any, Final, TypeVar
+from typing import Any, Final, Literal, TypeVar
 
 import msgspec
 
 from simconsole.devices.learning import (
+    BUTTONS,
+    HATS,
     AxisAt,
     ButtonAt,
     DeviceKey,
@@ -204,7 +206,12 @@ class Wizard:
                     shifters[0] = at.device
                 if at.device not in (wheel_key, shifters[0]):
                     raise DeviceError(f"{name}: value on another device: a button of the wheel or the shifter")
-                return ButtonBinding(on="wheel" if at.device == wheel_key else "shifter", button=at.button)
+                on: Literal["wheel", "shifter"] = "wheel" if at.device == wheel_key else "shifter"
+                if at.button >= BUTTONS and on != "wheel":
+                    raise DeviceError(f"{name}: value the hat of the shifter: one of its buttons, or the wheel's hat")
+                if at.button < BUTTONS:
+                    return ButtonBinding(on=on, button=at.button)
+                return ButtonBinding(on=on, hat=HATS[at.button - BUTTONS])
 
             try:
                 found[name] = self._tried(learn)

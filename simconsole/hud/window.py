@@ -40,6 +40,11 @@ KEYS: Final[dict[str, Key]] = {
     "K_PERIOD": Key.INDICATOR_RIGHT,
     "K_m": Key.MARK,
     "K_h": Key.HAZARD,
+    "K_p": Key.PAUSE,
+    "K_HOME": Key.RESTART,
+    "K_t": Key.TAKEOVER,
+    "K_y": Key.SHARED,
+    "K_f": Key.FAULT,
 }
 """Names of pygame's key constants: the library itself is loaded when a window opens."""
 

@@ -114,10 +114,22 @@ class Shifter(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class ButtonBinding(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A button by its number on the device of a role."""
+    """A button by its number on the device of a role, or a direction of the wheel's hat."""
 
     on: Literal["wheel", "shifter"] = "wheel"
-    button: ButtonIndex
+    button: ButtonIndex | None = None
+    hat: Literal["left", "right", "up", "down"] | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse both and neither, and a hat of the shifter: only the wheel's is read.
+
+        Raises:
+            ValueError: names the keys.
+        """
+        if (self.button is None) == (self.hat is None):
+            raise ValueError("button or hat must be given, and not both")
+        if self.hat is not None and self.on != "wheel":
+            raise ValueError("on must be wheel where hat is given")
 
 
 class Buttons(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -138,6 +150,7 @@ class Buttons(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     shared: ButtonBinding | None = None
     fault: ButtonBinding | None = None
     hazard: ButtonBinding | None = None
+    handbrake_button: ButtonBinding | None = None  # a handbrake that is one: pulled fully while held
 
 
 class Limits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -205,8 +218,12 @@ def _check_indices(binding: RoleBinding, profile: CockpitProfile) -> None:
         if pedal is not None and profile.played_by(name) == binding.role and pedal.axis >= binding.axes:
             raise ValueError(f"pedals.{name}.axis {pedal.axis} must be below {binding.axes}")
     for key, bound in ((name, getattr(profile.buttons, name)) for name in Buttons.__struct_fields__):
-        if bound is not None and bound.on == binding.role and bound.button >= binding.buttons:
+        if bound is None or bound.on != binding.role:
+            continue
+        if bound.button is not None and bound.button >= binding.buttons:
             raise ValueError(f"buttons.{key}.button {bound.button} must be below {binding.buttons}")
+        if bound.hat is not None and binding.hats == 0:
+            raise ValueError(f"buttons.{key}.hat must not be given: {binding.name} has none")
     if profile.shifter.on == binding.role:
         for button in (*profile.shifter.gears, profile.shifter.reverse):
             if button is not None and button >= binding.buttons:
@@ -229,6 +246,7 @@ ButtonName: TypeAlias = Literal[
     "shared",
     "fault",
     "hazard",
+    "handbrake_button",
 ]
 
 

@@ -136,6 +136,7 @@ class Button(IntFlag):
     SHARED = 4096
     FAULT = 8192
     HAZARD = 16384
+    HANDBRAKE_BUTTON = 32768  # pulled fully while held
 
 
 class GearFault(IntFlag):

@@ -221,6 +221,33 @@ def test_button_is_an_edge_once(seat: Seat) -> None:
     assert seat.do().pressed == 0.0
 
 
+@pytest.mark.parametrize(
+    ("hat", "roles"),
+    [
+        ({"hat_y": 1.0}, Button.HAZARD),
+        ({"hat_y": -1.0}, Button.FAULT),
+        ({"hat_x": 1.0, "hat_y": 1.0}, Button.HAZARD),
+        ({"hat_x": 1.0}, Button(0)),
+        ({"hat_y": math.nan}, Button(0)),
+        ({"hat_y": 1.0, "wheel_age_ticks": NEVER_TICKS}, Button(0)),
+    ],
+)
+def test_the_hat_of_the_wheel_has_buttons_too(hat: dict[str, float], roles: Button, seat: Seat) -> None:
+    first, second = seat.do(**hat), seat.do(**hat)  # type: ignore[arg-type]  # fields by their name
+    assert (first.pressed, first.edges) == (float(roles), float(roles))
+    assert (second.pressed, second.edges) == (float(roles), 0.0)
+
+
+def test_a_handbrake_may_be_a_button_or_a_direction_of_the_hat() -> None:
+    for mask in (float(1 << 5), float(8 << 48)):
+        seat = Seat(SETTINGS._replace(handbrake_button_mask=mask, handbrake_rest_raw=0.0, handbrake_full_raw=0.0))
+        seat.do(ticks=2)
+        assert seat.do().handbrake == 0.0
+        held = seat.do(Intent(pressed=int(Button.HANDBRAKE_BUTTON)))
+        assert held.handbrake == 1.0
+        assert seat.do().handbrake == 0.0
+
+
 def test_button_held_while_the_wheel_arrives_is_no_edge() -> None:
     seat = Seat(SETTINGS)
     held = Intent(pressed=int(Button.AUTONOMOUS))

@@ -183,7 +183,7 @@ def test_calibration_learns_a_handbrake_of_its_own_and_check_tries_it(
     path, said = tmp_path / "mine.yaml", list[str]()
 
     def ask(text: str) -> str:
-        return "s" if "FAULT" in text else ""
+        return "s" if "HANDBRAKE BUTTON" in text else ""
 
     calibrate_devices(t500, path, say=said.append, ask=ask, virtual=cockpit, pace=at_once)
     learnt = load("devices", str(path), CockpitProfile)
