@@ -8,7 +8,7 @@ import pytest
 from simconsole.control.arbitration import arbitrate, watched
 from simconsole.control.decision import takeover_stage
 from simconsole.control.moment import Moment
-from simconsole.signals import Commander, Event, Link, LinkState, Mode, Reason, RemoteKind, Validity
+from simconsole.signals import Commander, Event, Link, LinkState, Mode, Notice, Reason, RemoteKind, Validity
 
 MakeRig = Callable[..., Any]
 STEADY = Link(7.0, 3.0, 0.0, 90.0, 1.0, 0.0, 100.0, float(LinkState.STEADY), 0.0, 0.0)
@@ -101,6 +101,42 @@ def test_a_controller_that_asks_for_what_the_person_steered_takes_over_their_sto
     assert (shown.mode, memory.stop_steered, memory.hold_road_wheel_rad) == (Mode.MINIMAL_RISK, 1.0, 0.03)
     other = stalled._replace(ros=now.ros._replace(road_wheel_rad=0.1))
     assert arbitrate(other)[0].stop_steered == 0.0
+
+
+def test_a_restart_that_is_refused_says_so_and_changes_nothing_else(now: Moment) -> None:
+    """The wheel is off the centre and the car moves; whatever else was refused in this tick gives way."""
+    plain = arbitrate(now)
+    asked = now._replace(events=now.events._replace(events=float(Event.RESTART)))
+    memory, _, _, shown, request = arbitrate(asked)
+    assert shown == plain[3]._replace(refusal=float(Reason.REFUSED_PEDAL_PRESSED))
+    assert (memory, request) == (plain[0]._replace(refusal_ticks=0.0), plain[4])
+    off_centre = asked._replace(driver=now.driver._replace(throttle=0.0))
+    assert arbitrate(off_centre)[3].refusal == Reason.REFUSED_WHEEL_NOT_CENTRED
+    takeover = asked._replace(events=now.events._replace(events=float(Event.RESTART | Event.REQUEST_TAKEOVER)))
+    memory, _, _, shown, _ = arbitrate(takeover)
+    assert (shown.mode, shown.reason) == (Mode.TAKEOVER_REQUESTED, Reason.REMOTE_ASKED)
+    assert (shown.refusal, memory.mode_ticks) == (Reason.REFUSED_PEDAL_PRESSED, 0.0)
+
+
+def test_a_restart_is_granted_or_waits_and_says_for_what(now: Moment) -> None:
+    calm = now._replace(
+        driver=now.driver._replace(hand_wheel_rad=0.0, throttle=0.0, brake=0.0),
+        events=now.events._replace(events=float(Event.RESTART)),
+        vehicle=now.vehicle._replace(vx_mps=0.0),
+    )
+    memory, _, _, shown, _ = arbitrate(calm)
+    assert (memory.restart_ticks, shown.restarted, shown.notice, shown.refusal) == (0.0, 1.0, 0.0, 0.0)
+    turned = calm._replace(driver=calm.driver._replace(hand_wheel_rad=0.2))
+    for motor, notice in ((0.0, Notice.CENTRE_WHEEL), (1.0, Notice.CENTRING_WHEEL)):
+        memory, _, _, shown, _ = arbitrate(turned._replace(wheel_motor=motor))
+        assert (memory.restart_ticks, shown.restarted, shown.notice, shown.refusal) == (1.0, 0.0, notice, 0.0)
+
+
+def test_an_accelerator_held_over_the_controller_is_told_after_its_time(now: Moment) -> None:
+    ticks = now.settings.throttle_held_ticks
+    for before, notice in ((ticks - 1.0, 0.0), (ticks, float(Notice.THROTTLE_HELD))):
+        memory, _, _, shown, _ = arbitrate(now._replace(memory=now.memory._replace(throttle_held_ticks=before)))
+        assert (memory.throttle_held_ticks, shown.notice) == (before + 1.0, notice)
 
 
 def test_the_motors_own_motion_is_taken_off_the_hand_wheels(now: Moment) -> None:
