@@ -118,10 +118,12 @@ def _serve(pipe: Connection) -> None:
     next_s = 0.0
 
     def keep(command: RemoteCommand, receipt_ns: int | None) -> None:
+        """Remember when the command that a tick would take was received."""
         nonlocal newest_ns
         newest_ns = receipt_ns
 
     def tick() -> None:
+        """Note, once a tick, how old that command is; there is no snapshot."""
         nonlocal next_s
         now_s = time.monotonic()
         if newest_ns is not None and now_s >= next_s:

@@ -93,6 +93,7 @@ def _serve_bare(pipe: Connection) -> None:
     listening: dict[str, list[ServerConnection]] = {}
 
     async def client(peer: ServerConnection) -> None:
+        """Take subscriptions, and pass on what is published to whoever has subscribed."""
         async for text in peer:
             operation = orjson.loads(text)
             if operation["op"] == "subscribe":
@@ -103,6 +104,7 @@ def _serve_bare(pipe: Connection) -> None:
                     await listener.send(encoded, text=True)
 
     async def main() -> None:
+        """Say the port, and serve until the process is ended."""
         async with serve_websockets(client, "127.0.0.1", 0, compression=None) as server:
             pipe.send(next(iter(server.sockets)).getsockname()[1])
             await server.serve_forever()
@@ -129,6 +131,7 @@ def _serve_bare_picows(pipe: Connection) -> None:
                     listener.send(WSMsgType.TEXT, encoded)
 
     async def main() -> None:
+        """Say the port, and serve until the process is ended."""
         server = await ws_create_server(lambda _: Client(), "127.0.0.1", 0)
         pipe.send(server.sockets[0].getsockname()[1])
         await server.serve_forever()

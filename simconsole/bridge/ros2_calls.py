@@ -64,6 +64,7 @@ class GraphCalls:
         types = load(kind)
 
         async def serve(request: Any, response: Any) -> Any:
+            """Have the bridge answer a request of the graph; what fails is the empty answer."""
             _, answer = self._ask("ask", name, serialize_message(request))
             order = await answer
             if order.data is None:
@@ -82,6 +83,7 @@ class GraphCalls:
         types = load(kind)
 
         async def execute(goal: Any) -> Any:
+            """Have the bridge pursue a goal of the graph, to its end."""
             key, end = self._ask("pursue", name, serialize_message(goal.request))
             self._served[key] = (goal, types)
             order = await end
@@ -96,6 +98,7 @@ class GraphCalls:
             return types.Result() if order.data is None else deserialize_message(order.data, types.Result)
 
         def cancel(goal: Any) -> Any:
+            """Hand the wish to end a goal on to whoever pursues it."""
             identity = bytes(goal.goal_id.uuid)
             for key, (known, _) in self._served.items():
                 if bytes(known.goal_id.uuid) == identity:
@@ -159,6 +162,7 @@ class GraphCalls:
         from rclpy.serialization import serialize_message
 
         def done(future: Any) -> None:
+            """Put the answer of the graph, or why there is none, into the bridge's inbox."""
             error = future.exception()
             data = None if error is not None else serialize_message(future.result())
             self._put("answered", order.key, order.name, data, str(error))

@@ -320,6 +320,7 @@ def serve(
     """
 
     async def main() -> None:
+        """Start, publish and tell until it is to stop, close."""
         server = BridgeServer(
             profile,
             registry=registry,
@@ -330,21 +331,10 @@ def serve(
         )
         await server.start()
         on_ready(server.port)
-        next_count_s = next_look_s = 0.0
-        told = ""
+        teller = _Teller(server, on_counts, on_standing)
         try:
             while not stop():
-                now_s = time.monotonic()
-                if now_s >= next_count_s:
-                    next_count_s = now_s + _COUNT_S
-                    on_counts(server.console.counts())
-                    told = ""
-                if now_s >= next_look_s or not told:
-                    next_look_s = now_s + _STANDING_S
-                    state = server.standing()
-                    if state != told:
-                        told = state
-                        on_standing(state)
+                teller.look(time.monotonic())
                 snapshot = read_snapshot()
                 if snapshot is not None:
                     server.publish(snapshot)
@@ -354,3 +344,29 @@ def serve(
             await server.close()
 
     asyncio.run(main())
+
+
+class _Teller:
+    """Tells of a running server: its counts once a second, and with them and at each change how the link stands."""
+
+    def __init__(
+        self, server: BridgeServer, on_counts: Callable[[dict[str, int]], None], on_standing: Callable[[str], None]
+    ) -> None:
+        self._server = server
+        self._on_counts = on_counts
+        self._on_standing = on_standing
+        self._next_count_s = self._next_look_s = 0.0
+        self._told = ""
+
+    def look(self, now_s: float) -> None:
+        """Tell what is due at `now_s` of the monotonic clock."""
+        if now_s >= self._next_count_s:
+            self._next_count_s = now_s + _COUNT_S
+            self._on_counts(self._server.console.counts())
+            self._told = ""
+        if now_s >= self._next_look_s or not self._told:
+            self._next_look_s = now_s + _STANDING_S
+            state = self._server.standing()
+            if state != self._told:
+                self._told = state
+                self._on_standing(state)

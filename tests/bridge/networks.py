@@ -2,8 +2,10 @@
 
 import ctypes
 import json
+import os
 import socket
 import struct
+from pathlib import Path
 from typing import Any, Self
 
 _SO_ATTACH_FILTER = 26
@@ -26,6 +28,22 @@ def go_deaf(sock: socket.socket) -> None:
 def lose(sock: socket.socket, share: float) -> None:
     """Let a random share of the packets to a socket be lost."""
     _attach(sock, [_LOAD_RANDOM, (0x35, 0, 1, int(share * 0xFFFFFFFF)), _TAKE, _DROP])
+
+
+def far_end(sock: socket.socket) -> socket.socket:
+    """The other side's socket of a connection within this process, as another handle on it."""
+    for path in Path("/proc/self/fd").iterdir():
+        try:
+            other = socket.socket(fileno=os.dup(int(path.name)))
+        except OSError:  # no socket, or closed meanwhile
+            continue
+        try:
+            if other.getpeername() == sock.getsockname():
+                return other
+        except OSError:  # not connected
+            pass
+        other.close()
+    raise LookupError("the other side is not in this process")
 
 
 TEXT, BINARY, CLOSE, PING, PONG = 1, 2, 8, 9, 10

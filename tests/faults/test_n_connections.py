@@ -19,7 +19,7 @@ from simconsole.bridge.server import BridgeServer
 from simconsole.bridge.wire import is_unacknowledged
 from simconsole.profiles.bridge import BridgeLimits, BridgeProfile
 from simconsole.signals import Event
-from tests.bridge.networks import CLOSE, Raw, go_deaf, lose
+from tests.bridge.networks import CLOSE, Raw, far_end, go_deaf, lose
 
 CONTROL = "/control/command/control_cmd"
 S = 10**9
@@ -132,8 +132,10 @@ def test_n04_program_that_is_merely_slow_is_not_cut(control: Callable[..., Any],
                 now_ns = second * S
                 server.look()  # it is pinged, and its kernel has that; it is busy and answers nothing
                 await asyncio.sleep(0)
+                assert server.clients == 1
             slow.say(op="publish", topic=CONTROL, msg=control())
             await until(lambda: server.console.inputs.command.sequence == 1.0)
+            assert server.console.inputs.command.road_wheel_rad == 0.1
             slow.sock.close()
 
     asyncio.run(main())
@@ -276,7 +278,7 @@ class Chaos:
 def test_n06_commands_over_a_bad_network_arrive_in_order_or_not_at_all(
     serving: Callable[..., Any], snapshot: Callable[..., Any], control: Callable[..., Any], network: str
 ) -> None:
-    """30 % of the packets to the client lost, acknowledgements too, or 200 ms each way at 1 Mbit/s."""
+    """30 % of the packets lost each way, acknowledgements too, or 200 ms each way at 1 Mbit/s."""
     server = serving(rates_hz={"/odom": 250.0}, lease_ms=10_000.0)
     chaos = Chaos(server.port, 0.2, 125_000.0) if network == "slow" else None
     with BridgeClient(f"ws://127.0.0.1:{server.port if chaos is None else chaos.port}") as client:
@@ -285,6 +287,8 @@ def test_n06_commands_over_a_bad_network_arrive_in_order_or_not_at_all(
         client.connect()
         if network == "lossy":
             assert client._link._socket is not None
+            with far_end(client._link._socket) as far:
+                lose(far, 0.3)
             lose(client._link._socket, 0.3)
         answered, tick = 0, 0
         while answered < 10:

@@ -89,6 +89,7 @@ def test_n12_idle_handshakes_are_ended_and_harm_nobody(
             while ended(sock) is False:
                 with socket.create_connection(("127.0.0.1", server.port)):
                     pass  # someone comes: lockstep sweeps then
+        assert all(ended(sock) for sock in idle)
 
 
 def ended(sock: socket.socket) -> bool:

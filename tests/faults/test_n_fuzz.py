@@ -213,6 +213,13 @@ class Target:
         return kind
 
 
+def timed(target: Target, data: bytes, now_ns: int) -> float:
+    """The processor time that an input takes, in s."""
+    before_s = time.process_time()
+    target.take(data, now_ns)
+    return time.process_time() - before_s
+
+
 def test_n07_a_million_inputs(record_property: Callable[[str, object], None]) -> None:
     print("seed", SEED)
     chance = random.Random(SEED)
@@ -235,11 +242,14 @@ def test_n07_a_million_inputs(record_property: Callable[[str, object], None]) ->
             raise
         took_s = time.process_time() - before_s
         if took_s > longest_s:
-            longest_s, longest = took_s, data
+            # A collection of pytest's heap or a type's first use may fall upon it: what it costs, it costs again.
+            again_s = min(timed(target, data, now_ns) for _ in range(5))
+            longest_s, longest = max((longest_s, longest), (min(took_s, again_s), data))
         counted[kind] = counted.get(kind, 0) + 1
     spent_s = time.process_time() - began_s
     assert near >= INPUTS // 2
     assert min(counted[kind] for kind in ("done", "command", "refused")) > INPUTS // 100
+    assert longest_s < 100.0 * spent_s / INPUTS, longest
     record_property(
         "fuzz",
         f"{INPUTS} inputs ({near} near to valid), seed {SEED}: 0 uncaught, 0 non-finite out, {counted}; "

@@ -4,6 +4,7 @@
 """
 
 import json
+import math
 import sys
 import time
 
@@ -42,7 +43,10 @@ class Driver(Node):  # type: ignore[misc]  # rclpy has no types here
         command.header.stamp = odometry.header.stamp
         command.header.frame_id = "base_link"
         command.twist.linear.x = SPEED_MPS
-        command.twist.angular.z = -0.05 * (position.y - 3.0)
+        turn = odometry.pose.pose.orientation
+        heading_rad = 2.0 * math.atan2(turn.z, turn.w)
+        # Towards y = 3 m and along x, well damped: where it is at the end is no matter of the moment.
+        command.twist.angular.z = -0.05 * (position.y - 3.0) - 0.8 * heading_rad
         self._commands.publish(command)
         self.answers += 1
         if self.answers % 50 == 10:  # granted to who commands already

@@ -50,6 +50,8 @@ async function talk() {
   for (const form of ["none", "png", "cbor"]) {
     const { header, pose } = await first(odometry(form));
     seen[form] = [header.frame_id, pose.covariance.length, pose.covariance.constructor.name];
+    // Answers come in order: what was on its way in this form has come before the next one is asked for.
+    await later((done, fail) => refused.callService({}, done, fail));
   }
 
   const chatter = { ros, name: "/chatter", messageType: "std_msgs/String" };
@@ -120,9 +122,11 @@ async function drive() {
   const last = await first(odometry, ({ header: { stamp }, pose, twist }) => {
     if (answers === 10) requests.publish({ data: "autonomous" });
     answers += 1;
+    // Towards y = 3 m and along x, well damped: where it is at the end is no matter of the moment.
+    const heading = 2.0 * Math.atan2(pose.pose.orientation.z, pose.pose.orientation.w);
     control.publish({
       stamp,
-      lateral: { steering_tire_angle: -0.01 * (pose.pose.position.y - 3.0) },
+      lateral: { steering_tire_angle: -0.01 * (pose.pose.position.y - 3.0) - 0.2 * heading },
       longitudinal: { velocity: 8.0, acceleration: Math.min(2.0, 8.0 - twist.twist.linear.x) },
     });
     return stamp.sec + stamp.nanosec * 1e-9 >= Number(word);

@@ -98,8 +98,8 @@ def registry() -> Registry:
 class Server:
     """Our server on a thread of its own."""
 
-    def __init__(self, dialect: str) -> None:
-        self._profile = convert({"port": 0, "dialect": dialect}, BridgeProfile)
+    def __init__(self, dialect: str, library: str) -> None:
+        self._profile = convert({"port": 0, "dialect": dialect, "transport": library}, BridgeProfile)
         self.port = 0
         self._ready = threading.Event()
         self._stop = threading.Event()
@@ -187,9 +187,9 @@ def fetch(folder: Path) -> Path:
     return folder / f"roslibpy-{VERSION}"
 
 
-def run(tests: Path, transport: str, dialect: str) -> str:
+def run(tests: Path, transport: str, dialect: str, library: str) -> str:
     """Run the live tests of one dialect; return the last line of pytest's summary."""
-    server = Server(dialect)
+    server = Server(dialect, library)
     nodes = Nodes(server.port)
     try:
         for path in tests.rglob("test_*.py"):
@@ -210,17 +210,18 @@ def run(tests: Path, transport: str, dialect: str) -> str:
 
 
 def run_all(source: Path, scratch: Path) -> dict[str, str]:
-    """Run the live tests for both dialects over both transports, all at once; return each one's summary."""
+    """Run the live tests for both dialects over both its transports and both of ours; return each one's summary."""
 
-    def one(transport: str, dialect: str) -> str:
-        tests = scratch / f"tests-{transport}-{dialect}"
+    def one(transport: str, dialect: str, library: str) -> str:
+        tests = scratch / f"tests-{transport}-{dialect}-{library}"
         shutil.copytree(source / "tests", tests)
-        return run(tests, transport, dialect)
+        return run(tests, transport, dialect, library)
 
-    cases = list(itertools.product(TRANSPORTS, ("ros1", "ros2")))
+    cases = list(itertools.product(TRANSPORTS, ("ros1", "ros2"), ("websockets", "picows")))
     with ThreadPoolExecutor(len(cases)) as beside:  # they wait more than they work
         summaries = list(beside.map(lambda case: one(*case), cases))
-    return {f"{dialect} {transport}": text for (transport, dialect), text in zip(cases, summaries, strict=True)}
+    names = [f"{dialect} {transport}, our server on {library}" for transport, dialect, library in cases]
+    return dict(zip(names, summaries, strict=True))
 
 
 def main() -> int:

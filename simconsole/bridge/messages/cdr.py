@@ -103,6 +103,7 @@ class _Reader:
         self._at = len(_HEADER)
 
     def message(self, name: str) -> dict[str, Any]:
+        """Read one message of a type; returns its fields as plain values."""
         fields = self._registry.definition(name).fields
         if not fields:
             self._bytes(1)
