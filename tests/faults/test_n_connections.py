@@ -159,7 +159,7 @@ def test_n05_stalled_subscriber_costs_the_others_nothing_and_no_memory(
                     return
 
     async def main() -> None:
-        async with served(BridgeProfile(port=0, limits=limits, transport=transport)) as server:
+        async with served(BridgeProfile(port=0, limits=limits, transport=transport, stall_close_s=600.0)) as server:
             stalled = await raw(server, receive_bytes=4096)
             stalled.say(op="subscribe", topic="/big", type="std_msgs/String", queue_length=1000)
             heard: list[list[int]] = [[], [], []]
