@@ -68,7 +68,9 @@ def _driving(commands: Any) -> None:
     demo.add_argument("--out", metavar="DIR", help="where the bundle goes (default: out/demo-TIME)")
 
     drive = _command(commands, "drive", "drive:drive", "drive a session")
-    drive.add_argument("session", nargs="?", default="seated", metavar="SESSION", help="a session profile")
+    drive.add_argument(
+        "session", nargs="?", default="seated", metavar="SESSION", help="by name, or a .yaml file (default: seated)"
+    )
     drive.add_argument("--headless", action="store_true", help="no window, as fast as it goes")
     drive.add_argument("--driver", metavar="D", help="sdl | virtual | trace:F | script:F | keyboard | none")
     drive.add_argument("--cockpit", metavar="PROFILE", help="a cockpit by name, or the file that `calibrate` wrote")
@@ -76,8 +78,8 @@ def _driving(commands: Any) -> None:
     drive.add_argument("--out", metavar="DIR", help="where the bundle goes (default: out/drive-TIME)")
 
     check = _command(commands, "check", "check:check", "drive scripted scenarios headless against their goldens")
-    check.add_argument("scenarios", nargs="+", metavar="SCENARIO")
-    check.add_argument("--jobs", type=int, default=1, metavar="N")
+    check.add_argument("scenarios", nargs="+", metavar="SCENARIO", help="by name, or a .yaml file")
+    check.add_argument("--jobs", type=int, default=1, metavar="N", help="drive N at a time")
     check.add_argument("--report", metavar="FILE", help="write values and plots of the test manoeuvres as HTML")
     check.add_argument("--junit", metavar="FILE", help="write a JUnit report")
     check.add_argument("--update-golden", action="store_true", help="accept what was driven as the new golden")
@@ -126,7 +128,7 @@ def _recordings(commands: Any) -> None:
     report = _command(commands, "report", "recordings:report", "write the HTML report of a bundle")
     view = _command(commands, "view", "recordings:view", "write a bundle's scene.rrd, and open it in rerun")
     for command in (replay, verify, report, view):
-        command.add_argument("bundle", metavar="BUNDLE")
+        command.add_argument("bundle", metavar="BUNDLE", help="the folder that a drive has written")
     view.add_argument("--no-open", action="store_true", help="only write scene.rrd")
     compare = _command(commands, "compare", "recordings:compare", "find the first differing tick and field")
     compare.add_argument("bundle", metavar="A")
@@ -160,7 +162,14 @@ def _tools(commands: Any) -> None:
     devices.add_argument("action", choices=("list", "check", "calibrate", "feel", "record"))
     devices.add_argument("--cockpit", default="t500rs_th8rs", metavar="PROFILE", help="a name, or a .yaml file")
     devices.add_argument("--virtual", action="store_true", help="attach the cockpit's devices as virtual ones first")
-    devices.add_argument("--for", dest="duration_s", type=float, default=10.0, metavar="S", help="check, record")
+    devices.add_argument(
+        "--for",
+        dest="duration_s",
+        type=float,
+        default=10.0,
+        metavar="S",
+        help="check, record: for how long (default: 10)",
+    )
     devices.add_argument("--strength", type=int, default=25, metavar="PERCENT", help="feel: of the motor's torque")
     devices.add_argument("--out", metavar="FILE", help="record: trace.csv; calibrate: the new profile, cockpit.yaml")
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from simconsole.commands.driven import finish
 from simconsole.commands.outcome import Outcome
 from simconsole.commands.progress import Progress
-from simconsole.errors import ProfileError
+from simconsole.errors import DeviceNotFound, ProfileError
 from simconsole.profiles.session import SessionProfile
 from simconsole.session import drive as drive_session
 from simconsole.session_files import load_session, override, resolve
@@ -20,7 +20,10 @@ def drive(words: Namespace) -> Outcome:
     resolved = resolve(session, words.cockpit)
     folder = Path(words.out) if words.out else Path("out") / time.strftime("drive-%Y%m%d-%H%M%S")
     with Progress("driving", resolved.world.length_m if resolved.world else 0.0) as progress:
-        result = drive_session(resolved, folder, progress.watch)
+        try:
+            result = drive_session(resolved, folder, progress.watch)
+        except DeviceNotFound as error:
+            raise DeviceNotFound(f"{error}; without it: --driver keyboard, or simconsole demo") from None
     return finish(result, report=session.outputs.report, scene=session.outputs.scene is not None)
 
 

@@ -228,7 +228,7 @@ class SdlSource:
         seen = ", ".join(f"{entry.vendor_id:04x}:{entry.product_id:04x} {entry.name}" for entry in present)
         return DeviceNotFound(
             f"{self._cockpit.title}: role {binding.role}: value {wanted} ({binding.name}) not connected: "
-            f"connected are {seen or 'no devices'}"
+            f"{f'connected are {seen}' if seen else 'nothing is'}"
         )
 
     def _check_polarity(self, sample: DeviceSample) -> None:

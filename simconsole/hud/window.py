@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 
 from simconsole.errors import StationError
 from simconsole.hud.draw import DrawItem
-from simconsole.hud.layout import check_screen, layout
+from simconsole.hud.layout import check_screen, layout, sample_views
 from simconsole.hud.raster import Painter
 from simconsole.hud.screen import Screen, screen_of
 from simconsole.hud.view import HudMemory, HudSettings, HudView, view
@@ -103,6 +103,12 @@ class Window:
         pygame.display.set_caption("simconsole")
         if profile.fullscreen:
             pygame.mouse.set_visible(False)
+        # Nobody sees these: they load the fonts, for longer than a keyboard may be silent before it is lost.
+        before: list[DrawItem] = []
+        for sample in sample_views():
+            after = layout(sample, self._screen)
+            self._painter.repaint(self._surface, before, after)
+            before = after
 
     def frame(
         self, snapshot: Snapshot | None, now_s: float, can_up: bool | None = None, link: str | None = None

@@ -85,6 +85,7 @@ def test_with_no_wheel_connected_a_seated_drive_names_what_is_missing(tmp_path: 
     line = drive(tmp_path, "--driver", "sdl", "--for", 1)
     assert "044f:b65e" in line
     assert "wheel" in line
+    assert line.endswith("not connected: nothing is; without it: --driver keyboard, or simconsole demo")
 
 
 def test_a_wheel_in_boot_mode_is_named_with_its_cure(tmp_path: Path) -> None:

@@ -49,6 +49,14 @@ def test_the_window_runs_reports_keys_and_ends() -> None:
     assert not pygame.display.get_init()
 
 
+def test_an_open_window_has_its_fonts() -> None:
+    """Loading them takes so long that a keyboard told of before would be lost meanwhile."""
+    opened = Window(PROFILE, HudSettings())
+    loaded = set(opened._painter._fonts)
+    opened.frame(snapshot(1), 1.0)
+    assert set(opened._painter._fonts) == loaded != set()
+
+
 def test_closing_the_window_ends_it() -> None:
     def latest() -> None:
         pygame.event.post(pygame.event.Event(pygame.QUIT))
