@@ -112,4 +112,4 @@ def test_p06_a_person_at_the_wheel_is_stopped_too_and_has_it_back_at_once() -> N
     crew = BY_HAND._replace(attentive=True)
     driven = track.drive(state, 8.0, crew=crew, pace=Pacer(HZ), stations=(Sleeper(state.tick + 250, 0.3),))
     assert driven.modes[:3] == [Mode.MANUAL, Mode.MINIMAL_RISK, Mode.MANUAL]
-    assert driven.reasons[1] == Reason.LOOP_STALL
+    assert driven.reasons[0] == Reason.LOOP_STALL

@@ -120,7 +120,7 @@ scenario: {vehicle: hatchback, duration_s: 12}
 features: {control: {person_required: false}}
 outputs: {bridge: {port: 0}, hud: null, scene: null, report: false}
 devices: {driver: none}
-mode: {pacing: realtime, tick_hz: 250}
+mode: {pacing: lockstep, tick_hz: 250, answer_timeout_s: 0.5}
 """
 ASK = json.dumps({"op": "publish", "topic": "/console/request", "msg": {"data": "autonomous"}})
 
