@@ -35,9 +35,9 @@ HEAD = """# Mutation score of the arbitration
 
 Written by one run of `make mutation`: [mutmut](https://github.com/boxed/mutmut) changes `simconsole/control` in one
 small place at a time, and a test of `tests/control` must fail. A mutant runs against the tests that reach its function,
-its module's own first, until they have called {budget_calls} functions; so the score is a lower bound. Compiled tests
-(the million random steps) are left out. The bar is 95 %; every survivor is named below, with the reason why no test can
-tell it. Edit the reasons here: the next run keeps them.
+its module's own first, until they have called {budget_calls} functions; tests that drive for seconds (every pair of
+mode and event, reaction times, the million random steps) are left out: so the score is a lower bound. The bar is 95 %;
+every survivor is named below, with the reason why no test tells it. Edit the reasons here: the next run keeps them.
 """
 SETTINGS = """[tool.mutmut]
 source_paths = ["simconsole"]

@@ -18,8 +18,20 @@ from typing import Any, Final, NamedTuple
 import pytest
 from _pytest.runner import runtestprotocol
 
-LEFT_OUT: Final = ("test_random.py", "test_coverage.py", "test_mutation_page.py")
-"""Runs kernels compiled; counts lines; reads what is written at the end."""
+DRIVES: Final = (
+    "arbitration",
+    "commander",
+    "implausible",
+    "pairs",
+    "random",
+    "reactions",
+    "shared_drives",
+    "speed_loop",
+    "stops",
+)
+LEFT_OUT: Final = tuple(f"test_{name}.py" for name in (*DRIVES, "coverage", "mutation_page"))
+"""Tests that drive for seconds cost more than all others and kill one mutant in two hundred; the last two are no tests
+of what `control/` does."""
 QUICK: Final = 5000
 """Calls of a quick test: the best part of all tests."""
 LEAST_CPU_S: Final = 10.0

@@ -126,6 +126,8 @@ def test_a_restart_is_granted_or_waits_and_says_for_what(now: Moment) -> None:
     )
     memory, _, _, shown, _ = arbitrate(calm)
     assert (memory.restart_ticks, shown.restarted, shown.notice, shown.refusal) == (0.0, 1.0, 0.0, 0.0)
+    latched = arbitrate(calm._replace(before=now.before._replace(mode=float(Mode.EMERGENCY_STOP))))[3]
+    assert (latched.restarted, latched.refusal) == (0.0, Reason.REFUSED_EMERGENCY)
     turned = calm._replace(driver=calm.driver._replace(hand_wheel_rad=0.2))
     for motor, notice in ((0.0, Notice.CENTRE_WHEEL), (1.0, Notice.CENTRING_WHEEL)):
         memory, _, _, shown, _ = arbitrate(turned._replace(wheel_motor=motor))
