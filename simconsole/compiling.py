@@ -20,7 +20,7 @@ from typing import Any, Final, TypeVar
 
 import numpy as np
 
-from simconsole.kernels import is_kernel, take
+from simconsole.kernels import forget, is_kernel, take
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -81,7 +81,7 @@ def _global_names(function: Callable[..., Any]) -> list[str]:
 
 def _stamp(value: object, user: Callable[..., Any]) -> str:
     """Return text that identifies the value of a global, the same in every process."""
-    if value is user or value is take:
+    if value is user or value is take or value is forget:
         return "itself"
     if is_kernel(value):
         return digest(value)
@@ -112,12 +112,12 @@ def _entry(function: Callable[..., Any]) -> Any:
     source.touch()
     twin.__code__ = twin.__code__.replace(co_filename=str(source), co_firstlineno=1)
     numba.config.CACHE_DIR = str(folder)
-    return numba.njit(cache=True, fastmath=False)(twin)
+    return numba.njit(cache=True, fastmath=False, error_model="numpy")(twin)
 
 
 @cache
 def _inner(function: Callable[..., Any]) -> Any:
-    return _numba().njit(fastmath=False, forceinline=True)(_twin(function))
+    return _numba().njit(fastmath=False, forceinline=True, error_model="numpy")(_twin(function))
 
 
 def _twin(function: Callable[..., Any]) -> types.FunctionType:
@@ -163,6 +163,7 @@ def _prune(base: Path) -> None:
 def _numba() -> Any:
     numba: Any = import_module("numba")
     _lower_take()
+    _lower_forget()
     return numba
 
 
@@ -193,3 +194,17 @@ def _lower_take() -> None:
 
     extending.type_callable(take)(typing)
     extending.lower_builtin(take, types.Array, types.Integer, types.IntegerLiteral)(lower)
+
+
+def _lower_forget() -> None:
+    """Teach numba `kernels.forget`: an empty instruction of which the compiler believes that it changes memory."""
+    types: Any = import_module("numba.core.types")
+    extending: Any = import_module("numba.extending")
+    ir: Any = import_module("llvmlite.ir")
+
+    def lower(context: Any, builder: Any, _signature: Any, _arguments: Any) -> Any:
+        builder.asm(ir.FunctionType(ir.VoidType(), []), "", "~{memory}", [], True)
+        return context.get_dummy_value()
+
+    extending.type_callable(forget)(lambda _context: lambda: types.none)
+    extending.lower_builtin(forget)(lower)

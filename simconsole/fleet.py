@@ -94,7 +94,7 @@ class Fleet:
         """Return [blocks, columns, LANES] of [vehicles, columns]; the last block is filled up with its last vehicle."""
         blocks = -(-len(table) // LANES)
         filled = np.concatenate([table, np.repeat(table[-1:], blocks * LANES - len(table), axis=0)])
-        return np.ascontiguousarray(filled.reshape(blocks, LANES, -1).transpose(0, 2, 1))
+        return _aligned(filled.reshape(blocks, LANES, -1).transpose(0, 2, 1))
 
     def _read(self, columns: slice) -> Table:
         part = self._rows[:, columns].transpose(0, 2, 1)
@@ -106,3 +106,13 @@ class Fleet:
         if table.shape != wanted:
             raise ValueError(f"values of shape {table.shape}, must be {wanted}")
         self._rows[:, columns] = self._in_blocks(table)
+
+
+def _aligned(table: Table) -> Table:
+    """Return a copy whose vectors of LANES lie each in one line of the cache."""
+    line = LANES * table.itemsize
+    room = np.empty(table.nbytes + line, dtype=np.uint8)
+    start = -room.ctypes.data % line
+    copy = room[start : start + table.nbytes].view(table.dtype).reshape(table.shape)
+    copy[...] = table
+    return copy

@@ -61,6 +61,14 @@ def take(row: Row, start: int, count: int) -> tuple[float, ...]:
     return tuple(row[start : start + count].tolist())
 
 
+def forget() -> None:
+    """Do nothing; compiled code reads rows again from here on instead of keeping what it has read.
+
+    Numbers that are needed much later are better read there than kept: there are some thirty registers, and what does
+    not fit is written to the stack.
+    """
+
+
 @kernel
 def put(row: Row, start: int, values: Iterable[float]) -> None:
     """Write a NamedTuple of floats into `row` from `start`."""
@@ -72,11 +80,11 @@ def put(row: Row, start: int, values: Iterable[float]) -> None:
 
 @kernel
 def clip(value: float, low: float, high: float) -> float:
-    """Limit a *finite* value. Test `is_finite` first: a NaN would pass every comparison."""
-    if value < low:
-        return low
+    """Limit a *finite* value, `low` at most `high`. Test `is_finite` first: a NaN would pass every comparison."""
+    if value < low:  # one after the other, not one or the other: two instructions, a maximum and a minimum
+        value = low
     if value > high:
-        return high
+        value = high
     return value
 
 
@@ -89,8 +97,4 @@ def is_finite(value: float) -> bool:
 @kernel
 def approach(value: float, target: float, step: float) -> float:
     """Move `value` towards `target` by at most `step` (>= 0): a rate limit over one tick."""
-    if target > value + step:
-        return value + step
-    if target < value - step:
-        return value - step
-    return target
+    return clip(target, value - step, value + step)

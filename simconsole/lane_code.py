@@ -15,11 +15,14 @@ from functools import cache
 from types import FunctionType
 from typing import Final, NamedTuple
 
-from simconsole.kernels import is_kernel, put, take
+from simconsole.kernels import forget, is_kernel, put, take
 from simconsole.lane_values import LaneWriter, Names, Value
 
 HEAVY: Final = 11
 """Operations from which one side of a choice is worth a jump over it: measured with benchmarks/vehicle_step.py."""
+
+SLOW: Final = 10
+"""Further operations in whose time a division or a root is done."""
 
 
 class Branch(NamedTuple):
@@ -217,6 +220,8 @@ class _Walk:
         if function is take:
             row, start, count = arguments
             return tuple(lanes.load(row, column) for column in range(start, start + count))
+        if function is forget:
+            return None
         if function is put:
             row, start, values = arguments
             for column, value in enumerate(values, start):
@@ -260,8 +265,11 @@ def _weight(node: ast.AST, names: Names) -> int:
     weight = 0
     for part in ast.walk(node):
         weight += isinstance(part, ast.BinOp | ast.Compare)
+        if isinstance(part, ast.BinOp) and isinstance(part.op, ast.Div):
+            weight += SLOW
         if isinstance(part, ast.Call) and isinstance(part.func, ast.Name):
-            weight += _weight_of(names.get(part.func.id))
+            function = names.get(part.func.id)
+            weight += SLOW if function is math.sqrt else _weight_of(function)
     return weight
 
 

@@ -144,15 +144,21 @@ def atan(slope: float) -> float:
 @kernel
 def _atan_unit(x: float) -> float:
     """Return atan(x) for 0 <= x <= 1: atan(c) + atan((x - c) / (1 + c*x)) with the nearest c of 0, 1/4 ... 1."""
-    if x < 0.125:
-        return _atan_series(x)
-    if x < 0.375:
-        return _ATAN_QUARTER + _atan_series((x - 0.25) / (1.0 + 0.25 * x))
-    if x < 0.625:
-        return _ATAN_HALF + _atan_series((x - 0.5) / (1.0 + 0.5 * x))
-    if x < 0.875:
-        return _ATAN_THREE_QUARTERS + _atan_series((x - 0.75) / (1.0 + 0.75 * x))
-    return _ATAN_ONE + _atan_series((x - 1.0) / (1.0 + x))
+    near = 0.0
+    angle = 0.0
+    if x >= 0.125:
+        near = 0.25
+        angle = _ATAN_QUARTER
+    if x >= 0.375:
+        near = 0.5
+        angle = _ATAN_HALF
+    if x >= 0.625:
+        near = 0.75
+        angle = _ATAN_THREE_QUARTERS
+    if x >= 0.875:
+        near = 1.0
+        angle = _ATAN_ONE
+    return angle + _atan_series((x - near) / (1.0 + near * x))
 
 
 @kernel

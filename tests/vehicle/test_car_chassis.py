@@ -180,9 +180,9 @@ def test_the_engine_brakes_in_gear_and_more_in_a_lower_one() -> None:
 def test_assistance_leaves_more_to_the_hands_at_speed() -> None:
     p = car_parameters(HATCHBACK, LEVEL).steering
     torques = [abs(hand_wheel_torque(p, -60.0, 0.0, speed / KMH_PER_MPS)) for speed in (0.0, 50.0, 100.0)]
-    assert torques[0] < torques[1] < torques[2] < p.hand_torque_most_nm
+    assert torques[0] < torques[1] < torques[2] < HATCHBACK.steering.most_nm
     share = HATCHBACK.steering.unassisted_share / HATCHBACK.steering.ratio
-    assert torques[0] == pytest.approx(share * 60.0 / (1.0 + share * 60.0 / p.hand_torque_most_nm))
+    assert torques[0] == pytest.approx(share * 60.0 / (1.0 + share * 60.0 / HATCHBACK.steering.most_nm))
 
 
 def test_side_force_builds_up_over_the_relaxation_length_and_falls_under_braking() -> None:

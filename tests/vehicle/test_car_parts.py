@@ -11,7 +11,7 @@ from simconsole.units import RADPS_PER_RPM
 from simconsole.vehicle.car.assembly import car_parameters
 from simconsole.vehicle.car.engine import engine_drive, engine_friction, full_torque
 from simconsole.vehicle.car.gearbox import bite, gear_ratio, work_gearbox
-from simconsole.vehicle.car.powertrain import Capacity, Shafts, braked, solve_shafts
+from simconsole.vehicle.car.powertrain import Capacity, Inertia, Shafts, braked, solve_shafts
 from simconsole.vehicle.car.state import AID_WIDTH, CAR_WIDTH, Car, CarState, Gearbox, SteeringState, Wheel
 from simconsole.vehicle.car.steering import aligning_moment, hand_wheel_torque, heading, steer
 from simconsole.vehicle.car.suspension import wheel_load
@@ -102,12 +102,16 @@ def test_standing_tyre_is_a_spring_that_keeps_its_force() -> None:
     assert later.force_x_n == pushed.force_x_n > 250.0
 
 
+def inertia(kgm2: float) -> Inertia:
+    return Inertia(kgm2, 1.0 / kgm2)
+
+
 def shafts(
     engine: float, left: float, right: float, ratio: float, capacities: tuple[float, float, float], lock: float = 0.0
 ) -> Shafts:
     friction, clutch, brake = capacities
     before = Shafts(engine, left, right, 0.0, 0.0, 0.0, 0.0, 0.0)
-    return solve_shafts(before, ratio, 0.2, 1.0, Capacity(friction, clutch, brake, brake, lock, 0.0))
+    return solve_shafts(before, ratio, inertia(0.2), inertia(1.0), Capacity(friction, clutch, brake, brake, lock, 0.0))
 
 
 def test_slipping_clutch_conserves_momentum_and_serves_both_wheels() -> None:
@@ -136,8 +140,8 @@ def test_lock_brings_both_wheels_together_as_far_as_it_can() -> None:
 def test_brake_stops_at_exactly_zero_and_never_turns_a_wheel_back() -> None:
     assert shafts(0.0, 0.5, -0.7, 0.0, (0.0, 0.0, 100.0))[1:3] == (0.0, 0.0)
     assert shafts(0.0, 0.5, 0.1, 0.0, (0.0, 0.0, 0.2)).left_radps == pytest.approx(0.3)
-    assert braked(0.3, 2.0, 1.0) == 0.0
-    assert braked(-5.0, 2.0, 1.0) == -4.5
+    assert braked(0.3, 0.5, 1.0) == 0.0
+    assert braked(-5.0, 0.5, 1.0) == -4.5
 
 
 def test_parked_in_gear_the_shafts_converge_to_rest_under_load() -> None:
@@ -145,7 +149,7 @@ def test_parked_in_gear_the_shafts_converge_to_rest_under_load() -> None:
     most = Capacity(0.05, 0.28, 0.0, 0.0, 0.0, 0.0)
     for _ in range(300):
         pushed = state._replace(left_radps=state.left_radps - 0.125, right_radps=state.right_radps - 0.125)
-        state = solve_shafts(pushed, 14.0, 0.16, 1.1, most)
+        state = solve_shafts(pushed, 14.0, inertia(0.16), inertia(1.1), most)
     assert abs(state.left_radps) < 1e-12
     assert state.clutch_impulse_nms == pytest.approx(0.25 * 1.1 / 14.0)
 
@@ -211,7 +215,7 @@ def turned(command: float, ticks: int, start: float = 0.0, moment: float = 0.0, 
     settings = CAR.steering._replace(friction_rad=friction)
     for _ in range(ticks):
         angle = rack.road_wheel_rad + STEP_S * rack.road_wheel_radps
-        rack = SteeringState(angle, steer(settings, rack._replace(road_wheel_rad=angle), command, moment, STEP_S), 0.0)
+        rack = SteeringState(angle, steer(settings, rack._replace(road_wheel_rad=angle), command, moment), 0.0)
     return rack.road_wheel_rad
 
 
@@ -250,7 +254,7 @@ def test_moment_of_the_tyres_centres_and_fades_before_the_force_does() -> None:
 def test_torque_at_the_rim_is_odd_and_bends_towards_its_most() -> None:
     for moment in (10.0, 100.0, 1000.0):
         torque = hand_wheel_torque(CAR.steering, moment, 0.0, 20.0)
-        assert 0.0 < torque < CAR.steering.hand_torque_most_nm
+        assert 0.0 < torque < 1.0 / CAR.steering.per_hand_torque_most_pnm
         assert torque == -hand_wheel_torque(CAR.steering, -moment, 0.0, 20.0)
         assert torque > hand_wheel_torque(CAR.steering, moment, 0.0, 0.0)
         assert torque > hand_wheel_torque(CAR.steering, moment, 0.1, 20.0), "friction and damping oppose the turning"

@@ -44,17 +44,21 @@ class Brakes(NamedTuple):
 
 
 @kernel
-def anti_lock(share: float, active: bool, spin_mps: float, ground_mps: float, step_s: float) -> float:
+def anti_lock(share: float, spin_mps: float, ground_mps: float, step_s: float) -> float:
     """Return the share of the pedal one step later: release above one slip, hold, build up below another."""
     speed = abs(ground_mps)
-    if not active or speed < SLOW_MPS:
-        return approach(share, 1.0, RELEASE_PER_S * step_s)
     spin = spin_mps if ground_mps > 0.0 else -spin_mps
-    if spin < (1.0 - RELEASE_SLIP) * speed:
-        return approach(share, 0.0, RELEASE_PER_S * step_s)
+    target = 1.0
+    rate = BUILD_PER_S
     if spin < (1.0 - HOLD_SLIP) * speed:
-        return share
-    return approach(share, 1.0, BUILD_PER_S * step_s)
+        target = share
+    if spin < (1.0 - RELEASE_SLIP) * speed:
+        target = 0.0
+        rate = RELEASE_PER_S
+    if speed < SLOW_MPS:
+        target = 1.0
+        rate = RELEASE_PER_S
+    return approach(share, target, rate * step_s)
 
 
 @kernel
@@ -63,9 +67,8 @@ def traction(
 ) -> float:
     """Return the share of the throttle one step later, by how much faster the driven wheels turn than they travel."""
     speed = 0.5 * abs(driven.ground_mps + other.ground_mps)
-    if aids.traction != 0.0 and abs(spin_mps) > (1.0 + SPIN_SLIP) * speed + SPIN_MPS:
-        return approach(share, 0.0, 6.0 * step_s)
-    return approach(share, 1.0, 1.5 * step_s)
+    spinning = aids.traction != 0.0 and abs(spin_mps) > (1.0 + SPIN_SLIP) * speed + SPIN_MPS
+    return approach(share, 0.0 if spinning else 1.0, (6.0 if spinning else 1.5) * step_s)
 
 
 @kernel
@@ -109,7 +112,7 @@ def hill_hold(car: Car, p: CarParameters, request: Request, axles: Axles, ratio:
     left = s.hold_left_s
     brake = s.hold_brake
     steep = abs(p.body.slope_x) + abs(p.body.slope_y) > HOLD_SLOPE
-    drive_n = car.shafts.clutch_impulse_nms * ratio * (1.0 / (step_s * p.gears.wheel_radius_m))
+    drive_n = car.shafts.clutch_impulse_nms * ratio * (p.gears.per_wheel_radius_pm * (1.0 / step_s))
     if p.aids.hill_hold != 0.0 and steep and request.brake > 0.1 and abs(car.body.vx_mps) < 0.05:
         # A foot that leaves the pedal slowly leaves its pressure behind.
         if left == 0.0 or request.brake > brake:
@@ -135,11 +138,16 @@ def brake_torques(car: Car, p: CarParameters, request: Request, axles: Axles, ai
         pedal = aids.hold_brake
     front = p.front
     rear = p.rear
-    active = p.aids.anti_lock != 0.0 and (pedal > 0.02 or abs(aids.stability_nm) > 1.0)
-    fl = anti_lock(car.fl.brake_share, active, car.fl.radps * front.radius_m, axles.fl.ground_mps, step_s)
-    fr = anti_lock(car.fr.brake_share, active, car.fr.radps * front.radius_m, axles.fr.ground_mps, step_s)
-    rl = anti_lock(car.rl.brake_share, active, car.rl.radps * rear.radius_m, axles.rl.ground_mps, step_s)
-    rr = anti_lock(car.rr.brake_share, active, car.rr.radps * rear.radius_m, axles.rr.ground_mps, step_s)
+    released = RELEASE_PER_S * step_s
+    fl = approach(car.fl.brake_share, 1.0, released)
+    fr = approach(car.fr.brake_share, 1.0, released)
+    rl = approach(car.rl.brake_share, 1.0, released)
+    rr = approach(car.rr.brake_share, 1.0, released)
+    if p.aids.anti_lock != 0.0 and (pedal > 0.02 or abs(aids.stability_nm) > 1.0):
+        fl = anti_lock(car.fl.brake_share, car.fl.radps * front.radius_m, axles.fl.ground_mps, step_s)
+        fr = anti_lock(car.fr.brake_share, car.fr.radps * front.radius_m, axles.fr.ground_mps, step_s)
+        rl = anti_lock(car.rl.brake_share, car.rl.radps * rear.radius_m, axles.rl.ground_mps, step_s)
+        rr = anti_lock(car.rr.brake_share, car.rr.radps * rear.radius_m, axles.rr.ground_mps, step_s)
     low = rl if rl < rr else rr  # select-low: both rear wheels keep the side force of the better one
     turn = aids.stability_nm
     to_left = turn if turn > 0.0 else 0.0

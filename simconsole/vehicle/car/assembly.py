@@ -32,7 +32,7 @@ from simconsole.vehicle.car.parameters import (
     SteeringParameters,
 )
 from simconsole.vehicle.car.state import CAR_WIDTH, CarState
-from simconsole.vehicle.car.step import load_car, step
+from simconsole.vehicle.car.step import STEP_S, load_car, step
 from simconsole.vehicle.platform import MOST_PATCHES, Ground, Platform, Pose
 
 AIR_KGPM3: Final = 1.225
@@ -105,12 +105,12 @@ def car_parameters(profile: CarProfile, ground: Ground) -> CarParameters:
     """Return the parameters of the kernels, in SI."""
     front = _axle(profile, profile.front, ground, True)
     rear = _axle(profile, profile.rear, ground, False)
-    driven = profile.rear if profile.gearbox.driven == "rear" else profile.front
+    driven = rear if profile.gearbox.driven == "rear" else front
     return CarParameters(
-        body=_body(profile, ground, front, rear),
+        body=_body(profile, ground, front, rear, driven.radius_m),
         steering=_steering(profile),
         engine=_engine(profile.engine),
-        gears=_gears(profile.gearbox, profile.automatic, profile.engine, driven.wheel_radius_m),
+        gears=_gears(profile.gearbox, profile.automatic, profile.engine, driven),
         aids=_aids(profile.aids),
         front=front,
         rear=rear,
@@ -134,16 +134,20 @@ def _gravity(ground: Ground) -> float:
     return STANDARD_GRAVITY_MPS2 / math.sqrt(1.0 + ground.slope_x**2 + ground.slope_y**2)
 
 
-def _body(profile: CarProfile, ground: Ground, front: AxleParameters, rear: AxleParameters) -> BodyParameters:
+def _body(
+    profile: CarProfile, ground: Ground, front: AxleParameters, rear: AxleParameters, driven_radius_m: float
+) -> BodyParameters:
     body = profile.body
     sprung = body.mass_kg - profile.front.unsprung_kg - profile.rear.unsprung_kg
     arm = (front.roll_arm_m * rear.ahead_m - rear.roll_arm_m * front.ahead_m) / (rear.ahead_m - front.ahead_m)
     return BodyParameters(
         mass_kg=body.mass_kg,
-        sprung_kg=sprung,
-        roll_inertia_kgm2=body.roll_inertia_kgm2,
-        pitch_inertia_kgm2=body.pitch_inertia_kgm2,
-        yaw_inertia_kgm2=body.yaw_inertia_kgm2,
+        per_mass_pkg=1.0 / body.mass_kg,
+        moving_kg=body.mass_kg + 2.0 * (front.wheel_inertia_kgm2 + rear.wheel_inertia_kgm2) / driven_radius_m**2,
+        per_sprung_pkg=1.0 / sprung,
+        per_roll_inertia_pkgm2=1.0 / body.roll_inertia_kgm2,
+        per_pitch_inertia_pkgm2=1.0 / body.pitch_inertia_kgm2,
+        per_yaw_inertia_pkgm2=1.0 / body.yaw_inertia_kgm2,
         cg_to_front_m=body.wheelbase_m * (1.0 - body.front_mass_share),
         cg_to_rear_m=body.wheelbase_m * body.front_mass_share,
         cg_height_m=body.cg_height_m,
@@ -155,29 +159,39 @@ def _body(profile: CarProfile, ground: Ground, front: AxleParameters, rear: Axle
         sway_npm=body.mass_kg * _gravity(ground) * arm,
         slope_x=ground.slope_x,
         slope_y=ground.slope_y,
+        full_brake_n=min(2.0 * (front.brake_nm + rear.brake_nm) / driven_radius_m, _held_n(front) + _held_n(rear)),
+        rise_x=ground.slope_x * _gravity(ground) / STANDARD_GRAVITY_MPS2,
+        rise_y=ground.slope_y * _gravity(ground) / STANDARD_GRAVITY_MPS2,
         gravity_plane_mps2=_gravity(ground),
         wind_x_mps=ground.wind_x_mps,
         wind_y_mps=ground.wind_y_mps,
     )
 
 
+def _held_n(axle: AxleParameters) -> float:
+    """Return the force that the ground holds under both wheels of an axle at rest."""
+    return axle.static_n * (axle.friction_left + axle.friction_right)
+
+
 def _steering(profile: CarProfile) -> SteeringParameters:
     steering = profile.steering
     share = steering.unassisted_share
     per_mps = (steering.unassisted_share_at_100kmh - share) / (100.0 * MPS_PER_KMH)
+    natural = 2.0 / steering.lag_s  # a critically damped rack lags behind a ramp by 2 / its natural frequency, rad/s
     return SteeringParameters(
-        natural_radps=2.0 / steering.lag_s,  # a critically damped rack lags behind a ramp by 2 / its natural frequency
+        rack_pull_radps=STEP_S * natural**2,
+        rack_ease=1.0 / (1.0 + STEP_S * natural) ** 2,
         rate_radps=steering.max_road_wheel_degps * RAD_PER_DEG,
         max_road_wheel_rad=steering.max_road_wheel_deg * RAD_PER_DEG,
         friction_rad=steering.friction_deg * RAD_PER_DEG,
         compliance_radpnm=steering.compliance_deg_per_100nm * RAD_PER_DEG / 100.0,
         ackermann=steering.ackermann_share * 0.5 * profile.front.track_m / profile.body.wheelbase_m,
         pneumatic_trail_m=steering.pneumatic_trail_m,
-        trail_end=TRAIL_END,
+        per_trail_end=1.0 / TRAIL_END,
         caster_trail_m=steering.caster_trail_m,
         hand_torque_gain=share / steering.ratio,
         hand_torque_gain_spm=per_mps / steering.ratio,
-        hand_torque_most_nm=steering.most_nm,
+        per_hand_torque_most_pnm=1.0 / steering.most_nm,
         hand_damping_nms=steering.damping_nms,
         hand_friction_nm=steering.rim_friction_nm,
     )
@@ -209,13 +223,18 @@ def _axle(profile: CarProfile, axle: AxleProfile, ground: Ground, at_front: bool
     sprung_height = (body.mass_kg * body.cg_height_m - unsprung * axle.wheel_radius_m) / sprung
     friction = axle.friction * max(ground.friction, LEAST_FRICTION)
     right = friction * ground.right_share if ground.right_share > LEAST_FRICTION else friction * LEAST_FRICTION
+    static = 0.5 * share * body.mass_kg * _gravity(ground)
     return AxleParameters(
         ahead_m=body.wheelbase_m * (1.0 - share) * (1.0 if at_front else -1.0),
         half_track_m=0.5 * axle.track_m,
+        roll_per_lift_radpm=1.0 / axle.track_m,
         wheel_inertia_kgm2=0.5 * axle.wheel_inertia_kgm2,
-        wheel_mass_kg=0.5 * axle.unsprung_kg,
+        per_wheel_inertia_pkgm2=2.0 / axle.wheel_inertia_kgm2,
+        spin_per_push_radpns=2.0 * axle.wheel_radius_m / axle.wheel_inertia_kgm2,
+        per_wheel_mass_pkg=2.0 / axle.unsprung_kg,
         radius_m=axle.wheel_radius_m,
-        static_n=0.5 * share * body.mass_kg * _gravity(ground),
+        static_n=static,
+        per_static_pn=1.0 / static,
         stiffness_x_per_m=axle.slip_stiffness / axle.relaxation_x_m,
         stiffness_y_per_m=axle.cornering_stiffness_per_rad / axle.relaxation_y_m,
         decay_x_per_m=1.0 / axle.relaxation_x_m,
@@ -248,17 +267,19 @@ def _axle(profile: CarProfile, axle: AxleProfile, ground: Ground, at_front: bool
 def _engine(engine: EngineProfile) -> EngineParameters:
     return EngineParameters(
         engine.inertia_kgm2,
+        1.0 / engine.inertia_kgm2,
         engine.drag_nm,
         engine.drag_nm_per_1000rpm / (1000.0 * RADPS_PER_RPM),
         engine.hold_nm,
         engine.idle_rpm * RADPS_PER_RPM,
+        1.0 / (engine.idle_rpm * RADPS_PER_RPM),
         engine.idle_gain_nm_per_rpm / RADPS_PER_RPM,
         engine.idle_max_nm,
         engine.stall_rpm * RADPS_PER_RPM,
         engine.fire_rpm * RADPS_PER_RPM,
         engine.starter_nm,
         engine.limit_rpm * RADPS_PER_RPM,
-        LIMIT_BAND_RPM * RADPS_PER_RPM,
+        1.0 / (LIMIT_BAND_RPM * RADPS_PER_RPM),
         *_ramps(engine),
     )
 
@@ -279,12 +300,15 @@ def _ramps(engine: EngineProfile) -> tuple[float, ...]:
     return (*corners, *(0.0,) * (2 * RAMPS - len(corners)))
 
 
-def _gears(box: GearboxProfile, auto: AutomaticProfile, engine: EngineProfile, radius_m: float) -> GearParameters:
+def _gears(
+    box: GearboxProfile, auto: AutomaticProfile, engine: EngineProfile, driven: AxleParameters
+) -> GearParameters:
     forward = (*(ratio * box.final for ratio in box.forward), *(0.0,) * 7)
     return GearParameters(
         clutch_nm=box.clutch_nm,
         bite_closed=box.bite_closed,
         bite_open=box.bite_open,
+        per_bite=1.0 / (box.bite_open - box.bite_closed),
         ratio_reverse=-box.reverse * box.final,
         ratio_1=forward[0],
         ratio_2=forward[1],
@@ -296,7 +320,7 @@ def _gears(box: GearboxProfile, auto: AutomaticProfile, engine: EngineProfile, r
         gears=float(len(box.forward)),
         synchro_radps=box.synchro_rpm * RADPS_PER_RPM,
         limit_radps=engine.limit_rpm * RADPS_PER_RPM,
-        wheel_radius_m=radius_m,
+        per_wheel_radius_pm=1.0 / driven.radius_m,
         shift_s=auto.shift_s,
         shift_pause_s=auto.shift_pause_s,
         up_radps=auto.up_rpm * RADPS_PER_RPM,
@@ -305,10 +329,13 @@ def _gears(box: GearboxProfile, auto: AutomaticProfile, engine: EngineProfile, r
         down_per_throttle_radps=(auto.down_full_rpm - auto.down_rpm) * RADPS_PER_RPM,
         launch_from_radps=auto.launch_from_rpm * RADPS_PER_RPM,
         launch_to_radps=auto.launch_to_rpm * RADPS_PER_RPM,
+        per_launch_s=1.0 / ((auto.launch_to_rpm - auto.launch_from_rpm) * RADPS_PER_RPM),
         lock_from_radps=auto.lock_from_rpm * RADPS_PER_RPM,
         lock_to_radps=auto.lock_to_rpm * RADPS_PER_RPM,
+        per_lock_s=1.0 / ((auto.lock_to_rpm - auto.lock_from_rpm) * RADPS_PER_RPM),
         clutch_opening_per_s=1.0 / auto.clutch_opening_s,
         clutch_closing_per_s=1.0 / auto.clutch_closing_s,
+        traction_n=_held_n(driven),
         rear_driven=1.0 if box.driven == "rear" else 0.0,
         lock_nm=0.5 * box.lock_nm,
         lock_share=0.5 * box.lock_share,

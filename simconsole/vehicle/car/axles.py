@@ -61,7 +61,37 @@ def kept_share(axle: AxleParameters, wheel: Wheel, step_s: float) -> float:
 
 
 @kernel
-def contact(
+def straight(
+    axle: AxleParameters,
+    friction: float,
+    wheel: Wheel,
+    vx_mps: float,
+    vy_mps: float,
+    camber_rad: float,
+    side: float,
+    step_s: float,
+) -> Contact:
+    """Return one tyre one step later, its wheel pointing ahead, its contact patch moving with (vx, vy)."""
+    load = wheel_load(axle, wheel)
+    share = kept_share(axle, wheel, step_s) if wheel.radps == 0.0 else 1.0
+    t = tyre(
+        axle,
+        friction,
+        load,
+        vx_mps - wheel.radps * axle.radius_m,
+        vy_mps,
+        wheel.radps,
+        share * wheel.deflection_x_m,
+        share * wheel.deflection_y_m,
+        camber_rad,
+        side,
+        step_s,
+    )
+    return Contact(t, load, vx_mps, t.force_x_n, t.force_y_n)
+
+
+@kernel
+def steered(
     axle: AxleParameters,
     friction: float,
     wheel: Wheel,
@@ -74,28 +104,15 @@ def contact(
     side: float,
     step_s: float,
 ) -> Contact:
-    """Return one tyre one step later, its wheel pointing along (c, s), its contact patch moving with (vx, vy)."""
-    load = wheel_load(axle, wheel)
+    """Return the same of a wheel that points along (c, s) and has just turned by `turned_rad`."""
     # The contact patch stays on the ground while the wheel turns about it: its deflection turns back in the wheel.
-    share = kept_share(axle, wheel, step_s) if wheel.radps == 0.0 else 1.0
-    kept_x = share * (wheel.deflection_x_m + turned_rad * wheel.deflection_y_m)
-    kept_y = share * wheel.deflection_y_m - turned_rad * kept_x
+    x = wheel.deflection_x_m + turned_rad * wheel.deflection_y_m
+    y = wheel.deflection_y_m - turned_rad * x
+    seen = Wheel(wheel.radps, x, y, wheel.lift_m, wheel.lift_mps, wheel.brake_share)
     along = vx_mps * c + vy_mps * s
-    t = tyre(
-        axle,
-        friction,
-        load,
-        along - wheel.radps * axle.radius_m,
-        vy_mps * c - vx_mps * s,
-        wheel.radps,
-        kept_x,
-        kept_y,
-        camber_rad,
-        side,
-        step_s,
-    )
-    force_x = t.force_x_n * c - t.force_y_n * s
-    return Contact(t, load, along, force_x, t.force_x_n * s + t.force_y_n * c)
+    on = straight(axle, friction, seen, along, vy_mps * c - vx_mps * s, camber_rad, side, step_s)
+    force_x = on.force_x_n * c - on.force_y_n * s
+    return Contact(on.tyre, on.load_n, on.ground_mps, force_x, on.force_x_n * s + on.force_y_n * c)
 
 
 @kernel
@@ -140,14 +157,14 @@ def push(car: Car, p: CarParameters, grips: Grips, points: Heading, turned_rad: 
     side = front.half_track_m * body.yaw_rate_radps
     lean = camber(front, body, car.fl, car.fr)
     mu = front.friction_left * grips.fl
-    fl = contact(front, mu, car.fl, vx - side, vy, points.left_cos, points.left_sin, turned_rad, lean, 1.0, step_s)
+    fl = steered(front, mu, car.fl, vx - side, vy, points.left_cos, points.left_sin, turned_rad, lean, 1.0, step_s)
     mu = front.friction_right * grips.fr
-    fr = contact(front, mu, car.fr, vx + side, vy, points.right_cos, points.right_sin, turned_rad, lean, -1.0, step_s)
+    fr = steered(front, mu, car.fr, vx + side, vy, points.right_cos, points.right_sin, turned_rad, lean, -1.0, step_s)
     vy = side_speed(rear, body, car.rl, car.rr)
     side = rear.half_track_m * body.yaw_rate_radps
     lean = camber(rear, body, car.rl, car.rr)
-    rl = contact(rear, rear.friction_left * grips.rl, car.rl, vx - side, vy, 1.0, 0.0, 0.0, lean, 1.0, step_s)
-    rr = contact(rear, rear.friction_right * grips.rr, car.rr, vx + side, vy, 1.0, 0.0, 0.0, lean, -1.0, step_s)
+    rl = straight(rear, rear.friction_left * grips.rl, car.rl, vx - side, vy, lean, 1.0, step_s)
+    rr = straight(rear, rear.friction_right * grips.rr, car.rr, vx + side, vy, lean, -1.0, step_s)
     front_y = fl.force_y_n + fr.force_y_n
     rear_y = rl.force_y_n + rr.force_y_n
     steering = p.steering

@@ -51,8 +51,8 @@ def move_axle(
     """Return the wheels' vertical motion one step later. The links load them with the side force directly."""
     left_n = strut(axle, struts.left_m, struts.left_mps, struts.right_m)
     right_n = strut(axle, struts.right_m, struts.right_mps, struts.left_m)
-    lifted = (on_left.force_y_n + on_right.force_y_n) * (axle.link_arm_m * (0.5 / axle.half_track_m))
-    share = step_s / axle.wheel_mass_kg
+    lifted = (on_left.force_y_n + on_right.force_y_n) * (axle.link_arm_m * axle.roll_per_lift_radpm)
+    share = step_s * axle.per_wheel_mass_pkg
     left_mps = left.lift_mps + share * (on_left.load_n - axle.static_n - left_n + lifted)
     right_mps = right.lift_mps + share * (on_right.load_n - axle.static_n - right_n - lifted)
     left_m = clip(left.lift_m + step_s * left_mps, -MOST_LIFT_M, MOST_LIFT_M)
@@ -82,7 +82,7 @@ def move(car: Car, p: CarParameters, axles: Axles, step_s: float) -> Motion:
     speed = sqrt(into_x * into_x + into_y * into_y)
     air = body.drag_nsspmm * speed
     gravity = body.gravity_plane_mps2
-    per_kg = 1.0 / body.mass_kg
+    per_kg = body.per_mass_pkg
     ax = (axles.force_x_n - air * into_x) * per_kg - gravity * (body.slope_x * c + body.slope_y * s)
     side_n = axles.front_y_n + axles.rear_y_n
     beside = body.side_nsspmm * speed
@@ -93,17 +93,19 @@ def move(car: Car, p: CarParameters, axles: Axles, step_s: float) -> Motion:
     # Both act at the middle of the wheelbase. Oblique air turns a slender body broadside on (Munk, NACA TR 184).
     weathering = body.yaw_nsspm * into_x + beside * (0.5 * (body.cg_to_front_m - body.cg_to_rear_m))
     turning = axles.moment_nm + axles.aligning_nm - weathering * into_y
-    yaw_rate = before.yaw_rate_radps + turning * (step_s / body.yaw_inertia_kgm2)
+    yaw_rate = before.yaw_rate_radps + turning * (step_s * body.per_yaw_inertia_pkgm2)
     front_lift = body.front_lift_nsspmm * into_x * into_x
     rear_lift = body.rear_lift_nsspmm * into_x * into_x
-    heave_mps = before.heave_mps + (front.force_n + rear.force_n + front_lift + rear_lift) * (step_s / body.sprung_kg)
+    lifting = front.force_n + rear.force_n + front_lift + rear_lift
+    heave_mps = before.heave_mps + lifting * (step_s * body.per_sprung_pkg)
     rolling = (
         p.front.roll_arm_m * axles.front_y_n + p.rear.roll_arm_m * axles.rear_y_n + body.sway_npm * before.roll_rad
     )
-    roll_radps = before.roll_radps + (front.moment_nm + rear.moment_nm + rolling) * (step_s / body.roll_inertia_kgm2)
+    rolling += front.moment_nm + rear.moment_nm
+    roll_radps = before.roll_radps + rolling * (step_s * body.per_roll_inertia_pkgm2)
     pitching = p.front.ahead_m * (front.force_n + front_lift) + p.rear.ahead_m * (rear.force_n + rear_lift)
     pitching += body.cg_height_m * axles.force_x_n
-    pitch_radps = before.pitch_radps - pitching * (step_s / body.pitch_inertia_kgm2)
+    pitch_radps = before.pitch_radps - pitching * (step_s * body.per_pitch_inertia_pkgm2)
     # base_link lies on the ground: it does not go along when the body rocks above standing tyres.
     on_ground_x = vx - body.cg_height_m * pitch_radps
     rocking = p.rear.roll_arm_m * roll_radps + p.rear.link_arm_m * axle_roll(p.rear, rear.left_mps, rear.right_mps)

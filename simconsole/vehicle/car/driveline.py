@@ -9,7 +9,7 @@ from simconsole.vehicle.car.axles import Axles, Contact
 from simconsole.vehicle.car.engine import EngineDrive, engine_drive
 from simconsole.vehicle.car.gearbox import bite, gear_ratio, matched_throttle, work_gearbox
 from simconsole.vehicle.car.parameters import AxleParameters, CarParameters
-from simconsole.vehicle.car.powertrain import Capacity, Shafts, braked, solve_shafts
+from simconsole.vehicle.car.powertrain import Capacity, Inertia, Shafts, braked, solve_shafts
 from simconsole.vehicle.car.state import AidState, Car, Gearbox, ShaftState, Wheel
 
 ANTI_STALL_FROM: Final = 0.6
@@ -38,14 +38,14 @@ def clutch_torque(engine_radps: float, car: CarParameters, box: Gearbox) -> floa
     torque = bite(car.gears, box.clutch) * car.gears.clutch_nm
     if box.lever_adopted != 0.0:
         return torque
-    turning = engine_radps * (1.0 / car.engine.idle_radps)
+    turning = engine_radps * car.engine.per_idle_s
     return torque * clip((turning - ANTI_STALL_FROM) * (1.0 / (ANTI_STALL_TO - ANTI_STALL_FROM)), 0.0, 1.0)
 
 
 @kernel
 def spun(axle: AxleParameters, wheel: Wheel, on_ground: Contact, step_s: float) -> float:
     """Return the spin of a wheel after its tyre's force, before its brake."""
-    return wheel.radps - on_ground.tyre.force_x_n * (step_s * axle.radius_m / axle.wheel_inertia_kgm2)
+    return wheel.radps - on_ground.tyre.force_x_n * (step_s * axle.spin_per_push_radpns)
 
 
 @kernel
@@ -92,13 +92,13 @@ def turn(car: Car, p: CarParameters, request: Request, axles: Axles, step_s: flo
     if at_rear:
         rl = shafts.left_radps
         rr = shafts.right_radps
-        fl = braked(fl, p.front.wheel_inertia_kgm2, fl_nms)
-        fr = braked(fr, p.front.wheel_inertia_kgm2, fr_nms)
+        fl = braked(fl, p.front.per_wheel_inertia_pkgm2, fl_nms)
+        fr = braked(fr, p.front.per_wheel_inertia_pkgm2, fr_nms)
     else:
         fl = shafts.left_radps
         fr = shafts.right_radps
-        rl = braked(rl, p.rear.wheel_inertia_kgm2, rl_nms)
-        rr = braked(rr, p.rear.wheel_inertia_kgm2, rr_nms)
+        rl = braked(rl, p.rear.per_wheel_inertia_pkgm2, rl_nms)
+        rr = braked(rr, p.rear.per_wheel_inertia_pkgm2, rr_nms)
     kept = ShaftState(
         shafts.engine_radps,
         drive.running,
@@ -124,9 +124,9 @@ def turn_driven(
 ) -> Shafts:
     """Return engine and driven wheels one step later."""
     s = car.shafts
-    inertia = p.rear.wheel_inertia_kgm2 if p.gears.rear_driven != 0.0 else p.front.wheel_inertia_kgm2
+    driven = p.rear if p.gears.rear_driven != 0.0 else p.front
     speeds = Shafts(
-        s.engine_radps + drive.torque_nm * (step_s / p.engine.inertia_kgm2),
+        s.engine_radps + drive.torque_nm * (step_s * p.engine.per_inertia_pkgm2),
         left_radps,
         right_radps,
         s.engine_impulse_nms,
@@ -135,4 +135,6 @@ def turn_driven(
         s.right_impulse_nms,
         s.lock_impulse_nms,
     )
-    return solve_shafts(speeds, ratio, p.engine.inertia_kgm2, inertia, most)
+    flywheel = Inertia(p.engine.inertia_kgm2, p.engine.per_inertia_pkgm2)
+    wheel = Inertia(driven.wheel_inertia_kgm2, driven.per_wheel_inertia_pkgm2)
+    return solve_shafts(speeds, ratio, flywheel, wheel, most)

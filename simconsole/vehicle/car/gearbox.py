@@ -45,7 +45,7 @@ def gear_ratio(p: GearParameters, gear: float) -> float:
 @kernel
 def bite(p: GearParameters, clutch: float) -> float:
     """Return the share of its torque that the clutch can transmit at a pedal position."""
-    share = clip((p.bite_open - clutch) * (1.0 / (p.bite_open - p.bite_closed)), 0.0, 1.0)
+    share = clip((p.bite_open - clutch) * p.per_bite, 0.0, 1.0)
     return share * share
 
 
@@ -80,7 +80,7 @@ def gear_for(p: GearParameters, box: Gearbox, direction: float, throttle: float,
         return -1.0 if vx_mps < ROLLING_MPS else 0.0
     if vx_mps < -ROLLING_MPS:
         return 0.0
-    wheel = vx_mps / p.wheel_radius_m
+    wheel = vx_mps * p.per_wheel_radius_pm
     up = p.up_radps + p.up_per_throttle_radps * throttle
     if box.gear < 1.0:
         gear = 1.0
@@ -108,9 +108,9 @@ def automatic_clutch(p: GearParameters, box: Gearbox, engine_radps: float, wheel
     """
     closed = 0.0
     if box.shift_left_s <= 0.0 and box.gear != 0.0:
-        launch = (engine_radps - p.launch_from_radps) * (1.0 / (p.launch_to_radps - p.launch_from_radps))
+        launch = (engine_radps - p.launch_from_radps) * p.per_launch_s
         speed = gear_ratio(p, box.gear) * wheel_radps
-        lock = (speed - p.lock_from_radps) * (1.0 / (p.lock_to_radps - p.lock_from_radps))
+        lock = (speed - p.lock_from_radps) * p.per_lock_s
         closed = clip(launch if launch > lock else lock, 0.0, 1.0)
     target = p.bite_open - closed * (p.bite_open - p.bite_closed)
     if closed == 1.0:

@@ -30,6 +30,14 @@ def grip_at(p: CarParameters, x_m: float, y_m: float) -> float:
 @kernel
 def grips_of(car: Car, p: CarParameters) -> Grips:
     """Return the share of the ground's friction under each wheel."""
+    if p.patch_1.from_x_m <= p.patch_1.to_x_m:
+        return found_grips(car, p)
+    return Grips(1.0, 1.0, 1.0, 1.0)
+
+
+@kernel
+def found_grips(car: Car, p: CarParameters) -> Grips:
+    """Return the same where there is a patch at all."""
     body = car.body
     ahead = direction(body.yaw_rad)
     rear = p.rear.half_track_m

@@ -9,11 +9,20 @@ from simconsole.trigonometry import atan, direction
 from simconsole.vehicle.car.axles import along_speed, side_speed
 from simconsole.vehicle.car.engine import above_idle, engine_friction, full_torque
 from simconsole.vehicle.car.gearbox import bite, gear_ratio
-from simconsole.vehicle.car.parameters import CarParameters
+from simconsole.vehicle.car.parameters import BodyParameters, CarParameters
 from simconsole.vehicle.car.state import Car
 
 SMOOTH_MPS: Final = 0.3
 """Speed over which rolling resistance changes its direction in the forecasts (not in the car)."""
+
+
+class Lie(NamedTuple):
+    """How the ground's plane and the wind lie to the car."""
+
+    slope_along: float
+    wind_mps: float  # along the car
+    up_rad: float  # of the ground ahead
+    left_up_rad: float
 
 
 class Pedals(NamedTuple):
@@ -25,7 +34,19 @@ class Pedals(NamedTuple):
 
 
 @kernel
-def pedals(car: Car, p: CarParameters, automatic: float) -> Pedals:
+def lie_of(body: BodyParameters, yaw_rad: float) -> Lie:
+    """Return how they lie to a car that points to `yaw_rad`."""
+    ahead = direction(yaw_rad)
+    c = ahead.cos
+    s = ahead.sin
+    along = body.slope_x * c + body.slope_y * s
+    wind_mps = body.wind_x_mps * c + body.wind_y_mps * s
+    aside = body.slope_y * c - body.slope_x * s
+    return Lie(along, wind_mps, atan(along / sqrt(1.0 + aside * aside)), atan(aside))
+
+
+@kernel
+def pedals(car: Car, p: CarParameters, lie: Lie, automatic: float) -> Pedals:
     """Return what released pedals, full throttle and full brake would give now.
 
     Steady balance of forces in the gear in force, along the body (in reverse gear throttle is negative, brake
@@ -33,37 +54,28 @@ def pedals(car: Car, p: CarParameters, automatic: float) -> Pedals:
     automatic the clutch counts as the automatic would have it, also during a shift.
     """
     body = p.body
-    at_rear = p.gears.rear_driven != 0.0
-    axle = p.rear if at_rear else p.front
+    gears = p.gears
     gear = car.box.wanted_gear if automatic != 0.0 else car.box.gear
     way = -1.0 if gear < 0.0 else 1.0
-    radius = axle.radius_m
     speed = way * along_speed(car.body, body.cg_height_m)
-    ratio = way * gear_ratio(p.gears, gear)
-    grip = 1.0 if automatic != 0.0 else bite(p.gears, car.box.clutch)
-    held = grip * p.gears.clutch_nm
-    shaft = ratio * speed / radius
+    leverage = way * gear_ratio(gears, gear) * gears.per_wheel_radius_pm
+    grip = 1.0 if automatic != 0.0 else bite(gears, car.box.clutch)
+    held = grip * gears.clutch_nm
+    shaft = leverage * speed
     driven = above_idle(p.engine, shaft)
-    launch = shaft if shaft > p.gears.launch_to_radps else p.gears.launch_to_radps
+    launch = shaft if shaft > gears.launch_to_radps else gears.launch_to_radps
     burned = full_torque(p.engine, launch) if car.shafts.engine_running != 0.0 else 0.0
-    push = clip(burned, -held, held) * ratio / radius
-    drag = clip(engine_friction(p.engine, shaft) * driven, 0.0, held) * ratio / radius
-    wheels = 2.0 * (p.front.wheel_inertia_kgm2 + p.rear.wheel_inertia_kgm2)
-    mass = body.mass_kg + (wheels + driven * grip * p.engine.inertia_kgm2 * ratio * ratio) / (radius * radius)
+    push = clip(burned, -held, held) * leverage
+    drag = clip(engine_friction(p.engine, shaft) * driven, 0.0, held) * leverage
+    per_mass = 1.0 / (body.moving_kg + driven * grip * p.engine.inertia_kgm2 * leverage * leverage)
     load = body.mass_kg * body.gravity_plane_mps2
-    ahead = direction(car.body.yaw_rad)
-    slope = body.slope_x * ahead.cos + body.slope_y * ahead.sin
-    air = speed - way * (body.wind_x_mps * ahead.cos + body.wind_y_mps * ahead.sin)
+    air = speed - way * lie.wind_mps
     rolling = p.rear.rolling_resistance * load * speed / (abs(speed) + SMOOTH_MPS)
-    outside = -way * slope * load - rolling - body.drag_nsspmm * air * abs(air)
-    traction = axle.static_n * (axle.friction_left + axle.friction_right)
-    grips = p.front.static_n * (p.front.friction_left + p.front.friction_right)
-    grips += p.rear.static_n * (p.rear.friction_left + p.rear.friction_right)
-    stop = clip(2.0 * (p.front.brake_nm + p.rear.brake_nm) / radius, 0.0, grips)
+    outside = -way * lie.slope_along * load - rolling - body.drag_nsspmm * air * abs(air)
     return Pedals(
-        way * (outside - drag) / mass,
-        way * (outside + clip(push, -traction, traction)) / mass,
-        way * (outside - drag - stop) / mass,
+        way * (outside - drag) * per_mass,
+        way * (outside + clip(push, -gears.traction_n, gears.traction_n)) * per_mass,
+        way * (outside - drag - body.full_brake_n) * per_mass,
     )
 
 
@@ -75,22 +87,19 @@ def vehicle_state(car: Car, p: CarParameters, automatic: float) -> VehicleState:
     """
     body = p.body
     now = car.body
-    ahead = direction(now.yaw_rad)
-    c = ahead.cos
-    d = ahead.sin
-    forecast = pedals(car, p, automatic)
-    ahead_slope = body.slope_x * c + body.slope_y * d
-    side_slope = body.slope_y * c - body.slope_x * d
-    tilt = sqrt(1.0 + side_slope * side_slope)
+    # Level and calm is what most fleets drive on.
+    lie = Lie(0.0, 0.0, 0.0, 0.0)
+    if body.slope_x != 0.0 or body.slope_y != 0.0 or body.wind_x_mps != 0.0 or body.wind_y_mps != 0.0:
+        lie = lie_of(body, now.yaw_rad)
+    forecast = pedals(car, p, lie, automatic)
     return VehicleState(
         now.x_m,
         now.y_m,
-        # x and y lie in the plane: one metre of it rises by the slope's sine.
-        (body.slope_x * now.x_m + body.slope_y * now.y_m) / sqrt(tilt * tilt + ahead_slope * ahead_slope),
+        body.rise_x * now.x_m + body.rise_y * now.y_m,
         now.yaw_rad,
         # ISO 8855: pitch is positive nose down, roll is positive left side up.
-        -atan(ahead_slope / tilt) + now.pitch_rad,
-        atan(side_slope) + now.roll_rad,
+        now.pitch_rad - lie.up_rad,
+        now.roll_rad + lie.left_up_rad,
         along_speed(now, body.cg_height_m),
         side_speed(p.rear, now, car.rl, car.rr),
         now.yaw_rate_radps,

@@ -1,4 +1,7 @@
-"""What stays constant over a drive, in SI, ready for the kernels; `assembly.py` computes it from the profile."""
+"""What stays constant over a drive, in SI, ready for the kernels; `assembly.py` computes it from the profile.
+
+Whatever the kernels divide by is here as its reciprocal, `per_...`: a division costs them as much as ten products.
+"""
 
 from typing import Final, NamedTuple
 
@@ -8,10 +11,14 @@ class AxleParameters(NamedTuple):
 
     ahead_m: float  # of the centre of gravity, negative: behind
     half_track_m: float
+    roll_per_lift_radpm: float  # of the axle, per difference of its wheels' lifts
     wheel_inertia_kgm2: float
-    wheel_mass_kg: float
+    per_wheel_inertia_pkgm2: float
+    spin_per_push_radpns: float  # by which a force at the ground changes a wheel's speed: radius over inertia
+    per_wheel_mass_pkg: float
     radius_m: float
     static_n: float  # load of one wheel at rest on this ground
+    per_static_pn: float
     stiffness_x_per_m: float  # slip stiffness / relaxation length
     stiffness_y_per_m: float
     decay_x_per_m: float  # 1 / relaxation length
@@ -44,17 +51,19 @@ class EngineParameters(NamedTuple):
     """The engine. Full-throttle torque is a sum of ramps: one slope from each speed upwards."""
 
     inertia_kgm2: float
+    per_inertia_pkgm2: float
     drag_nm: float
     drag_nms: float
     hold_nm: float
     idle_radps: float
+    per_idle_s: float
     idle_gain_nms: float
     idle_max_nm: float
     stall_radps: float
     fire_radps: float
     starter_nm: float
     limit_radps: float
-    limit_band_radps: float
+    per_limit_band_s: float
     ramp_1_radps: float
     ramp_1_nms: float
     ramp_2_radps: float
@@ -79,6 +88,7 @@ class GearParameters(NamedTuple):
     clutch_nm: float
     bite_closed: float  # pedal position below which the clutch transmits everything
     bite_open: float  # pedal position above which it transmits nothing
+    per_bite: float  # 1 / the way between them
     ratio_reverse: float  # negative
     ratio_1: float
     ratio_2: float
@@ -90,7 +100,7 @@ class GearParameters(NamedTuple):
     gears: float
     synchro_radps: float
     limit_radps: float
-    wheel_radius_m: float
+    per_wheel_radius_pm: float
     shift_s: float
     shift_pause_s: float
     up_radps: float
@@ -99,10 +109,13 @@ class GearParameters(NamedTuple):
     down_per_throttle_radps: float
     launch_from_radps: float  # engine speed at which the automatic clutch begins to bite
     launch_to_radps: float
+    per_launch_s: float
     lock_from_radps: float  # gearbox speed at which it begins to close
     lock_to_radps: float
+    per_lock_s: float
     clutch_opening_per_s: float
     clutch_closing_per_s: float
+    traction_n: float  # what the ground holds under the driven wheels
     rear_driven: float  # 1: the rear wheels, 0: the front wheels
     lock_nm: float  # torque that the differential always keeps between its wheels
     lock_share: float  # and its share of the driving torque
@@ -112,10 +125,12 @@ class BodyParameters(NamedTuple):
     """Body, aerodynamics and the plane of the ground."""
 
     mass_kg: float
-    sprung_kg: float
-    roll_inertia_kgm2: float
-    pitch_inertia_kgm2: float
-    yaw_inertia_kgm2: float
+    per_mass_pkg: float
+    moving_kg: float  # with what the spin of the wheels adds
+    per_sprung_pkg: float
+    per_roll_inertia_pkgm2: float
+    per_pitch_inertia_pkgm2: float
+    per_yaw_inertia_pkgm2: float
     cg_to_front_m: float
     cg_to_rear_m: float
     cg_height_m: float
@@ -127,6 +142,9 @@ class BodyParameters(NamedTuple):
     sway_npm: float  # sprung weight times the mean roll arm, per rad: rolling lets the body down
     slope_x: float
     slope_y: float
+    full_brake_n: float  # of all four wheels, at most what the ground holds
+    rise_x: float  # of the plane, per metre along it: x and y lie in it
+    rise_y: float
     gravity_plane_mps2: float  # gravity / sqrt(1 + slope^2): times slope along, times 1 normal to the plane
     wind_x_mps: float  # where the air moves to, in map
     wind_y_mps: float
@@ -135,18 +153,19 @@ class BodyParameters(NamedTuple):
 class SteeringParameters(NamedTuple):
     """Hand wheel to road wheels and back."""
 
-    natural_radps: float  # of the rack, critically damped
+    rack_pull_radps: float  # stiffness of the critically damped rack over its inertia, times the step
+    rack_ease: float  # what an implicit step leaves of its rate
     rate_radps: float
     max_road_wheel_rad: float
     friction_rad: float  # deviation that friction holds
     compliance_radpnm: float  # by which the tyres' moment turns the wheels
     ackermann: float  # share of the ideal times half of track over wheelbase
     pneumatic_trail_m: float
-    trail_end: float  # demand at which the pneumatic trail is gone
+    per_trail_end: float  # 1 / demand at which the pneumatic trail is gone
     caster_trail_m: float
     hand_torque_gain: float  # share that the assistance leaves / ratio, standing
     hand_torque_gain_spm: float  # more of it per speed
-    hand_torque_most_nm: float  # towards which the assistance bends the torque
+    per_hand_torque_most_pnm: float  # 1 / torque towards which the assistance bends
     hand_damping_nms: float  # per road-wheel rate
     hand_friction_nm: float
 

@@ -7,9 +7,11 @@ last step's impulses (Catto, Iterative Dynamics with Temporal Coherence, GDC 200
 stand with no creep. Left and right are always treated alike, so that mirrored drives stay mirrored to the last bit.
 """
 
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from simconsole.kernels import approach, clip, kernel
+
+MOST_SWEEPS: Final = 4.0
 
 
 class Shafts(NamedTuple):
@@ -36,66 +38,104 @@ class Capacity(NamedTuple):
     lock_share: float
 
 
+class Inertia(NamedTuple):
+    """Of one shaft."""
+
+    kgm2: float
+    per_kgm2: float  # 1 / kgm2
+
+
 @kernel
-def solve_shafts(
-    before: Shafts, ratio: float, engine_inertia_kgm2: float, wheel_inertia_kgm2: float, most: Capacity
-) -> Shafts:
+def slowed(s: Shafts, flywheel: Inertia, wheel: Inertia, most: Capacity) -> Shafts:
+    """Return the shafts after the frictions that work against standing parts: in the engine, and both brakes."""
+    engine_nms = clip(s.engine_impulse_nms + s.engine_radps * flywheel.kgm2, -most.engine_nms, most.engine_nms)
+    left_nms = clip(s.left_impulse_nms + s.left_radps * wheel.kgm2, -most.left_nms, most.left_nms)
+    right_nms = clip(s.right_impulse_nms + s.right_radps * wheel.kgm2, -most.right_nms, most.right_nms)
+    return Shafts(
+        s.engine_radps - (engine_nms - s.engine_impulse_nms) * flywheel.per_kgm2,
+        s.left_radps - (left_nms - s.left_impulse_nms) * wheel.per_kgm2,
+        s.right_radps - (right_nms - s.right_impulse_nms) * wheel.per_kgm2,
+        engine_nms,
+        s.clutch_impulse_nms,
+        left_nms,
+        right_nms,
+        s.lock_impulse_nms,
+    )
+
+
+@kernel
+def coupled(s: Shafts, ratio: float, clutch_kgm2: float, flywheel: Inertia, wheel: Inertia, most: Capacity) -> Shafts:
+    """Return the shafts after the frictions between them: the clutch, then the lock, which leaves it as it is."""
+    half = 0.5 * ratio
+    slip = s.engine_radps - half * (s.left_radps + s.right_radps)
+    clutch_nms = clip(s.clutch_impulse_nms + slip * clutch_kgm2, -most.clutch_nms, most.clutch_nms)
+    more = clutch_nms - s.clutch_impulse_nms
+    left = s.left_radps + more * (half * wheel.per_kgm2)
+    right = s.right_radps + more * (half * wheel.per_kgm2)
+    lock_nms = s.lock_impulse_nms
+    bound = most.lock_nms + most.lock_share * abs(ratio * clutch_nms)
+    if bound > 0.0:
+        lock_nms = clip(lock_nms - (left - right) * (0.5 * wheel.kgm2), -bound, bound)
+        left = left + (lock_nms - s.lock_impulse_nms) * wheel.per_kgm2
+        right = right - (lock_nms - s.lock_impulse_nms) * wheel.per_kgm2
+    engine = s.engine_radps - more * flywheel.per_kgm2
+    return Shafts(
+        engine, left, right, s.engine_impulse_nms, clutch_nms, s.left_impulse_nms, s.right_impulse_nms, lock_nms
+    )
+
+
+@kernel
+def solve_shafts(before: Shafts, ratio: float, flywheel: Inertia, wheel: Inertia, most: Capacity) -> Shafts:
     """Apply the frictions to the speeds that all other torques have already changed.
 
     Args:
         before: speeds, and the impulses found in the last step: engine and brakes positive slow a positive speed,
             the clutch's positive drives the wheels, the lock's positive drives the left wheel.
         ratio: engine speed per mean wheel speed; 0 in neutral, where the clutch capacity must be 0.
-        engine_inertia_kgm2: engine and flywheel.
-        wheel_inertia_kgm2: one driven wheel.
+        flywheel: engine and flywheel.
+        wheel: one driven wheel.
         most: the capacities.
     """
-    # Divided once: the sweeps below wait for every result of the one before.
-    per_engine = 1.0 / engine_inertia_kgm2
-    per_wheel = 1.0 / wheel_inertia_kgm2
     half = 0.5 * ratio
-    half_per_wheel = half * per_wheel
-    half_inertia = 0.5 * wheel_inertia_kgm2
-    clutch_inertia = 1.0 / (per_engine + 2.0 * half * half * per_wheel)
+    clutch_kgm2 = 1.0 / (flywheel.per_kgm2 + 2.0 * half * half * wheel.per_kgm2)
     friction = clip(before.engine_impulse_nms, -most.engine_nms, most.engine_nms)
     clutch = clip(before.clutch_impulse_nms, -most.clutch_nms, most.clutch_nms)
     left_brake = clip(before.left_impulse_nms, -most.left_nms, most.left_nms)
     right_brake = clip(before.right_impulse_nms, -most.right_nms, most.right_nms)
     bound = most.lock_nms + most.lock_share * abs(ratio * clutch)
     lock = clip(before.lock_impulse_nms, -bound, bound)
-    engine = before.engine_radps - (friction + clutch) * per_engine
-    left = before.left_radps + (half * clutch - left_brake + lock) * per_wheel
-    right = before.right_radps + (half * clutch - right_brake - lock) * per_wheel
-    for _ in range(4):
-        new = clip(friction + engine * engine_inertia_kgm2, -most.engine_nms, most.engine_nms)
-        engine = engine - (new - friction) * per_engine
-        friction = new
-        new = clip(clutch + (engine - half * (left + right)) * clutch_inertia, -most.clutch_nms, most.clutch_nms)
-        engine = engine - (new - clutch) * per_engine
-        left = left + (new - clutch) * half_per_wheel
-        right = right + (new - clutch) * half_per_wheel
-        clutch = new
-        bound = most.lock_nms + most.lock_share * abs(ratio * clutch)
-        if bound > 0.0:
-            new = clip(lock - (left - right) * half_inertia, -bound, bound)
-            left = left + (new - lock) * per_wheel
-            right = right - (new - lock) * per_wheel
-            lock = new
-        new = clip(left_brake + left * wheel_inertia_kgm2, -most.left_nms, most.left_nms)
-        left = left - (new - left_brake) * per_wheel
-        left_brake = new
-        new = clip(right_brake + right * wheel_inertia_kgm2, -most.right_nms, most.right_nms)
-        right = right - (new - right_brake) * per_wheel
-        right_brake = new
+    engine = before.engine_radps - (friction + clutch) * flywheel.per_kgm2
+    left = before.left_radps + (half * clutch - left_brake + lock) * wheel.per_kgm2
+    right = before.right_radps + (half * clutch - right_brake - lock) * wheel.per_kgm2
+    start = Shafts(engine, left, right, friction, clutch, left_brake, right_brake, lock)
+    # Clutch and lock do not change what the other has found. While everything turns, engine friction and brakes are at
+    # their bounds: then they find after the first sweep that nothing has changed, and it is the solution.
+    shafts = slowed(start, flywheel, wheel, most)
+    sweeps = 0.0
+    moved = True
+    while moved and sweeps < MOST_SWEEPS:
+        now = slowed(coupled(shafts, ratio, clutch_kgm2, flywheel, wheel, most), flywheel, wheel, most)
+        moved = (
+            now.engine_impulse_nms != shafts.engine_impulse_nms
+            or now.left_impulse_nms != shafts.left_impulse_nms
+            or now.right_impulse_nms != shafts.right_impulse_nms
+        )
+        shafts = now
+        sweeps += 1.0
     # The brake holds: what rounding left is not motion, and the tyre asks whether its wheel is held.
-    if abs(left_brake) < most.left_nms:
-        left = 0.0
-    if abs(right_brake) < most.right_nms:
-        right = 0.0
-    return Shafts(engine, left, right, friction, clutch, left_brake, right_brake, lock)
+    return Shafts(
+        shafts.engine_radps,
+        0.0 if abs(shafts.left_impulse_nms) < most.left_nms else shafts.left_radps,
+        0.0 if abs(shafts.right_impulse_nms) < most.right_nms else shafts.right_radps,
+        shafts.engine_impulse_nms,
+        shafts.clutch_impulse_nms,
+        shafts.left_impulse_nms,
+        shafts.right_impulse_nms,
+        shafts.lock_impulse_nms,
+    )
 
 
 @kernel
-def braked(wheel_radps: float, inertia_kgm2: float, capacity_nms: float) -> float:
+def braked(wheel_radps: float, per_inertia_pkgm2: float, capacity_nms: float) -> float:
     """Return the speed of a free-running wheel after its brake: at most to exactly 0."""
-    return approach(wheel_radps, 0.0, capacity_nms * (1.0 / inertia_kgm2))
+    return approach(wheel_radps, 0.0, capacity_nms * per_inertia_pkgm2)

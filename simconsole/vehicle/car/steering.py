@@ -24,17 +24,16 @@ class Heading(NamedTuple):
 
 
 @kernel
-def steer(p: SteeringParameters, rack: SteeringState, command_rad: float, moment_nm: float, step_s: float) -> float:
+def steer(p: SteeringParameters, rack: SteeringState, command_rad: float, moment_nm: float) -> float:
     """Return the rate of the rack in road-wheel rad/s after one step.
 
     A critically damped second-order rack (implicit, stable at any stiffness) whose dry friction holds it exactly
     where it is as long as the deviation is below `friction_rad`. The tyres' moment turns it through its compliance.
     """
     target = clip(command_rad + p.compliance_radpnm * moment_nm, -p.max_road_wheel_rad, p.max_road_wheel_rad)
-    pull = step_s * p.natural_radps * p.natural_radps
-    ease = 1.0 / (1.0 + 2.0 * step_s * p.natural_radps + step_s * pull)
-    rate = (rack.road_wheel_radps + pull * (target - rack.road_wheel_rad)) * ease
-    return clip(approach(rate, 0.0, pull * p.friction_rad * ease), -p.rate_radps, p.rate_radps)
+    rate = (rack.road_wheel_radps + p.rack_pull_radps * (target - rack.road_wheel_rad)) * p.rack_ease
+    held = p.rack_pull_radps * p.friction_rad * p.rack_ease
+    return clip(approach(rate, 0.0, held), -p.rate_radps, p.rate_radps)
 
 
 @kernel
@@ -57,7 +56,7 @@ def aligning_moment(p: SteeringParameters, force_y_n: float, demand: float, roll
     The pneumatic trail shrinks as the contact patch slides, which is what a driver feels before the front axle lets
     go, and lies on the other side when reversing.
     """
-    pneumatic = p.pneumatic_trail_m * clip(1.0 - demand * (1.0 / p.trail_end), 0.0, 1.0)
+    pneumatic = p.pneumatic_trail_m * clip(1.0 - demand * p.per_trail_end, 0.0, 1.0)
     return -force_y_n * (p.caster_trail_m + pneumatic * rolling_mps / (abs(rolling_mps) + ROLLING_MPS))
 
 
@@ -65,6 +64,6 @@ def aligning_moment(p: SteeringParameters, force_y_n: float, demand: float, roll
 def hand_wheel_torque(p: SteeringParameters, moment_nm: float, road_wheel_radps: float, speed_mps: float) -> float:
     """Return the torque at the rim in N m, left-positive: the assistance leaves less of it the more there is."""
     carried = (p.hand_torque_gain + p.hand_torque_gain_spm * clip(abs(speed_mps), 0.0, 50.0)) * moment_nm
-    bent = carried / (1.0 + abs(carried) * (1.0 / p.hand_torque_most_nm))
+    bent = carried / (1.0 + abs(carried) * p.per_hand_torque_most_pnm)
     dry = p.hand_friction_nm * road_wheel_radps / (abs(road_wheel_radps) + SLOW_RADPS)
     return bent - p.hand_damping_nms * road_wheel_radps - dry

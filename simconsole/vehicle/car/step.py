@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from simconsole.kernels import Row, clip, is_finite, kernel, put, take
+from simconsole.kernels import Row, clip, forget, is_finite, kernel, put, take
 from simconsole.rows import COMMAND_AT, COMMAND_WIDTH, PLATFORM_AT, VEHICLE_AT
 from simconsole.signals import Request, VehicleCommand
 from simconsole.trigonometry import nearest
@@ -73,7 +73,8 @@ AID_STATE_AT: Final = BOX_AT + BOX_WIDTH
 
 @kernel
 def load_parameters(parameters: Row) -> CarParameters:
-    """Return the groups of the parameter row."""
+    """Return the groups of the parameter row, read anew."""
+    forget()
     return CarParameters(
         BodyParameters(*take(parameters, BODY_AT, BODY_WIDTH)),
         SteeringParameters(*take(parameters, STEERING_AT, STEERING_WIDTH)),
@@ -123,9 +124,8 @@ def store_car(row: Row, car: Car) -> None:
 def step(previous: Row, row: Row, parameters: Row, substeps: int) -> None:
     """Advance the car by one tick: the platform interface of vehicle/platform.py."""
     command = VehicleCommand(*take(row, COMMAND_AT, COMMAND_WIDTH))
-    p = with_aids(load_parameters(parameters), command)
     car = load_car(previous)
-    grips = grips_of(car, p)
+    grips = grips_of(car, load_parameters(parameters))
     request = Request(
         command.road_wheel_rad if is_finite(command.road_wheel_rad) else car.steering.road_wheel_rad,
         pedal(command.throttle),
@@ -138,9 +138,9 @@ def step(previous: Row, row: Row, parameters: Row, substeps: int) -> None:
         command.hazard_lights,
     )
     for _ in range(substeps):
-        car = substep(car, p, grips, request)
+        car = substep(car, parameters, grips, request, command)
     store_car(row, car)
-    put(row, VEHICLE_AT, vehicle_state(car, p, command.automatic))
+    put(row, VEHICLE_AT, vehicle_state(car, load_parameters(parameters), command.automatic))
 
 
 @kernel
@@ -177,17 +177,18 @@ def with_aids(p: CarParameters, command: VehicleCommand) -> CarParameters:
 
 
 @kernel
-def substep(car: Car, p: CarParameters, grips: Grips, request: Request) -> Car:
+def substep(car: Car, parameters: Row, grips: Grips, request: Request, command: VehicleCommand) -> Car:
     """Advance the car by 1 ms: steer, push against the ground, turn the shafts, move."""
     rack = car.steering
+    p = load_parameters(parameters)
     # The rack works against the tyres of the last step: their moment is part of the rack's torque.
     mean_rad = rack.road_wheel_rad + STEP_S * rack.road_wheel_radps
     axles = push(car, p, grips, heading(p.steering, mean_rad), mean_rad - rack.road_wheel_rad, STEP_S)
     moved = SteeringState(mean_rad, rack.road_wheel_radps, rack.hand_wheel_torque_nm)
-    rate = steer(p.steering, moved, request.road_wheel_rad, axles.aligning_nm, STEP_S)
-    line = turn(car, p, request, axles, STEP_S)
-    motion = move(car, p, axles, STEP_S)
+    rate = steer(p.steering, moved, request.road_wheel_rad, axles.aligning_nm)
     torque = hand_wheel_torque(p.steering, axles.aligning_nm, rate, car.body.vx_mps)
+    line = turn(car, with_aids(load_parameters(parameters), command), request, axles, STEP_S)
+    motion = move(car, load_parameters(parameters), axles, STEP_S)
     front = motion.front
     rear = motion.rear
     brakes = line.brakes

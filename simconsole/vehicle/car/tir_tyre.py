@@ -94,7 +94,7 @@ def tir_tyre(
         held = clip(1.0 - demand / PEAK_DEMAND, 0.0, 1.0)
         damping = axle.damping_nspm * held * held
     touching = clip(load_n * (1.0 / LEAST_LOAD_N), 0.0, 1.0)
-    rate = damping * clip(load_n * (1.0 / axle.static_n), 0.0, 4.0) * (1.0 / step_s)
+    rate = damping * clip(load_n * axle.per_static_pn, 0.0, 4.0) * (1.0 / step_s)
     force_x = given.x_n * touching + rate * (x - deflection_x_m)
     force_y = turned * given.y_n * touching + rate * (y - deflection_y_m)
     force = sqrt(force_x * force_x + force_y * force_y)

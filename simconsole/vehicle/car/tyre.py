@@ -71,14 +71,17 @@ def tyre(
         lean += axle.camber_offset
     if camber_rad < 0.0:
         lean -= axle.camber_offset
-    x = (deflection_x_m - step_s * slip_x_mps) / (1.0 + rolled * axle.decay_x_per_m)
-    y = (deflection_y_m - step_s * slip_y_mps - rolled * lean) / (1.0 + rolled * axle.decay_y_per_m)
-    over = clip(load_n * (1.0 / axle.static_n), 0.0, 4.0) - 1.0
+    fade_x = 1.0 + rolled * axle.decay_x_per_m
+    fade_y = 1.0 + rolled * axle.decay_y_per_m
+    per_fade = 1.0 / (fade_x * fade_y)  # one division for both
+    x = (deflection_x_m - step_s * slip_x_mps) * (fade_y * per_fade)
+    y = (deflection_y_m - step_s * slip_y_mps - rolled * lean) * (fade_x * per_fade)
+    over = clip(load_n * axle.per_static_pn, 0.0, 4.0) - 1.0
     grip = friction * falling(axle.friction_fall, over)
     firm = falling(axle.stiffness_fall, over)
     stiffness_x = axle.stiffness_x_per_m * firm
     stiffness_y = axle.stiffness_y_per_m * firm
-    demand = sqrt(stiffness_x * x * (stiffness_x * x) + stiffness_y * y * (stiffness_y * y)) / grip
+    demand = sqrt(stiffness_x * x * (stiffness_x * x) + stiffness_y * y * (stiffness_y * y)) * (1.0 / grip)
     if demand > axle.slide_demand:
         share = axle.slide_demand / demand
         x = x * share
@@ -95,10 +98,10 @@ def tyre(
     rate = damping * (1.0 + over) * (1.0 / step_s)
     force_x = stiffness_x * x * elastic + rate * (x - deflection_x_m)
     force_y = stiffness_y * y * elastic + rate * (y - deflection_y_m)
-    force = sqrt(force_x * force_x + force_y * force_y)
+    square = force_x * force_x + force_y * force_y
     limit = grip * load_n
-    if force > limit:
-        share = limit / force
+    if square > limit * limit:
+        share = limit / sqrt(square)
         force_x = force_x * share
         force_y = force_y * share
     return Tyre(force_x, force_y, x, y, demand)
