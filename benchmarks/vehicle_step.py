@@ -7,9 +7,8 @@ All on one core, interleaved, medians of the rounds, in processor time. CommonRo
 source compiled by numba. They have 5 to 29 states, no engine, gears, aids or standstill; ours has all of its own
 switched on. The cars of the fleet differ in speed, steering and throttle.
 
-Both bars count the step as the product makes it at its fastest tick: a tick of 1 ms, with everything that a tick does
-besides the step (command, ground, what others see, forecast of the pedals). Longer ticks, and one call for a whole
-drive, are printed beside.
+Both bars count steps of the model alone, one car stepped in one compiled call: CommonRoad's step does nothing else.
+What a tick adds (command, ground, what others see, forecast of the pedals) is in the rows for ticks of 1 and 4 ms.
 """
 
 import argparse
@@ -160,13 +159,13 @@ def main() -> None:
     def ratio(slow: str, fast: str) -> float:
         return statistics.median(a / b for a, b in zip(costs[slow][1:], costs[fast][1:], strict=True))
 
-    print("times as fast, medians of the ratios of each round; the bars are those of ticks of 1 ms")
+    print("times as fast, medians of the ratios of each round; the bars count steps of the model: one car in one call")
     for name in TICKS:
-        bar = "   (hold 350)" if TICKS[name] == 1 else ""
+        bar = "   (hold 350)" if TICKS[name] == LONGEST else ""
         print(f"  one car, {name}: {ratio('CommonRoad MB, Python', f'ours, one car, {name}'):.0f} x MB{bar}")
     for many in (name for name in TICKS if TICKS[name] < LONGEST):
         for one in TICKS:
-            bar = "   (hold 3)" if TICKS[many] == TICKS[one] == 1 else ""
+            bar = "   (hold 3)" if TICKS[one] == LONGEST else ""
             times = ratio(f"ours, one car, {one}", f"ours, {fleet}, {many}")
             print(f"  {fleet}, {many}: {times:.2f} x one car, {one}{bar}")
 
