@@ -13,7 +13,7 @@ demo: .venv/ready-to-run  ## The whole console without hardware: drive, hand ove
 
 test: setup lint  ## All checks: format, lint, types, import contracts, tests
 	scripts/system-packages
-	$(BIN)/pytest
+	$(BIN)/pytest --numprocesses auto --maxprocesses 4 --dist loadfile
 
 mutation: setup  ## Mutation score of control/ into docs/mutation.md; some minutes on two cores
 	$(BIN)/python scripts/mutation.py

@@ -192,6 +192,9 @@ class PicowsDoor:
 
     async def listen(self, listener: socket.socket, tls: ssl.SSLContext | None) -> None:
         """Let clients of `listener` in."""
+        # The library reads all that waits in one piece, and its buffer grows to that; left to itself the system lets
+        # megabytes wait. Connections inherit it.
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, self.profile.limits.message_bytes)
         options: dict[str, Any] = {} if tls is None else {"ssl": tls, "ssl_handshake_timeout": wire.HANDSHAKE_S}
         self._server = await ws_create_server(
             self._open,

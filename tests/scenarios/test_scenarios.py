@@ -39,9 +39,8 @@ def test_a_shipped_scenario_keeps_its_bounds_and_its_golden(scenario: str) -> No
 
 
 def test_a_changed_control_value_is_named_with_tick_and_column(copied: Path) -> None:
-    path = alter(
-        copied / "command_lost.yaml", "{driver: none}", "{driver: none}\n  features: {control: {stop_decel_mps2: 2.4}}"
-    )
+    gentler = "{driver: none}\n  features: {control: {blind_stop_decel_mps2: 3.4}}"
+    path = alter(copied / "command_lost.yaml", "{driver: none}", gentler)
     done = simconsole("check", path, "--json")
     assert done.returncode == 1, done.stdout + done.stderr
     (problem,) = results(done)["scenarios"][0]["problems"]
