@@ -14,6 +14,7 @@ from simconsole.profiles.vehicle import CarProfile
 from simconsole.rows import COMMAND_AT, PLATFORM_AT, VEHICLE_AT
 from simconsole.signals import VehicleCommand
 from simconsole.units import STANDARD_GRAVITY_MPS2
+from simconsole.vehicle.car import assembly as car_assembly
 from simconsole.vehicle.car import step as car_step
 from simconsole.vehicle.car.assembly import car_parameters
 from simconsole.vehicle.car.state import CarState
@@ -194,7 +195,8 @@ def convergence() -> dict[str, float]:
 
 
 def _stepped(step_s: float) -> tuple[float, float]:
-    with mock.patch.object(car_step, "STEP_S", step_s):
+    # The rack's parameters are made for the step.
+    with mock.patch.object(car_step, "STEP_S", step_s), mock.patch.object(car_assembly, "STEP_S", step_s):
         run = Run(hatchback(), execution=plain, vx_mps=20.0)
         put(run.row, COMMAND_AT, NOTHING._replace(road_wheel_rad=0.04, clutch=1.0))
         run.step(run.row, run.row, run.vehicle.parameters, round(1.0 / step_s))
