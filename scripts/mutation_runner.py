@@ -26,6 +26,7 @@ DRIVES: Final = (
     "random",
     "reactions",
     "shared_drives",
+    "short_drives",
     "speed_loop",
     "stops",
 )

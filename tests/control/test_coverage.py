@@ -7,7 +7,10 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 ROOM = ROOT / "simconsole" / "control"
-DRIVES = ("arbitration", "commander", "pairs", "random", "reactions", "shared_drives", "speed_loop", "stops")
+DRIVES = (
+    *("arbitration", "commander", "pairs", "random", "reactions"),
+    *("shared_drives", "short_drives", "speed_loop", "stops"),
+)
 """Tests that drive for seconds would take what single tests should take, and compiled code is not seen line by line."""
 LEFT_OUT = tuple(f"test_{name}.py" for name in (*DRIVES, "coverage", "mutation_page"))
 
