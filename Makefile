@@ -1,6 +1,6 @@
 # Everything this project does with one command. `make` alone lists it.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test mutation lint format wheel clean
+.PHONY: help setup demo test long mutation lint format wheel clean
 BIN := .venv/bin
 
 help:  ## This list
@@ -14,6 +14,10 @@ demo: .venv/ready-to-run  ## The whole console without hardware: drive, hand ove
 test: setup lint  ## All checks: format, lint, types, import contracts, tests
 	scripts/system-packages
 	$(BIN)/pytest --numprocesses auto --maxprocesses 4 --dist loadfile
+
+long: setup  ## The random and long checks at their full size, with seeds drawn anew; hours
+	scripts/system-packages
+	$(BIN)/pytest --long --timeout 0 --numprocesses 2 --dist worksteal
 
 mutation: setup  ## Mutation score of control/ into docs/mutation.md; some minutes on two cores
 	$(BIN)/python scripts/mutation.py

@@ -1,6 +1,8 @@
 """Rules for the whole run: in CI (`CI=true`) a skipped or expected-to-fail test is a failure; figures are printed.
 
 A test that measures something keeps it with `record_property(NAME, TEXT)`; the figures stand above the summary line.
+A test of a case of the fault catalogue says which (`@pytest.mark.fault("P11")`) and keeps what it saw with `measured`.
+A random or long check takes its size and its seed from `sample` (tests/samples.py); `pytest --long` runs those whole.
 """
 
 import os
@@ -10,8 +12,9 @@ from pathlib import Path
 import pytest
 
 from tests.drives.fixtures import script, short
+from tests.samples import Measured, Sample, measured, sample
 
-__all__ = ["script", "short"]
+__all__ = ["Measured", "Sample", "measured", "sample", "script", "short"]
 
 # A shell starts background jobs with SIGINT ignored, and every program a test starts would inherit that: a Ctrl-C sent
 # to it would be lost, however the tests themselves were started.
@@ -23,6 +26,8 @@ HARDWARE = Path(__file__).parent / "hardware"
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Add the option without which the tests that need a real wheel and a person are not even collected."""
+    parser.addoption("--long", action="store_true", help="run random and long checks only, at their full size, anew")
+    parser.addoption("--seed", type=int, help="replay: the seed that a random test printed")
     parser.addoption("--hardware", metavar="COCKPIT", help="also test this cockpit's real devices (docs/hardware.md)")
 
 
@@ -30,6 +35,15 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
     """Leave tests/hardware out unless asked for."""
     wanted = config.getoption("--hardware") is not None
     return True if collection_path.is_relative_to(HARDWARE) and not wanted else None
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """With --long keep the tests that have a full size."""
+    if not config.getoption("--long"):
+        return
+    chosen = [item for item in items if "sample" in getattr(item, "fixturenames", ())]
+    config.hook.pytest_deselected(items=[item for item in items if item not in chosen])
+    items[:] = chosen
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
