@@ -50,7 +50,7 @@ MEANING: Final[dict[Trigger, str]] = {
     "no plausible one for 200 ms, or one that is not finite",
     Trigger.TAKEOVER_ASKED: "the controller or an operator asks the person to take over",
     Trigger.NO_REACTION: "ten seconds after a take-over request nobody has reacted; where it was made because wheel or "
-    "pedals were lost, only as long as they are not back: a request by somebody after that begins ten seconds of its own",
+    "pedals were lost, only as long as they are not back; a request by somebody after that begins a wait of its own",
     Trigger.STANDSTILL: "the vehicle stands",
     Trigger.RESET: "the person's button or an operator resets; the vehicle stands and the emergency stop is released",
     Trigger.AUTONOMOUS_ASKED: "the person's button or an operator asks for autonomy and every engage condition holds",
