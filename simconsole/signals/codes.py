@@ -61,6 +61,7 @@ class Reason(IntEnum):
     REFUSED_WHEEL_NOT_CENTRED = 32
     REFUSED_PEDAL_PRESSED = 33
     REFUSED_IMPLAUSIBLE = 34
+    REFUSED_OVERRULED = 35
 
 
 class Notice(IntEnum):
