@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.drives.fixtures import script, short
+from tests.faults import figures
 from tests.samples import Measured, Sample, measured, sample
 
 __all__ = ["Measured", "Sample", "measured", "sample", "script", "short"]
@@ -28,6 +29,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     """Add the option without which the tests that need a real wheel and a person are not even collected."""
     parser.addoption("--long", action="store_true", help="run random and long checks only, at their full size, anew")
     parser.addoption("--seed", type=int, help="replay: the seed that a random test printed")
+    parser.addoption("--write-faults", action="store_true", help="write what was measured into docs/faults.md")
     parser.addoption("--hardware", metavar="COCKPIT", help="also test this cockpit's real devices (docs/hardware.md)")
 
 
@@ -38,7 +40,9 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """With --long keep the tests that have a full size."""
+    """Let reports say which cases of the fault catalogue a test is of; with --long keep those with a full size."""
+    for item in items:
+        item.user_properties += [("case", mark.args[0]) for mark in item.iter_markers("fault")]
     if not config.getoption("--long"):
         return
     chosen = [item for item in items if "sample" in getattr(item, "fixturenames", ())]
@@ -58,8 +62,27 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
         session.exitstatus = pytest.ExitCode.TESTS_FAILED
 
 
-def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """Print what the tests measured; none of them passes or fails by it."""
-    figures = [figure for report in terminalreporter.stats.get("passed", []) for figure in report.user_properties]
-    for name, text in figures:
-        terminalreporter.write_line(f"measured: {name}: {text}")
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, exitstatus: int) -> None:
+    """Print what the tests measured; none of them passes or fails by it. With --write-faults, write the page."""
+    option = terminalreporter.config.getoption
+    passed = [(report.nodeid, report.user_properties) for report in terminalreporter.stats.get("passed", [])]
+    for name, text in (each for _, properties in passed for each in properties):
+        if name not in ("case", "fault", "seed"):
+            terminalreporter.write_line(f"measured: {name}: {text}")
+    found = figures.seen(properties for _, properties in passed)
+    for line in figures.lines(found, option("verbose") > 0):
+        terminalreporter.write_line(line)
+    seeds = [
+        f"{nodeid.rpartition('::')[2]} {text}"
+        for nodeid, properties in passed
+        for name, text in properties
+        if name == "seed"
+    ]
+    if seeds:
+        drawn = ", ".join(seeds) if option("--long") or option("verbose") > 0 else "each of its name"
+        terminalreporter.write_line(f"seeds of {len(seeds)} random checks: {drawn}")
+    if option("--write-faults"):
+        if exitstatus != pytest.ExitCode.OK:
+            terminalreporter.write_line("docs/faults.md is left as it was: not all tests passed")
+            return
+        figures.write(found, whole=not option("--long"))

@@ -187,6 +187,7 @@ def disturbed(tmp_path_factory: pytest.TempPathFactory) -> Disturbed:
     return Disturbed(family, driven.folder, done.returncode, driven.bundle, results(done), done.stderr, table)
 
 
+@pytest.mark.fault("P10")
 def test_each_killed_station_is_restarted_and_the_drive_goes_on(disturbed: Disturbed) -> None:
     assert set(disturbed.results["station_restarts"]) == STATIONS
     assert all(count >= 1 for count in disturbed.results["station_restarts"].values())
@@ -210,6 +211,7 @@ def test_a_bridge_killed_in_autonomy_ends_in_a_recorded_safe_stop(disturbed: Dis
     assert abs(disturbed.table.column("vehicle.vx_mps")[-1]) < 0.1
 
 
+@pytest.mark.fault("P11")
 def test_ctrl_c_leaves_a_whole_bundle_and_code_130(disturbed: Disturbed) -> None:
     assert disturbed.code == 130
     assert disturbed.results["interrupted"] is True
@@ -248,6 +250,7 @@ def test_nothing_outlives_a_core_that_was_killed(tmp_path: Path) -> None:
         assert replay_bundle(driven.bundle).ticks >= tick, "every tick that was published had been recorded"
 
 
+@pytest.mark.fault("P11")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_ends_the_drive_in_order(tmp_path: Path, number: signal.Signals) -> None:
     with drive(tmp_path, PLAIN) as driven:
