@@ -10,7 +10,6 @@ from simconsole.signals import Commander, Event, GateLimit, LinkState, Mode, Rea
 from tests.control.conftest import LOCK_RAD, Rig
 from tests.samples import Measured, Sample
 
-SEED = 20_261
 DRIVEN = [Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED, Mode.SHARED]
 
 
@@ -49,7 +48,7 @@ def test_five_in_a_row_are_not_followed_and_end_the_controllers_part(
 @pytest.mark.parametrize("mode", DRIVEN)
 @pytest.mark.parametrize("period_s", [0.02, 0.16, 0.196, 0.2, 0.25])
 def test_whatever_comes_at_whatever_rate_the_last_plausible_command_counts(
-    period_s: float, mode: Mode, tick_hz: int, make_rig: Callable[..., Rig], measured: Measured
+    period_s: float, mode: Mode, tick_hz: int, make_rig: Callable[..., Rig]
 ) -> None:
     """A slow controller that goes wild: silence almost until it is stale, then one command, and so on."""
     rig = make_rig(tick_hz).drive(mode, speed_mps=13.0)
@@ -69,14 +68,15 @@ def test_whatever_comes_at_whatever_rate_the_last_plausible_command_counts(
             assert rig.command.throttle <= throttle, "a refused command never speeds up"
     assert since <= rig.settings.stale_ticks
     assert rig.reason in (Reason.COMMAND_INVALID, Reason.COMMAND_STALE)
-    what = f"wild every {1000 * period / tick_hz:.0f} ms, {tick_hz} Hz, {mode.name}: left after"
-    measured("R06", what, f"{1000 * since / tick_hz:.0f} ms", "210 ms and a tick")
 
 
-def test_plausible_wild_and_missing_in_any_order_leave_in_time(make_rig: Callable[..., Rig], sample: Sample) -> None:
+@pytest.mark.fault("R06")
+def test_plausible_wild_and_missing_in_any_order_leave_in_time(
+    make_rig: Callable[..., Rig], sample: Sample, measured: Measured
+) -> None:
     """A plausible one in time goes on; nothing else does. The age is that of the newest plausible one."""
     rng = np.random.default_rng(sample.seed)
-    left = 0
+    left, longest_s = 0, 0.0
     for _ in range(sample.of(60, 3_000)):
         tick_hz = int(rng.choice([50, 100, 250, 1000]))
         rig = make_rig(tick_hz).drive(DRIVEN[rng.integers(3)], speed_mps=13.0)
@@ -96,8 +96,10 @@ def test_plausible_wild_and_missing_in_any_order_leave_in_time(make_rig: Callabl
                 age = late if good else age
             rig.tick()
             assert age < rig.settings.stale_ticks or rig.mode is not mode
-        left += rig.mode is not mode
+        if rig.mode is not mode:
+            left, longest_s = left + 1, max(longest_s, age / tick_hz)
     assert left > 10
+    measured("R06", "last plausible command to leaving autonomy", f"{longest_s * 1e3:.0f} ms", "210 ms and a tick")
 
 
 def test_full_lock_at_walking_pace_is_followed(make_rig: Callable[..., Rig]) -> None:
@@ -155,10 +157,9 @@ def test_only_the_commanders_count(make_rig: Callable[..., Rig]) -> None:
         assert rig.arbitration.ecu_road_wheel_rad == in_force
 
 
-def test_no_refused_command_ever_moves_the_wheels(make_rig: Callable[..., Rig]) -> None:
-    """10,000 random steering steps at random speeds: in a tick with a refused one, the angle is the one before."""
-    print("seed", SEED)
-    rng = np.random.default_rng(SEED)
+def test_no_refused_command_ever_moves_the_wheels(make_rig: Callable[..., Rig], sample: Sample) -> None:
+    """Random steering steps at random speeds: in a tick with a refused one, the angle is the one before."""
+    rng = np.random.default_rng(sample.seed)
 
     def engaged() -> Rig:
         rig = make_rig().drive(Mode.AUTONOMOUS, speed_mps=10.0)
@@ -168,7 +169,7 @@ def test_no_refused_command_ever_moves_the_wheels(make_rig: Callable[..., Rig]) 
 
     rig = engaged()
     refused = followed = 0
-    for _ in range(10_000):
+    for _ in range(sample.of(10_000, 1_000_000)):
         speed = float(rng.uniform(0.0, 25.0))
         rig.vehicle = rig.vehicle._replace(vx_mps=speed)
         rig.remote = rig.remote._replace(
