@@ -11,8 +11,12 @@ from importlib import import_module
 from typing import Any
 
 from simconsole import __version__
-from simconsole.commands.outcome import INTERRUPTED
 from simconsole.errors import SimConsoleError
+from simconsole.lifetimes import ATTACHED, INTERRUPTED, ending_at_once
+
+_AT_ONCE = ("demo", "drive", "bridge", "report", "view")
+"""Commands that Ctrl-C ends at once where no drive takes it for itself: they leave nothing half made. To the others it
+is an exception, for some the way to their result."""
 
 
 def parser() -> argparse.ArgumentParser:
@@ -32,6 +36,11 @@ def parser() -> argparse.ArgumentParser:
 def main(arguments: list[str] | None = None) -> int:
     """Run one command and return its exit code. Errors a user can cause are one line on standard error."""
     words = parser().parse_args(arguments)
+    with ending_at_once(ctrl_c=words.command in _AT_ONCE):
+        return _run(words)
+
+
+def _run(words: argparse.Namespace) -> int:
     module, function = words.does.split(":")
     try:
         outcome = getattr(import_module(f"simconsole.commands.{module}"), function)(words)
@@ -120,6 +129,7 @@ def _driving(commands: Any) -> None:
     autopilot.add_argument("--namespace", default="", metavar="NS", help="of the console's topics")
     autopilot.add_argument("--rename", action="append", default=[], metavar="/TOPIC=/NAME", help="what one is called")
     autopilot.add_argument("--certificate", metavar="PEM", help="of a wss:// server; a token: SIMCONSOLE_TOKEN")
+    autopilot.add_argument(ATTACHED, action="store_true", help="end with whoever holds standard input")
 
 
 def _recordings(commands: Any) -> None:

@@ -129,8 +129,13 @@ def add_can_memory(resolved: ResolvedSession, console: Console, folder: Path) ->
     return CommandPort(slot, EventCounters.create(folder / CAN_EVENTS), console.tick_hz)
 
 
-def station_specs(resolved: ResolvedSession, console: Console, folder: Path, bundle: Path) -> list[StationSpec]:
-    """Return the stations that the session's outputs name; writes what they need into the run folder."""
+def station_specs(
+    resolved: ResolvedSession, console: Console, folder: Path, bundle: Path, drive: str
+) -> list[StationSpec]:
+    """Return the stations that the session's outputs name; writes what they need into the run folder.
+
+    `drive` is the nonce of the drive.
+    """
     outputs = resolved.session.outputs
     tick_hz = console.tick_hz
     specs = []
@@ -138,6 +143,7 @@ def station_specs(resolved: ResolvedSession, console: Console, folder: Path, bun
         arguments = {
             "profile": msgspec.to_builtins(outputs.bridge),
             "tick_hz": tick_hz,
+            "drive": drive,
             "bundle": str(bundle.absolute()),
         }
         specs.append(StationSpec(name="bridge", target="simconsole.station_programs:bridge", arguments=arguments))

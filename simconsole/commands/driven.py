@@ -2,9 +2,10 @@
 
 from typing import Any
 
-from simconsole.commands.outcome import INTERRUPTED, Outcome, table
+from simconsole.commands.outcome import Outcome, table
 from simconsole.commands.progress import Progress
 from simconsole.exports import REPORT, SCENE, write_exports
+from simconsole.lifetimes import INTERRUPTED
 from simconsole.session import DriveResult
 
 
