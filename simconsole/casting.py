@@ -43,8 +43,8 @@ LOOKED_AT = 16
 """In a drive that is not paced, hops are timed in each 16th tick."""
 LOOK_S = 0.2
 """How often a wait for somebody else asks whether it shall go on."""
-PROGRAM_END_S = 2.0
-"""How long a program that the drive has started may take to end."""
+PROGRAM_END_S = 0.5
+"""How long a program that the drive has started may take to say good-bye; it has nothing else to finish."""
 
 if TYPE_CHECKING:
     from simconsole.bridge.lockstep import LockstepBridge
@@ -100,7 +100,7 @@ def open_headless(
         standby=(*standby, *(() if can is None else (can.listen,))),
     )  # fmt: skip
     ledger = Ledger(time.monotonic_ns, console.tick_hz, every=LOOKED_AT)
-    cast = isolated(with_faults(cast, resolved, console.tick_hz))._replace(ledger=ledger)
+    cast = isolated(with_faults(cast, resolved, console.tick_hz), UnpacedPacer)._replace(ledger=ledger)
 
     def summary() -> dict[str, Any]:
         own = {**counters(), **of_can(), **told(acts())}
@@ -141,7 +141,7 @@ def open_realtime(
     supervisor = Supervisor(folder, station_specs(resolved, console, folder, bundle, drive))
     programs: list[Popen[bytes]] = []
     stack.callback(end, programs, PROGRAM_END_S)
-    stack.callback(supervisor.stop)
+    stack.callback(supervisor.stop, lambda: ring.is_empty)
     stack.callback(tell_to_end, programs)
     supervisor.start()
     opening.close()  # from here on the warden removes the folder, however the core ends
@@ -161,7 +161,9 @@ def open_realtime(
     standby = (supervisor.publish, port.stand, *((ecu.stand,) if isinstance(ecu, CommandPort) else ()))
     cast = Cast(seating.devices, port, recorder, outputs, pace, seating.seat, ecu=ecu, standby=standby)
     ledger = Ledger(time.monotonic_ns, console.tick_hz)
-    cast = isolated(with_faults(cast, resolved, console.tick_hz))._replace(ledger=ledger)
+    cast = isolated(with_faults(cast, resolved, console.tick_hz), lambda: Pacer(console.tick_hz))._replace(
+        ledger=ledger
+    )
 
     def summary() -> dict[str, Any]:
         kept = {**bridge_summary(folder), **can_summary(folder), **acts_summary(folder)}

@@ -31,6 +31,7 @@ SIGNALS: Final = tuple(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 )  # SIGHUP: the terminal was closed; Windows has none
 _LOOK_S: Final = 0.01
+_GRACE_S: Final = 0.1
 
 _undo: list[Callable[[], object]] = []
 
@@ -74,17 +75,20 @@ def tell_to_end(processes: "Sequence[subprocess.Popen[bytes]]") -> None:
 
 
 def end(
-    processes: "Sequence[subprocess.Popen[bytes]]", patience_s: float, hurry: Callable[[], bool] = lambda: False
+    processes: "Sequence[subprocess.Popen[bytes]]",
+    patience_s: float,
+    hurry: Callable[[], bool] = lambda: False,
+    orphan_s: float = ORPHAN_S,
 ) -> None:
     """Tell children to end in order, wait for all of them, and kill what has not ended within `patience_s`.
 
-    Once `hurry()` says so, their pipes are closed and they have ORPHAN_S left.
+    Once `hurry()` says so, their pipes are closed, after which they end by themselves within `orphan_s`.
     """
     tell_to_end(processes)
     deadline_s, hurried = time.monotonic() + patience_s, False
     while any(process.poll() is None for process in processes) and time.monotonic() < deadline_s:
         if not hurried and hurry():
-            hurried, deadline_s = True, min(deadline_s, time.monotonic() + ORPHAN_S)
+            hurried, deadline_s = True, min(deadline_s, time.monotonic() + orphan_s + _GRACE_S)
             for process in processes:
                 close_pipe(process)
         time.sleep(_LOOK_S)

@@ -49,6 +49,11 @@ class RingStation:
     def __init__(self, ring: Ring) -> None:
         self._ring = ring
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing was published yet."""
+        return self._ring.newest == 0
+
     def publish(self, snapshot: Snapshot) -> None:
         """Copy one row; its second stamp tells when, for the ledger."""
         self._ring.write(snapshot.row, snapshot.tick, time.monotonic_ns())

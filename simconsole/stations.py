@@ -123,13 +123,16 @@ class Supervisor:
         """Return how often each station was restarted, for the summary."""
         return {name: status.restarts for name, status in self.status().items()}
 
-    def stop(self) -> None:
-        """End warden and stations; afterwards the run folder is gone. Twice is harmless."""
+    def stop(self, at_once: Callable[[], bool] = lambda: False) -> None:
+        """End warden and stations; afterwards the run folder is gone. Twice is harmless.
+
+        Where `at_once()` says so they have nothing to finish, and ORPHAN_S instead of their patience.
+        """
         warden, self._warden = self._warden, None
         if warden is None:
             return
         self._last_status = self.status()
-        end([warden], self._spec.patience_s * 2)
+        end([warden], self._spec.patience_s * 2, at_once, WARDEN_S)
         remove_run_folder(self.folder)
 
 

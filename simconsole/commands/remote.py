@@ -8,7 +8,7 @@ from simconsole.errors import ProfileError
 from simconsole.inline import TOKEN_VARIABLE
 from simconsole.lifetimes import DRIVE_VARIABLE, follow_parent
 
-END_S = 1.0
+END_S = 0.5
 """How long it may take to end once the console that started it says so."""
 
 

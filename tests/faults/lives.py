@@ -18,7 +18,7 @@ TAKEN: Final = 1 << 14  # SIGTERM in a mask of /proc/PID/status
 LEFT: Final = "simconsole-*"
 
 DRIVEN = """schema: 1
-title: {title}
+title: "{title}"
 environment: {{world: urban}}
 scenario: {{vehicle: hatchback}}
 features: {{autopilot: {autopilot}}}
@@ -82,7 +82,7 @@ def takes_signals(process: int) -> bool:
 
 def standard_input(process: int) -> str:
     """What a process reads: `pipe:[NUMBER]` for a pipe."""
-    return os.readlink(f"/proc/{process}/fd/0")
+    return str(Path(f"/proc/{process}/fd/0").readlink())
 
 
 def holders(pipe: str) -> set[int]:
@@ -90,7 +90,7 @@ def holders(pipe: str) -> set[int]:
     found = set()
     for path in Path("/proc").glob("[0-9]*/fd/*"):
         try:
-            if os.readlink(path) == pipe and os.lstat(path).st_mode & 0o200:
+            if str(path.readlink()) == pipe and path.lstat().st_mode & 0o200:
                 found.add(int(path.parts[2]))
         except OSError:
             continue
