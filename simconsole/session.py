@@ -20,6 +20,7 @@ from simconsole.recording.framing import LogHeader
 from simconsole.recording.log import LogWriter
 from simconsole.replaying import SESSION_FILE
 from simconsole.rows import INPUT_WIDTH, Snapshot, TickInputs
+from simconsole.shared_memory import sweep
 from simconsole.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE
 
 ENDLESS_TICKS = 2**53
@@ -52,6 +53,7 @@ def drive(
     Raises:
         SimConsoleError: a device, port or file cannot be opened; what was opened before is closed again.
     """
+    sweep()
     console, state = assemble(resolved, compiled)
     warm_up(console, state)
     duration_s = resolved.session.scenario.duration_s
