@@ -10,13 +10,15 @@ What this process has made and must not leave behind when a signal ends it at on
 import contextlib
 import os
 import signal
-import subprocess
 import sys
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from types import FrameType, TracebackType
-from typing import Any, Final, NoReturn, Self
+from typing import TYPE_CHECKING, Any, Final, NoReturn, Self
+
+if TYPE_CHECKING:
+    import subprocess
 
 ORPHAN_S: Final = 0.3
 """How long a child may go on, after its parent is gone, to say good-bye."""
@@ -54,6 +56,8 @@ def spawn(
     Raises:
         OSError: it cannot be started.
     """
+    import subprocess  # not above: whoever only handles signals needs none
+
     # It imports what its parent imports, and nothing that happens to lie in the working directory.
     path = os.pathsep.join(entry for entry in sys.path if entry)
     process = subprocess.Popen(

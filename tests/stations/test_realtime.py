@@ -3,6 +3,7 @@
 import json
 import os
 import signal
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -21,6 +22,8 @@ from simconsole.signals import Event, Mode, Reason
 from simconsole.station_programs import SNAPSHOTS, snapshot_of
 from simconsole.stations import STATUS, StationStatus
 from tests.drives.console import Running, results, wait_until
+from tests.faults.lives import holders, standard_input
+from tests.samples import Measured
 
 TICK_HZ = 250
 STATIONS = {"bridge", "hud", "scene"}
@@ -236,21 +239,27 @@ def test_nothing_outlives_a_drive_that_was_interrupted(disturbed: Disturbed) -> 
     assert not disturbed.folder.exists()
 
 
-def test_nothing_outlives_a_core_that_was_killed(tmp_path: Path) -> None:
+@pytest.mark.fault("P02")
+def test_nothing_outlives_a_core_that_was_killed(tmp_path: Path, measured: Measured) -> None:
     with drive(tmp_path, PERSON) as driven:
         wait_until(lambda: set(driven.stations()) == STATIONS, "all stations")
         wait_until(lambda: len(driven.family()) >= 5 and driven.tick() > TICK_HZ, "a second of driving")
-        family, tick = driven.family(), driven.tick()
+        family, tick, parents = driven.family(), driven.tick(), processes()
+        # Why all of them end within ORPHAN_S of each other: the pipe that each one reads has no other end but this.
+        assert [holders(standard_input(process)) for process in family] == [{parents[process]} for process in family]
         os.kill(driven.core, signal.SIGKILL)
         driven.running.process.wait()
+        began_s = time.monotonic()
         wait_until(lambda: not family & set(processes()), "the end of every process")
+        measured("P02", "processes of a killed drive", f"gone within {time.monotonic() - began_s:.2f} s", "1 s")
         wait_until(lambda: not driven.folder.exists(), "the end of the run folder")
         bundle = open_bundle(driven.bundle)
         assert not bundle.manifest.finished
         assert replay_bundle(driven.bundle).ticks >= tick, "every tick that was published had been recorded"
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.fault("P11")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_ends_the_drive_in_order(tmp_path: Path, number: signal.Signals) -> None:
     with drive(tmp_path, PLAIN) as driven:
         wait_until(lambda: set(driven.stations()) == {"bridge"} and driven.tick() > 10, "driving")
