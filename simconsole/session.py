@@ -12,7 +12,7 @@ from simconsole.assembly import ResolvedSession, assemble
 from simconsole.casting import Opened, open_headless, open_realtime
 from simconsole.compiling import compiled
 from simconsole.drive import come_to_rest, run
-from simconsole.lifetimes import Interrupt, undone
+from simconsole.lifetimes import Interrupt, remove_half_made, undone
 from simconsole.pipeline import Console, ConsoleState, advance, decide
 from simconsole.profile_files import to_text
 from simconsole.recording.bundle import BundleWriter
@@ -61,6 +61,7 @@ def drive(
     with ExitStack() as stack:
         interrupt = stack.enter_context(Interrupt())
         bundle = stack.enter_context(_bundle(resolved, console, folder))
+        stack.enter_context(undone(lambda: remove_half_made(folder)))
         stack.enter_context(undone(lambda: bundle.__exit__(KeyboardInterrupt, KeyboardInterrupt(), None)))
         opened = _open(resolved, console, bundle, interrupt, stack)
         if opened.bridge_url is not None:

@@ -19,7 +19,7 @@ def finish(result: DriveResult, report: bool = True, scene: bool = True) -> Outc
     results: dict[str, Any] = {"bundle": str(result.folder), "digest": result.digest, **result.summary}
     if not result.ticks:
         return Outcome(code, results, f"{result.folder}: interrupted before the first tick")
-    with Progress("writing report and scene"):
+    with Progress("writing report and scene" + (" (Ctrl-C: not now)" if result.interrupted else "")):
         metrics = write_exports(result.folder, report=report, scene=scene)
     rows = _rows(result, metrics)
     rows += [("report", str(result.folder / REPORT))] * report + [("scene", str(result.folder / SCENE))] * scene

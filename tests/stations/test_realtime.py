@@ -190,6 +190,7 @@ def disturbed(tmp_path_factory: pytest.TempPathFactory) -> Disturbed:
     return Disturbed(family, driven.folder, done.returncode, driven.bundle, results(done), done.stderr, table)
 
 
+@pytest.mark.fault("P10")
 def test_each_killed_station_is_restarted_and_the_drive_goes_on(disturbed: Disturbed) -> None:
     assert set(disturbed.results["station_restarts"]) == STATIONS
     assert all(count >= 1 for count in disturbed.results["station_restarts"].values())
