@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, Final, NoReturn, Self
 if TYPE_CHECKING:
     import subprocess
 
-ORPHAN_S: Final = 0.3
+ORPHAN_S: Final = 0.2
 """How long a child may go on, after its parent is gone, to say good-bye."""
 INTERRUPTED: Final = 130
 """Exit code of what a signal ended, as a shell reports a Ctrl-C."""

@@ -100,8 +100,12 @@ class LogRecorder:
         self._log = log
 
     def write(self, snapshot: Snapshot) -> None:
-        """Append one tick; a failing disk is noted in the log's `failure`."""
-        self._log.append(snapshot.tick, snapshot.row)
+        """Append one tick; a failing disk is noted in the log's `failure`, and so is anything that raises."""
+        try:
+            self._log.append(snapshot.tick, snapshot.row)
+        except Exception as error:
+            self._log.failure = self._log.failure or f"{type(error).__name__}: {error}"
+            raise
 
 
 def _open(

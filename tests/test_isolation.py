@@ -1,6 +1,7 @@
 """A part of a drive that raises falls silent; the others go on, and it is told once."""
 
 import io
+from pathlib import Path
 from typing import NoReturn
 
 import numpy as np
@@ -12,14 +13,18 @@ from simconsole.devices.script import ScriptSource
 from simconsole.devices.settings import settings
 from simconsole.drive import Cast, come_to_rest, run
 from simconsole.isolation import isolated
+from simconsole.kernels import Row
 from simconsole.memory import MemoryRecorder
 from simconsole.pacing import UnpacedPacer
 from simconsole.pipeline import ConsoleState
 from simconsole.profile_files import parse
 from simconsole.profiles.device import ScriptProfile
 from simconsole.profiles.session import SessionProfile
+from simconsole.recording.bundle import verify
+from simconsole.recording.log import LogWriter
 from simconsole.rows import Snapshot
-from simconsole.session_files import resolve
+from simconsole.session import drive
+from simconsole.session_files import override, resolve
 from simconsole.signals import NO_COMMAND, NO_SAMPLE, Event, EventInput, Mode, Reason, RemoteCommand
 
 
@@ -242,3 +247,21 @@ def test_a_drive_without_a_tick_has_nothing_to_stop() -> None:
     person = Person()
     assert come_to_rest(person.console, person.state, person.recorder) == person.state
     assert person.recorder.ticks == 0
+
+
+@pytest.mark.fault("P12")
+def test_a_log_that_raises_is_a_recording_that_failed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    append = LogWriter.append
+
+    def broken(log: LogWriter, tick: int, row: Row) -> None:
+        if tick == 100:
+            raise RuntimeError("broken")
+        append(log, tick, row)
+
+    monkeypatch.setattr(LogWriter, "append", broken)
+    session = override(parse(SESSION, SessionProfile, "session"), scenario={"duration_s": 1.0})
+    session = override(session, outputs={"hud": None}, mode={"pacing": "free"})
+    result = drive(resolve(session), tmp_path / "bundle")
+    assert result.ticks == 99
+    assert result.recording_failure == "RuntimeError: broken"
+    assert verify(tmp_path / "bundle") == ["RuntimeError: broken"]
