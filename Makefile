@@ -1,6 +1,6 @@
 # Everything this project does with one command. `make` alone lists it.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test long mutation lint format wheel clean
+.PHONY: help setup demo test long faults mutation lint format wheel clean
 BIN := .venv/bin
 
 help:  ## This list
@@ -15,9 +15,13 @@ test: setup lint  ## All checks: format, lint, types, import contracts, tests
 	scripts/system-packages
 	$(BIN)/pytest --numprocesses auto --maxprocesses 4 --dist loadfile
 
-long: setup  ## The random and long checks at their full size, with seeds drawn anew; hours
+long: setup  ## The random and long checks at their full size, with seeds drawn anew: docs/long-run.md; hours
 	scripts/system-packages
-	$(BIN)/pytest --long --timeout 0 --numprocesses 2 --dist worksteal
+	$(BIN)/pytest --long --timeout 0 --write-faults --write-long-run --numprocesses 2 --dist worksteal
+
+faults: setup  ## The fault cases, and what they measured into docs/faults.md; minutes
+	scripts/system-packages
+	$(BIN)/pytest -m fault --write-faults --numprocesses auto --maxprocesses 4 --dist loadfile
 
 mutation: setup  ## Mutation score of control/ into docs/mutation.md; some minutes on two cores
 	$(BIN)/python scripts/mutation.py

@@ -77,6 +77,8 @@ CONTROL_AT: Final = COCKPIT_WIDTH
 CONTROL_WIDTH: Final = len(ControlSettings._fields)
 FORCE_AT: Final = CONTROL_AT + CONTROL_WIDTH
 FORCE_WIDTH: Final = len(ForceSettings._fields)
+_ROS_AGE_AT: Final = ROS_AT + RemoteCommand._fields.index("age_ticks")
+_ECU_AGE_AT: Final = ECU_AT + RemoteCommand._fields.index("age_ticks")
 _RESTARTED_AT: Final = ARBITRATION_AT + Arbitration._fields.index("restarted")
 PHYSICS_HZ: Final = 1000
 """The vehicle integrates at a fixed 1 ms whatever the tick."""
@@ -210,6 +212,8 @@ def decide(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
         ArbiterMemory(*take(previous, MEMORY_AT, MEMORY_WIDTH)),
         Link(*take(previous, ROS_LINK_AT, LINK_WIDTH)),
         Link(*take(previous, ECU_LINK_AT, LINK_WIDTH)),
+        previous[_ROS_AGE_AT],
+        previous[_ECU_AGE_AT],
         Arbitration(*take(previous, ARBITRATION_AT, ARBITRATION_WIDTH)),
         command_before,
         motor.explained_rad,

@@ -51,6 +51,7 @@ _REASONS: Final[dict[float, str]] = {
     Reason.REFUSED_WHEEL_NOT_CENTRED: "refused: wheel is not centred",
     Reason.REFUSED_PEDAL_PRESSED: "refused: a pedal is pressed",
     Reason.REFUSED_IMPLAUSIBLE: "refused: autopilot steers too hard",
+    Reason.REFUSED_OVERRULED: "refused: something stronger came first",
 }
 
 _NOTICES: Final[dict[float, str]] = {

@@ -52,6 +52,7 @@ class Broken:
         self.calls = -1
 
 
+@pytest.mark.fault("P12")
 def test_each_part_is_kept_from_the_others(capsys: pytest.CaptureFixture[str]) -> None:
     devices, ros, can, station = Broken(), Broken(), Broken(), Broken()
     cast = isolated(Cast(devices, ros, Broken(), [station], UnpacedPacer(), ecu=can), UnpacedPacer)

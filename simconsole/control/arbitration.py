@@ -26,6 +26,7 @@ from simconsole.control.settings import ControlSettings
 from simconsole.control.shared import consent
 from simconsole.control.stops import slow
 from simconsole.control.takeover import WheelWatch, steering_taken, throttle_held, throttle_overrides, watch_wheel
+from simconsole.control.triggers import link_lost
 from simconsole.kernels import kernel
 from simconsole.signals import ArbiterMemory, Arbitration, Link, Mode, Notice, Request
 
@@ -65,16 +66,18 @@ def arbitrate(now: Moment) -> tuple[ArbiterMemory, Link, Link, Arbitration, Requ
     )
     restart = restart_of(now, seen.person)
     if restart.refusal > 0.0:
-        decision = Decision(decision.mode, decision.reason, decision.changed, restart.refusal, 0.0)
+        decision = Decision(
+            decision.mode, decision.reason, decision.changed, restart.refusal, 0.0, decision.wait_begins
+        )
     held_ticks = throttle_held(now.memory.throttle_held_ticks, seen.throttle_override, decision.mode)
-    mode_ticks = 0.0 if decision.changed > 0.0 else now.memory.mode_ticks + 1.0
+    mode_ticks = 0.0 if decision.wait_begins > 0.0 else now.memory.mode_ticks + 1.0
     shared = consent(now, seen.person.road_wheel_rad, controllers.offered.road_wheel_rad)
     shares = shares_of(decision.mode, seen.throttle_override, shared.lateral, now.before, now.settings)
-    side = remote_side(now, decision, shares, controllers.offered, controllers.link, seen.person)
+    steered = steered_stop(now, decision, controllers.offered, controllers.link, link_lost(controllers.events))
+    side = remote_side(now, decision, shares, controllers.offered, controllers.link, seen.person, steered > 0.0)
     transmission = transmission_of(now, decision.mode, side.direction)
     stalk = switched(now.driver, now.memory)
     lights = lights_of(decision.mode, stalk, controllers.remote, controllers.link)
-    steered = steered_stop(now, decision, controllers.offered, controllers.link)
     return (
         _remembered(seen, decision, side, mode_ticks, shared.trade, steered, stalk, held_ticks, restart.ticks),
         controllers.ros_link,

@@ -89,7 +89,13 @@ def shares_of(
 
 @kernel
 def remote_side(
-    now: Moment, decision: Decision, shares: Shares, offered: RemoteRequest, link: Link, person: Person
+    now: Moment,
+    decision: Decision,
+    shares: Shares,
+    offered: RemoteRequest,
+    link: Link,
+    person: Person,
+    steered: bool,
 ) -> RemoteSide:
     """Return what the remote side asks for: the controller or, where it does not drive, the console's own stop.
 
@@ -102,6 +108,7 @@ def remote_side(
         offered: What the controller's command means.
         link: Whether that command counts.
         person: The person's side.
+        steered: Whether the controller steers a safe stop (`steered_stop`).
     """
     mode = decision.mode
     entered = decision.changed > 0.0
@@ -118,7 +125,7 @@ def remote_side(
             offered.road_wheel_rad, offered.throttle, offered.brake, offered.direction, integral, 0.0, hold
         )
     if mode == _MINIMAL_RISK:
-        return _safe_side(now, entered, hold, offered.road_wheel_rad, steered_stop(now, decision, offered, link) > 0.0)
+        return _safe_side(now, entered, hold, offered.road_wheel_rad, steered)
     brake = now.settings.emergency_brake if mode == _EMERGENCY_STOP else now.settings.hold_brake
     return RemoteSide(hold, 0.0, brake, 0.0, 0.0, 0.0, hold)
 
@@ -183,13 +190,14 @@ def _held_back(now: Moment, offered: RemoteRequest) -> RemoteRequest:
 
 
 @kernel
-def steered_stop(now: Moment, decision: Decision, offered: RemoteRequest, link: Link) -> float:
+def steered_stop(now: Moment, decision: Decision, offered: RemoteRequest, link: Link, lost: bool) -> float:
     """Return 1 while the controller steers a safe stop: nothing is wrong with it, and never was during this stop.
 
     If it drove, it goes on: a car whose person did not react, or whose loop stood still, stops in its lane. If a person
     drove (their wheel is lost, or the loop stood still), it steers if it is steady and asks for about what they did.
+    One that is `lost` in this tick (it left or did not answer) steers no more, however young its last command is.
     """
-    if decision.mode != _MINIMAL_RISK or link.fresh == 0.0 or link.invalid > 0.0:
+    if decision.mode != _MINIMAL_RISK or link.fresh == 0.0 or link.invalid > 0.0 or lost:
         return 0.0
     if decision.changed == 0.0:
         return now.memory.stop_steered

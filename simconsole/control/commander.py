@@ -54,8 +54,8 @@ class Controllers(NamedTuple):
 @kernel
 def look(now: Moment) -> Controllers:
     """Look at both controllers, by the same rules, and say which of them commands."""
-    ros_link = watch_link(now.ros, now.ros_before, now.vehicle, now.settings)
-    ecu_link = watch_link(now.ecu, now.ecu_before, now.vehicle, now.settings)
+    ros_link = watch_link(now.ros, now.ros_before, now.ros_age_before_ticks, now.vehicle, now.settings)
+    ecu_link = watch_link(now.ecu, now.ecu_before, now.ecu_age_before_ticks, now.vehicle, now.settings)
     commander = commander_of(now.before, ros_link, ecu_link, now.settings)
     by_ecu = commander == ECU
     integral_mps2 = now.memory.speed_integral_mps2
@@ -77,16 +77,29 @@ def look(now: Moment) -> Controllers:
 
 @kernel
 def _offered(command: RemoteCommand, link: Link, integral_mps2: float, now: Moment) -> RemoteRequest:
-    """Return what a controller asks for. Steering that it cannot mean is not followed: the angle in force is held."""
+    """Return what a controller asks for.
+
+    A command that steers as it cannot be meant is refused whole: what is in force is held, except that it may slow the
+    vehicle down.
+    """
     held_rad = now.command_before.road_wheel_rad
     if command.sequence <= 0.0 or not command_finite(command):
         return RemoteRequest(held_rad, 0.0, 0.0, 0.0, 0.0)
     asked = remote_request(command, held_rad, integral_mps2, now.vehicle, now.settings, now.tick_s)
     if link.implausible_ticks == 0.0:
         return asked
-    if now.before.mode == _SHARED:
-        held_rad = now.before.remote_road_wheel_rad  # its own part: that in force is the person's, too
-    return RemoteRequest(held_rad, asked.throttle, asked.brake, asked.direction, asked.speed_integral_mps2)
+    throttle, brake = now.command_before.throttle, now.command_before.brake
+    if now.before.mode == _SHARED:  # its own part: what is in force is the person's, too
+        held_rad = now.before.remote_road_wheel_rad
+        throttle, brake = now.before.remote_throttle, now.before.remote_brake
+    direction = now.command_before.gear if now.command_before.automatic > 0.0 else asked.direction
+    return RemoteRequest(
+        held_rad,
+        asked.throttle if asked.throttle < throttle else throttle,
+        asked.brake if asked.brake > brake else brake,
+        direction,
+        integral_mps2,
+    )
 
 
 @kernel

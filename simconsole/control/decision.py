@@ -4,7 +4,7 @@ from typing import Final, NamedTuple
 
 from simconsole.control.commander import Controllers
 from simconsole.control.engage import GRANTED, engage_refusal
-from simconsole.control.modes import deciding_trigger, next_mode, reason_of
+from simconsole.control.modes import outcome, reason_of
 from simconsole.control.moment import Moment
 from simconsole.control.person import Person
 from simconsole.control.settings import ControlSettings
@@ -40,6 +40,7 @@ class Decision(NamedTuple):
     changed: float  # 1: entered in this tick
     refusal: float
     refusal_ticks: float
+    wait_begins: float  # 1: the wait for the person's reaction to a take-over request begins in this tick
 
 
 @kernel
@@ -76,27 +77,33 @@ def decide(now: Moment, person: Person, controllers: Controllers, steering: bool
     present = person_triggers(mode, person, steering, settings)
     present |= fault_triggers(link, controllers.events, no_reaction, standing)
     present |= asked_triggers(asked, manual, reset, engage, shared)
-    trigger = deciding_trigger(mode, present)
-    if trigger >= 0:
-        return Decision(next_mode(mode, trigger), _reason(trigger, asked), 1.0, GRANTED, 0.0)
-    if mode == _TAKEOVER_REQUESTED and asked.takeover > 0.0:
-        # Asked for again, by somebody: then the request does not end with the cause that it had first.
-        return Decision(mode, _REMOTE_ASKED, 0.0, GRANTED, 0.0)
-    refusal = refusal_of(mode, asked, manual, reset, engage, shared)
+    after, trigger = outcome(mode, present)
+    refusal = refusal_of(mode, after, asked, manual, reset, engage, shared)
     if refusal == GRANTED and controllers.unheard:
         refusal = _REFUSED_NOT_COMMANDER
+    if trigger >= 0:
+        return Decision(after, _reason(after, trigger, asked), 1.0, refusal, 0.0, 1.0)
+    reason = now.before.reason
+    wait_begins = 0.0
+    if mode == _TAKEOVER_REQUESTED and asked.takeover > 0.0:
+        # Asked for again, by somebody: then the request does not end with the cause that it had first. Where that was a
+        # lost cockpit that is back by now, nobody is waited for any more: the new request begins a wait of its own.
+        wait_begins = 1.0 if reason == _DEVICE_LOST and person.trusted > 0.0 else 0.0
+        reason = _REMOTE_ASKED
     if refusal == GRANTED and link.implausible_ticks > 0.0 and mode in (_SHARED, _AUTONOMOUS, _TAKEOVER_REQUESTED):
         refusal = _REFUSED_IMPLAUSIBLE
     if refusal != GRANTED:
-        return Decision(mode, now.before.reason, 0.0, refusal, 0.0)
+        return Decision(mode, reason, 0.0, refusal, 0.0, wait_begins)
     shown = now.memory.refusal_ticks + 1.0 < settings.refusal_ticks
     if now.before.refusal != GRANTED and shown:
-        return Decision(mode, now.before.reason, 0.0, now.before.refusal, now.memory.refusal_ticks + 1.0)
-    return Decision(mode, now.before.reason, 0.0, GRANTED, 0.0)
+        return Decision(mode, reason, 0.0, now.before.refusal, now.memory.refusal_ticks + 1.0, wait_begins)
+    return Decision(mode, reason, 0.0, GRANTED, 0.0, wait_begins)
 
 
 @kernel
-def _reason(trigger: int, asked: Asked) -> float:
+def _reason(after: float, trigger: int, asked: Asked) -> float:
+    if after == _TAKEOVER_REQUESTED and asked.takeover > 0.0:
+        return _REMOTE_ASKED  # whatever was lost in the same tick: the request stays when that is back
     reason = reason_of(trigger)
     return _OPERATOR_ASKED if reason == _PERSON_ASKED and asked.by_person == 0.0 else reason
 

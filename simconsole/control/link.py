@@ -16,11 +16,20 @@ _INVALID: Final = float(LinkState.INVALID)
 
 
 @kernel
-def watch_link(remote: RemoteCommand, before: Link, vehicle: VehicleState, settings: ControlSettings) -> Link:
+def watch_link(
+    remote: RemoteCommand, before: Link, age_before_ticks: float, vehicle: VehicleState, settings: ControlSettings
+) -> Link:
     """Follow one controller by one tick. A restarted counter (smaller than before) counts as nothing refused.
 
     A command that steers too hard to be meant at the vehicle's speed counts as a refused one, and what was asked for
     before is as old as it would be had the command not come: after the time of a stale command nothing is valid.
+
+    Args:
+        remote: Its newest command.
+        before: What was remembered of it in the tick before.
+        age_before_ticks: Age of its newest command in the tick before.
+        vehicle: State after the tick before.
+        settings: Limits.
     """
     lease = before.lease_ticks - 1.0 if before.lease_ticks > 0.0 else 0.0
     if not command_finite(remote):
@@ -42,7 +51,10 @@ def watch_link(remote: RemoteCommand, before: Link, vehicle: VehicleState, setti
     in_time = 0.0 <= remote.age_ticks < settings.stale_ticks
     fresh = in_time and remote.sequence > 0.0 and known_kind(remote.kind)
     wild = fresh and implausible(remote, vehicle, settings)
-    wild_ticks = before.implausible_ticks + 1.0 if wild else 0.0
+    wild_ticks = 0.0
+    if wild:
+        plausible_before = before.implausible_ticks == 0.0 and before.fresh > 0.0
+        wild_ticks = (age_before_ticks if plausible_before else before.implausible_ticks) + 1.0
     wild_count = before.implausible
     run = before.invalid_run + refused
     if remote.sequence != before.sequence_seen:

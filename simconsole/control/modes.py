@@ -1,13 +1,15 @@
 """The mode table: (mode, trigger) -> mode, in this file and nowhere else. docs/modes.md is generated from it.
 
-Triggers stand in the order of their strength. Of all that are present in a tick the strongest one to which the mode
-reacts decides; weaker ones of the same tick are lost, and those that persist (a pressed pedal, a silent controller)
-come again in the next tick. EMERGENCY_STOP and STOPPED latch: only an act of a person or an operator leaves them, and
-autonomy is only ever entered by such an act (AUTONOMOUS_ASKED, SHARED_ASKED).
+Triggers stand in the order of their strength. Those that take authority from automation (EMERGENCY to NO_REACTION) all
+take effect in their tick, strongest first, each on the mode that the one before it left: none is lost. What asks for
+more automation, and every other step back towards driving, is granted only in a tick without such an effect, and only
+if the mode that it leads to would withstand every trigger of the tick; else it is refused and not kept. EMERGENCY_STOP
+and STOPPED latch: only an act of a person or an operator leaves them, and autonomy is only ever entered by such an act
+(AUTONOMOUS_ASKED, SHARED_ASKED).
 """
 
 from enum import IntEnum
-from typing import Final
+from typing import Final, NamedTuple
 
 from simconsole.kernels import kernel
 from simconsole.signals import Mode, Reason
@@ -45,10 +47,10 @@ MEANING: Final[dict[Trigger, str]] = {
     Trigger.COMMANDER_LOST: "the controller's connection closed",
     Trigger.COMMAND_STALE: "no command for 200 ms, or no answer in lockstep",
     Trigger.COMMAND_INVALID: "five commands in a row that were refused or steer too hard to be meant at the speed, "
-    "nothing else for 200 ms, or one that is not finite",
+    "no plausible one for 200 ms, or one that is not finite",
     Trigger.TAKEOVER_ASKED: "the controller or an operator asks the person to take over",
     Trigger.NO_REACTION: "ten seconds after a take-over request nobody has reacted; where it was made because wheel or "
-    "pedals were lost, only as long as they are not back",
+    "pedals were lost, only as long as they are not back; a request by somebody after that begins a wait of its own",
     Trigger.STANDSTILL: "the vehicle stands",
     Trigger.RESET: "the person's button or an operator resets; the vehicle stands and the emergency stop is released",
     Trigger.AUTONOMOUS_ASKED: "the person's button or an operator asks for autonomy and every engage condition holds",
@@ -149,25 +151,60 @@ MODES: Final = len(Mode)
 TRIGGERS: Final = len(Trigger)
 _TABLE: Final = tuple(tuple(float(REACTIONS[mode].get(trigger, mode)) for trigger in Trigger) for mode in Mode)
 _REASONS: Final = tuple(float(REASONS[trigger]) for trigger in Trigger)
-_NOBODY: Final = -1
+_TAKERS: Final = int(Trigger.NO_REACTION) + 1
+"""The triggers below this one take authority from automation."""
+_MANUAL_ASKED: Final = int(Trigger.MANUAL_ASKED)
+_PARKED: Final = float(Mode.PARKED)
+_STOPPED: Final = float(Mode.STOPPED)
+
+
+class Outcome(NamedTuple):
+    """What the triggers of one tick make of a mode."""
+
+    mode: float
+    trigger: int  # the last `Trigger` that took effect; -1: none
 
 
 @kernel
-def deciding_trigger(mode: float, present: int) -> int:
-    """Return the strongest trigger of the mask `present` (bit n: `Trigger` n) that changes `mode`; -1: none."""
-    row = _TABLE[int(mode)]
+def outcome(mode: float, present: int) -> Outcome:
+    """Return what the triggers of the mask `present` (bit n: `Trigger` n) make of `mode` in one tick."""
+    after = mode
+    decisive = -1
+    for trigger in range(_TAKERS):
+        if (present >> trigger) & 1 and takes(after, trigger):
+            after = _TABLE[int(after)][trigger]
+            decisive = trigger
+    if decisive >= 0:
+        return Outcome(after, decisive)
     for trigger in range(TRIGGERS):
-        if (present >> trigger) & 1 and row[trigger] != mode:
-            return trigger
-    return _NOBODY
+        if (present >> trigger) & 1 and reacts(mode, trigger) and _withstands(_TABLE[int(mode)][trigger], present):
+            return Outcome(_TABLE[int(mode)][trigger], trigger)
+    return Outcome(mode, -1)
 
 
 @kernel
-def next_mode(mode: float, trigger: int) -> float:
-    """Return the mode after `trigger`; -1 keeps it."""
-    if trigger < 0:
-        return mode
-    return _TABLE[int(mode)][trigger]
+def reacts(mode: float, trigger: int) -> bool:
+    """Return whether `trigger` alone changes `mode`."""
+    return _TABLE[int(mode)][trigger] != mode
+
+
+@kernel
+def takes(mode: float, trigger: int) -> bool:
+    """Return whether `trigger` changes `mode` by taking authority from automation or from a person who lost it.
+
+    Manual control that is asked for in a car that stands parked or stopped takes nothing: it is a step towards driving.
+    """
+    if trigger == _MANUAL_ASKED and (mode in (_PARKED, _STOPPED)):
+        return False
+    return trigger < _TAKERS and reacts(mode, trigger)
+
+
+@kernel
+def _withstands(mode: float, present: int) -> bool:
+    for trigger in range(_TAKERS):  # noqa: SIM110  (numba has no `all`)
+        if (present >> trigger) & 1 and takes(mode, trigger):
+            return False
+    return True
 
 
 @kernel

@@ -7,10 +7,21 @@ _INTRODUCTION = """# Who drives: the modes
 
 Generated from `simconsole/control/modes.py` by `python -m simconsole.control.modes_doc > docs/modes.md`.
 
-A mode changes by this table and by nothing else. Triggers stand in the order of their strength: of all that are present
-in a tick, the strongest one to which the mode reacts decides. `STOPPED` and `EMERGENCY_STOP` latch: only an act of a
-person or an operator leaves them. Autonomy is only ever entered by such an act, and only if every engage condition of
-`simconsole/control/engage.py` holds; a refusal is shown with its reason and changes nothing.
+A mode changes by this table and by nothing else. Triggers stand in the order of their strength.
+
+Those from `EMERGENCY` to `NO_REACTION` take authority from automation, or from a person who lost the controls. Of one
+tick they all take effect, strongest first, each on the mode that the one before it left; none is lost. So a lost wheel
+and a lost controller in one tick are a safe stop in that tick, and a take-over request beside a lost wheel stays a
+request when the wheel is back.
+
+The others (`STANDSTILL` to `PERSON_READY`, and `MANUAL_ASKED` in a car that stands parked or stopped) are steps towards
+driving or towards rest. Of these the strongest one takes effect, and only in a tick in which none of the first kind
+did, and only if the mode that it leads to would withstand all of the first kind that are present. What was asked for
+and not granted is refused with its reason in the same tick and never kept (`REFUSED_OVERRULED` where only something
+stronger stood against it); `PERSON_READY` and `STANDSTILL` are no asks: they are looked at again in the next tick.
+
+`STOPPED` and `EMERGENCY_STOP` latch: only an act of a person or an operator leaves them. Autonomy is only ever entered
+by such an act, and only if every engage condition of `simconsole/control/engage.py` holds.
 """
 
 _AUTHORITY = """## What each mode does
@@ -58,10 +69,11 @@ wheels follow the hand wheel.
 ## Steering that cannot be meant
 
 A command that asks for more than twice the gate's lateral acceleration at the present speed, 10 m/s2 (a road tyre
-gives less), is a mistake of its sender: full lock is one at 13 m/s and none at walking pace. It is not followed: the
-angle in force is held, its pedals count. It is refused in words (`REFUSED_IMPLAUSIBLE`) and counts as a refused
-command: five in a row, or nothing else for 200 ms, and the controller is invalid. How hard a command brakes is no such
-sign: an emergency may mean it.
+gives less), is a mistake of its sender: full lock is one at 13 m/s and none at walking pace. It is refused whole, in
+words (`REFUSED_IMPLAUSIBLE`): the angle and the pedals in force are held, except that it may release the throttle and
+brake harder, for an emergency may mean that. It counts as a refused command: five in a row, and the controller is
+invalid. It does not renew anything either: 200 ms after the last plausible command (`command_stale_s`, rounded down to
+whole ticks) the controller is invalid or stale, whatever has come since then, at any rate and in any order.
 
 ## What the last gate lets pass
 

@@ -26,6 +26,8 @@ class Moment(NamedTuple):
     memory: ArbiterMemory
     ros_before: Link
     ecu_before: Link
+    ros_age_before_ticks: float  # of the newest command, in the tick before
+    ecu_age_before_ticks: float
     before: Arbitration
     command_before: VehicleCommand  # what left the gate in the tick before: hand-overs and stops start from it
     explained_rad: float  # how far the wheel's motor alone has moved it since engagement; 0 without a motor

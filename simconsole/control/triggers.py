@@ -3,7 +3,7 @@
 from typing import Final, NamedTuple
 
 from simconsole.control.engage import GRANTED
-from simconsole.control.modes import Trigger
+from simconsole.control.modes import Trigger, reacts
 from simconsole.control.person import Person, mask
 from simconsole.control.settings import ControlSettings
 from simconsole.kernels import kernel
@@ -55,6 +55,11 @@ _REFUSED_MOVING: Final = float(Reason.REFUSED_MOVING)
 _REFUSED_NOT_ARMED: Final = float(Reason.REFUSED_NOT_ARMED)
 _REFUSED_THROTTLE: Final = float(Reason.REFUSED_THROTTLE_PRESSED)
 _REFUSED_MODE: Final = float(Reason.REFUSED_MODE)
+_REFUSED_OVERRULED: Final = float(Reason.REFUSED_OVERRULED)
+_ASK_MANUAL: Final = int(Trigger.MANUAL_ASKED)
+_ASK_RESET: Final = int(Trigger.RESET)
+_ASK_AUTONOMOUS: Final = int(Trigger.AUTONOMOUS_ASKED)
+_ASK_SHARED: Final = int(Trigger.SHARED_ASKED)
 
 
 class Asked(NamedTuple):
@@ -147,6 +152,12 @@ def fault_triggers(link: Link, events: int, no_reaction: bool, standing: bool) -
 
 
 @kernel
+def link_lost(events: int) -> bool:
+    """Return whether the commander left, or did not answer, in this tick."""
+    return events & (_EVENT_COMMANDER_LOST | _EVENT_NO_ANSWER) != 0
+
+
+@kernel
 def asked_triggers(asked: Asked, manual: float, reset: float, engage: float, shared: float) -> int:
     """Return the triggers of what was asked for and is not refused (refusals: 0 or a `Reason`)."""
     present = _EMERGENCY if asked.emergency > 0.0 else 0
@@ -164,24 +175,37 @@ def asked_triggers(asked: Asked, manual: float, reset: float, engage: float, sha
 
 
 @kernel
-def refusal_of(mode: float, asked: Asked, manual: float, reset: float, engage: float, shared: float) -> float:
-    """Return why an ask of this tick, which changed nothing, was refused; 0 if nothing was or it is in force already.
+def refusal_of(
+    mode: float, after: float, asked: Asked, manual: float, reset: float, engage: float, shared: float
+) -> float:
+    """Return why an ask of this tick was refused; 0 if none was, or what it asks for is in force.
 
-    An ask that was granted and yet changed nothing is refused by the mode itself.
+    Args:
+        mode: before this tick.
+        after: after it: an ask may have met something stronger.
+        asked: what was asked for.
+        manual: 0, or the `Reason` against manual control in `mode`.
+        reset: The same against a reset.
+        engage: The same against autonomy.
+        shared: The same against shared control.
     """
-    if asked.manual > 0.0 and mode != _MANUAL:
-        return manual if manual != GRANTED else _REFUSED_MODE
-    if asked.reset > 0.0 and (mode in (_EMERGENCY_STOP, _STOPPED)):
-        return reset
-    if asked.autonomous > 0.0 and mode != _AUTONOMOUS:
-        return _mode_first(mode, engage)
-    if asked.shared > 0.0 and mode != _SHARED:
-        return _mode_first(mode, shared)
+    if asked.manual > 0.0 and after != _MANUAL:
+        return _unmet(mode, after, manual, _ASK_MANUAL)
+    latched = mode in (_EMERGENCY_STOP, _STOPPED) or after in (_EMERGENCY_STOP, _STOPPED)
+    if asked.reset > 0.0 and latched and after != _PARKED:
+        return reset if reset != GRANTED else _unmet(mode, after, reset, _ASK_RESET)
+    if asked.autonomous > 0.0 and after != _AUTONOMOUS:
+        return _unmet(mode, after, engage, _ASK_AUTONOMOUS)
+    if asked.shared > 0.0 and after != _SHARED:
+        return _unmet(mode, after, shared, _ASK_SHARED)
     return GRANTED
 
 
 @kernel
-def _mode_first(mode: float, refusal: float) -> float:
-    if mode == _EMERGENCY_STOP:
+def _unmet(mode: float, after: float, refusal: float, trigger: int) -> float:
+    """Return why an ask was not met: a latched emergency stop, its own refusal, something stronger, or the mode."""
+    if after == _EMERGENCY_STOP:
         return _REFUSED_EMERGENCY
-    return refusal if refusal != GRANTED else _REFUSED_MODE
+    if refusal != GRANTED:
+        return refusal
+    return _REFUSED_OVERRULED if reacts(mode, trigger) else _REFUSED_MODE

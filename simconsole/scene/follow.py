@@ -1,5 +1,9 @@
-"""A drive to scene.rrd while it is being driven, in a process of its own."""
+"""A drive to scene.live.rrd while it is being driven, in a process of its own, whose memory does not grow with the drive.
 
+The file has no index, which rerun would collect until the end; scene.rrd, made from the log afterwards, has one.
+"""
+
+import os
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -14,6 +18,8 @@ from simconsole.scene.timeline import Lane, Memory, piece
 
 POLL_S = 0.01
 LINK_LANE = "lanes/link"
+QUIET = "warn,re_log_encoding::rrd::file_sink=error"
+"""What rerun logs: it warns of each file without an index."""
 
 
 class Ports(NamedTuple):
@@ -35,9 +41,11 @@ def follow(ports: Ports, job: Job, path: Path) -> None:
     Raises:
         StationError: the file cannot be written.
     """
+    os.environ.setdefault("RUST_LOG", QUIET)
     from simconsole.scene.rerun_view import RerunView
 
-    view = RerunView(path, job.profile, job.dimensions, None if job.drawing is None else world_shapes(job.drawing))
+    world = None if job.drawing is None else world_shapes(job.drawing)
+    view = RerunView(path, job.profile, job.dimensions, world, index=False)
     memory = Memory()
     waiting: list[Snapshot] = []
     link, seen = Lane(LINK_LANE, [], []), ""

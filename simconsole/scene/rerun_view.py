@@ -42,8 +42,18 @@ DRIVEN_PX: Final = 2.0
 class RerunView:
     """One recording being written."""
 
-    def __init__(self, path: Path, profile: SceneProfile, dimensions: Dimensions, world: WorldShapes | None) -> None:
+    def __init__(
+        self, path: Path, profile: SceneProfile, dimensions: Dimensions, world: WorldShapes | None, index: bool = True
+    ) -> None:
         """Open the file and write what stands still.
+
+        Args:
+            path: the file to write.
+            profile: rates and waits.
+            dimensions: the car's.
+            world: what stands around it, if anything.
+            index: end the file with an index of all that was written. rerun collects it in memory, about 1.8 kB for
+                each call of `add` and entity, so a recording without an end has none; viewers read both.
 
         Raises:
             StationError: the file cannot be written.
@@ -54,9 +64,8 @@ class RerunView:
         self._stream = rr.RecordingStream(APPLICATION, recording_id=path.stem, send_properties=True)
         rr.set_strict_mode(True)
         try:
-            self._stream.save(
-                path, default_blueprint=blueprint(profile, dimensions.scale, None if world is None else world.path)
-            )
+            layout = blueprint(profile, dimensions.scale, None if world is None else world.path)
+            self._stream.save(path, default_blueprint=layout, write_footer=index)
         except (OSError, RuntimeError) as problem:
             raise StationError(f"{path}: the scene cannot be written: {problem}") from None
         self._still("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP)

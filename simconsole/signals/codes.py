@@ -61,6 +61,7 @@ class Reason(IntEnum):
     REFUSED_WHEEL_NOT_CENTRED = 32
     REFUSED_PEDAL_PRESSED = 33
     REFUSED_IMPLAUSIBLE = 34
+    REFUSED_OVERRULED = 35
 
 
 class Notice(IntEnum):
@@ -116,7 +117,7 @@ class Event(IntFlag):
     TOGGLE_ANTI_LOCK = 16384
     TOGGLE_TRACTION = 32768
     TOGGLE_STABILITY = 65536
-    END = 131072  # somebody has ended the drive by a signal; from here on the console brings the vehicle to rest
+    END = 262144  # somebody has ended the drive by a signal; from here on the console brings the vehicle to rest
 
 
 class Button(IntFlag):

@@ -72,7 +72,7 @@ class Link(NamedTuple):
     lease_ticks: float  # for how long it may still be the commander without a fresh command
     state: float  # `LinkState`
     implausible: float  # commands since the start that steered too hard to be meant, and were not followed
-    implausible_ticks: float  # how long the newest command has been such a one; 0: it is not
+    implausible_ticks: float  # age of the last plausible command while the newest is not one; 0: the newest is
 
 
 class Arbitration(NamedTuple):

@@ -65,6 +65,7 @@ class Rig:
         self.remote = SILENT
         self.ecu = SILENT
         self.ros_link = self.ecu_link = NO_LINK
+        self.ages_before = (NEVER_TICKS, NEVER_TICKS)
         self.sending = False
         self.ecu_sending = False
         self.period_ticks = max(1, tick_hz // 50)
@@ -103,6 +104,7 @@ class Rig:
         self.memory, self.ros_link, self.ecu_link, self.arbitration, self.request = arbitrate(
             self.moment(event, edge, ecu_event)
         )
+        self.ages_before = (self.remote.age_ticks, self.ecu.age_ticks)
         remote = self.ecu if self.arbitration.commander == Commander.ECU else self.remote
         self.command = gate(
             self.request, remote, self.arbitration, self.command, self.vehicle, self.settings, self.tick_s, 0.0
@@ -120,6 +122,7 @@ class Rig:
             self.memory,
             self.ros_link,
             self.ecu_link,
+            *self.ages_before,
             self.arbitration,
             self.command,
             0.0,

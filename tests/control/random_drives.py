@@ -77,6 +77,7 @@ def drive(inputs: Row, outputs: Row, row: Row, tick_s: float) -> None:
     s = ControlSettings(*take(row, 0, SETTINGS_WIDTH))
     before = np.zeros(OUTPUT_WIDTH)
     speed = 0.0
+    ros_age_before = ecu_age_before = NEVER_TICKS
     for index in range(inputs.shape[0]):
         given = inputs[index]
         vehicle_row = given[VEHICLE_AT : VEHICLE_AT + VEHICLE_WIDTH].copy()
@@ -95,6 +96,8 @@ def drive(inputs: Row, outputs: Row, row: Row, tick_s: float) -> None:
             ArbiterMemory(*take(before, 0, MEMORY_WIDTH)),
             Link(*take(before, ROS_LINK_AT, LINK_WIDTH)),
             Link(*take(before, ECU_LINK_AT, LINK_WIDTH)),
+            ros_age_before,
+            ecu_age_before,
             Arbitration(*take(before, ARBITRATION_AT, ARBITRATION_WIDTH)),
             command,
             0.0,
@@ -104,6 +107,7 @@ def drive(inputs: Row, outputs: Row, row: Row, tick_s: float) -> None:
             s,
             tick_s,
         )
+        ros_age_before, ecu_age_before = ros.age_ticks, ecu.age_ticks
         memory, ros_link, ecu_link, arbitration, request = arbitrate(now)
         remote = ecu if arbitration.commander == ECU else ros
         command = gate(request, remote, arbitration, command, vehicle, s, tick_s, 0.0)

@@ -233,7 +233,7 @@ def test_throttle_that_autonomy_was_still_building_up_is_not_finished_after_the_
 def test_in_shared_control_the_controllers_part_is_limited_as_in_autonomy(make_rig: MakeRig) -> None:
     rig = make_rig().drive(Mode.SHARED, speed_mps=20.0)
     rig.run(1.0)
-    rig.send(road_wheel_rad=0.5, accel_mps2=5.0)
+    rig.send(road_wheel_rad=0.05, accel_mps2=5.0)
     wheel, _, _ = steps(rig, 1.0)
     assert wheel <= rig.settings.automatic_road_wheel_radps * rig.tick_s
     assert rig.arbitration.remote_road_wheel_rad < math.atan(5.0 * 2.6 / 19.0**2)

@@ -50,7 +50,7 @@ def now(make_rig: MakeRig) -> Moment:
 
 
 def decided(mode: Mode, entered: bool = False) -> Decision:
-    return Decision(float(mode), 0.0, float(entered), 0.0, 0.0)
+    return Decision(float(mode), 0.0, float(entered), 0.0, 0.0, float(entered))
 
 
 @pytest.mark.parametrize(
@@ -90,8 +90,15 @@ def test_the_consoles_own_stops_have_all_authority_at_once(mode: Mode, control: 
     assert shares_of(float(mode), 1.0, 0.8, BEFORE, control) == (1.0, 1.0, 0.0)
 
 
-def side(now: Moment, mode: Mode, entered: bool = False, shares: Shares = FADING, link: Link = FRESH) -> RemoteSide:
-    return remote_side(now, decided(mode, entered), shares, OFFERED, link, PERSON)
+def side(
+    now: Moment,
+    mode: Mode,
+    entered: bool = False,
+    shares: Shares = FADING,
+    link: Link = FRESH,
+    steered: bool = False,
+) -> RemoteSide:
+    return remote_side(now, decided(mode, entered), shares, OFFERED, link, PERSON, steered)
 
 
 def test_what_fades_out_is_what_it_contributed_to_the_command_in_force(now: Moment) -> None:
@@ -158,7 +165,7 @@ def test_in_shared_its_angle_is_limited_as_in_autonomy(sign: float, now: Moment)
     far = RemoteRequest(sign * 1.9, 0.0, 0.0, 1.0, 0.0)
     most = now.settings.automatic_road_wheel_rad
     at_lock = now._replace(before=BEFORE._replace(remote_road_wheel_rad=sign * most))
-    held = remote_side(at_lock, decided(Mode.SHARED), FADING, far, FRESH, PERSON)
+    held = remote_side(at_lock, decided(Mode.SHARED), FADING, far, FRESH, PERSON, False)
     assert held.road_wheel_rad == sign * most
 
 
@@ -182,18 +189,26 @@ def test_a_safe_stop_begins_with_what_is_and_goes_on_from_its_memory(now: Moment
 
 def test_a_steered_stop_follows_the_controller_and_brakes_by_the_book(now: Moment) -> None:
     vehicle = now.vehicle._replace(vx_mps=10.0, ax_mps2=-1.0)
-    now = now._replace(vehicle=vehicle, memory=now.memory._replace(stop_steered=1.0, stop_accel_mps2=-2.0))
-    steered = side(now, Mode.MINIMAL_RISK)
+    now = now._replace(vehicle=vehicle, memory=now.memory._replace(stop_accel_mps2=-2.0))
+    steered = side(now, Mode.MINIMAL_RISK, steered=True)
     assert steered.stop_accel_mps2 == pytest.approx(-2.0 - now.settings.stop_jerk_mps3 * TICK_S)
     assert (steered.road_wheel_rad, steered.hold_road_wheel_rad) == (OFFERED.road_wheel_rad,) * 2
-    blind = side(now, Mode.MINIMAL_RISK, link=STALE)
+    blind = side(now, Mode.MINIMAL_RISK)
     assert blind.stop_accel_mps2 == pytest.approx(-2.0 - now.settings.blind_stop_jerk_mps3 * TICK_S)
     assert blind.road_wheel_rad < 0.0 + 1e-12, "from what was held in memory"
 
 
-def steers(now: Moment, mode: Mode, before: Mode, reason: Reason, link: Link = FRESH, entered: bool = True) -> float:
+def steers(
+    now: Moment,
+    mode: Mode,
+    before: Mode,
+    reason: Reason,
+    link: Link = FRESH,
+    entered: bool = True,
+    lost: bool = False,
+) -> float:
     decision = decided(mode, entered)._replace(reason=float(reason))
-    return steered_stop(now._replace(before=BEFORE._replace(mode=float(before))), decision, OFFERED, link)
+    return steered_stop(now._replace(before=BEFORE._replace(mode=float(before))), decision, OFFERED, link, lost)
 
 
 STOP = Mode.MINIMAL_RISK
@@ -206,6 +221,7 @@ def test_a_controller_that_drove_steers_a_stop_that_is_not_its_fault(before: Mod
         assert steers(now, STOP, before, reason) == expected
     for link in (STALE, FRESH._replace(invalid=1.0)):
         assert steers(now, STOP, before, Reason.LOOP_STALL, link) == 0.0
+    assert steers(now, STOP, before, Reason.LOOP_STALL, lost=True) == 0.0
     for mode in Mode:
         if mode is not STOP:
             assert steers(now, mode, before, Reason.LOOP_STALL) == 0.0
@@ -217,6 +233,7 @@ def test_who_steers_a_stop_is_decided_once(steered: float, now: Moment) -> None:
     assert steers(now, STOP, STOP, Reason.NO_REACTION, entered=False) == steered
     for link in (STALE, FRESH._replace(invalid=1.0)):
         assert steers(now, STOP, STOP, Reason.NO_REACTION, link, entered=False) == 0.0
+    assert steers(now, STOP, STOP, Reason.NO_REACTION, entered=False, lost=True) == 0.0
 
 
 @pytest.mark.parametrize("before", [Mode.MANUAL, Mode.SHARED])

@@ -33,16 +33,16 @@ def decided(
 
 
 def test_nothing_happens(now: Moment) -> None:
-    assert decided(now) == (Mode.MANUAL, START, 0.0, 0.0, 0.0)
+    assert decided(now) == (Mode.MANUAL, START, 0.0, 0.0, 0.0, 0.0)
 
 
 def test_each_request_has_its_own_refusal(now: Moment) -> None:
     fast = now._replace(vehicle=now.vehicle._replace(vx_mps=30.0))
     too_fast = float(Reason.REFUSED_TOO_FAST)
     for event in (Event.REQUEST_AUTONOMOUS, Event.REQUEST_SHARED):
-        assert decided(fast, event) == (Mode.MANUAL, START, 0.0, too_fast, 0.0)
+        assert decided(fast, event) == (Mode.MANUAL, START, 0.0, too_fast, 0.0, 0.0)
     stopped = now._replace(before=now.before._replace(mode=float(Mode.STOPPED)))
-    assert decided(stopped, Event.RESET) == (Mode.STOPPED, START, 0.0, float(Reason.REFUSED_MOVING), 0.0)
+    assert decided(stopped, Event.RESET) == (Mode.STOPPED, START, 0.0, float(Reason.REFUSED_MOVING), 0.0, 0.0)
     foot = THERE._replace(throttle=0.9)
     assert decided(stopped, Event.REQUEST_MANUAL, foot)[3] == Reason.REFUSED_THROTTLE_PRESSED
     alone = now._replace(settings=now.settings._replace(person_required=0.0))
@@ -54,11 +54,11 @@ def test_each_request_has_its_own_refusal(now: Moment) -> None:
 
 def test_requests_that_are_granted(now: Moment) -> None:
     for event, mode in ((Event.REQUEST_AUTONOMOUS, Mode.AUTONOMOUS), (Event.REQUEST_SHARED, Mode.SHARED)):
-        assert decided(now, event) == (mode, Reason.OPERATOR_ASKED, 1.0, 0.0, 0.0)
+        assert decided(now, event) == (mode, Reason.OPERATOR_ASKED, 1.0, 0.0, 0.0, 1.0)
     driven = now._replace(before=now.before._replace(mode=float(Mode.AUTONOMOUS)))
-    assert decided(driven, Event.REQUEST_MANUAL) == (Mode.MANUAL, Reason.OPERATOR_ASKED, 1.0, 0.0, 0.0)
+    assert decided(driven, Event.REQUEST_MANUAL) == (Mode.MANUAL, Reason.OPERATOR_ASKED, 1.0, 0.0, 0.0, 1.0)
     shown = now._replace(before=now.before._replace(refusal=float(Reason.REFUSED_MOVING)))
-    assert decided(shown, Event.EMERGENCY_STOP) == (Mode.EMERGENCY_STOP, Reason.EMERGENCY, 1.0, 0.0, 0.0)
+    assert decided(shown, Event.EMERGENCY_STOP) == (Mode.EMERGENCY_STOP, Reason.EMERGENCY, 1.0, 0.0, 0.0, 1.0)
 
 
 def test_a_person_is_needed_where_the_profile_says_so(now: Moment) -> None:
@@ -83,9 +83,74 @@ def test_a_takeover_asked_for_again_is_from_then_on_the_askers(now: Moment) -> N
     requested = asked_to_take_over(now, Reason.DEVICE_LOST, 5.0)
     requested = requested._replace(before=requested.before._replace(refusal=float(Reason.REFUSED_MOVING)))
     again = decided(requested, Event.REQUEST_TAKEOVER)
-    assert again == (Mode.TAKEOVER_REQUESTED, Reason.REMOTE_ASKED, 0.0, 0.0, 0.0)
+    assert again == (Mode.TAKEOVER_REQUESTED, Reason.REMOTE_ASKED, 0.0, Reason.REFUSED_MOVING, 1.0, 1.0)
     assert decided(requested)[:2] == (Mode.TAKEOVER_REQUESTED, Reason.DEVICE_LOST)
     assert decided(now, Event.REQUEST_TAKEOVER)[:3] == (Mode.MANUAL, START, 0.0)
+
+
+@pytest.mark.parametrize("mode_ticks", [5.0, 1e6])
+def test_a_request_after_a_device_wait_begins_a_wait_of_its_own(mode_ticks: float, now: Moment) -> None:
+    """Only where the device is back, so that nobody is waited for; a wait that runs is never made longer."""
+    back = asked_to_take_over(now, Reason.DEVICE_LOST, mode_ticks)
+    assert decided(back, Event.REQUEST_TAKEOVER)[::5] == (Mode.TAKEOVER_REQUESTED, 1.0)
+    running = asked_to_take_over(now, Reason.REMOTE_ASKED, 5.0)
+    assert decided(running, Event.REQUEST_TAKEOVER)[::5] == (Mode.TAKEOVER_REQUESTED, 0.0)
+    lost = asked_to_take_over(now, Reason.DEVICE_LOST, 5.0)
+    assert decided(lost, Event.REQUEST_TAKEOVER, THERE._replace(trusted=0.0))[::5] == (Mode.TAKEOVER_REQUESTED, 0.0)
+
+
+def test_a_request_and_a_lost_device_in_one_tick_are_both_kept(now: Moment) -> None:
+    driven = now._replace(before=now.before._replace(mode=float(Mode.AUTONOMOUS)))
+    absent = THERE._replace(trusted=0.0)
+    both = decided(driven, Event.REQUEST_TAKEOVER, absent)
+    assert both == (Mode.TAKEOVER_REQUESTED, Reason.REMOTE_ASKED, 1.0, 0.0, 0.0, 1.0)
+    for event, reason in (
+        (Event.COMMANDER_LOST, Reason.COMMANDER_LOST),
+        (Event.NO_ANSWER, Reason.COMMAND_STALE),
+        (Event.REQUEST_TAKEOVER | Event.NO_ANSWER, Reason.COMMAND_STALE),
+    ):
+        assert decided(driven, event, absent)[:3] == (Mode.MINIMAL_RISK, reason, 1.0)
+
+
+def test_an_ask_that_meets_something_stronger_is_refused_and_named(now: Moment) -> None:
+    overruled = float(Reason.REFUSED_OVERRULED)
+    for event in (Event.REQUEST_MANUAL, Event.COMMANDER_LOST, Event.NO_ANSWER, Event.REQUEST_TAKEOVER):
+        for ask in (Event.REQUEST_AUTONOMOUS, Event.REQUEST_SHARED):
+            assert decided(now, event | ask) == (Mode.MANUAL, START, 0.0, overruled, 0.0, 0.0)
+    stalled = decided(now, Event.LOOP_STALL | Event.REQUEST_AUTONOMOUS)
+    assert stalled == (Mode.MINIMAL_RISK, Reason.LOOP_STALL, 1.0, overruled, 0.0, 1.0)
+    both = decided(now, Event.REQUEST_AUTONOMOUS | Event.REQUEST_SHARED)
+    assert both == (Mode.AUTONOMOUS, Reason.OPERATOR_ASKED, 1.0, overruled, 0.0, 1.0)
+    emergency = decided(now, Event.EMERGENCY_STOP | Event.REQUEST_MANUAL | Event.RESET)
+    assert emergency == (Mode.EMERGENCY_STOP, Reason.EMERGENCY, 1.0, Reason.REFUSED_EMERGENCY, 0.0, 1.0)
+    reset = decided(now, Event.EMERGENCY_STOP | Event.RESET)
+    assert reset[:4] == (Mode.EMERGENCY_STOP, Reason.EMERGENCY, 1.0, Reason.REFUSED_EMERGENCY)
+    asked = asked_to_take_over(now, Reason.REMOTE_ASKED, 5.0)
+    again = decided(asked, Event.REQUEST_TAKEOVER | Event.REQUEST_AUTONOMOUS)
+    assert again == (Mode.TAKEOVER_REQUESTED, Reason.REMOTE_ASKED, 0.0, overruled, 0.0, 0.0)
+    unheard = decided(now, Event.EMERGENCY_STOP, ecu_event=Event.REQUEST_AUTONOMOUS)
+    assert unheard[:4] == (Mode.EMERGENCY_STOP, Reason.EMERGENCY, 1.0, Reason.REFUSED_NOT_COMMANDER)
+
+
+def test_a_car_that_stands_stopped_is_reset_or_given_to_the_person_but_not_both(now: Moment) -> None:
+    stopped = now._replace(before=now.before._replace(mode=float(Mode.STOPPED)))
+    standing = {"person": THERE, "steering": False, "standing": True}
+
+    def stood(event: Event) -> tuple[float, ...]:
+        asked = stopped._replace(events=now.events._replace(events=float(event)))
+        return decide(asked, controllers=look(asked), **standing)  # type: ignore[arg-type]
+
+    assert stood(Event.RESET)[:4] == (Mode.PARKED, Reason.RESET, 1.0, 0.0)
+    assert stood(Event.RESET | Event.REQUEST_TAKEOVER | Event.COMMANDER_LOST)[:4] == (
+        Mode.PARKED,
+        Reason.RESET,
+        1.0,
+        0.0,
+    )
+    both = stood(Event.RESET | Event.REQUEST_MANUAL)
+    assert both[:4] == (Mode.MANUAL, Reason.OPERATOR_ASKED, 1.0, Reason.REFUSED_OVERRULED)
+    held_up = stood(Event.LOOP_STALL | Event.REQUEST_MANUAL)
+    assert held_up[:4] == (Mode.STOPPED, START, 0.0, Reason.REFUSED_OVERRULED)
 
 
 @pytest.mark.parametrize("reason", [Reason.DEVICE_LOST, Reason.REMOTE_ASKED])
@@ -102,22 +167,26 @@ def test_nobodys_reaction_ends_in_a_stop_unless_what_was_lost_is_back(
 
 
 @pytest.mark.parametrize("mode", [Mode.MANUAL, Mode.AUTONOMOUS, Mode.SHARED])
-def test_steering_that_cannot_be_meant_is_replaced_and_nothing_else(mode: Mode, now: Moment) -> None:
-    """By the angle in force; in SHARED by the controller's own part: the angle in force is the person's, too."""
-    before = now.before._replace(mode=float(mode), remote_road_wheel_rad=0.03)
+def test_a_command_that_steers_too_hard_is_refused_whole_and_may_only_slow_down(mode: Mode, now: Moment) -> None:
+    """What is in force is held; in SHARED the controller's own part: what is in force is the person's, too."""
+    before = now.before._replace(mode=float(mode), remote_road_wheel_rad=0.03, remote_throttle=0.04, remote_brake=0.05)
     fast = now._replace(before=before, vehicle=now.vehicle._replace(vx_mps=20.0, ax_mps2=1.0))
-    fast = fast._replace(command_before=now.command_before._replace(road_wheel_rad=0.02))
+    in_force = {"road_wheel_rad": 0.02, "throttle": 0.06, "brake": 0.07}
+    fast = fast._replace(command_before=now.command_before._replace(**in_force))
     fast = fast._replace(memory=now.memory._replace(speed_integral_mps2=0.25))
-    command = now.ros._replace(kind=float(RemoteKind.ACCELERATION), direction=1.0, road_wheel_rad=0.01)
-    for accel in (1.5, -1.5):
-        asked = command._replace(accel_mps2=accel)
-        meant = look(fast._replace(ros=asked)).ros_offered
-        wild = look(fast._replace(ros=asked._replace(road_wheel_rad=0.5))).ros_offered
-        assert meant.road_wheel_rad == 0.01
-        assert wild.road_wheel_rad == (0.03 if mode is Mode.SHARED else 0.02)
-        assert wild[1:] == meant[1:]
-        assert (meant.throttle > 0.0, meant.brake > 0.0, meant.direction) == (accel > 0.0, accel < 0.0, 1.0)
-        assert meant.speed_integral_mps2 not in (0.0, 0.25)
+    command = now.ros._replace(direction=1.0, road_wheel_rad=0.5)
+    angle, throttle, brake = (0.03, 0.04, 0.05) if mode is Mode.SHARED else (0.02, 0.06, 0.07)
+    assert look(fast._replace(ros=command._replace(road_wheel_rad=0.01))).ros_offered[:3] == (0.01, 0.0, 0.0)
+    for asked, pedals in (
+        ({"throttle": 0.9}, (throttle, brake)),
+        ({"throttle": 0.01}, (0.01, brake)),
+        ({"brake": 0.9}, (0.0, 0.9)),
+        ({"brake": 0.01}, (0.0, brake)),
+    ):
+        wild = look(fast._replace(ros=command._replace(**asked))).ros_offered
+        assert wild == (angle, *pedals, 1.0, 0.25)
+    automatic = fast._replace(command_before=fast.command_before._replace(automatic=1.0, gear=-1.0))
+    assert look(automatic._replace(ros=command)).ros_offered.direction == -1.0
 
 
 def test_what_the_commanding_ecu_asks_for_is_heard(now: Moment) -> None:
@@ -128,7 +197,7 @@ def test_what_the_commanding_ecu_asks_for_is_heard(now: Moment) -> None:
 
 def test_an_ecu_that_does_not_command_is_refused_in_words(now: Moment) -> None:
     unheard = decided(now, ecu_event=Event.REQUEST_AUTONOMOUS)
-    assert unheard == (Mode.MANUAL, START, 0.0, float(Reason.REFUSED_NOT_COMMANDER), 0.0)
+    assert unheard == (Mode.MANUAL, START, 0.0, float(Reason.REFUSED_NOT_COMMANDER), 0.0, 0.0)
     fast = now._replace(vehicle=now.vehicle._replace(vx_mps=30.0))
     both = decided(fast, Event.REQUEST_AUTONOMOUS, ecu_event=Event.REQUEST_SHARED)
     assert both[3] == Reason.REFUSED_TOO_FAST
@@ -139,12 +208,12 @@ def test_a_refusal_is_shown_and_counted_until_its_time_is_over(now: Moment) -> N
     reason = float(Reason.ARMED)
     before = now.before._replace(refusal=refusal, reason=reason)
     shown = now._replace(before=before, memory=now.memory._replace(refusal_ticks=10.0))
-    assert decided(shown) == (Mode.MANUAL, reason, 0.0, refusal, 11.0)
+    assert decided(shown) == (Mode.MANUAL, reason, 0.0, refusal, 11.0, 0.0)
     last = now.settings.refusal_ticks - 1.0
     over = now._replace(before=before, memory=now.memory._replace(refusal_ticks=last))
-    assert decided(over) == (Mode.MANUAL, reason, 0.0, 0.0, 0.0)
+    assert decided(over) == (Mode.MANUAL, reason, 0.0, 0.0, 0.0, 0.0)
     nearly = now._replace(before=before, memory=now.memory._replace(refusal_ticks=last - 1.0))
-    assert decided(nearly) == (Mode.MANUAL, reason, 0.0, refusal, last)
+    assert decided(nearly) == (Mode.MANUAL, reason, 0.0, refusal, last, 0.0)
 
 
 def test_who_commands_and_what_the_other_asks_for(now: Moment) -> None:

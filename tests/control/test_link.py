@@ -11,6 +11,12 @@ VEHICLE = VehicleState(*(0.0,) * len(VehicleState._fields))
 REMOTE = RemoteCommand(*(0.0,) * len(RemoteCommand._fields))._replace(kind=float(RemoteKind.SPEED), sequence=1.0)
 
 
+def watch(
+    remote: RemoteCommand, before: Link, vehicle: VehicleState, settings: ControlSettings, age_before_ticks: float = 0.0
+) -> Link:
+    return watch_link(remote, before, age_before_ticks, vehicle, settings)
+
+
 @pytest.mark.parametrize(
     ("fields", "fresh"),
     [
@@ -25,67 +31,65 @@ REMOTE = RemoteCommand(*(0.0,) * len(RemoteCommand._fields))._replace(kind=float
     ],
 )
 def test_fresh(fields: dict[str, float], fresh: float, control: ControlSettings) -> None:
-    link = watch_link(REMOTE._replace(**fields), NO_LINK, VEHICLE, control)
+    link = watch(REMOTE._replace(**fields), NO_LINK, VEHICLE, control)
     assert (link.fresh, link.fresh_ticks, link.invalid) == (fresh, fresh, 0.0)
 
 
 def test_refused_commands_count_in_a_row(control: ControlSettings) -> None:
-    link = watch_link(REMOTE, NO_LINK, VEHICLE, control)
+    link = watch(REMOTE, NO_LINK, VEHICLE, control)
     for refused in range(1, 6):
-        link = watch_link(REMOTE._replace(refused=float(refused)), link, VEHICLE, control)
+        link = watch(REMOTE._replace(refused=float(refused)), link, VEHICLE, control)
         assert (link.invalid_run, link.fresh_ticks) == (float(refused), 0.0)
         assert link.invalid == (1.0 if refused == 5 else 0.0)
-    link = watch_link(REMOTE._replace(refused=5.0, sequence=2.0), link, VEHICLE, control)
+    link = watch(REMOTE._replace(refused=5.0, sequence=2.0), link, VEHICLE, control)
     assert (link.invalid_run, link.invalid, link.fresh_ticks) == (0.0, 0.0, 1.0)
 
 
 def test_many_refused_in_one_tick_count_at_once(control: ControlSettings) -> None:
-    link = watch_link(REMOTE, NO_LINK, VEHICLE, control)
-    assert watch_link(REMOTE._replace(refused=5.0), link, VEHICLE, control).invalid == 1.0
-    huge = watch_link(REMOTE._replace(refused=1e308), link, VEHICLE, control)
+    link = watch(REMOTE, NO_LINK, VEHICLE, control)
+    assert watch(REMOTE._replace(refused=5.0), link, VEHICLE, control).invalid == 1.0
+    huge = watch(REMOTE._replace(refused=1e308), link, VEHICLE, control)
     assert (huge.invalid_run, huge.invalid) == (1e9, 1.0)
 
 
 def test_a_counter_that_starts_anew_is_no_refusal(control: ControlSettings) -> None:
-    link = watch_link(
-        REMOTE._replace(refused=0.0), NO_LINK._replace(refused_seen=7.0, sequence_seen=1.0), VEHICLE, control
-    )
+    link = watch(REMOTE._replace(refused=0.0), NO_LINK._replace(refused_seen=7.0, sequence_seen=1.0), VEHICLE, control)
     assert (link.refused_seen, link.invalid_run, link.fresh) == (0.0, 0.0, 1.0)
 
 
 def test_a_command_that_is_no_number_is_invalid_and_remembered_as_nothing(control: ControlSettings) -> None:
     before = NO_LINK._replace(sequence_seen=3.0, refused_seen=2.0, invalid_run=1.0, fresh_ticks=99.0)
     for field in ("sequence", "refused", "speed_mps"):
-        link = watch_link(REMOTE._replace(**{field: math.nan}), before, VEHICLE, control)
+        link = watch(REMOTE._replace(**{field: math.nan}), before, VEHICLE, control)
         assert link == (3.0, 2.0, 1.0, 0.0, 0.0, 1.0, 0.0, LinkState.INVALID, 0.0, 0.0)
 
 
 def test_state_in_one_word(control: ControlSettings) -> None:
-    assert watch_link(REMOTE._replace(sequence=0.0), NO_LINK, VEHICLE, control).state == LinkState.NEVER
-    link = watch_link(REMOTE, NO_LINK, VEHICLE, control)
+    assert watch(REMOTE._replace(sequence=0.0), NO_LINK, VEHICLE, control).state == LinkState.NEVER
+    link = watch(REMOTE, NO_LINK, VEHICLE, control)
     assert link.state == LinkState.UNSTEADY
     for _ in range(int(control.engage_stable_ticks)):
-        link = watch_link(REMOTE, link, VEHICLE, control)
+        link = watch(REMOTE, link, VEHICLE, control)
     assert link.state == LinkState.STEADY
     almost = NO_LINK._replace(sequence_seen=1.0, fresh_ticks=control.engage_stable_ticks - 2.0)
-    assert watch_link(REMOTE, almost, VEHICLE, control).state == LinkState.UNSTEADY
+    assert watch(REMOTE, almost, VEHICLE, control).state == LinkState.UNSTEADY
     steady = almost._replace(fresh_ticks=control.engage_stable_ticks - 1.0)
-    assert watch_link(REMOTE, steady, VEHICLE, control).state == LinkState.STEADY
-    assert watch_link(REMOTE._replace(age_ticks=50.0), link, VEHICLE, control).state == LinkState.STALE
-    assert watch_link(REMOTE._replace(refused=5.0), link, VEHICLE, control).state == LinkState.INVALID
+    assert watch(REMOTE, steady, VEHICLE, control).state == LinkState.STEADY
+    assert watch(REMOTE._replace(age_ticks=50.0), link, VEHICLE, control).state == LinkState.STALE
+    assert watch(REMOTE._replace(refused=5.0), link, VEHICLE, control).state == LinkState.INVALID
 
 
 def test_a_fresh_command_renews_the_lease_and_nothing_else_does(control: ControlSettings) -> None:
-    link = watch_link(REMOTE, NO_LINK, VEHICLE, control)
+    link = watch(REMOTE, NO_LINK, VEHICLE, control)
     assert link.lease_ticks == control.lease_ticks == 125.0
-    link = watch_link(REMOTE._replace(age_ticks=50.0), link, VEHICLE, control)
+    link = watch(REMOTE._replace(age_ticks=50.0), link, VEHICLE, control)
     assert link.lease_ticks == 124.0
-    link = watch_link(REMOTE._replace(speed_mps=math.inf), link, VEHICLE, control)
+    link = watch(REMOTE._replace(speed_mps=math.inf), link, VEHICLE, control)
     assert link.lease_ticks == 123.0
-    link = watch_link(REMOTE._replace(refused=9.0), link, VEHICLE, control)
+    link = watch(REMOTE._replace(refused=9.0), link, VEHICLE, control)
     assert link.lease_ticks == 122.0
     for _ in range(200):
-        link = watch_link(REMOTE._replace(age_ticks=NEVER_TICKS), link, VEHICLE, control)
+        link = watch(REMOTE._replace(age_ticks=NEVER_TICKS), link, VEHICLE, control)
     assert link.lease_ticks == 0.0
 
 
@@ -96,39 +100,48 @@ MEANT_RAD, WILD_RAD = math.atan(0.26) - 1e-6, math.atan(0.26) + 1e-6
 
 def test_steering_that_cannot_be_meant_counts_as_refused(control: ControlSettings) -> None:
     """Each new command counts once, however long it is in force; a plausible one ends the row."""
-    link = watch_link(REMOTE._replace(road_wheel_rad=MEANT_RAD), NO_LINK, AT_SPEED, control)
+    link = watch(REMOTE._replace(road_wheel_rad=MEANT_RAD), NO_LINK, AT_SPEED, control)
     assert (link.invalid_run, link.implausible, link.implausible_ticks, link.fresh_ticks) == (0.0, 0.0, 0.0, 1.0)
     for count in range(1, 6):
         wild = REMOTE._replace(road_wheel_rad=WILD_RAD, sequence=1.0 + count)
-        link = watch_link(wild, link, AT_SPEED, control)
+        link = watch(wild, link, AT_SPEED, control)
         assert (link.invalid_run, link.implausible, link.fresh, link.fresh_ticks) == (count, count, 1.0, 0.0)
         assert link.invalid == (1.0 if count == 5 else 0.0)
-        again = watch_link(wild, link, AT_SPEED, control)
+        again = watch(wild, link, AT_SPEED, control)
         assert again == link._replace(implausible_ticks=link.implausible_ticks + 1.0, lease_ticks=again.lease_ticks)
     assert (link.implausible_ticks, link.state, link.lease_ticks) == (5.0, LinkState.INVALID, 124.0)
-    link = watch_link(REMOTE._replace(road_wheel_rad=MEANT_RAD, sequence=9.0), link, AT_SPEED, control)
+    link = watch(REMOTE._replace(road_wheel_rad=MEANT_RAD, sequence=9.0), link, AT_SPEED, control)
     assert (link.invalid_run, link.implausible, link.implausible_ticks, link.fresh_ticks) == (0.0, 5.0, 0.0, 1.0)
     assert link.state == LinkState.UNSTEADY
 
 
 def test_refused_and_implausible_ones_make_one_row(control: ControlSettings) -> None:
-    link = watch_link(REMOTE, NO_LINK, AT_SPEED, control)
-    link = watch_link(REMOTE._replace(refused=3.0), link, AT_SPEED, control)
+    link = watch(REMOTE, NO_LINK, AT_SPEED, control)
+    link = watch(REMOTE._replace(refused=3.0), link, AT_SPEED, control)
     wild = REMOTE._replace(refused=3.0, sequence=2.0, road_wheel_rad=1.0)
-    link = watch_link(wild, link, AT_SPEED, control)
+    link = watch(wild, link, AT_SPEED, control)
     assert (link.invalid_run, link.invalid) == (4.0, 0.0)
-    assert watch_link(wild._replace(refused=4.0), link, AT_SPEED, control).invalid == 1.0
-    huge = watch_link(wild._replace(refused=1e308, sequence=3.0), link, AT_SPEED, control)
+    assert watch(wild._replace(refused=4.0), link, AT_SPEED, control).invalid == 1.0
+    huge = watch(wild._replace(refused=1e308, sequence=3.0), link, AT_SPEED, control)
     assert (huge.invalid_run, huge.implausible) == (1e9, 2.0)
 
 
 def test_one_that_stays_in_force_is_invalid_when_the_one_before_would_be_stale(control: ControlSettings) -> None:
+    """However old that one was already: the last plausible command counts, not the first wild one."""
     wild = REMOTE._replace(road_wheel_rad=1.0, sequence=2.0)
-    link = watch_link(REMOTE, NO_LINK, AT_SPEED, control)
-    for ticks in range(1, int(control.stale_ticks) + 1):
-        link = watch_link(wild._replace(age_ticks=ticks - 1.0), link, AT_SPEED, control)
-        assert (link.implausible_ticks, link.invalid) == (ticks, 1.0 if ticks == control.stale_ticks else 0.0)
-    silent = watch_link(wild._replace(age_ticks=control.stale_ticks), link, AT_SPEED, control)
-    assert (silent.implausible_ticks, silent.state) == (0.0, LinkState.STALE), "silent is the truer word"
-    lost = watch_link(wild._replace(speed_mps=math.nan), link, AT_SPEED, control)
-    assert (lost.implausible, lost.implausible_ticks, lost.state) == (1.0, 0.0, LinkState.INVALID)
+    for age in (0.0, 1.0, 30.0, control.stale_ticks - 1.0):
+        link = watch(REMOTE._replace(age_ticks=age), NO_LINK, AT_SPEED, control)
+        for ticks in range(int(age) + 1, int(control.stale_ticks) + 1):
+            link = watch(wild._replace(age_ticks=ticks - age - 1.0), link, AT_SPEED, control, age)
+            assert (link.implausible_ticks, link.invalid) == (ticks, 1.0 if ticks == control.stale_ticks else 0.0)
+        silent = watch(wild._replace(age_ticks=control.stale_ticks), link, AT_SPEED, control)
+        assert (silent.implausible_ticks, silent.state) == (0.0, LinkState.STALE), "silent is the truer word"
+        lost = watch(wild._replace(speed_mps=math.nan), link, AT_SPEED, control)
+        assert (lost.implausible, lost.implausible_ticks, lost.state) == (1.0, 0.0, LinkState.INVALID)
+
+
+def test_where_nothing_plausible_was_in_force_the_first_wild_one_counts_from_itself(control: ControlSettings) -> None:
+    wild = REMOTE._replace(road_wheel_rad=1.0)
+    assert watch(wild, NO_LINK, AT_SPEED, control, NEVER_TICKS).implausible_ticks == 1.0
+    stale = watch(REMOTE._replace(age_ticks=control.stale_ticks), NO_LINK, AT_SPEED, control)
+    assert watch(wild._replace(sequence=2.0), stale, AT_SPEED, control, control.stale_ticks).implausible_ticks == 1.0

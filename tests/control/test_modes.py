@@ -4,7 +4,7 @@ import itertools
 
 import pytest
 
-from simconsole.control.modes import MEANING, MODES, REACTIONS, REASONS, TRIGGERS, Trigger, deciding_trigger, next_mode
+from simconsole.control.modes import MEANING, MODES, REACTIONS, REASONS, TRIGGERS, Trigger, outcome, reacts, takes
 from simconsole.control.modes import reason_of as reason
 from simconsole.signals import Mode
 
@@ -14,14 +14,15 @@ ACTS = {Trigger.MANUAL_ASKED, Trigger.RESET, Trigger.AUTONOMOUS_ASKED, Trigger.S
 
 def after(mode: Mode, *present: Trigger) -> Mode:
     mask = sum(1 << trigger for trigger in present)
-    return Mode(int(next_mode(float(mode), deciding_trigger(float(mode), mask))))
+    return Mode(int(outcome(float(mode), mask).mode))
 
 
 @pytest.mark.parametrize(("mode", "trigger"), PAIRS)
 def test_every_pair_does_what_the_table_says(mode: Mode, trigger: Trigger) -> None:
     assert after(mode, trigger) is REACTIONS[mode].get(trigger, mode)
     expected = trigger if trigger in REACTIONS[mode] else -1
-    assert deciding_trigger(float(mode), 1 << trigger) == expected
+    assert outcome(float(mode), 1 << trigger).trigger == expected
+    assert reacts(float(mode), trigger) == (trigger in REACTIONS[mode])
 
 
 def test_the_table_is_complete_and_names_only_changes() -> None:
@@ -32,10 +33,52 @@ def test_the_table_is_complete_and_names_only_changes() -> None:
 
 
 @pytest.mark.parametrize("mode", Mode)
-def test_of_two_triggers_the_stronger_one_that_matters_decides(mode: Mode) -> None:
-    for strong, weak in itertools.combinations(Trigger, 2):
-        first = strong if strong in REACTIONS[mode] else weak
-        assert after(mode, strong, weak) is REACTIONS[mode].get(first, mode)
+def test_whatever_takes_authority_takes_effect_and_what_asks_for_more_gives_way(mode: Mode) -> None:
+    for present in itertools.chain(itertools.combinations(Trigger, 2), itertools.combinations(Trigger, 3)):
+        assert after(mode, *present) is by_the_rule(mode, present), present
+
+
+def by_the_rule(mode: Mode, present: tuple[Trigger, ...]) -> Mode:
+    """The rule of docs/modes.md, in its own words."""
+
+    def taking(where: Mode) -> list[Trigger]:
+        still = where in (Mode.PARKED, Mode.STOPPED)
+        return [
+            trigger
+            for trigger in sorted(present)
+            if trigger <= Trigger.NO_REACTION and not (still and trigger is Trigger.MANUAL_ASKED)
+        ]
+
+    now, effective = mode, False
+    for trigger in Trigger:
+        if trigger in taking(now) and trigger in REACTIONS[now]:
+            now, effective = REACTIONS[now][trigger], True
+    if effective:
+        return now
+    for trigger in sorted(present):
+        target = REACTIONS[mode].get(trigger)
+        if target is not None and not any(other in REACTIONS[target] for other in taking(target)):
+            return target
+    return mode
+
+
+def test_no_trigger_that_takes_authority_hides_another() -> None:
+    """The pairs that were swallowed once: each of them reacts in the mode that the other leads to."""
+    assert after(Mode.AUTONOMOUS, Trigger.DEVICE_LOST, Trigger.COMMANDER_LOST) is Mode.MINIMAL_RISK
+    assert after(Mode.AUTONOMOUS, Trigger.DEVICE_LOST, Trigger.COMMAND_STALE) is Mode.MINIMAL_RISK
+    assert after(Mode.AUTONOMOUS, Trigger.MANUAL_ASKED, Trigger.LOOP_STALL) is Mode.MINIMAL_RISK
+    assert after(Mode.MANUAL, Trigger.COMMANDER_LOST, Trigger.AUTONOMOUS_ASKED) is Mode.MANUAL
+    assert after(Mode.TAKEOVER_REQUESTED, Trigger.TAKEOVER_ASKED, Trigger.AUTONOMOUS_ASKED) is Mode.TAKEOVER_REQUESTED
+    assert after(Mode.STOPPED, Trigger.MANUAL_ASKED, Trigger.LOOP_STALL) is Mode.STOPPED
+    assert after(Mode.STOPPED, Trigger.RESET, Trigger.COMMAND_STALE, Trigger.TAKEOVER_ASKED) is Mode.PARKED
+
+
+def test_manual_in_a_car_that_stands_takes_nothing() -> None:
+    asked = int(Trigger.MANUAL_ASKED)
+    assert [mode for mode in Mode if reacts(float(mode), asked) and not takes(float(mode), asked)] == [
+        Mode.PARKED,
+        Mode.STOPPED,
+    ]
 
 
 @pytest.mark.parametrize("mode", Mode)

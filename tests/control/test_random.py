@@ -213,7 +213,8 @@ def test_from_every_mode_a_person_gets_back_to_manual(long_drive: Drive) -> None
                 event = Event.REQUEST_MANUAL if tick % 2 else Event.RESET
                 happened = EventInput(float(event))
                 now = Moment(
-                    driver, remote, remote, happened, vehicle, memory, ros_link, ecu_link, arbitration, command,
+                    driver, remote, remote, happened, vehicle, memory, ros_link, ecu_link, NEVER_TICKS, NEVER_TICKS,
+                    arbitration, command,
                     0.0, 0.0, 0.0, 0.0, s, long_drive.tick_s,
                 )  # fmt: skip
                 memory, ros_link, ecu_link, arbitration, request = arbitrate(now)

@@ -6,7 +6,7 @@ import math
 import pytest
 
 from simconsole.control.engage import GRANTED
-from simconsole.control.modes import Trigger
+from simconsole.control.modes import REACTIONS, Trigger
 from simconsole.control.person import Person
 from simconsole.control.settings import ControlSettings
 from simconsole.control.triggers import (
@@ -14,6 +14,7 @@ from simconsole.control.triggers import (
     asked_of,
     asked_triggers,
     fault_triggers,
+    link_lost,
     manual_refusal,
     person_triggers,
     refusal_of,
@@ -144,25 +145,47 @@ def test_what_is_asked_and_not_refused_becomes_a_trigger(name: str) -> None:
     assert asked_triggers(NOTHING, GRANTED, GRANTED, GRANTED, GRANTED) == 0
 
 
-@pytest.mark.parametrize("mode", Mode)
-def test_why_an_ask_was_refused(mode: Mode) -> None:
-    def why(name: str, *refusals: float) -> float:
-        return refusal_of(float(mode), NOTHING._replace(**{name: 1.0}), *refusals)
+ASKS = {
+    "manual": (Trigger.MANUAL_ASKED, Mode.MANUAL),
+    "reset": (Trigger.RESET, Mode.PARKED),
+    "autonomous": (Trigger.AUTONOMOUS_ASKED, Mode.AUTONOMOUS),
+    "shared": (Trigger.SHARED_ASKED, Mode.SHARED),
+}
+LATCHED = (Mode.EMERGENCY_STOP, Mode.STOPPED)
 
-    manual, reset, engage, shared = 21.0, 22.0, 23.0, 24.0
-    given = (manual, reset, engage, shared)
+
+@pytest.mark.parametrize("mode", Mode)
+@pytest.mark.parametrize("after", Mode)
+def test_why_an_ask_was_refused(mode: Mode, after: Mode) -> None:
+    """An emergency stop is named before anything else, then the ask's own refusal, then what came first."""
+    refusals = {"manual": 21.0, "reset": 22.0, "autonomous": 23.0, "shared": 24.0}
     granted = (GRANTED,) * 4
-    emergency = mode is Mode.EMERGENCY_STOP
-    assert why("takeover", *given) == GRANTED
-    assert why("manual", *given) == (GRANTED if mode is Mode.MANUAL else manual)
-    assert why("manual", *granted) == (GRANTED if mode is Mode.MANUAL else Reason.REFUSED_MODE)
-    latched = mode in (Mode.EMERGENCY_STOP, Mode.STOPPED)
-    assert why("reset", *given) == (reset if latched else GRANTED)
-    for name, reason, own in (("autonomous", engage, Mode.AUTONOMOUS), ("shared", shared, Mode.SHARED)):
-        refused = GRANTED if mode is own else Reason.REFUSED_EMERGENCY if emergency else reason
-        assert why(name, *given) == refused
-        by_mode = GRANTED if mode is own else Reason.REFUSED_EMERGENCY if emergency else Reason.REFUSED_MODE
-        assert why(name, *granted) == by_mode
+
+    def why(name: str, *refusals: float) -> float:
+        return refusal_of(float(mode), float(after), NOTHING._replace(**{name: 1.0}), *refusals)
+
+    assert why("takeover", *refusals.values()) == GRANTED
+    for name, (trigger, target) in ASKS.items():
+        met = after is target or (name == "reset" and mode not in LATCHED and after not in LATCHED)
+        emergency = after is Mode.EMERGENCY_STOP
+        given = refusals[name] if name == "reset" or not emergency else Reason.REFUSED_EMERGENCY
+        assert why(name, *refusals.values()) == (GRANTED if met else given)
+        overruled = Reason.REFUSED_OVERRULED if trigger in REACTIONS[mode] else Reason.REFUSED_MODE
+        assert why(name, *granted) == (GRANTED if met else Reason.REFUSED_EMERGENCY if emergency else overruled)
+
+
+def test_of_several_asks_the_first_that_was_refused_is_told() -> None:
+    both = NOTHING._replace(manual=1.0, autonomous=1.0, shared=1.0)
+    refused = (21.0, GRANTED, 23.0, 24.0)
+    assert refusal_of(float(Mode.STOPPED), float(Mode.STOPPED), both, *refused) == 21.0
+    assert refusal_of(float(Mode.MANUAL), float(Mode.MANUAL), both, *refused) == 23.0
+    assert refusal_of(float(Mode.MANUAL), float(Mode.AUTONOMOUS), both._replace(manual=0.0), *refused) == 24.0
+
+
+def test_a_link_is_lost_when_the_commander_left_or_did_not_answer() -> None:
+    assert link_lost(Event.COMMANDER_LOST)
+    assert link_lost(Event.NO_ANSWER | Event.MARK)
+    assert not link_lost(int(~(Event.COMMANDER_LOST | Event.NO_ANSWER)) & 0x1FFFF)
 
 
 def test_a_mask_that_is_no_number_asks_for_nothing() -> None:

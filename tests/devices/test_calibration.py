@@ -57,6 +57,7 @@ def test_rest_arms_and_the_next_tick_is_live() -> None:
     assert validities(seat) == {LIVE}
 
 
+@pytest.mark.fault("D05")
 @pytest.mark.parametrize("pedal", PEDALS)
 def test_pedal_pressed_at_start_reads_zero_until_released(pedal: str) -> None:
     """D05: a pedal stuck at 100 % commands nothing; one released to 5 % or less does from then on."""
@@ -114,6 +115,7 @@ def test_silence_counts_from_the_first_tick_after_100_ms_at_every_rate(tick_hz: 
     assert age == 0.1 * tick_hz + 1
 
 
+@pytest.mark.fault("D03")
 def test_silent_device_is_held_then_stale_and_returns_without_arming_again(seat: Seat) -> None:
     """D03: 100 ms."""
     pressed = Intent(throttle=0.6, hand_wheel_rad=1.0, gear=3)
@@ -141,6 +143,7 @@ def test_lost_pedals_must_be_seen_at_rest_again(seat: Seat) -> None:
     assert seat.do(Intent(throttle=0.8)).throttle == pytest.approx(0.8)
 
 
+@pytest.mark.fault("D04")
 @pytest.mark.parametrize("off_deg", [-6.0, -5.1, 5.1, 400.0])
 def test_lost_wheel_stays_lost_until_it_stands_as_the_car_steers(off_deg: float, seat: Seat) -> None:
     """D04: 5 degrees. The road wheels keep what they were told until then."""
@@ -181,6 +184,7 @@ def test_shifter_buttons_work_while_the_wheel_is_gone() -> None:
     assert seat.do(Intent(), shifter_age_ticks=NEVER_TICKS).pressed == 0.0
 
 
+@pytest.mark.fault("D07")
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 1.5, -1e308])
 @pytest.mark.parametrize("field", ["wheel_axis", "throttle_axis", "brake_axis", "clutch_axis"])
 def test_bad_axis_is_refused_held_and_stale_after_100_ms(field: str, value: float, seat: Seat) -> None:

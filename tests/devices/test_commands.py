@@ -65,6 +65,7 @@ def test_check_says_what_was_not_tried(t500: CockpitProfile) -> None:
     assert any(note.startswith("gears not tried: 1, 2") for note in results["notes"])
 
 
+@pytest.mark.fault("D09")
 def test_check_names_a_pedal_that_was_never_released(t500: CockpitProfile) -> None:
     """D09, one pedal: the others work."""
     watch = Watch(t500, 250)

@@ -43,6 +43,7 @@ def test_shift_through_the_gate_is_never_neutral(seat: Seat) -> None:
     assert seat.driver.neutral_ticks == 0.0
 
 
+@pytest.mark.fault("D08")
 @pytest.mark.parametrize("mask", [0b11, 0b10000001, 0b1111111])
 def test_two_gears_at_once_keep_the_last(mask: int, seat: Seat) -> None:
     """D08."""

@@ -187,6 +187,7 @@ def test_hat_is_read(drive: Drive) -> None:
     assert (sample.hat_x, sample.hat_y) == (1.0, -1.0)
 
 
+@pytest.mark.fault("D01")
 def test_unplugging_at_full_throttle_never_gives_half_throttle(drive: Drive) -> None:
     """D01: SDL centres all axes first and then tells; half of a pedal's travel must never come through."""
     before = drive.do(Intent(hand_wheel_rad=-0.8, throttle=1.0, gear=3), ticks=5)
@@ -211,6 +212,7 @@ def test_unplugging_the_shifter_leaves_wheel_and_pedals(drive: Drive) -> None:
     assert (driver.gear, driver.shifter_validity) == (2.0, LOST)
 
 
+@pytest.mark.fault("D04")
 def test_device_that_comes_back_pressed_must_be_released_first(drive: Drive) -> None:
     """D04: same device by identity, nothing commanded before the pedals were seen at rest."""
     drive.do(Intent(throttle=0.9))
@@ -293,6 +295,7 @@ def test_twin_of_a_bound_device_is_not_listened_to(drive: Drive, plug: Plug) -> 
     assert drive.do(Intent(throttle=0.3), ticks=3).throttle == pytest.approx(0.3, abs=1e-4)
 
 
+@pytest.mark.fault("D10")
 def test_burst_of_events_ends_at_the_newest_value(drive: Drive) -> None:
     """D10: 10^4 moves and 5,000 presses between two polls."""
     wheel = drive.plugged._devices[0x044F, 0xB65E]
@@ -333,6 +336,7 @@ def test_device_with_too_few_axes_is_refused(plug: Plug, t500: CockpitProfile) -
         SdlSource(t500)
 
 
+@pytest.mark.fault("D09")
 @pytest.mark.parametrize("rest", [(0.0, -1.0, -1.0, -1.0), (0.0, 1.0, -1.0, 1.0)], ids=["all", "throttle"])
 def test_throttle_calibrated_the_wrong_way_round_is_refused(
     plug: Plug, t500: CockpitProfile, rest: tuple[float, ...]

@@ -72,6 +72,7 @@ def line(number: int, tick: int, **changes: float) -> str:
 GOOD = f"# simconsole trace schema 1 tick_hz 250 cockpit test\n{','.join(COLUMNS)}\n"
 
 
+@pytest.mark.fault("F06")
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -107,6 +108,7 @@ def test_line_that_cannot_be_used_is_named(text: str, message: str, tmp_path: Pa
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.fault("F06")
 def test_long_trace_is_read_in_constant_memory(tmp_path: Path) -> None:
     """F06: of a file of several MB never more than a few lines are in memory."""
     path = written(tmp_path / "trace.csv", [REST] * 40_000)

@@ -173,6 +173,7 @@ def test_c00_without_a_fault_the_ecu_drives(drive: Callable[..., Driven]) -> Non
     assert driven.rows[FAULT:, AGE].max() <= PERIOD_TICKS
 
 
+@pytest.mark.fault("C01")
 @pytest.mark.parametrize("fault", [bad_crc, frozen_counter, jumping_counter, short, too_much])
 def test_c01_five_bad_frames_in_a_row_end_the_commands(drive: Callable[..., Driven], fault: Fault) -> None:
     """Dropped each; the fifth is at the console 4 periods after the first, and the mode changes in that tick."""
@@ -186,6 +187,7 @@ def test_c01_five_bad_frames_in_a_row_end_the_commands(drive: Callable[..., Driv
         assert driven.rows[-1, SEQUENCE] == driven.rows[FAULT, SEQUENCE]
 
 
+@pytest.mark.fault("C01")
 @pytest.mark.parametrize("fault", [bad_crc, frozen_counter, short])
 def test_c01_one_bad_frame_is_dropped_and_no_more(drive: Callable[..., Driven], fault: Fault) -> None:
     driven = drive(lambda number, frame: fault(number, frame) if number == 0 else [frame])
@@ -193,6 +195,7 @@ def test_c01_one_bad_frame_is_dropped_and_no_more(drive: Callable[..., Driven], 
     assert driven.rows[-1, REFUSED] == 1
 
 
+@pytest.mark.fault("C01")
 def test_c01_silence_is_stale_within_200_ms(drive: Callable[..., Driven]) -> None:
     driven = drive(nothing)
     left = driven.left()
@@ -255,6 +258,7 @@ class FallingYard:
         return None
 
 
+@pytest.mark.fault("C02")
 @pytest.mark.parametrize("how", ["bus-off", "send", "netdown"])
 def test_c02_bus_off_is_reported_and_the_drive_goes_on(drive: Callable[..., Driven], how: str) -> None:
     yard = FallingYard(how, 800, down_s=1e9)
@@ -268,6 +272,7 @@ def test_c02_bus_off_is_reported_and_the_drive_goes_on(drive: Callable[..., Driv
     assert driven.mode(TICKS) in (Mode.MINIMAL_RISK, Mode.STOPPED)
 
 
+@pytest.mark.fault("C02")
 def test_c02_state_of_the_bus_stands_on_the_drivers_cluster(profile: CanProfile, codec: Codec, tmp_path: Path) -> None:
     """From the station's own word over its file to the lamp in the draw list: up, off, up again."""
     yard = FallingYard("send", 1, down_s=20.0)
@@ -293,6 +298,7 @@ def test_c02_state_of_the_bus_stands_on_the_drivers_cluster(profile: CanProfile,
     assert shown == ["on", "down", "on"]
 
 
+@pytest.mark.fault("C02")
 def test_c02_tries_again_with_growing_waits_and_sends_again(profile: CanProfile) -> None:
     yard = FallingYard("send", 1, down_s=20.0)
     port = CanPort(profile, frozenset({0x100}), frozenset({0x200}), clock_s=lambda: yard.now_s, opener=yard.open)
@@ -309,6 +315,7 @@ def test_c02_tries_again_with_growing_waits_and_sends_again(profile: CanProfile)
     other.close()
 
 
+@pytest.mark.fault("C03")
 def test_c03_flood_of_unknown_ids_is_filtered(drive: Callable[..., Driven], profile: CanProfile) -> None:
     """40 foreign frames a tick: 10,000 a second, above what 1 Mbit/s carries (about 8,000)."""
     with can.Bus(interface="virtual", channel=profile.channel) as flood:
@@ -326,6 +333,7 @@ def test_c03_flood_of_unknown_ids_is_filtered(drive: Callable[..., Driven], prof
     assert driven.on_bus.port.counters().filtered >= 9_000
 
 
+@pytest.mark.fault("C04")
 def test_c04_replayed_old_frames_are_refused(drive: Callable[..., Driven]) -> None:
     """Beside the ECU somebody sends its frame of 5 periods ago again: each is refused, the ECU's own all count."""
     old: list[Frame] = []
@@ -342,6 +350,7 @@ def test_c04_replayed_old_frames_are_refused(drive: Callable[..., Driven]) -> No
     assert driven.rows[FAULT:, AGE].max() <= PERIOD_TICKS
 
 
+@pytest.mark.fault("C04")
 def test_c04_one_old_frame_after_a_silence_commands_nothing(drive: Callable[..., Driven]) -> None:
     kept: list[Frame] = []
 
@@ -353,6 +362,7 @@ def test_c04_one_old_frame_after_a_silence_commands_nothing(drive: Callable[...,
     assert driven.rows[-1, SEQUENCE] == driven.rows[FAULT, SEQUENCE]
 
 
+@pytest.mark.fault("C05")
 def test_c05_no_frame_off_the_whitelist_can_leave(profile: CanProfile, codec: Codec) -> None:
     """Every id there is, standard and (a sample of) extended, on the console's own port."""
     node = CanNode(codec, profile, TICK_HZ)
@@ -370,6 +380,7 @@ def test_c05_no_frame_off_the_whitelist_can_leave(profile: CanProfile, codec: Co
     port.close()
 
 
+@pytest.mark.fault("C05")
 def test_c05_only_one_line_of_the_package_sends(codec: Codec) -> None:
     package = Path(__file__).resolve().parents[2] / "simconsole"
     importers = [path.name for path in package.rglob("*.py") if "import can\n" in path.read_text()]

@@ -4,6 +4,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from simconsole.pacing import CATCH_UP_TICKS, Pacer
 from simconsole.recording.bundle import open_bundle
@@ -50,6 +51,7 @@ mode: {pacing: lockstep}
 """
 
 
+@pytest.mark.fault("P05")
 def test_p05_wall_clock_that_jumps_by_an_hour_changes_not_one_bit(tmp_path: Path) -> None:
     """The console and the autopilot's own process, over a WebSocket: with a clock that jumps at every look."""
     (tmp_path / "sitecustomize.py").write_text(JUMPING)
@@ -84,6 +86,7 @@ class Sleeper:
             time.sleep(self._sleep_s)
 
 
+@pytest.mark.fault("P06")
 def test_p06_loop_that_really_stands_for_half_a_second_is_answered_in_its_next_tick() -> None:
     """Real time, the real pacer: five late ticks run at once, the rest never happens, the car stops in its lane."""
     track = circuit()
@@ -105,6 +108,7 @@ def test_p06_loop_that_really_stands_for_half_a_second_is_answered_in_its_next_t
     assert abs(driven.lateral_m) < 0.5
 
 
+@pytest.mark.fault("P06")
 def test_p06_a_person_at_the_wheel_is_stopped_too_and_has_it_back_at_once() -> None:
     """By hand the stop is steered by the controller that agrees; the person's brake ends it."""
     track = circuit()

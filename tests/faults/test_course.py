@@ -1,6 +1,6 @@
 """Every fault at three places of the course: the car ends in its lane, at rest or with a person, and says why."""
 
-from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,11 +15,16 @@ from tests.faults.cases import CASES, Case
 from tests.faults.course import BY_HAND_ALONE, CAR_M, HZ, LANE_M, PLACES, WATCHED, circuit
 
 IN_LANE_M = 0.5 * (LANE_M - CAR_M)
-ROOT = Path(__file__).parents[2]
+
+
+def marked(case: Case) -> Any:
+    """Return a case as a parameter, with a mark for each of its ids."""
+    marks = [pytest.mark.fault(number) for number in case.number.split()]
+    return pytest.param(case, marks=marks, id=f"{case.number} {case.fault}".replace(" ", "-"))
 
 
 @pytest.mark.parametrize("place", PLACES)
-@pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case.number} {case.fault}".replace(" ", "-"))
+@pytest.mark.parametrize("case", [marked(case) for case in CASES])
 def test_fault_at_a_place(case: Case, place: str) -> None:
     driven, fault, after_ms = cases.drive(case, place)
     found = metrics(drive_of(driven.rows, driven.columns, HZ, driven.first_tick), driven.course, None, [words(fault)])
@@ -40,7 +45,7 @@ def test_fault_at_a_place(case: Case, place: str) -> None:
 
 
 @pytest.mark.parametrize("place", PLACES)
-@pytest.mark.parametrize("case", [case for case in CASES if case.watched], ids=lambda case: case.number)
+@pytest.mark.parametrize("case", [marked(case) for case in CASES if case.watched])
 def test_a_person_who_watches_takes_over_from_a_controller_at_fault(case: Case, place: str) -> None:
     driven, _, after_ms = cases.drive(case, place, WATCHED)
     print(f"{place}: {driven.modes}, {driven.lateral_m:.2f} m from the lane's centre, after {after_ms} ms")
@@ -49,12 +54,14 @@ def test_a_person_who_watches_takes_over_from_a_controller_at_fault(case: Case, 
     assert abs(driven.lateral_m) <= IN_LANE_M
 
 
+@pytest.mark.fault("R06")
 def test_r06_a_controller_that_drives_the_whole_course_asks_for_nothing_implausible() -> None:
     whole = circuit().whole
     assert whole.column("vehicle.distance_m")[-1] > 2_000.0
     assert whole.column("ros_link.implausible")[-1] == 0.0
 
 
+@pytest.mark.fault("R06")
 @pytest.mark.parametrize("place", PLACES)
 def test_r06_a_refused_command_never_moves_the_wheels(place: str) -> None:
     """While it is refused, and after: the angle only goes back to straight."""
@@ -68,6 +75,7 @@ def test_r06_a_refused_command_never_moves_the_wheels(place: str) -> None:
         assert (driven.column("arbitration.refusal")[began:][:20] == Reason.REFUSED_IMPLAUSIBLE).all()
 
 
+@pytest.mark.fault("D01")
 @pytest.mark.parametrize("place", PLACES)
 def test_d01_a_wheel_that_is_back_in_a_bend_gives_control_back(place: str) -> None:
     """Half a second without a wheel, then the person brakes: theirs again, in the lane."""
@@ -77,7 +85,3 @@ def test_d01_a_wheel_that_is_back_in_a_bend_gives_control_back(place: str) -> No
     driven = track.drive(state, 6.0, [lost], BY_HAND_ALONE._replace(attentive=True))
     assert driven.modes[:3] == [Mode.MANUAL, Mode.MINIMAL_RISK, Mode.MANUAL]
     assert np.abs(driven.lateral_m) <= IN_LANE_M
-
-
-def test_the_page_is_what_was_measured() -> None:
-    assert (ROOT / "docs" / "faults.md").read_text("utf-8") == cases.page()

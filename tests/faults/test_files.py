@@ -64,6 +64,7 @@ def folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 NAMES = ["../../x", "../secret", "..", ".", "/etc/passwd", "linked", "loop", "a\0b", "x" * 300, "", "a\nb", "~", "a\\b"]
 
 
+@pytest.mark.fault("F01")
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("inside_a_profile", [False, True])
 def test_f01_name_that_leaves_the_profile_folder(
@@ -88,6 +89,7 @@ REFERENCES = [
 ]
 
 
+@pytest.mark.fault("F01")
 @pytest.mark.parametrize("reference", REFERENCES)
 def test_f01_reference_from_a_profile_stays_in_its_folder(folders: Path, opened: list[str], reference: str) -> None:
     session = folders / "own" / "session.yaml"
@@ -99,6 +101,7 @@ def test_f01_reference_from_a_profile_stays_in_its_folder(folders: Path, opened:
     assert opened == []
 
 
+@pytest.mark.fault("F01")
 def test_f01_only_regular_files_are_opened(folders: Path, opened: list[str]) -> None:
     os.mkfifo(folders / "pipe.yaml")
     (folders / "folder.yaml").mkdir()
@@ -129,6 +132,7 @@ YAML_ATTACKS = [
 ]
 
 
+@pytest.mark.fault("F02")
 @pytest.mark.parametrize(("text", "message"), YAML_ATTACKS)
 def test_f02_yaml_that_attacks_the_reader(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / "attack.yaml"
@@ -139,6 +143,7 @@ def test_f02_yaml_that_attacks_the_reader(tmp_path: Path, text: str, message: st
     assert time.process_time() - began_s < 5.0, "the cost of refusing must not grow with the attack"
 
 
+@pytest.mark.fault("F03")
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -163,6 +168,7 @@ def test_f03_value_out_of_its_bounds(tmp_path: Path, text: str, message: str) ->
     assert caught.value.exit_code == 2
 
 
+@pytest.mark.fault("F04")
 @pytest.mark.parametrize(
     ("text", "message"),
     [

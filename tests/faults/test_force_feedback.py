@@ -33,6 +33,7 @@ def last_force(log: list[dict[str, Any]]) -> tuple[float, float]:
     return ends, heard
 
 
+@pytest.mark.fault("D11")
 def test_d11_killed_process_leaves_no_force(tmp_path: Path) -> None:
     """D11: kill -9 at full torque. No effect outlives 200 ms even if the kernel did not erase them at close."""
     log = tmp_path / "calls.jsonl"
@@ -52,6 +53,7 @@ def test_d11_killed_process_leaves_no_force(tmp_path: Path) -> None:
     assert upload["level"] == 0, "the first thing a new process loads pushes nothing"
 
 
+@pytest.mark.fault("D12")
 def test_d12_hung_process_lets_go(tmp_path: Path) -> None:
     """D12: SIGSTOP at full torque: nothing starts the effect again, and it ends within 250 ms of the stall."""
     log = tmp_path / "calls.jsonl"
@@ -73,6 +75,7 @@ def test_d12_hung_process_lets_go(tmp_path: Path) -> None:
         mock.communicate()
 
 
+@pytest.mark.fault("D12")
 @pytest.mark.parametrize("back_end", ["sdl", "evdev"])
 def test_d12_watchdog_stops_what_a_hung_process_left(
     back_end: str, tmp_path: Path, record_property: Callable[[str, object], None]
@@ -93,6 +96,7 @@ def test_d12_watchdog_stops_what_a_hung_process_left(
         mock.communicate()
 
 
+@pytest.mark.fault("D11")
 def test_d11_watchdog_stops_what_a_killed_process_left(
     tmp_path: Path, record_property: Callable[[str, object], None]
 ) -> None:
@@ -153,6 +157,7 @@ def stopped_child(parent: int) -> int:
     raise AssertionError("the program did not stop itself")
 
 
+@pytest.mark.fault("D12")
 def test_d12_simulated_wheel_feels_no_force_after_a_stall() -> None:
     """The same in simulated time: the loop stands still, the wheel's own clock goes on."""
     loop = Loop()
@@ -166,6 +171,7 @@ def test_d12_simulated_wheel_feels_no_force_after_a_stall() -> None:
     assert abs(loop.wheel.state.motor_nm) < 0.01
 
 
+@pytest.mark.fault("D12")
 def test_d12_reported_stall_lets_go_in_the_same_tick() -> None:
     loop = Loop()
     loop.engage()
@@ -175,6 +181,7 @@ def test_d12_reported_stall_lets_go_in_the_same_tick() -> None:
     assert (shot.torque.torque_nm, shot.torque.enabled) == (0.0, 0.0)
 
 
+@pytest.mark.fault("D13")
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 1e300], ids=str)
 @pytest.mark.parametrize("field", ["hand_wheel_torque_nm", "road_wheel_rad"])
 def test_d13_nonsense_from_the_vehicle_never_reaches_the_motor(field: str, value: float) -> None:
@@ -197,6 +204,7 @@ def test_d13_nonsense_from_the_vehicle_never_reaches_the_motor(field: str, value
         before = torque.torque_nm
 
 
+@pytest.mark.fault("D13")
 def test_d13_sign_that_flips_every_tick_stays_within_the_slew_limit() -> None:
     loop = Loop()
     loop.engage()

@@ -52,6 +52,7 @@ async def say(peer: ClientConnection, **operation: Any) -> None:
     await peer.send(json.dumps(operation))
 
 
+@pytest.mark.fault("N01")
 @pytest.mark.parametrize("how", ["close", "reset", "half", "frame"])
 def test_n01_commander_that_closes_is_an_event_and_the_others_go_on(
     serving: Callable[..., Any], snapshot: Callable[..., Any], control: Callable[..., Any], how: str
@@ -83,6 +84,7 @@ def test_n01_commander_that_closes_is_an_event_and_the_others_go_on(
             assert server.command().road_wheel_rad == 0.2
 
 
+@pytest.mark.fault("N04")
 @pytest.mark.parametrize("subscribed", [False, True])
 def test_n04_client_that_went_without_a_word_is_freed_after_three_seconds(
     snapshot: Callable[..., Any], control: Callable[..., Any], subscribed: bool, transport: Any
@@ -120,6 +122,7 @@ def test_n04_client_that_went_without_a_word_is_freed_after_three_seconds(
     asyncio.run(main())
 
 
+@pytest.mark.fault("N04")
 def test_n04_program_that_is_merely_slow_is_not_cut(control: Callable[..., Any], transport: Any) -> None:
     now_ns = 0
 
@@ -141,6 +144,7 @@ def test_n04_program_that_is_merely_slow_is_not_cut(control: Callable[..., Any],
     asyncio.run(main())
 
 
+@pytest.mark.fault("N05")
 def test_n05_stalled_subscriber_costs_the_others_nothing_and_no_memory(
     record_property: Callable[[str, object], None],
     transport: Any,
@@ -195,6 +199,7 @@ def test_n05_stalled_subscriber_costs_the_others_nothing_and_no_memory(
     asyncio.run(main())
 
 
+@pytest.mark.fault("N05")
 def test_n05_slow_reader_gets_the_newest(serving: Callable[..., Any]) -> None:
     server = serving(limits=BridgeLimits(queued_bytes=65_536))
     with Raw(server.port, receive_bytes=4096) as slow, Raw(server.port) as talker:
@@ -274,6 +279,7 @@ class Chaos:
             end.close()
 
 
+@pytest.mark.fault("N06")
 @pytest.mark.parametrize("network", ["lossy", "slow"])
 def test_n06_commands_over_a_bad_network_arrive_in_order_or_not_at_all(
     serving: Callable[..., Any], snapshot: Callable[..., Any], control: Callable[..., Any], network: str

@@ -41,6 +41,7 @@ def unharmed(server: Any, control: Callable[..., dict[str, Any]]) -> Iterator[No
                 yield
 
 
+@pytest.mark.fault("N08")
 def test_n08_giant_frame_is_refused_by_its_header(edge: Callable[..., Any], control: Callable[..., Any]) -> None:
     server = edge()
     head_of_two = frame(TEXT, b"x" * (2 * MIB))[:14]
@@ -58,6 +59,7 @@ def test_n08_giant_frame_is_refused_by_its_header(edge: Callable[..., Any], cont
             tracemalloc.stop()
 
 
+@pytest.mark.fault("N08")
 @pytest.mark.parametrize("pieces", [2, 8])
 def test_n08_giant_message_in_pieces(edge: Callable[..., Any], control: Callable[..., Any], pieces: int) -> None:
     server = edge(limits=BridgeLimits(message_bytes=65_536))
@@ -67,6 +69,7 @@ def test_n08_giant_message_in_pieces(edge: Callable[..., Any], control: Callable
         assert raw.close_code() == 1009
 
 
+@pytest.mark.fault("N10")
 def test_n10_compression_is_off(edge: Callable[..., Any], control: Callable[..., Any]) -> None:
     server = edge()
     offer = "Sec-WebSocket-Extensions: permessage-deflate\r\n"
@@ -76,6 +79,7 @@ def test_n10_compression_is_off(edge: Callable[..., Any], control: Callable[...,
         assert raw.close_code() == 1002
 
 
+@pytest.mark.fault("N12")
 def test_n12_idle_handshakes_are_ended_and_harm_nobody(
     edge: Callable[..., Any], control: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -103,6 +107,7 @@ def ended(sock: socket.socket) -> bool:
         return True
 
 
+@pytest.mark.fault("N13")
 def test_n13_message_in_a_million_fragments(edge: Callable[..., Any], control: Callable[..., Any]) -> None:
     server = edge()
     thousand = frame(0, b"x", fin=False) * 1000
@@ -113,6 +118,7 @@ def test_n13_message_in_a_million_fragments(edge: Callable[..., Any], control: C
         assert raw.receive() is None
 
 
+@pytest.mark.fault("N13")
 def test_n13_fragments_within_the_limit_are_a_message(edge: Callable[..., Any], control: Callable[..., Any]) -> None:
     server = edge()
     text = json.dumps({"op": "publish", "topic": CONTROL, "msg": control(0.3)}).encode()
@@ -124,6 +130,7 @@ def test_n13_fragments_within_the_limit_are_a_message(edge: Callable[..., Any], 
         assert server.applied() == 0.3
 
 
+@pytest.mark.fault("N15")
 @pytest.mark.parametrize("origin", ["http://evil.example", "null", "file://", "https://localhost.evil.example"])
 def test_n15_page_from_elsewhere_is_turned_away(
     edge: Callable[..., Any], control: Callable[..., Any], origin: str
@@ -135,6 +142,7 @@ def test_n15_page_from_elsewhere_is_turned_away(
         assert caught.value.response.status_code == 403
 
 
+@pytest.mark.fault("N16")
 @pytest.mark.parametrize("host", ["evil.example", "evil.example:9090", "127.0.0.1.evil.example", "", "a\r\nHost: b"])
 def test_n16_other_host_is_turned_away(edge: Callable[..., Any], control: Callable[..., Any], host: str) -> None:
     server = edge()
@@ -143,6 +151,7 @@ def test_n16_other_host_is_turned_away(edge: Callable[..., Any], control: Callab
         assert raw.recv(100).split()[1] in (b"403", b"400")
 
 
+@pytest.mark.fault("N16")
 @pytest.mark.parametrize(
     ("old", "new", "comes_in"),
     [
@@ -165,6 +174,7 @@ def test_n16_first_requests_are_read_alike(
         assert status == 101 if comes_in else 400 <= status < 500
 
 
+@pytest.mark.fault("N19")
 @pytest.mark.parametrize(
     ("data", "code"),
     [
@@ -198,6 +208,7 @@ def test_n19_frames_against_the_rules_end_their_connection_in_order(
         assert raw.receive() is None
 
 
+@pytest.mark.fault("N19")
 def test_n19_close_without_a_code_is_answered(edge: Callable[..., Any], control: Callable[..., Any]) -> None:
     server = edge()
     with unharmed(server, control), Raw(server.port) as raw:
@@ -205,6 +216,7 @@ def test_n19_close_without_a_code_is_answered(edge: Callable[..., Any], control:
         assert raw.receive() == (CLOSE, b"")
 
 
+@pytest.mark.fault("N19")
 def test_n19_text_that_is_no_unicode_is_answered_or_ends_it(
     edge: Callable[..., Any], control: Callable[..., Any]
 ) -> None:
@@ -217,6 +229,7 @@ def test_n19_text_that_is_no_unicode_is_answered_or_ends_it(
         assert (opcode == TEXT and b'"status"' in answer) or (opcode == CLOSE and answer[:2] == (1007).to_bytes(2))
 
 
+@pytest.mark.fault("N19")
 @pytest.mark.parametrize(
     "data", [b"", b"\x00", b"\xff" * 1000, bytes(range(256)), b'{"op":"subscribe","topic":"/odom"}']
 )
@@ -236,6 +249,7 @@ def test_n19_unsolicited_binary_is_refused_and_the_connection_goes_on(
         assert json.loads(received[1])["id"] == "still"
 
 
+@pytest.mark.fault("N19")
 def test_n19_ping_flood_is_answered_and_pongs_are_passed_over(
     edge: Callable[..., Any], control: Callable[..., Any]
 ) -> None:
@@ -247,6 +261,7 @@ def test_n19_ping_flood_is_answered_and_pongs_are_passed_over(
             assert raw.receive() == (PONG, data)
 
 
+@pytest.mark.fault("N19")
 def test_n19_pings_nobody_waits_for_do_not_fill_memory(edge: Callable[..., Any], control: Callable[..., Any]) -> None:
     """A client that sends pings without end and reads none of the answers is stopped or cut, not served from memory."""
     server = edge()

@@ -12,6 +12,7 @@ from typing import Any
 
 import cbor2
 import orjson
+import pytest
 
 from simconsole.bridge.access import Access, Role
 from simconsole.bridge.console import ConsoleBridge
@@ -220,6 +221,7 @@ def timed(target: Target, data: bytes, now_ns: int) -> float:
     return time.process_time() - before_s
 
 
+@pytest.mark.fault("N07")
 def test_n07_a_million_inputs(record_property: Callable[[str, object], None]) -> None:
     print("seed", SEED)
     chance = random.Random(SEED)

@@ -99,6 +99,7 @@ def check_after(peer: Any, text: bytes | Binary, number: int, took_ms: list[floa
     return str(outcome.kind)
 
 
+@pytest.mark.fault("N07")
 @pytest.mark.parametrize("wreck", [wreck_text, wreck_field])
 def test_n07_thousand_kinds_of_malformed_frame(
     peer: Any, wreck: Callable[[random.Random], bytes], record_property: Callable[[str, object], None]
@@ -122,6 +123,8 @@ def test_n07_thousand_kinds_of_malformed_frame(
     record_property(f"malformed frame, {wreck.__name__}", figures)
 
 
+@pytest.mark.fault("N09")
+@pytest.mark.fault("N18")
 @pytest.mark.parametrize(
     "text",
     [
@@ -150,6 +153,7 @@ def test_n09_n18_known_ways_to_hurt_a_parser(peer: Any, text: bytes) -> None:
     assert check_after(peer, text, 3) == "refused"
 
 
+@pytest.mark.fault("N07")
 def test_n07_half_of_a_message_is_never_completed_by_the_next(peer: Any) -> None:
     text = json.dumps(valid(0)).encode()
     assert peer.send(text[:50]).kind == "refused"
@@ -157,6 +161,7 @@ def test_n07_half_of_a_message_is_never_completed_by_the_next(peer: Any) -> None
     assert peer.bridge.inputs.command.sequence == 0.0
 
 
+@pytest.mark.fault("N07")
 def test_n07_fuzzed_relay_sends_only_valid_json(bridge: ConsoleBridge, join: Callable[..., Any]) -> None:
     seed = 7
     print("seed", seed)
@@ -178,6 +183,7 @@ def test_n07_fuzzed_relay_sends_only_valid_json(bridge: ConsoleBridge, join: Cal
     assert heard + talker.session.refused == 2000
 
 
+@pytest.mark.fault("N11")
 @pytest.mark.parametrize(
     "data",
     [
@@ -205,6 +211,7 @@ def test_n11_cbor_bombs(peer: Any, data: bytes) -> None:
     assert check_after(peer, Binary(data), 3) == "refused"
 
 
+@pytest.mark.fault("N11")
 def test_n11_cbor_command_is_a_command(peer: Any) -> None:
     assert check_after(peer, Binary(cbor2.dumps(valid(7))), 8) == "command"
 
@@ -213,6 +220,7 @@ def fragment(identifier: str, number: int, total: int, data: str = "x") -> dict[
     return {"op": "fragment", "id": identifier, "num": number, "total": total, "data": data}
 
 
+@pytest.mark.fault("N14")
 def test_n14_missing_pieces_are_forgotten(bridge: ConsoleBridge, join: Callable[..., Any]) -> None:
     peer, sets = join(bridge), 10_000
     for number in range(sets):
@@ -225,6 +233,7 @@ def test_n14_missing_pieces_are_forgotten(bridge: ConsoleBridge, join: Callable[
     assert peer.session.assembler.held == 1
 
 
+@pytest.mark.fault("N14")
 def test_n14_all_pieces_together_are_bounded(join: Callable[..., Any]) -> None:
     peer = join(ConsoleBridge(BridgeProfile(limits=BridgeLimits(message_bytes=2048))))
     for number in range(MAX_OPEN):
@@ -233,6 +242,7 @@ def test_n14_all_pieces_together_are_bounded(join: Callable[..., Any]) -> None:
     assert peer.session.refused == 2
 
 
+@pytest.mark.fault("N14")
 def test_n14_pieces_of_two_clients_are_never_joined(bridge: ConsoleBridge, join: Callable[..., Any]) -> None:
     first, second = join(bridge), join(bridge)
     text = json.dumps(valid(0))
@@ -243,6 +253,7 @@ def test_n14_pieces_of_two_clients_are_never_joined(bridge: ConsoleBridge, join:
     assert bridge.inputs.command.sequence == 1.0
 
 
+@pytest.mark.fault("N14")
 def test_n14_pieces_end_with_their_client(bridge: ConsoleBridge, join: Callable[..., Any]) -> None:
     first = join(bridge)
     text = json.dumps(valid(0))
@@ -252,6 +263,7 @@ def test_n14_pieces_end_with_their_client(bridge: ConsoleBridge, join: Callable[
     assert bridge.inputs.command.sequence == 0.0
 
 
+@pytest.mark.fault("N17")
 @pytest.mark.parametrize("op", ["subscribe", "advertise"])
 def test_n17_ten_thousand_topics_are_too_many(peer: Any, op: str) -> None:
     for number in range(10_000):
@@ -262,6 +274,7 @@ def test_n17_ten_thousand_topics_are_too_many(peer: Any, op: str) -> None:
     assert check_after(peer, b"{}", 3) == "refused"
 
 
+@pytest.mark.fault("N17")
 def test_n17_same_subscription_many_times_is_one_delivery(bridge: ConsoleBridge, join: Callable[..., Any]) -> None:
     peer, talker = join(bridge), join(bridge)
     for number in range(10_000):
@@ -272,6 +285,7 @@ def test_n17_same_subscription_many_times_is_one_delivery(bridge: ConsoleBridge,
     assert [message["op"] for message in peer.heard()] == ["publish"]
 
 
+@pytest.mark.fault("N17")
 @pytest.mark.parametrize(
     "operation",
     [
@@ -301,6 +315,7 @@ def test_n17_names_and_ids_that_are_none(peer: Any, operation: dict[str, Any]) -
     assert set(peer.bridge.router.topics) == before
 
 
+@pytest.mark.fault("N18")
 @pytest.mark.parametrize(
     "text",
     [

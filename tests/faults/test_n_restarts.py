@@ -45,6 +45,7 @@ def odometry(client: BridgeClient, server: Any, snapshot: Callable[..., Any]) ->
     pytest.fail("no odometry")
 
 
+@pytest.mark.fault("N02")
 def test_n02_everything_is_there_again_after_each_of_many_restarts(
     caplog: pytest.LogCaptureFixture,
     snapshot: Callable[..., Any],
@@ -93,6 +94,7 @@ def test_n02_everything_is_there_again_after_each_of_many_restarts(
     record_property("restored after a server's restart", text)
 
 
+@pytest.mark.fault("N02")
 def test_n02_a_hundred_clients_that_come_and_go_leave_nothing_behind(transport: Any) -> None:
     wishes = [
         {"op": "subscribe", "topic": "/odom"},
@@ -141,6 +143,7 @@ def test_n02_a_hundred_clients_that_come_and_go_leave_nothing_behind(transport: 
     asyncio.run(main())
 
 
+@pytest.mark.fault("N03")
 def test_n03_several_clients_are_back_and_nobody_is_engaged(
     serving: Callable[..., Any], snapshot: Callable[..., Any], control: Callable[..., Any]
 ) -> None:

@@ -37,6 +37,7 @@ def command(peer: Any) -> RemoteCommand:
     return peer.bridge.inputs.command  # type: ignore[no-any-return]  # peers are fixtures
 
 
+@pytest.mark.fault("R01")
 def test_r01_stale_commands_are_never_applied(held: Any, control: Callable[..., Any]) -> None:
     count = 100_000
     text = json.dumps({"op": "publish", "topic": CONTROL, "msg": control(stamp_ns=12345678)})
@@ -48,6 +49,7 @@ def test_r01_stale_commands_are_never_applied(held: Any, control: Callable[..., 
     assert (command(held).sequence, command(held).refused) == (0.0, count)
 
 
+@pytest.mark.fault("R02")
 def test_r02_age_of_a_commander_that_stops_is_told_tick_by_tick(peer: Any, control: Callable[..., Any]) -> None:
     inputs = peer.bridge.inputs
     assert inputs.take(1)[0].age_ticks == NEVER_TICKS
@@ -59,6 +61,7 @@ def test_r02_age_of_a_commander_that_stops_is_told_tick_by_tick(peer: Any, contr
     assert ages == [0.0, 0.0, 1.0, 19.0, 21.0]
 
 
+@pytest.mark.fault("R02")
 def test_r02_refused_commands_are_no_sign_of_life(peer: Any, control: Callable[..., Any]) -> None:
     inputs = peer.bridge.inputs
     peer.publish(CONTROL, control(0.1))
@@ -67,6 +70,7 @@ def test_r02_refused_commands_are_no_sign_of_life(peer: Any, control: Callable[.
     assert inputs.take(51)[0].age_ticks == 50.0
 
 
+@pytest.mark.fault("R03")
 def test_r03_late_but_steady_commands_are_taken(
     held: Any, control: Callable[..., Any], snapshot: Callable[..., Any]
 ) -> None:
@@ -78,6 +82,7 @@ def test_r03_late_but_steady_commands_are_taken(
     assert command(held).refused == 0.0
 
 
+@pytest.mark.fault("R04")
 @pytest.mark.parametrize("stamps_ms", [(0, -1), (0, 0), (0, 1, 0), (51,), (10_000,), (-201,), (0, -100, -1)])
 def test_r04_order_and_future(held: Any, control: Callable[..., Any], stamps_ms: tuple[int, ...]) -> None:
     kinds = [held.publish(CONTROL, control(stamp_ns=10 * S + at * MS)).kind for at in stamps_ms]
@@ -135,6 +140,7 @@ def with_number(message: dict[str, Any], path: tuple[str, ...], value: Any) -> d
 FIELDS = [(topic, path) for topic, message in COMMANDS.items() for path in numbers(message)]
 
 
+@pytest.mark.fault("R05")
 @pytest.mark.parametrize(("topic", "path"), FIELDS, ids=lambda part: part if isinstance(part, str) else ".".join(part))
 def test_r05_numbers_at_the_edge_in_every_field(peer: Any, topic: str, path: tuple[str, ...]) -> None:
     assert peer.publish(topic, COMMANDS[topic]).kind == "command"
@@ -154,6 +160,8 @@ def test_r05_numbers_at_the_edge_in_every_field(peer: Any, topic: str, path: tup
         assert max(map(abs, command(peer)[4:])) <= 1e5  # the widest limit of them all, the ball's
 
 
+@pytest.mark.fault("R06")
+@pytest.mark.fault("R08")
 @pytest.mark.parametrize("value", [1.21, -1.21, 7.0, 57.3, 1e6])
 def test_r06_r08_step_or_unit_beyond_the_limit_is_refused_and_counted(
     peer: Any, control: Callable[..., Any], value: float
@@ -165,6 +173,7 @@ def test_r06_r08_step_or_unit_beyond_the_limit_is_refused_and_counted(
     assert peer.publish(CONTROL, control(road_wheel_rad=1.2)).kind == "command"
 
 
+@pytest.mark.fault("R07")
 @pytest.mark.parametrize(
     ("operation", "complaint"),
     [
@@ -194,6 +203,7 @@ def test_r07_wrong_type_or_fields_have_a_status_and_the_connection_stays(
     assert peer.publish(CONTROL, COMMANDS[CONTROL]).kind == "command"
 
 
+@pytest.mark.fault("R08")
 @pytest.mark.parametrize(
     ("topic", "good", "bad"),
     [
@@ -212,6 +222,7 @@ def test_r08_command_in_another_frame_is_refused(peer: Any, topic: str, good: li
     assert command(peer)._replace(refused=0.0) == before
 
 
+@pytest.mark.fault("R09")
 def test_r09_flood_of_ten_thousand_a_second_for_a_minute(
     peer: Any, control: Callable[..., Any], record_property: Callable[[str, object], None]
 ) -> None:
@@ -243,6 +254,7 @@ def test_r09_flood_of_ten_thousand_a_second_for_a_minute(
     assert peer.session.outgoing.bytes == 0
 
 
+@pytest.mark.fault("R09")
 def test_r09_the_flooded_commander_is_told_what_is_done(peer: Any, control: Callable[..., Any]) -> None:
     for _ in range(600):
         outcome = peer.publish(CONTROL, control())
@@ -254,6 +266,7 @@ def test_r09_the_flooded_commander_is_told_what_is_done(peer: Any, control: Call
     assert peer.publish("/console/request", {"data": "estop"}).kind == "command"
 
 
+@pytest.mark.fault("R10")
 def test_r10_one_commander_at_a_time(
     bridge: ConsoleBridge, join: Callable[..., Any], control: Callable[..., Any]
 ) -> None:
@@ -271,6 +284,7 @@ def test_r10_one_commander_at_a_time(
     assert first.publish(CONTROL, control(0.3)).kind == "command"
 
 
+@pytest.mark.fault("R11")
 @pytest.mark.parametrize("role", [Role.NONE, Role.VIEW, Role.PUBLISH])
 @pytest.mark.parametrize("topic", [*COMMANDS, "/console/request", "/control/command/gear_cmd"])
 def test_r11_unauthenticated_client_commands_nothing(
@@ -288,6 +302,7 @@ def test_r11_unauthenticated_client_commands_nothing(
     assert peer.publish(topic, message).kind == "command"
 
 
+@pytest.mark.fault("R12")
 def test_r12_requests_are_handed_on_once_each_whoever_commands(
     bridge: ConsoleBridge, join: Callable[..., Any], control: Callable[..., Any]
 ) -> None:
@@ -300,6 +315,7 @@ def test_r12_requests_are_handed_on_once_each_whoever_commands(
     assert bridge.inputs.take(3)[1].events == 0.0
 
 
+@pytest.mark.fault("R13")
 def test_r13_toggling_loses_no_edge(peer: Any) -> None:
     seen = []
     for tick, word in zip(range(500), itertools.cycle(["autonomous", "manual"]), strict=False):

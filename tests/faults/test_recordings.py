@@ -32,6 +32,7 @@ def change_header(log: Path, **changes: object) -> None:
     log.write_bytes(MAGIC + struct.pack("<II", len(text), crc32(text)) + text + content[start + 8 + size :])
 
 
+@pytest.mark.fault("F05")
 @pytest.mark.parametrize("command", ["replay", "report"])
 def test_f05_recording_of_a_newer_version(copy: Path, rewrite_checksums: Callable[[Path], None], command: str) -> None:
     change_header(copy / "drive.log", schema=99)
@@ -43,6 +44,7 @@ def test_f05_recording_of_a_newer_version(copy: Path, rewrite_checksums: Callabl
     assert f"{copy / 'drive.log'}: schema: 99 cannot be read, this simconsole reads 1 to 1" in line
 
 
+@pytest.mark.fault("F05")
 def test_f05_bundle_of_a_newer_version(copy: Path) -> None:
     manifest = json.loads((copy / "manifest.json").read_text())
     (copy / "manifest.json").write_text(json.dumps({**manifest, "schema": 99, "invented": True}))
@@ -50,6 +52,7 @@ def test_f05_bundle_of_a_newer_version(copy: Path) -> None:
         assert f"{copy / 'manifest.json'}: schema: 99 cannot be read" in complaint(simconsole(command, copy))
 
 
+@pytest.mark.fault("F05")
 def test_f05_recording_of_another_endianness(copy: Path) -> None:
     other = "big" if sys.byteorder == "little" else "little"
     change_header(copy / "drive.log", byte_order=other)
@@ -60,12 +63,14 @@ def test_f05_recording_of_another_endianness(copy: Path) -> None:
     assert f"{copy / 'drive.log'}: byte_order: '{other}' cannot be read here" in line
 
 
+@pytest.mark.fault("F05")
 def test_f05_recording_cut_in_its_header(copy: Path) -> None:
     with (copy / "drive.log").open("r+b") as file:
         file.truncate(20)
     assert f"{copy / 'drive.log'}: " in complaint(simconsole("replay", copy))
 
 
+@pytest.mark.fault("F05")
 def test_f05_drive_that_was_killed_can_still_be_replayed(copy: Path) -> None:
     # What a kill -9 leaves: the first manifest, and a log that ends in the middle of a tick.
     manifest = json.loads((copy / "manifest.json").read_text())
@@ -82,6 +87,7 @@ def test_f05_drive_that_was_killed_can_still_be_replayed(copy: Path) -> None:
     assert "the drive was not finished" in checked.stdout
 
 
+@pytest.mark.fault("F05")
 def test_f05_folder_that_is_no_bundle(tmp_path: Path) -> None:
     for command in ("replay", "verify", "report"):
         assert f"{tmp_path / 'manifest.json'}: not a bundle" in complaint(simconsole(command, tmp_path))

@@ -153,6 +153,7 @@ def newest(table: LogTable) -> int:
     return int(np.flatnonzero(np.diff(table.column("ros.sequence")))[-1]) + 1
 
 
+@pytest.mark.fault("N04")
 def test_n04_a_real_half_open_connection_in_a_drive_is_stale_in_time(
     tmp_path: Path, record_property: Callable[[str, object], None]
 ) -> None:

@@ -161,6 +161,7 @@ def test_can_is_shown_only_where_there_is_a_bus() -> None:
     assert view(snapshot(), 0.0, HudMemory(), HudSettings(), link="lost")[0].link == "lost"
 
 
+@pytest.mark.fault("D08")
 @pytest.mark.parametrize(
     ("fields", "words"),
     [

@@ -80,6 +80,7 @@ def test_names_that_leave_the_folder_are_refused(tmp_path: Path, header: LogHead
         open_bundle(bundle)
 
 
+@pytest.mark.fault("F05")
 def test_f05_a_truncated_bundle_is_one_line_and_exit_code_2(bundle: Path) -> None:
     log = bundle / "drive.log"
     whole = log.stat().st_size

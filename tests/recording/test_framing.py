@@ -57,6 +57,8 @@ def test_nan_and_negative_zero_survive(header: LogHeader) -> None:
     assert records[0].row.tobytes() == row.tobytes()
 
 
+@pytest.mark.fault("P03")
+@pytest.mark.fault("P04")
 def test_truncation_at_every_byte_keeps_all_whole_ticks(header: LogHeader, log_bytes: bytes) -> None:
     start, size = len(encode_header(header)), frame_size(4)
     for length in range(len(log_bytes)):
@@ -74,6 +76,7 @@ def test_truncation_at_every_byte_keeps_all_whole_ticks(header: LogHeader, log_b
             assert str(pass_.breaks[0]).endswith(f"torn, {rest} of {size} bytes")
 
 
+@pytest.mark.fault("P04")
 def test_a_flipped_bit_loses_at_most_its_own_tick(header: LogHeader, log_bytes: bytes) -> None:
     start, size = len(encode_header(header)), frame_size(4)
     content = log_bytes[: start + 5 * size]
@@ -106,12 +109,14 @@ def test_a_whole_tick_in_a_wrong_place_is_named(header: LogHeader, log_bytes: by
     assert pass_.breaks[0].reason == "tick 3 where tick 2 belongs"
 
 
+@pytest.mark.fault("F05")
 def test_f05_newer_schema_is_refused(log_bytes: bytes) -> None:
     newer = with_header(log_bytes, schema=SCHEMA + 1, a_key_of_tomorrow=1)
     with pytest.raises(RecordingError, match=rf"^drive\.log: schema: {SCHEMA + 1} .* reads 1 to {SCHEMA}$"):
         scan(newer)
 
 
+@pytest.mark.fault("F05")
 def test_f05_another_byte_order_is_refused(log_bytes: bytes) -> None:
     other = "big" if sys.byteorder == "little" else "little"
     with pytest.raises(RecordingError, match=f"byte_order: '{other}' cannot be read here"):

@@ -116,6 +116,7 @@ def test_a_row_of_another_width_is_a_bug(tmp_path: Path, header: LogHeader) -> N
         log.append(1, np.zeros(3))
 
 
+@pytest.mark.fault("P01")
 def test_p01_a_full_disk_stops_recording_not_driving(tmp_path: Path) -> None:
     path = tmp_path / "drive.log"
     done = subprocess.run([sys.executable, "-c", FILL_THE_DISK, str(path)], capture_output=True, text=True, check=False)
@@ -128,6 +129,7 @@ def test_p01_a_full_disk_stops_recording_not_driving(tmp_path: Path) -> None:
     assert ticks == (10_000 - len(encode_header(reader.header))) // frame_size(2)
 
 
+@pytest.mark.fault("P01")
 @pytest.mark.parametrize("cut_fails", [False, True])
 def test_p01_no_space_at_all(
     tmp_path: Path, header: LogHeader, monkeypatch: pytest.MonkeyPatch, cut_fails: bool
@@ -148,6 +150,7 @@ def test_p01_no_space_at_all(
     assert [record.tick for record in LogReader(tmp_path / "drive.log")] == [1]
 
 
+@pytest.mark.fault("P01")
 def test_p01_a_sync_that_fails_is_flagged(tmp_path: Path, header: LogHeader, monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(_: int) -> None:
         raise OSError(errno.EIO, "Input/output error")
@@ -167,6 +170,7 @@ def test_closing_twice_is_fine(tmp_path: Path, header: LogHeader) -> None:
     assert list(LogReader(tmp_path / "drive.log")) == []
 
 
+@pytest.mark.fault("P02")
 def test_p02_kill_9_loses_at_most_the_tick_in_work(tmp_path: Path) -> None:
     seed = random.randrange(1 << 32)
     print("seed", seed)

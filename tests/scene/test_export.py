@@ -35,7 +35,7 @@ def contents(path: Path) -> dict[str, int]:
     program = (
         "import sys, json, rerun as rr\n"
         "rows = {}\n"
-        "for entry in rr.chunk.RrdReader(sys.argv[1]).store().stream():\n"
+        "for entry in rr.chunk.RrdReader(sys.argv[1]).stream():\n"
         "    rows[entry.entity_path] = rows.get(entry.entity_path, 0) + entry.num_rows\n"
         "print(json.dumps(rows))\n"
     )

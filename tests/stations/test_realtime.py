@@ -214,6 +214,7 @@ def test_a_bridge_killed_in_autonomy_ends_in_a_recorded_safe_stop(disturbed: Dis
     assert abs(disturbed.table.column("vehicle.vx_mps")[-1]) < 0.1
 
 
+@pytest.mark.fault("P11")
 def test_ctrl_c_leaves_a_whole_bundle_and_code_130(disturbed: Disturbed) -> None:
     assert disturbed.code == 130
     assert disturbed.results["interrupted"] is True

@@ -1,0 +1,264 @@
+"""P07 to P09: garbage, a soak, and a viewer that is frozen; in memory, counts and processor time."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from threading import Thread
+from typing import Any
+
+import numpy as np
+import pytest
+
+from simconsole.bridge.client import BridgeClient
+from simconsole.recording.bundle import verify
+from tests.drives.console import Running, results, wait_until
+from tests.faults.test_n_restarts import free_port
+from tests.faults.test_whole_drives import PERSON
+from tests.samples import Measured, Sample
+from tests.stations.test_realtime import TICK_HZ, drive
+
+MIB = 1 << 20
+
+# A person at the wheel for some ticks, and beside the loop somebody who makes garbage in circles: as much as is asked
+# for, a share of it in each tick. Before the drive there is a heap that is costly to look through.
+LITTERED = """
+import gc, json, sys, time
+from pathlib import Path
+from simconsole.pacing import realtime_hints
+from tests.faults.course import BY_HAND, circuit
+
+ticks, garbage_bytes = int(sys.argv[1]), int(sys.argv[2])
+track = circuit()
+state = track.state_at(150.0)
+heap = [[number, [number]] for number in range(1_000_000)]
+EACH = [0] * 128
+share = garbage_bytes // ticks // sys.getsizeof(EACH)
+
+def resident():
+    return int(Path("/proc/self/statm").read_text().split()[1]) * 4096
+
+def cpu_of_a_full_collection():
+    began_ns = time.process_time_ns()
+    gc.collect()
+    return time.process_time_ns() - began_ns
+
+class Litter:
+    took_ns, collections, began_ns, last_ns = [], [], 0, 0
+
+    def publish(self, snapshot):
+        for _ in range(share):
+            circle = list(EACH)
+            circle[0] = circle
+        now_ns = time.process_time_ns()
+        self.took_ns.append(now_ns - self.last_ns)
+        self.last_ns = now_ns
+
+    def collected(self, phase, about):
+        if phase == "start":
+            self.began_ns = time.process_time_ns()
+        else:
+            self.collections.append((about["generation"], time.process_time_ns() - self.began_ns))
+
+gc.collect()
+whole_ns = min(cpu_of_a_full_collection() for _ in range(3))
+litter = Litter()
+with realtime_hints():
+    before = resident()  # locked memory is all there at once
+    frozen = gc.get_freeze_count()
+    gc.callbacks.append(litter.collected)
+    litter.last_ns = time.process_time_ns()
+    driven = track.drive(state, ticks / 250, crew=BY_HAND, stations=(litter,))
+    gc.callbacks.remove(litter.collected)
+print(json.dumps({
+    "frozen": frozen, "heap": 2 * len(heap), "whole_ns": whole_ns, "took_ns": litter.took_ns,
+    "collections": litter.collections, "made": share * ticks * sys.getsizeof(EACH), "grown": resident() - before,
+    "modes": [int(mode) for mode in driven.modes],
+}))
+"""
+
+
+def littered(ticks: int, garbage_bytes: int) -> dict[str, Any]:
+    command = [sys.executable, "-c", LITTERED, str(ticks), str(garbage_bytes)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=250)
+    assert done.returncode == 0, done.stderr
+    found: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
+    return found
+
+
+@pytest.mark.fault("P07")
+def test_p07_a_loop_that_makes_no_circles_is_never_stopped_by_a_full_collection(measured: Measured) -> None:
+    found = littered(30 * TICK_HZ, 0)
+    full = [generation for generation, _ in found["collections"] if generation == 2]
+    seen = f"{len(full)} full, {len(found['collections'])} in all"
+    measured("P07", "collections in 7,500 ticks without garbage", seen, "no full one")
+    assert not full
+    assert len(found["modes"]) == 1
+
+
+@pytest.mark.fault("P07")
+def test_p07_two_gibibytes_of_garbage_do_not_hold_up_the_ticks(sample: Sample, measured: Measured) -> None:
+    """What was there before the drive is never looked at again: a collection costs what the garbage of it costs."""
+    ticks = sample.of(4000, 40_000)
+    found = littered(ticks, 2 << 30)
+    assert found["made"] > 1.9 * (1 << 30)
+    assert found["frozen"] > found["heap"]
+    assert found["collections"], "the garbage was collected meanwhile"
+    assert found["grown"] < 64 * MIB
+    longest_ns = max(took_ns for _, took_ns in found["collections"])
+    took_ms = np.array(found["took_ns"]) / 1e6
+    p999_ms = float(np.percentile(took_ms, 99.9))
+    seen = f"p99.9 {p999_ms:.2f} ms of CPU time, median {np.median(took_ms):.2f} ms"
+    measured("P07", f"a tick that also makes {found['made'] / ticks / 1024:.0f} KiB of garbage", seen, "5 ms")
+    seen = f"{longest_ns / 1e6:.2f} ms; of the whole heap, not frozen, {found['whole_ns'] / 1e6:.0f} ms"
+    measured("P07", "longest collection in the drive", seen, "a fifth of the latter")
+    assert 5 * longest_ns < found["whole_ns"]
+    assert p999_ms <= 5.0
+
+
+SOAK = """\
+schema: 1
+environment: {world: urban}
+scenario: {vehicle: hatchback}
+features: {autopilot: urban}
+outputs: {bridge: {port: PORT}, hud: null, scene: null, report: false}
+devices: {driver: "script:person.yaml"}
+mode: {pacing: lockstep}
+"""
+
+
+def resident_bytes(pid: int) -> int:
+    return int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+
+def open_files(pid: int) -> int:
+    return len(list(Path(f"/proc/{pid}/fd").iterdir()))
+
+
+def children(pid: int) -> list[int]:
+    return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+
+
+@contextmanager
+def listening(url: str, minutes: int) -> Iterator[Iterator[int]]:
+    """Three who listen to odometry; yield each simulated minute that /clock has reached, up to the last."""
+    with ExitStack() as stack:
+        listeners = [stack.enter_context(BridgeClient(url)) for _ in range(4)]
+        for listener in listeners[:3]:
+            listener.subscribe("/odom", "nav_msgs/Odometry")
+        clock = listeners[3]
+        clock.subscribe("/clock", "rosgraph_msgs/Clock")
+        ended = False
+
+        def listen(listener: BridgeClient) -> None:
+            while not ended:
+                listener.receive(0.2)
+
+        threads = [Thread(target=listen, args=(listener,)) for listener in listeners[:3]]
+        for thread in threads:
+            thread.start()
+
+        def each_minute() -> Iterator[int]:
+            reached = 0
+            while reached < minutes:
+                received = clock.receive(60.0)
+                assert received is not None, "the drive stands"
+                minute = received.message.clock.sec // 60
+                if minute > reached:
+                    reached = minute
+                    yield minute
+
+        try:
+            yield each_minute()
+        finally:
+            ended = True
+            for thread in threads:
+                thread.join()
+
+
+@pytest.mark.fault("P08")
+@pytest.mark.timeout(4 * 3600)
+def test_p08_a_drive_of_eight_hours_takes_no_more_memory_than_its_first_minutes(
+    tmp_path: Path, sample: Sample, measured: Measured
+) -> None:
+    """The program in lockstep with its autopilot and four clients, as fast as it goes; its log is cut meanwhile."""
+    warm, minutes = sample.of(1, 10), sample.of(5, 8 * 60)
+    port, bundle = free_port(), tmp_path / "bundle"
+    (tmp_path / "person.yaml").write_text(PERSON)
+    (tmp_path / "session.yaml").write_text(SOAK.replace("PORT", str(port)))
+    with Running(tmp_path, "drive", tmp_path / "session.yaml", "--out", bundle) as running:
+        core = running.process.pid
+        wait_until(lambda: running.process.poll() is not None or (bundle / "drive.log").exists(), "a log")
+        held: list[tuple[list[int], list[int]]] = []
+        with listening(f"ws://127.0.0.1:{port}", minutes) as reached:
+            for minute in reached:
+                os.truncate(bundle / "drive.log", 0)  # or it would fill the disk: 1.7 GB an hour
+                if minute >= warm:
+                    family = [core, *children(core)]
+                    held.append(([resident_bytes(pid) for pid in family], [open_files(pid) for pid in family]))
+        for pid in children(core):
+            os.kill(pid, signal.SIGKILL)
+    shutil.rmtree(bundle)
+    assert all(files == held[0][1] for _, files in held), "files stay open"
+    resident = np.array([sizes for sizes, _ in held])
+    assert resident.shape[1] >= 2, "console and autopilot"
+    grown, hours = resident[-1] - resident[0], (minutes - warm) / 60.0
+    seen = ", ".join(f"{size / MIB:+.2f} MiB" for size in grown.tolist()) + f" in {hours:.2f} simulated h"
+    measured("P08", "resident memory of console and autopilot", seen, "at most 1 MiB an hour")
+    assert (grown <= max(1.0, hours) * MIB).all(), resident.tolist()
+
+
+FROZEN = """\
+schema: 1
+scenario: {vehicle: hatchback}
+outputs: {bridge: null, hud: null, scene: {rate_hz: 50, flush_s: 0.2}, report: false}
+devices:
+  driver: virtual
+  person: {title: sits, autonomy: {time_s: 3000}}
+mode: {pacing: realtime, tick_hz: 250}
+"""
+
+
+def core_ns(pid: int) -> int:
+    """Processor time of the thread that ticks."""
+    return int(Path(f"/proc/{pid}/task/{pid}/schedstat").read_text().split()[0])
+
+
+@pytest.mark.fault("P09")
+def test_p09_a_scene_that_is_frozen_costs_the_core_nothing_and_then_goes_on(tmp_path: Path, measured: Measured) -> None:
+    """Stopped for longer than the ring holds. rerun's viewers read the file; they reach no process of ours."""
+    with drive(tmp_path, FROZEN) as driven:
+        wait_until(lambda: driven.stations().keys() == {"scene"}, "the scene")
+        live = driven.bundle / "scene.live.rrd"
+        wait_until(lambda: live.exists() and driven.tick() > TICK_HZ, "a scene that records")
+        scene = driven.stations()["scene"].process_id
+        cost = {}
+        for frozen in (False, True):
+            if frozen:
+                before = resident_bytes(scene)
+                os.kill(scene, signal.SIGSTOP)
+                size = live.stat().st_size
+            tick, used_ns = driven.tick(), core_ns(driven.core)
+            wait_until(lambda tick=tick: driven.tick() >= tick + 6 * TICK_HZ, "the drive going on")  # type: ignore[misc]
+            cost[frozen] = (core_ns(driven.core) - used_ns) / (driven.tick() - tick)
+        assert live.stat().st_size == size, "frozen indeed"
+        os.kill(scene, signal.SIGCONT)
+        wait_until(lambda: live.stat().st_size > size, "the scene going on")
+        grown = resident_bytes(scene) - before
+        assert driven.stations()["scene"].process_id == scene, "the same one"
+        os.kill(scene, signal.SIGSTOP)
+        driven.running.interrupt_group()
+        done = driven.running.end()
+    assert done.returncode == 130, done.stderr
+    assert results(done)["interrupted"] is True
+    assert verify(driven.bundle) == []
+    seen = f"{cost[True] / 1e3:.0f} us of CPU time, {cost[False] / 1e3:.0f} us beside a scene that runs"
+    measured("P09", "a tick beside a frozen scene", seen, "at most twice the latter")
+    measured("P09", "memory of a scene that was frozen", f"{grown / MIB:+.1f} MiB", "at most 16 MiB")
+    assert cost[True] <= 2.0 * cost[False]
+    assert grown <= 16 * MIB
