@@ -4,6 +4,7 @@ import os
 import random
 import re
 import shutil
+import signal
 import socket
 import time
 from collections.abc import Iterator
@@ -104,7 +105,10 @@ class Life:
         temporary.mkdir(parents=True, exist_ok=True)
         self.mark = f"{mark}-{os.getpid()}"
         self.temporary = temporary
+        # Whoever runs the tests may ignore hang-ups (nohup), and a program inherits that.
+        before = signal.signal(signal.SIGHUP, signal.SIG_DFL)
         self.running = Running(folder, *words, **{MARK: self.mark, "TMPDIR": str(temporary)})
+        signal.signal(signal.SIGHUP, before)
         self.core = self.running.process.pid
 
     def family(self) -> dict[int, str]:

@@ -161,12 +161,14 @@ class Ended(NamedTuple):
     """How a drive ended that got a signal."""
 
     code: int
+    was_done: bool  # before the first signal: the results were printed
     whole_s: float | None  # until its bundle was whole
     exit_s: float
 
 
 def end_by(life: Life, bundle: Path, numbers: list[tuple[float, signal.Signals]]) -> Ended:
     """Send signals, each after a pause, and watch the end."""
+    was_done = bool(life.running.out.read_bytes())
     began_s, whole_s, due_s = time.monotonic(), None, 0.0
     for pause_s, number in numbers:
         due_s += pause_s
@@ -181,7 +183,7 @@ def end_by(life: Life, bundle: Path, numbers: list[tuple[float, signal.Signals]]
         return life.running.process.poll() is not None
 
     wait_until(ended, "the end")
-    return Ended(int(life.running.process.returncode), whole_s, time.monotonic() - began_s)
+    return Ended(int(life.running.process.returncode), was_done, whole_s, time.monotonic() - began_s)
 
 
 def is_finished(bundle: Path) -> bool:
@@ -212,12 +214,18 @@ def test_a_signal_at_any_moment_ends_a_drive_in_order(
             wait_until(lambda: not life.left(), f"the end of {life.left()}")
             said = life.running.err.read_text()
             assert "Traceback" not in said, said
-            at_end = ended.code in (0, -number) and is_finished(bundle)  # the signal came when all was done
+            at_end = ended.was_done and ended.code in (0, -number) and is_finished(bundle)
             assert ended.code == 130 or at_end, said
             assert_whole_or_none(bundle, twice)
-            longest_s, last_s = max(longest_s, ended.whole_s or 0.0), max(last_s, ended.exit_s)
-    what = f"{times} signals at random moments" + (", twice" if twice else "")
-    measured("P11", what, f"bundle whole within {longest_s:.2f} s, exit with exports within {last_s:.2f} s", "2 s")
+            longest_s, last_s = (
+                max(longest_s, ended.whole_s or 0.0),
+                max(last_s, ended.exit_s - sum(s for s, _ in second)),
+            )
+    if twice:
+        measured("P11", f"{times} times two signals", f"exit within {last_s:.2f} s of the second", "at once")
+        return
+    seen = f"bundle whole within {longest_s:.2f} s, exit with report and scene within {last_s:.2f} s"
+    measured("P11", f"{times} signals at random moments", seen, "2 s")
 
 
 def assert_whole_or_none(bundle: Path, twice: bool) -> None:
