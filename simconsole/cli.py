@@ -14,7 +14,7 @@ from typing import Any, TextIO
 
 from simconsole import __version__
 from simconsole.errors import SimConsoleError
-from simconsole.lifetimes import ATTACHED, INTERRUPTED, ending_at_once
+from simconsole.lifetimes import ATTACHED, INTERRUPTED, ending_at_once, ignore_signals
 
 _AT_ONCE = ("demo", "drive", "bridge", "report", "view")
 """Commands that Ctrl-C ends at once where no drive takes it for itself: they leave nothing half made. To the others it
@@ -43,7 +43,9 @@ def main(arguments: list[str] | None = None) -> int:
     signals = ending_at_once(ctrl_c=words.command in _AT_ONCE)
     if arguments is None:
         _until_the_end.enter_context(signals)
-        return _run(words)
+        code = _run(words)
+        ignore_signals()  # all is done, and the code is decided while Python still takes itself down
+        return code
     with signals:
         return _run(words)
 

@@ -269,6 +269,12 @@ class Interrupt:
         self.raised = True
 
 
+def ignore_signals() -> None:
+    """Let signals change nothing any more: this process is ending."""
+    for number in SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
+
+
 def ending_at_once(ctrl_c: bool) -> contextlib.AbstractContextManager[None]:
     """Within the block, a signal ends the process at once with code 130; SIGINT only with `ctrl_c`."""
     numbers = SIGNALS if ctrl_c else SIGNALS[1:]
