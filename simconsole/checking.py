@@ -98,7 +98,8 @@ def drive_scenario(scenario: ScenarioProfile) -> tuple[MemoryRecorder, tuple[str
     commands = ScriptedCommands(scenario.remote, scenario.events, tick_hz)
     ecu = ScriptedCommands(scenario.ecu, scenario.ecu_events, tick_hz)
     cast = Cast(devices, commands, recorder, (), UnpacedPacer(), ecu=ecu)
-    run(console, state, isolated(with_faults(cast, resolved, tick_hz)), ticks)
+    cast = isolated(with_faults(cast, resolved, tick_hz), UnpacedPacer)
+    run(console, state, cast._replace(recorder=recorder), ticks)  # here a recorder that fails is a failure
     return recorder, console.columns
 
 

@@ -8,6 +8,7 @@
     |   +-- DeviceNotFound      the profile names a device that is not there
     |   +-- DeviceModeError     the device is there in a mode that cannot drive
     +-- BridgeError             the rosbridge link
+    |   +-- OtherDriveError     the server belongs to another drive than the one that started this program
     |   +-- LocalProtocolError  we broke the protocol: a bug here
     |   +-- RemoteProtocolError the peer broke the protocol: answered with a status
     |       +-- FrameError      below its messages: answered with a close code
@@ -43,6 +44,12 @@ class DeviceModeError(DeviceError):
 
 class BridgeError(SimConsoleError):
     """The rosbridge link cannot be opened or has failed."""
+
+
+class OtherDriveError(BridgeError):
+    """The server refuses this program, which another drive has started; trying again would not help."""
+
+    exit_code = 1
 
 
 class LocalProtocolError(BridgeError):

@@ -43,7 +43,10 @@ NO_RECEIPT: Final = -1
 
 
 def bridge(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> None:
-    """Serve rosbridge. Arguments: `profile` (BridgeProfile), `tick_hz`, `bundle` (for recorded topics)."""
+    """Serve rosbridge.
+
+    Arguments: `profile` (BridgeProfile), `tick_hz`, `drive` (its nonce), `bundle` (for recorded topics).
+    """
     from simconsole.bridge.operate import Act
     from simconsole.bridge.server import serve
     from simconsole.bridge.wire import address_url
@@ -79,7 +82,7 @@ def bridge(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) ->
     serve(
         profile, snapshots, write_command, events.raise_events, stop,
         on_ready=ready, on_act=keep_act, on_counts=write_counts, on_standing=write_standing,
-        folder=Path(arguments["bundle"]),
+        folder=Path(arguments["bundle"]), drive=arguments["drive"],
     )  # fmt: skip
 
 

@@ -2,9 +2,10 @@
 
 from typing import Any
 
-from simconsole.commands.outcome import INTERRUPTED, Outcome, table
+from simconsole.commands.outcome import Outcome, table
 from simconsole.commands.progress import Progress
 from simconsole.exports import REPORT, SCENE, write_exports
+from simconsole.lifetimes import INTERRUPTED
 from simconsole.session import DriveResult
 
 
@@ -18,7 +19,7 @@ def finish(result: DriveResult, report: bool = True, scene: bool = True) -> Outc
     results: dict[str, Any] = {"bundle": str(result.folder), "digest": result.digest, **result.summary}
     if not result.ticks:
         return Outcome(code, results, f"{result.folder}: interrupted before the first tick")
-    with Progress("writing report and scene"):
+    with Progress("writing report and scene" + (" (Ctrl-C: not now)" if result.interrupted else "")):
         metrics = write_exports(result.folder, report=report, scene=scene)
     rows = _rows(result, metrics)
     rows += [("report", str(result.folder / REPORT))] * report + [("scene", str(result.folder / SCENE))] * scene

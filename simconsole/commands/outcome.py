@@ -1,9 +1,6 @@
 """What a command hands back to the command line."""
 
-from typing import Any, Final, NamedTuple
-
-INTERRUPTED: Final = 130
-"""Exit code of what SIGINT or SIGTERM ended, as a shell reports a Ctrl-C; a drive's bundle is whole all the same."""
+from typing import Any, NamedTuple
 
 
 class Outcome(NamedTuple):

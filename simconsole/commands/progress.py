@@ -2,6 +2,7 @@
 
 import sys
 import time
+from contextlib import suppress
 from types import TracebackType
 from typing import Final, Self
 
@@ -47,5 +48,6 @@ class Progress:
 
     def _write(self, line: str) -> None:
         if self._shown:
-            sys.stderr.write(f"\r\x1b[K{line}")
-            sys.stderr.flush()
+            with suppress(OSError):  # the terminal was closed
+                sys.stderr.write(f"\r\x1b[K{line}")
+                sys.stderr.flush()

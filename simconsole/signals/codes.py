@@ -117,6 +117,7 @@ class Event(IntFlag):
     TOGGLE_ANTI_LOCK = 16384
     TOGGLE_TRACTION = 32768
     TOGGLE_STABILITY = 65536
+    END = 262144  # somebody has ended the drive by a signal; from here on the console brings the vehicle to rest
 
 
 class Button(IntFlag):
