@@ -12,7 +12,7 @@ from typing import Any
 
 from simconsole import __version__
 from simconsole.commands.outcome import INTERRUPTED
-from simconsole.errors import SimConsoleError
+from simconsole.errors import SimConsoleError, one_line
 
 
 def parser() -> argparse.ArgumentParser:
@@ -40,6 +40,11 @@ def main(arguments: list[str] | None = None) -> int:
         if words.json:
             _print_json({"error": str(error)})
         return error.exit_code
+    except (MemoryError, OSError) as error:  # the machine's limits and files: no bug of ours
+        print(f"simconsole {words.command}: {one_line(error)}", file=sys.stderr)
+        if words.json:
+            _print_json({"error": one_line(error)})
+        return SimConsoleError.exit_code
     except KeyboardInterrupt:
         return INTERRUPTED
     if outcome.text:

@@ -14,8 +14,9 @@ class MemoryRecorder:
         self.ticks = 0
         self.digest = digest
 
-    def write(self, snapshot: Snapshot) -> None:
+    def write(self, snapshot: Snapshot) -> int:
         """Keep one tick."""
         self.rows[self.ticks] = snapshot.row
         self.ticks += 1
         self.digest = chain(self.digest, snapshot.tick, snapshot.row.tobytes())
+        return 0

@@ -27,6 +27,7 @@ from typing import Any, Final
 import msgspec
 
 from simconsole.errors import SimConsoleError, StationError
+from simconsole.files import write_atomically
 from simconsole.rows import Snapshot
 from simconsole.shared_memory import remove_run_folder
 
@@ -213,10 +214,8 @@ def _write_status(folder: Path, kept: list[_Kept]) -> None:
         )
         for station in kept
     }
-    part = folder / f"{STATUS}.part"
     try:
-        part.write_bytes(msgspec.json.encode(status))
-        part.replace(folder / STATUS)
+        write_atomically(folder / STATUS, msgspec.json.encode(status), durable=False)
     except OSError:
         return  # the folder is gone: the core has ended and the pipe will say so
 

@@ -28,8 +28,8 @@ class Broken:
     def publish(self, snapshot: Snapshot) -> NoReturn:
         self._fail()
 
-    def write(self, snapshot: Snapshot) -> None:
-        pass
+    def write(self, snapshot: Snapshot) -> int:
+        return 0
 
     def close(self) -> None:
         self.calls = -1

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from simconsole.errors import SimConsoleError, StationError
+from simconsole.files import replaced
 from simconsole.scene.entities import world_shapes
 from simconsole.scene.job import Job, load_job, save_job
 from simconsole.scene.timeline import Memory, piece
@@ -24,19 +25,17 @@ def export(job: Job, path: Path) -> None:
     from simconsole.scene.rerun_view import RerunView
 
     world = None if job.drawing is None else world_shapes(job.drawing)
-    # Under its final name only once it is whole.
-    part = path.with_name(f"{path.name}.part")
-    view = RerunView(part, job.profile, job.dimensions, world)
-    memory = Memory()
-    step = max(1, round(PIECE_S * job.tick_hz))
-    for start in range(0, len(job.ticks), step):
-        end = start + step
-        added, memory = piece(
-            job.rows[start:end], job.columns, job.ticks[start:end], job.tick_hz, job.profile.rate_hz, memory
-        )
-        view.add(added)
-    view.close()
-    part.replace(path)
+    with replaced(path) as draft:
+        view = RerunView(draft, job.profile, job.dimensions, world)
+        memory = Memory()
+        step = max(1, round(PIECE_S * job.tick_hz))
+        for start in range(0, len(job.ticks), step):
+            end = start + step
+            added, memory = piece(
+                job.rows[start:end], job.columns, job.ticks[start:end], job.tick_hz, job.profile.rate_hz, memory
+            )
+            view.add(added)
+        view.close()
 
 
 def export_apart(job: Job, path: Path, deadline_s: float = 60.0) -> None:

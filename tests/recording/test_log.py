@@ -121,11 +121,46 @@ def test_p01_a_full_disk_stops_recording_not_driving(tmp_path: Path) -> None:
     done = subprocess.run([sys.executable, "-c", FILL_THE_DISK, str(path)], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     ticks, failure = json.loads(done.stdout)
-    assert failure == f"{path}: recording stopped after {ticks} ticks: {failure.rsplit(': ', 1)[1]}"
+    assert failure == f"{path}: recording stopped at tick {ticks + 1}: {failure.rsplit(': ', 1)[1]}"
     reader = LogReader(path)
     assert [record.tick for record in reader] == list(range(1, ticks + 1))
     assert reader.breaks == ()  # the part of a tick that still fitted was taken back
     assert ticks == (10_000 - len(encode_header(reader.header))) // frame_size(2)
+
+
+@pytest.mark.fault("P01")
+def test_p01_the_last_ticks_go_into_the_room_that_was_kept_for_them(
+    tmp_path: Path, header: LogHeader, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The tick that did not fit, and the one after it: it holds the alarm. Nothing after that, whatever comes free."""
+    write = os.write
+    freed: list[bool] = []
+
+    def full(fd: int, frame: bytes) -> int:
+        if not freed:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return write(fd, frame)
+
+    with LogWriter(tmp_path / "drive.log", header, free_room=lambda: freed.append(True)) as log:
+        log.append(1, np.zeros(4))
+        monkeypatch.setattr(os, "write", full)
+        for tick in range(2, 6):
+            log.append(tick, np.zeros(4))
+        assert log.failure is not None
+        assert log.failure.endswith("recording stopped at tick 2: No space left on device")
+    assert [record.tick for record in LogReader(tmp_path / "drive.log")] == [1, 2, 3]
+    assert len(freed) == 1
+
+
+@pytest.mark.fault("P01")
+def test_p01_a_log_that_was_removed_is_a_failure(tmp_path: Path, header: LogHeader) -> None:
+    with LogWriter(tmp_path / "drive.log", header) as log:
+        log.append(1, np.zeros(4))
+        (tmp_path / "drive.log").unlink()
+        log.append(2, np.zeros(4))
+        assert log.failure == f"{tmp_path / 'drive.log'}: recording stopped at tick 2: the file was removed"
+        log.append(3, np.zeros(4))
+        assert log.ticks == 1
 
 
 @pytest.mark.parametrize("cut_fails", [False, True])
@@ -144,7 +179,7 @@ def test_p01_no_space_at_all(
             log.append(2, np.zeros(4))
         log.append(3, np.zeros(4))
         assert log.failure is not None
-        assert log.failure.endswith("recording stopped after 1 ticks: No space left on device")
+        assert log.failure.endswith("recording stopped at tick 2: No space left on device")
     assert [record.tick for record in LogReader(tmp_path / "drive.log")] == [1]
 
 
