@@ -26,7 +26,7 @@ from typing import Any, Final
 
 import msgspec
 
-from simconsole.errors import SimConsoleError, StationError
+from simconsole.errors import SimConsoleError, StationError, one_line
 from simconsole.files import write_atomically
 from simconsole.rows import Snapshot
 from simconsole.shared_memory import remove_run_folder
@@ -299,9 +299,9 @@ def main(words: list[str]) -> int:
         else:
             call = msgspec.json.decode(line, type=StationCall)
             run_station(Path(call.folder), call.station, _watch_pipe(call.patience_s))
-    except SimConsoleError as error:
-        print(f"simconsole {' '.join(words)}: {error}", file=sys.stderr)
-        return error.exit_code
+    except (SimConsoleError, OSError, MemoryError) as error:
+        print(f"simconsole {' '.join(words)}: {one_line(error)}", file=sys.stderr)
+        return SimConsoleError.exit_code
     return 0
 
 
