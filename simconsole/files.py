@@ -37,6 +37,19 @@ def write_atomically(path: Path, content: bytes | str, durable: bool = True) -> 
                 os.fsync(descriptor)
         finally:
             os.close(descriptor)
+    if durable:
+        sync_folder(path.parent)
+
+
+def sync_folder(folder: Path) -> None:
+    """Wait until the disk knows the names in a folder. Raises OSError. Nothing where folders cannot be opened."""
+    if os.name != "posix":
+        return
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
 
 
 @contextmanager

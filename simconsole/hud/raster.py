@@ -48,7 +48,7 @@ class Painter:
 
         pygame.font.init()
         # Read once: pygame would keep the file open for every size there is.
-        with getResource(pygame.font.get_default_font()) as file:
+        with getResource(pygame.font.get_default_font()) as file:  # type: ignore[no-untyped-call]
             self._typeface: bytes = file.read()
         self._fonts: dict[int, pygame.font.Font] = {}
         self._kept: OrderedDict[DrawItem, tuple[pygame.Surface, tuple[int, int]]] = OrderedDict()

@@ -16,7 +16,7 @@ from typing import Any, Final
 import msgspec
 
 from simconsole.errors import RecordingError
-from simconsole.files import draft_of, give_back, reserve, write_atomically
+from simconsole.files import draft_of, give_back, reserve, sync_folder, write_atomically
 from simconsole.recording.framing import START_OF_CHAIN, Break, LogHeader, chain, frame_size
 from simconsole.recording.log import LAST_TICKS, LogReader, LogWriter
 from simconsole.recording.manifest import (
@@ -130,6 +130,7 @@ class BundleWriter:
             reserve(folder / MANIFEST, ROOM_BYTES + last_ticks_bytes)
             free_room = partial(give_back, folder / MANIFEST, ROOM_BYTES)
             self.log = LogWriter(folder / LOG, header, free_room=free_room)
+            sync_folder(folder)  # a power cut takes ticks, not files
         except OSError as error:
             self._discard()
             raise RecordingError(f"{folder}: cannot be recorded to: {error.strerror}") from None
