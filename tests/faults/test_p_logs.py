@@ -1,7 +1,6 @@
-"""P01 to P04 of the fault catalogue, of whole drives; of the log alone see tests/recording."""
+"""P02 to P04 of the fault catalogue: what is left of a drive after kills, power cuts and damage."""
 
 import io
-import json
 import os
 import random
 import shutil
@@ -14,10 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from simconsole.assembly import ResolvedSession
-from simconsole.commands.driven import finish
 from simconsole.errors import RecordingError
-from simconsole.profiles.session import SessionProfile
 from simconsole.recording import log
 from simconsole.recording.bundle import open_bundle, verify
 from simconsole.recording.framing import Scan, frame_size
@@ -25,153 +21,16 @@ from simconsole.recording.log import SYNC_INTERVAL_S, LogReader
 from simconsole.replaying import replay_bundle
 from simconsole.rows import Snapshot
 from simconsole.session import drive
-from simconsole.session_files import load_session, override, resolve
-from simconsole.signals import Event
 from tests.drives.console import results, simconsole
 from tests.samples import Measured, Sample
 
-from .disks import DISKS, SIZE_BYTES, Disk, memory
-
-SECONDS = 2.0
-HZ = 250
-TICKS = round(SECONDS * HZ)
-
-
-def session(script: Path, seconds: float = SECONDS) -> ResolvedSession:
-    """A person who drives off, as fast as it goes."""
-    plain: SessionProfile = override(
-        load_session("seated"),
-        scenario={"duration_s": seconds},
-        devices={"driver": f"script:{script}"},
-        outputs={"hud": None, "scene": None, "report": False, "bridge": None},
-        mode={"pacing": "free"},
-    )
-    return resolve(plain)
-
-
-class Watcher:
-    """Lets the disk fail at one tick, and notes the first tick that tells."""
-
-    def __init__(self, disk: Disk, folder: Path, at: int) -> None:
-        self._disk, self._folder, self._at = disk, folder, at
-        self.last = 0
-        self.told: list[int] = []
-
-    def watch(self, snapshot: Snapshot) -> bool:
-        self.last = snapshot.tick
-        if snapshot.recording_failed:
-            self.told.append(snapshot.tick)
-        if snapshot.tick == self._at:
-            self._disk.fail(self._folder)
-        return False
-
-
-@pytest.mark.fault("P01")
-@pytest.mark.parametrize("disk", DISKS, ids=lambda disk: disk.name)
-def test_p01_a_disk_that_fails_at_any_moment(
-    disk: Disk, script: Path, tmp_path: Path, sample: Sample, measured: Measured
-) -> None:
-    """The drive goes on to its end, everybody is told in the next tick, what was recorded stays readable."""
-    generator = random.Random(sample.seed)
-    resolved = session(script)
-    latest = 0
-    for moment in range(sample.of(10, 100)):
-        at = generator.randrange(80, TICKS - 10)
-        place = tmp_path / f"disk{moment}"
-        with disk.mounted(place):
-            folder = place / "bundle"
-            watcher = Watcher(disk, folder, at)
-            result = drive(resolved, folder, watcher.watch)
-            assert watcher.last == TICKS - 1, "the drive went on (its last tick ends it unseen)"
-            assert result.recording_failure is not None
-            assert f"{folder / 'drive.log'}: recording stopped at tick " in result.recording_failure
-            failed = int(result.recording_failure.split("at tick ")[1].split(":")[0])
-            assert at < failed <= at + 2, "a row is half a block: one more may fit"
-            assert watcher.told == list(range(failed + 1, TICKS)), "from the next tick to the end"
-            latest = max(latest, watcher.told[0] - failed)
-            outcome = finish(result, report=False, scene=False)
-            assert outcome.code == 1
-            assert outcome.results["recording_failure"] == result.recording_failure
-            assert ["RECORDING", "FAILED", result.recording_failure] in [
-                line.split(maxsplit=2) for line in outcome.text.splitlines()
-            ]
-            if disk.readable:
-                _readable_to_the_last_record(folder, failed)
-            else:
-                assert not folder.exists()
-    measured("P01", f"{disk.name}: alarm after the tick whose write failed", f"{latest} tick", "1 tick")
-
-
-def _readable_to_the_last_record(folder: Path, failed: int) -> None:
-    bundle = open_bundle(folder)
-    ticks = [record.tick for record in bundle.log]
-    assert ticks == list(range(1, len(ticks) + 1))
-    assert len(ticks) in (failed - 1, failed + 1), "all before it; with room for the last ticks the alarm too"
-    assert bundle.log.breaks == ()
-    events = bundle.log.table().column("events.events").astype(int) & Event.RECORDING_FAILED
-    assert events.nonzero()[0].tolist() == ([] if len(ticks) < failed else [failed])
-    replayed = replay_bundle(folder)
-    assert (replayed.equal, replayed.ticks) == (True, len(ticks))
-    if bundle.manifest.finished:
-        assert not replayed.good
-        assert [path.name for path in folder.iterdir() if path.suffix == ".new"] == []
-        assert verify(folder) == [bundle.manifest.recording_failure]
-
-
-@pytest.mark.fault("P01")
-def test_p01_a_full_disk_keeps_the_alarm_and_the_reason(script: Path, tmp_path: Path) -> None:
-    """Their room was taken at the start: the log's last row holds the alarm, the manifest says why it is the last."""
-    with memory(tmp_path / "disk"):
-        folder = tmp_path / "disk" / "bundle"
-        watcher = Watcher(DISKS[0], folder, 100)
-        drive(session(script, 1.0), folder, watcher.watch)
-        bundle = open_bundle(folder)
-        assert bundle.manifest.finished
-        assert "No space left on device" in str(bundle.manifest.recording_failure)
-        assert bundle.manifest.summary["lateness"]
-        assert bundle.log.table().column("events.events").tolist()[-2:] == [0.0, float(Event.RECORDING_FAILED)]
-        assert sorted(path.name for path in folder.iterdir()) == ["drive.log", "manifest.json", "session.json"]
-
-
-@pytest.mark.fault("P01")
-def test_p01_from_the_command_line_every_command_tells_it(script: Path, tmp_path: Path) -> None:
-    """A drive that outgrows its disk: 1, and 1 again from whatever looks at what it left."""
-    place = tmp_path / "disk"
-    with memory(place):
-        (place / "filler").write_bytes(bytes(SIZE_BYTES - (1 << 20)))
-        bundle = place / "bundle"
-        words = ("--headless", "--driver", f"script:{script}", "--for", 5, "--out", bundle, "--json")
-        done = simconsole("drive", *words)
-        told = results(done)
-        assert done.returncode == 1, done.stdout + done.stderr
-        assert "Traceback" not in done.stderr
-        assert "No space left on device" in told["recording_failure"]
-        assert "RECORDING FAILED" in done.stdout
-        assert told["exports_failure"] == "not tried, for the recording failed"
-        assert not list(bundle.glob("*.new"))
-        (place / "filler").unlink()
-        for command, *more in (["replay"], ["verify"], ["report"], ["view", "--no-open"], ["compare", bundle]):
-            looked = simconsole(command, bundle, *more, "--json")
-            assert looked.returncode == 1, (command, looked.stdout, looked.stderr)
-            assert told["recording_failure"] in results(looked)["problems"], command
-            assert told["recording_failure"] in looked.stdout.splitlines(), command
-
-
-@pytest.mark.fault("P01")
-def test_p01_a_disk_that_is_full_at_the_start_is_one_line(script: Path, tmp_path: Path) -> None:
-    place = tmp_path / "disk"
-    with memory(place):
-        (place / "filler").write_bytes(bytes(SIZE_BYTES - (1 << 15)))
-        with pytest.raises(RecordingError, match=r"bundle: cannot be recorded to: No space left on device"):
-            drive(session(script), place / "bundle")
-        assert [path.name for path in place.iterdir()] == ["filler"]
-
+from .recorded import HZ, session, unfinish
 
 KILLED = """
 import mmap, os, sys, time
 from pathlib import Path
 from simconsole.session import drive
-from tests.faults.test_p_recording import session
+from tests.faults.recorded import session
 folder = Path(sys.argv[1])
 resolved = session(Path(sys.argv[2]), 3600.0)
 begun = memoryview(mmap.mmap(os.open(folder / "begun", os.O_RDWR), 8)).cast("q")
@@ -294,7 +153,7 @@ def test_p03_a_power_cut_takes_at_most_a_second(
     for tick, size in survivors:
         cut = tmp_path / "cut"
         shutil.copytree(folder, cut)
-        _unfinish(cut)
+        unfinish(cut)
         with (cut / "drive.log").open("r+b") as file:
             file.truncate(size)
         replayed = replay_bundle(cut)
@@ -305,21 +164,12 @@ def test_p03_a_power_cut_takes_at_most_a_second(
     measured("P03", f"lost at most, {len(cuts)} power cuts", f"{most / HZ:.3f} s of the drive", "1 s")
 
 
-def _unfinish(folder: Path) -> None:
-    """Leave what a drive that did not end leaves."""
-    manifest = json.loads((folder / "manifest.json").read_text())
-    for key in ("ticks", "digest", "summary"):
-        del manifest[key]
-    del manifest["files"]["drive.log"]
-    (folder / "manifest.json").write_text(json.dumps({**manifest, "finished": False}))
-
-
 @pytest.fixture(scope="module")
 def unfinished(script: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A bundle of six ticks that was never finished. Put back what a test changes."""
     folder = tmp_path_factory.mktemp("unfinished") / "bundle"
     drive(session(script, 6 / HZ), folder)
-    _unfinish(folder)
+    unfinish(folder)
     return folder
 
 
