@@ -30,9 +30,11 @@ from simconsole.recording.manifest import (
     size_problem,
     write_manifest,
 )
+from simconsole.signals import Event
 
 LOG: Final = "drive.log"
 SESSION_FILE: Final = "session.json"
+_EVENTS: Final = "events.events"
 BLOCK_BYTES: Final = 1 << 12
 """What a file system allots at a time: the last ticks may begin and end inside a block."""
 
@@ -57,12 +59,14 @@ class Bundle:
         The log counts as found by the latest complete pass. A torn last tick of a drive that was not finished is what
         a kill leaves, and no problem; see `remarks`.
         """
-        failed = [] if self.manifest.recording_failure is None else [self.manifest.recording_failure]
+        failure = self.manifest.recording_failure or _alarm(self.log)
+        failed = [] if failure is None else [failure]
         return failed + [f"{self.log.path}: {part}" for part in self.log.breaks if not self._expected(part)]
 
     def remarks(self) -> list[str]:
-        """Return what is worth knowing of the log, and no problem."""
-        return [
+        """Return what is worth knowing, and no problem."""
+        unfinished = [] if self.manifest.finished else [_unfinished(self.folder)]
+        return unfinished + [
             f"{self.log.path}: {part}: the last tick, as a drive that was killed leaves it"
             for part in self.log.breaks
             if self._expected(part)
@@ -213,7 +217,7 @@ def verify(folder: Path) -> list[str]:
         RecordingError: the folder has no manifest that can be read.
     """
     manifest = read_manifest(folder)
-    problems = [] if manifest.finished else [f"{folder / MANIFEST}: the drive was not finished"]
+    problems = [] if manifest.finished else [_unfinished(folder)]
     if manifest.recording_failure:
         problems.append(manifest.recording_failure)
     for name, entry in manifest.files.items():
@@ -221,6 +225,19 @@ def verify(folder: Path) -> list[str]:
             problems.append(problem)
     problems += _log_problems(folder / LOG, manifest)
     return problems
+
+
+def _unfinished(folder: Path) -> str:
+    return f"{folder / MANIFEST}: the drive was not finished"
+
+
+def _alarm(log: LogReader) -> str | None:
+    """Return one line if the last row holds the alarm: a drive that was killed after its recording had failed."""
+    if log.last is None or _EVENTS not in log.header.columns:
+        return None
+    if not int(log.last.row[log.header.columns.index(_EVENTS)]) & Event.RECORDING_FAILED:
+        return None
+    return f"{log.path}: recording stopped at tick {log.last.tick - 1}"
 
 
 def session_problem(path: Path, text: str, header: LogHeader) -> str | None:
@@ -249,6 +266,8 @@ def _log_problems(path: Path, manifest: Manifest) -> Iterator[str]:
         with contextlib.suppress(OSError, UnicodeDecodeError):  # named with the other files
             if problem := session_problem(session, session.read_text("utf-8"), log.header):
                 yield problem
+    if manifest.recording_failure is None and (alarm := _alarm(log)):
+        yield alarm
     yield from (f"{path}: {part}" for part in log.breaks)
     if broken is not None:
         yield f"{path}: the chained hash does not hold at tick {broken}"

@@ -186,6 +186,7 @@ class LogReader:
     Attributes:
         header: what the rows mean.
         breaks: where the file was not whole, as found by the latest complete pass.
+        last: the last whole record, as found by the latest complete pass; None in a log without.
     """
 
     def __init__(self, path: Path) -> None:
@@ -196,6 +197,7 @@ class LogReader:
         """
         self.path = path
         self.breaks: tuple[Break, ...] = ()
+        self.last: Record | None = None
         try:
             with path.open("rb") as file:
                 self.header = Scan(file.read, str(path)).header
@@ -206,8 +208,10 @@ class LogReader:
         """Yield all whole records; never raises on a torn tail."""
         with self.path.open("rb", buffering=1 << 18) as file:
             scan = Scan(file.read, str(self.path))
-            yield from scan
-        self.breaks = tuple(scan.breaks)
+            record = None
+            for record in scan:
+                yield record
+        self.breaks, self.last = tuple(scan.breaks), record
 
     def table(self) -> LogTable:
         """Return all whole records as arrays."""

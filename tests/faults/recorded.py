@@ -24,10 +24,10 @@ def session(script: Path, seconds: float = SECONDS) -> ResolvedSession:
     return resolve(plain)
 
 
-def unfinish(folder: Path) -> None:
+def unfinish(folder: Path, **changes: object) -> None:
     """Leave what a drive that did not end leaves."""
     manifest = json.loads((folder / "manifest.json").read_text())
     for key in ("ticks", "digest", "summary"):
         del manifest[key]
     del manifest["files"]["drive.log"]
-    (folder / "manifest.json").write_text(json.dumps({**manifest, "finished": False}))
+    (folder / "manifest.json").write_text(json.dumps({**manifest, "finished": False, **changes}))

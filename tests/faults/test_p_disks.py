@@ -1,6 +1,8 @@
 """P01 of the fault catalogue: a disk that fails under a drive. Of the log alone see tests/recording."""
 
+import errno
 import random
+import time
 from pathlib import Path
 
 import pytest
@@ -16,7 +18,7 @@ from tests.drives.console import results, simconsole
 from tests.samples import Measured, Sample
 
 from .disks import DISKS, SIZE_BYTES, Disk, memory
-from .recorded import TICKS, session
+from .recorded import TICKS, session, unfinish
 
 
 class Watcher:
@@ -101,6 +103,42 @@ def test_p01_a_full_disk_keeps_the_alarm_and_the_reason(script: Path, tmp_path: 
         assert bundle.manifest.summary["lateness"]
         assert bundle.log.table().column("events.events").tolist()[-2:] == [0.0, float(Event.RECORDING_FAILED)]
         assert sorted(path.name for path in folder.iterdir()) == ["drive.log", "manifest.json", "session.json"]
+
+
+@pytest.mark.fault("P01")
+def test_p01_a_drive_that_is_killed_after_its_recording_failed_is_no_success(script: Path, tmp_path: Path) -> None:
+    """Nobody wrote the reason into the manifest, but the log's last row holds the alarm."""
+    with memory(tmp_path / "disk"):
+        folder = tmp_path / "disk" / "bundle"
+        drive(session(script, 1.0), folder, Watcher(DISKS[0], folder, 100).watch)
+        failed = open_bundle(folder).manifest.ticks - 1
+        unfinish(folder, recording_failure=None)
+        told = f"{folder / 'drive.log'}: recording stopped at tick {failed}"
+        assert replay_bundle(folder).problems == (told,)
+        assert told in verify(folder)
+
+
+@pytest.mark.fault("P01")
+def test_p01_a_disk_that_only_fails_to_sync_raises_the_same_alarm(
+    script: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(fd: int) -> None:
+        raise OSError(errno.EIO, "Input/output error")
+
+    monkeypatch.setattr("simconsole.recording.log._synchronise", broken)
+    deadline_s, told = time.monotonic() + 60.0, []
+
+    def watch(snapshot: Snapshot) -> bool:
+        time.sleep(0.001)
+        if snapshot.recording_failed:
+            told.append(snapshot.tick)
+        return len(told) > 5 or time.monotonic() > deadline_s
+
+    result = drive(session(script, 3600.0), tmp_path / "bundle", watch)
+    assert told == list(range(told[0], told[0] + 6))
+    assert str(result.recording_failure).endswith("sync: Input/output error")
+    assert finish(result).code == 1
+    assert told[0] - 1 <= result.ticks - 1 <= told[0], "the alarm is in the log"
 
 
 @pytest.mark.fault("P01")
