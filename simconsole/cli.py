@@ -13,7 +13,7 @@ from importlib import import_module
 from typing import Any, TextIO
 
 from simconsole import __version__
-from simconsole.errors import SimConsoleError
+from simconsole.errors import SimConsoleError, one_line
 from simconsole.lifetimes import ATTACHED, INTERRUPTED, ending_at_once, ignore_signals
 
 _AT_ONCE = ("demo", "drive", "bridge", "report", "view")
@@ -59,6 +59,11 @@ def _run(words: argparse.Namespace) -> int:
         if words.json:
             _print_json({"error": str(error)})
         return error.exit_code
+    except (MemoryError, OSError) as error:  # the machine's limits and files: no bug of ours
+        print(f"simconsole {words.command}: {one_line(error)}", file=sys.stderr)
+        if words.json:
+            _print_json({"error": one_line(error)})
+        return SimConsoleError.exit_code
     except KeyboardInterrupt:
         return INTERRUPTED
     if outcome.text:

@@ -13,8 +13,8 @@ from simconsole.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE, Button, Event, 
 class Recorder(Protocol):
     """Where every tick goes first."""
 
-    def write(self, snapshot: Snapshot) -> None:
-        """Keep one tick; a failing disk must not raise."""
+    def write(self, snapshot: Snapshot) -> int:
+        """Keep one tick and return the events (mask) that the next one brings; a failing disk must not raise."""
 
 
 class Pace(Protocol):
@@ -99,7 +99,7 @@ def run(
             carried &= ~_PAUSE
         edges = EventInput(float(carried), faults, float(int(ecu_events.events) | carried_ecu))
         state, snapshot = advance(state, TickInputs(sample, ros, edges, ecu), console, mark)
-        cast.recorder.write(snapshot)
+        recorded = cast.recorder.write(snapshot)
         mark(Hop.RECORD)
         for station, hop in stations:
             station.publish(snapshot)
@@ -109,6 +109,7 @@ def run(
             carried, carried_ecu = _stand(console, state, cast, snapshot, finished)
         else:
             carried = _PAUSE if int(snapshot.driver.edges) & _BUTTON_PAUSE else 0
+        carried |= recorded
     return state
 
 

@@ -20,6 +20,15 @@ The command line prints the message on one line and exits with `exit_code`; a tr
 """
 
 
+def one_line(error: BaseException) -> str:
+    """Return what an error says, on one line; its name where it says nothing or is none of ours."""
+    said = " ".join(str(error).split())
+    if isinstance(error, SimConsoleError):
+        return said
+    kind = "out of memory" if isinstance(error, MemoryError) else type(error).__name__
+    return f"{kind}: {said}" if said else kind
+
+
 class SimConsoleError(Exception):
     """Base of all errors a user can cause or cure. The message is one complete line."""
 

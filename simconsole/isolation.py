@@ -115,14 +115,14 @@ class IsolatedRecorder:
         self._recorder = recorder
         self._told = Told("the recorder")
 
-    def write(self, snapshot: Snapshot) -> None:
-        """Keep one tick."""
-        if self._told.failed:
-            return
-        try:
-            self._recorder.write(snapshot)
-        except Exception as error:  # noqa: BLE001  recording may end, driving must not
-            self._told.tell(error)
+    def write(self, snapshot: Snapshot) -> int:
+        """Keep one tick and return the events of the next one."""
+        if not self._told.failed:
+            try:
+                return self._recorder.write(snapshot)
+            except Exception as error:  # noqa: BLE001  recording may end, driving must not
+                self._told.tell(error)
+        return int(Event.RECORDING_FAILED)
 
 
 class IsolatedStandby:

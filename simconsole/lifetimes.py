@@ -18,6 +18,8 @@ from pathlib import Path
 from types import FrameType, TracebackType
 from typing import TYPE_CHECKING, Any, Final, NoReturn, Self
 
+from simconsole.files import DRAFT
+
 if TYPE_CHECKING:
     import subprocess
 
@@ -33,8 +35,6 @@ DRIVE_VARIABLE: Final = "SIMCONSOLE_DRIVE"
 SIGNALS: Final = tuple(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 )  # SIGHUP: the terminal was closed; Windows has none
-HALF_MADE: Final = (".part", ".new")
-"""How files are called until they are whole."""
 _LOOK_S: Final = 0.01
 _GRACE_S: Final = 0.1
 
@@ -204,9 +204,8 @@ def undone(undo: Callable[[], object]) -> Iterator[None]:
 
 def remove_half_made(folder: Path) -> None:
     """Remove files that had not got their final names yet."""
-    for suffix in HALF_MADE:
-        for path in folder.glob(f"*{suffix}"):
-            path.unlink(missing_ok=True)
+    for path in folder.glob(f"*{DRAFT}"):
+        path.unlink(missing_ok=True)
 
 
 def end_at_once(code: int) -> NoReturn:

@@ -7,23 +7,24 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from simconsole import __version__, compiling
+from simconsole import __version__
 from simconsole.assembly import ResolvedSession, assemble
 from simconsole.casting import Opened, open_headless, open_realtime
 from simconsole.compiling import compiled
 from simconsole.drive import come_to_rest, run
 from simconsole.lifetimes import Interrupt, remove_half_made, undone
-from simconsole.pipeline import Console, ConsoleState, advance, decide
+from simconsole.pipeline import Console, ConsoleState, advance
 from simconsole.profile_files import to_text
-from simconsole.recording.bundle import BundleWriter
+from simconsole.recording.bundle import SESSION_FILE, BundleWriter
 from simconsole.recording.framing import LogHeader
 from simconsole.recording.log import LogWriter
-from simconsole.replaying import SESSION_FILE
+from simconsole.replaying import sources_sha256
 from simconsole.rows import INPUT_WIDTH, Snapshot, TickInputs
 from simconsole.shared_memory import sweep
-from simconsole.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE
+from simconsole.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE, Event
 
 ENDLESS_TICKS = 2**53
+_RECORDING_FAILED = int(Event.RECORDING_FAILED)
 
 
 class DriveResult(NamedTuple):
@@ -94,18 +95,19 @@ def warm_up(console: Console, state: ConsoleState) -> None:
 
 
 class LogRecorder:
-    """The drive loop's recorder: every tick into the log."""
+    """The drive loop's recorder: every tick into the log, and an alarm into every tick after it failed."""
 
     def __init__(self, log: LogWriter) -> None:
         self._log = log
 
-    def write(self, snapshot: Snapshot) -> None:
-        """Append one tick; a failing disk is noted in the log's `failure`, and so is anything that raises."""
+    def write(self, snapshot: Snapshot) -> int:
+        """Append one tick; a failing disk, or whatever raises, is noted in the log's `failure` and told by an event."""
         try:
             self._log.append(snapshot.tick, snapshot.row)
         except Exception as error:
             self._log.failure = self._log.failure or f"{type(error).__name__}: {error}"
             raise
+        return 0 if self._log.failure is None else _RECORDING_FAILED
 
 
 def _open(
@@ -122,13 +124,12 @@ def _open(
 
 def _bundle(resolved: ResolvedSession, console: Console, folder: Path) -> BundleWriter:
     text = to_text(resolved)
-    sources = compiling.digest(decide) + compiling.digest(console.platform.step)
     header = LogHeader(
         tick_hz=console.tick_hz,
         columns=console.columns,
         input_columns=INPUT_WIDTH,
         console_version=__version__,
-        source_sha256=hashlib.sha256(sources.encode()).hexdigest(),
+        source_sha256=sources_sha256(console),
         session_sha256=hashlib.sha256(text.encode()).hexdigest(),
     )
     return BundleWriter(folder, header, {SESSION_FILE: text}, {"simconsole": __version__})

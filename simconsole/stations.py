@@ -23,7 +23,8 @@ from typing import Any, Final
 
 import msgspec
 
-from simconsole.errors import SimConsoleError, StationError
+from simconsole.errors import SimConsoleError, StationError, one_line
+from simconsole.files import write_atomically
 from simconsole.lifetimes import ORPHAN_S, close_pipe, end, follow_parent, read_told, spawn
 from simconsole.rows import Snapshot
 from simconsole.shared_memory import remove_run_folder
@@ -211,10 +212,8 @@ def _write_status(folder: Path, kept: list[_Kept]) -> None:
         )
         for station in kept
     }
-    part = folder / f"{STATUS}.part"
     try:
-        part.write_bytes(msgspec.json.encode(status))
-        part.replace(folder / STATUS)
+        write_atomically(folder / STATUS, msgspec.json.encode(status), durable=False)
     except OSError:
         return  # the folder is gone: the core has ended and the pipe will say so
 
@@ -248,9 +247,9 @@ def main(words: list[str]) -> int:
         else:
             call = msgspec.json.decode(line, type=StationCall)
             run_station(Path(call.folder), call.station, follow_parent(call.patience_s).wants_end)
-    except SimConsoleError as error:
-        print(f"simconsole {' '.join(words)}: {error}", file=sys.stderr)
-        return error.exit_code
+    except (SimConsoleError, OSError, MemoryError) as error:
+        print(f"simconsole {' '.join(words)}: {one_line(error)}", file=sys.stderr)
+        return SimConsoleError.exit_code
     return 0
 
 

@@ -45,8 +45,8 @@ class Broken:
     def publish(self, snapshot: Snapshot) -> NoReturn:
         self._fail()
 
-    def write(self, snapshot: Snapshot) -> None:
-        pass
+    def write(self, snapshot: Snapshot) -> int:
+        return 0
 
     def close(self) -> None:
         self.calls = -1
@@ -122,10 +122,10 @@ class Failing:
         self._call(self.calls + 1 >= FAILS_AT)
         return 0
 
-    def write(self, snapshot: Snapshot) -> None:
+    def write(self, snapshot: Snapshot) -> int:
         self._call(snapshot.tick >= FAILS_AT)
         assert self._recorder is not None
-        self._recorder.write(snapshot)
+        return self._recorder.write(snapshot)
 
 
 class Person:
@@ -198,15 +198,18 @@ def test_a_pace_that_raises_is_a_loop_that_stood_still_and_another_goes_on(capsy
 @pytest.mark.fault("P12")
 def test_a_recorder_that_raises_ends_the_log_and_not_the_drive(capsys: pytest.CaptureFixture[str]) -> None:
     person = Person()
-    recorder, seen = Failing(person.recorder), list[int]()
+    recorder, seen, alarms = Failing(person.recorder), list[int](), list[int]()
 
     class Watcher:
         def publish(self, snapshot: Snapshot) -> None:
             seen.append(snapshot.tick)
+            if int(snapshot.events.events) & Event.RECORDING_FAILED:
+                alarms.append(snapshot.tick)
 
     state = person.drive(person.cast()._replace(recorder=recorder, stations=(Watcher(),)))
     assert state.tick == round(SECONDS * HZ) == seen[-1]
     assert person.recorder.ticks == FAILS_AT - 1, "a log with a hole would be worse"
+    assert alarms == list(range(FAILS_AT + 1, state.tick + 1)), "from the next tick on"
     assert (recorder.raised, recorder.calls) == (1, FAILS_AT)
     told_once(capsys, "the recorder")
 

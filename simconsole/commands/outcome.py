@@ -1,6 +1,8 @@
 """What a command hands back to the command line."""
 
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
+
+RECORDING_FAILED: Final = "RECORDING FAILED"
 
 
 class Outcome(NamedTuple):

@@ -6,6 +6,7 @@ from contextlib import suppress
 from types import TracebackType
 from typing import Final, Self
 
+from simconsole.commands.outcome import RECORDING_FAILED
 from simconsole.rows import Snapshot
 from simconsole.signals import Mode
 from simconsole.units import KMH_PER_MPS
@@ -43,7 +44,8 @@ class Progress:
             vehicle, mode = snapshot.vehicle, Mode(int(snapshot.arbitration.mode))
             way = f"{vehicle.distance_m:7.1f} m" + (f" of {self._length_m:.0f} m" if self._length_m else "")
             speed = f"{vehicle.vx_mps * KMH_PER_MPS:5.1f} km/h"
-            self._write(f"{self._what}: {snapshot.t_s:7.1f} s  {way}  {speed}  {mode_words(float(mode))}")
+            alarm = f"  {RECORDING_FAILED}" if snapshot.recording_failed else ""
+            self._write(f"{self._what}: {snapshot.t_s:7.1f} s  {way}  {speed}  {mode_words(float(mode))}{alarm}")
         return False
 
     def _write(self, line: str) -> None:

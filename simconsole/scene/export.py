@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from simconsole.errors import SimConsoleError, StationError
+from simconsole.files import replaced
 from simconsole.lifetimes import ATTACHED, end, follow_parent, spawn, undone
 from simconsole.scene.entities import world_shapes
 from simconsole.scene.job import Job, load_job, save_job
@@ -28,10 +29,8 @@ def export(job: Job, path: Path) -> None:
     from simconsole.scene.rerun_view import RerunView
 
     world = None if job.drawing is None else world_shapes(job.drawing)
-    # Under its final name only once it is whole.
-    part = path.with_name(f"{path.name}.part")
-    with undone(lambda: part.unlink(missing_ok=True)):
-        view = RerunView(part, job.profile, job.dimensions, world)
+    with replaced(path) as draft, undone(lambda: draft.unlink(missing_ok=True)):
+        view = RerunView(draft, job.profile, job.dimensions, world)
         memory = Memory()
         step = max(1, round(PIECE_S * job.tick_hz))
         for start in range(0, len(job.ticks), step):
@@ -41,7 +40,6 @@ def export(job: Job, path: Path) -> None:
             )
             view.add(added)
         view.close()
-        part.replace(path)
 
 
 def export_apart(job: Job, path: Path, deadline_s: float = 60.0) -> None:
