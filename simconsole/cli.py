@@ -59,7 +59,7 @@ def _run(words: argparse.Namespace) -> int:
         if words.json:
             _print_json({"error": str(error)})
         return error.exit_code
-    except (MemoryError, OSError) as error:  # the machine's limits and files: no bug of ours
+    except (MemoryError, OSError, ImportError) as error:  # the machine's limits, files, libraries: no bug of ours
         print(f"simconsole {words.command}: {one_line(error)}", file=sys.stderr)
         if words.json:
             _print_json({"error": one_line(error)})
