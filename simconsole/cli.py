@@ -13,7 +13,16 @@ from typing import Any, TextIO
 
 from simconsole import __version__
 from simconsole.errors import SimConsoleError
-from simconsole.lifetimes import ATTACHED, INTERRUPTED, SIGNALS, handle, handled, ignore_signals, interrupted
+from simconsole.lifetimes import (
+    ATTACHED,
+    INTERRUPTED,
+    SIGNALS,
+    end_at_once,
+    handle,
+    handled,
+    ignore_signals,
+    interrupted,
+)
 
 _AT_ONCE = ("demo", "drive", "bridge", "report", "view")
 """Commands that Ctrl-C ends at once where no drive takes it for itself: they leave nothing half made. To the others it
@@ -42,6 +51,8 @@ def main(arguments: list[str] | None = None) -> int:
         handle(interrupted, signals)
         code = _run(words)
         ignore_signals()  # all is done, and the code is decided while Python still takes itself down
+        if code == INTERRUPTED:
+            end_at_once(code)  # somebody waits for that
         return code
     with handled(interrupted, signals):
         return _run(words)
