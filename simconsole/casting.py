@@ -43,7 +43,7 @@ LOOKED_AT = 16
 """In a drive that is not paced, hops are timed in each 16th tick."""
 LOOK_S = 0.2
 """How often a wait for somebody else asks whether it shall go on."""
-PROGRAM_END_S = 0.5
+PROGRAM_END_S = 0.3
 """How long a program that the drive has started may take to say good-bye; it has nothing else to finish."""
 
 if TYPE_CHECKING:

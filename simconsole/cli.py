@@ -8,19 +8,25 @@ that does it, loaded when it is called.
 import argparse
 import os
 import sys
-from contextlib import ExitStack
 from importlib import import_module
 from typing import Any, TextIO
 
 from simconsole import __version__
 from simconsole.errors import SimConsoleError, one_line
-from simconsole.lifetimes import ATTACHED, INTERRUPTED, ending_at_once, ignore_signals
+from simconsole.lifetimes import (
+    ATTACHED,
+    INTERRUPTED,
+    SIGNALS,
+    end_at_once,
+    handle,
+    handled,
+    ignore_signals,
+    interrupted,
+)
 
 _AT_ONCE = ("demo", "drive", "bridge", "report", "view")
 """Commands that Ctrl-C ends at once where no drive takes it for itself: they leave nothing half made. To the others it
 is an exception, for some the way to their result."""
-
-_until_the_end = ExitStack()
 
 
 def parser() -> argparse.ArgumentParser:
@@ -40,13 +46,15 @@ def parser() -> argparse.ArgumentParser:
 def main(arguments: list[str] | None = None) -> int:
     """Run one command and return its exit code. Errors a user can cause are one line on standard error."""
     words = parser().parse_args(arguments)
-    signals = ending_at_once(ctrl_c=words.command in _AT_ONCE)
+    signals = SIGNALS if words.command in _AT_ONCE else SIGNALS[1:]
     if arguments is None:
-        _until_the_end.enter_context(signals)
+        handle(interrupted, signals)
         code = _run(words)
         ignore_signals()  # all is done, and the code is decided while Python still takes itself down
+        if code == INTERRUPTED:
+            end_at_once(code)  # somebody waits for that
         return code
-    with signals:
+    with handled(interrupted, signals):
         return _run(words)
 
 

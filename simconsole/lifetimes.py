@@ -38,6 +38,8 @@ SIGNALS: Final = tuple(
 _LOOK_S: Final = 0.01
 _GRACE_S: Final = 0.1
 
+Handler = Callable[[int, FrameType | None], object]
+
 _undo: list[Callable[[], object]] = []
 
 
@@ -216,19 +218,21 @@ def end_at_once(code: int) -> NoReturn:
     os._exit(code)
 
 
-@contextlib.contextmanager
-def handled(
-    handler: Callable[[int, FrameType | None], object], numbers: Sequence[signal.Signals] = SIGNALS
-) -> Iterator[None]:
-    """Within the block, `handler` gets the signals; a hang-up that is ignored (nohup) stays ignored.
+def handle(handler: Handler, numbers: Sequence[signal.Signals] = SIGNALS) -> dict[signal.Signals, Any]:
+    """Give the signals to `handler` and return who had them; a hang-up that is ignored (nohup) stays ignored.
 
     Outside of the main thread, where Python lets nobody handle signals, nothing changes.
     """
-    before: dict[signal.Signals, Any] = {}
-    if threading.current_thread() is threading.main_thread():
-        for number in numbers:
-            if number.name != "SIGHUP" or signal.getsignal(number) is not signal.SIG_IGN:
-                before[number] = signal.signal(number, handler)
+    if threading.current_thread() is not threading.main_thread():
+        return {}
+    taken = [number for number in numbers if number.name != "SIGHUP" or signal.getsignal(number) is not signal.SIG_IGN]
+    return {number: signal.signal(number, handler) for number in taken}
+
+
+@contextlib.contextmanager
+def handled(handler: Handler, numbers: Sequence[signal.Signals] = SIGNALS) -> Iterator[None]:
+    """Within the block, `handler` gets the signals as by `handle`."""
+    before = handle(handler, numbers)
     try:
         yield
     finally:
@@ -274,7 +278,6 @@ def ignore_signals() -> None:
         signal.signal(number, signal.SIG_IGN)
 
 
-def ending_at_once(ctrl_c: bool) -> contextlib.AbstractContextManager[None]:
-    """Within the block, a signal ends the process at once with code 130; SIGINT only with `ctrl_c`."""
-    numbers = SIGNALS if ctrl_c else SIGNALS[1:]
-    return handled(lambda number, frame: end_at_once(INTERRUPTED), numbers)
+def interrupted(number: int, frame: FrameType | None) -> NoReturn:
+    """End the process at once with code 130: a handler of signals."""
+    end_at_once(INTERRUPTED)

@@ -152,10 +152,10 @@ def test_only_what_multiprocessing_started_has_such_a_parent() -> None:
 HELD = """
 import os, signal, sys
 from pathlib import Path
-from simconsole.lifetimes import Interrupt, ending_at_once, undone
+from simconsole.lifetimes import Interrupt, handled, interrupted, undone
 from simconsole.shared_memory import temporary_folder
 def broken(): raise RuntimeError
-with ending_at_once(ctrl_c=True), temporary_folder() as folder, undone(broken):
+with handled(interrupted), temporary_folder() as folder, undone(broken):
     (folder / "file").write_text("half made")
     print(folder, flush=True)
     if sys.argv[1] == "drive":
