@@ -68,7 +68,7 @@ def _run(words: argparse.Namespace) -> int:
             _print_json({"error": str(error)})
         return error.exit_code
     except (MemoryError, OSError, ImportError) as error:  # the machine's limits, files, libraries: no bug of ours
-        print(f"simconsole {words.command}: {one_line(error)}", file=sys.stderr)
+        _print(f"simconsole {words.command}: {one_line(error)}", sys.stderr)
         if words.json:
             _print_json({"error": one_line(error)})
         return SimConsoleError.exit_code

@@ -22,6 +22,7 @@ from simconsole.recording.log import LAST_TICKS, LogReader, LogWriter
 from simconsole.recording.manifest import (
     MANIFEST,
     ROOM_BYTES,
+    FileEntry,
     Manifest,
     checksum_problem,
     file_entry,
@@ -113,6 +114,7 @@ class BundleWriter:
             RecordingError: the folder exists and is not empty, or cannot be written.
         """
         self.folder = folder
+        self._texts = dict(texts)
         self._made = [path for path in (folder, *folder.parents) if not path.exists()]  # innermost first
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -145,14 +147,17 @@ class BundleWriter:
     def finish(self, summary: Mapping[str, Any]) -> Manifest:
         """Close the log and write the manifest with its checksums; `summary` holds JSON values.
 
-        Where the manifest cannot be written, the unfinished one stays, and what is returned says so.
+        Where the manifest cannot be written, the unfinished one stays, and what is returned says so. A folder that was
+        removed under the drive is made again, with all that was recorded.
         """
+        with contextlib.suppress(OSError):
+            self._put_back()
         self.log.close()
         self.manifest = msgspec.structs.replace(
             self.manifest, ticks=self.log.ticks, digest=self.log.digest.hex(), recording_failure=self.log.failure
         )
         try:
-            files = {**self.manifest.files, LOG: file_entry(self.folder / LOG)}
+            files = {**self.manifest.files, LOG: self._log_entry()}
             finished = msgspec.structs.replace(self.manifest, finished=True, files=files, summary=dict(summary))
             write_manifest(self.folder, finished)
             self.manifest = finished
@@ -161,6 +166,18 @@ class BundleWriter:
             if self.manifest.recording_failure is None:
                 self.manifest = msgspec.structs.replace(self.manifest, recording_failure=problem)
         return self.manifest
+
+    def _put_back(self) -> None:
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self.log.put_back()
+        for name, text in self._texts.items():
+            if not (self.folder / name).exists():
+                write_atomically(self.folder / name, text)
+
+    def _log_entry(self) -> FileEntry:
+        if self.log.sha256 is None or (self.folder / LOG).stat().st_size != self.log.size_bytes:
+            return file_entry(self.folder / LOG)
+        return FileEntry(size_bytes=self.log.size_bytes, sha256=self.log.sha256)
 
     def __enter__(self) -> "BundleWriter":
         return self

@@ -1,12 +1,14 @@
 """The append log as a file: one write() per tick, a thread that only syncs, and a reader.
 
 A frame reaches the kernel whole with its write(), so a killed process loses at most the tick it was working on; a
-power cut loses at most the time between two syncs.
+power cut loses at most the time between two syncs. The thread also keeps the file's checksum up to date, so that the
+end of a long drive does not wait for one.
 """
 
 import os
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from hashlib import sha256
 from pathlib import Path
 from threading import Event, Thread
 from types import TracebackType
@@ -16,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simconsole.errors import RecordingError
+from simconsole.files import replaced
 from simconsole.kernels import Row
 from simconsole.recording.framing import (
     START_OF_CHAIN,
@@ -34,6 +37,8 @@ SYNC_INTERVAL_S: Final = 1.0
 LAST_TICKS: Final = 2
 """So many more ticks are tried once recording has failed: the one that failed, and the next, which holds the alarm."""
 
+_READ_BYTES: Final = 1 << 20
+
 _synchronise = getattr(os, "fdatasync", os.fsync)
 
 
@@ -45,6 +50,7 @@ class LogWriter:
         ticks: rows that reached the file.
         digest: chained hash after the last of them.
         size_bytes: of the file's whole frames.
+        sha256: of these, once closed; None if they could not be read.
     """
 
     def __init__(
@@ -67,7 +73,7 @@ class LogWriter:
         """
         start = encode_header(header)
         try:
-            flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_APPEND | getattr(os, "O_BINARY", 0)
+            flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_APPEND | getattr(os, "O_BINARY", 0)
             self._fd = os.open(path, flags, 0o644)
         except OSError as error:
             raise RecordingError(f"{path}: cannot be recorded to: {error.strerror}") from None
@@ -76,6 +82,8 @@ class LogWriter:
         self.ticks = 0
         self.digest = START_OF_CHAIN
         self.size_bytes = 0
+        self.sha256: str | None = None
+        self._hasher, self._hashed_bytes = sha256(), 0
         self._row_bytes = 8 * len(header.columns)
         self._free_room = free_room
         self._last_ticks = LAST_TICKS
@@ -120,7 +128,20 @@ class LogWriter:
             _synchronise(self._fd)
         except OSError as error:
             self._fail(self.ticks, f"sync: {error.strerror}")
+        with suppress(OSError):
+            self._hash()
+            self.sha256 = self._hasher.hexdigest()
         os.close(self._fd)
+
+    def put_back(self) -> None:
+        """Write the file again where it was removed while it was open: its content is still there. Raises OSError."""
+        if os.fstat(self._fd).st_nlink > 0 or self.path.exists():
+            return
+        with replaced(self.path) as draft, draft.open("wb") as file:
+            for part in self._parts(0):
+                file.write(part)
+            file.flush()
+            os.fsync(file.fileno())
 
     def __enter__(self) -> "LogWriter":
         return self
@@ -150,10 +171,23 @@ class LogWriter:
         if problem is not None and self.failure is None:
             self.failure = f"{self.path}: recording stopped at tick {tick}: {problem}"
 
+    def _parts(self, start: int) -> Iterator[bytes]:
+        """Read whole frames back, from a byte of the file on."""
+        end = self.size_bytes
+        while start < end and (part := os.pread(self._fd, min(_READ_BYTES, end - start), start)):
+            yield part
+            start += len(part)
+
+    def _hash(self) -> None:
+        for part in self._parts(self._hashed_bytes):
+            self._hasher.update(part)
+            self._hashed_bytes += len(part)
+
     def _sync(self, interval_s: float) -> None:
         while not self._closing.wait(interval_s):
             try:
                 _synchronise(self._fd)
+                self._hash()
             except OSError as error:
                 # Only noted: the tick loop is the one that writes and truncates.
                 self._fail(self.ticks, f"sync: {error.strerror}")

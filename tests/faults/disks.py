@@ -18,7 +18,6 @@ class Disk(NamedTuple):
     name: str
     mounted: Callable[[Path], AbstractContextManager[None]]
     fail: Callable[[Path], None]
-    readable: bool = True  # what was recorded is still there afterwards
 
 
 @contextmanager
@@ -89,5 +88,5 @@ DISKS = (
     Disk("full", memory, fill),
     Disk("quota", limited, limit),
     Disk("read-only", ext4, make_read_only),
-    Disk("removed", memory, shutil.rmtree, readable=False),
+    Disk("removed", memory, shutil.rmtree),
 )

@@ -1,12 +1,14 @@
 import json
+import shutil
 from collections.abc import Callable
+from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from simconsole.errors import RecordingError
-from simconsole.recording.bundle import BundleWriter, add_export, open_bundle, verify
+from simconsole.recording.bundle import LOG, BundleWriter, add_export, open_bundle, verify
 from simconsole.recording.framing import LogHeader
 from simconsole.recording.manifest import read_manifest
 
@@ -168,3 +170,32 @@ def test_exports_may_be_added_and_lost(bundle: Path) -> None:
 def test_a_text_the_bundle_does_not_have(bundle: Path) -> None:
     with pytest.raises(RecordingError, match=r"world\.yaml: not in manifest\.json"):
         open_bundle(bundle).text("world.yaml")
+
+
+def test_the_end_of_a_drive_does_not_read_the_whole_log_again(
+    tmp_path: Path, header: LogHeader, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its checksum was kept up to date meanwhile; what is left to read is what came since."""
+    with BundleWriter(tmp_path / "b", header, {}) as writer:
+        for tick in range(1, 3000):
+            writer.log.append(tick, np.full(len(header.columns), float(tick)))
+        monkeypatch.setattr("simconsole.recording.bundle.file_entry", None)
+        manifest = writer.finish({})
+    monkeypatch.undo()
+    assert manifest.files[LOG].sha256 == sha256((tmp_path / "b" / LOG).read_bytes()).hexdigest()
+    assert verify(tmp_path / "b") == []
+
+
+def test_a_folder_that_was_removed_is_made_again_with_all_that_was_recorded(tmp_path: Path, header: LogHeader) -> None:
+    folder = tmp_path / "of" / "drives" / "b"
+    with BundleWriter(folder, header, {"session.json": "{}"}) as writer:
+        for tick in range(1, 4):
+            writer.log.append(tick, np.zeros(len(header.columns)))
+        shutil.rmtree(tmp_path / "of")
+        writer.log.append(4, np.zeros(len(header.columns)))
+        manifest = writer.finish({})
+    assert str(manifest.recording_failure).endswith("recording stopped at tick 4: the file was removed")
+    bundle = open_bundle(folder)
+    assert [record.tick for record in bundle.log] == [1, 2, 3]
+    assert bundle.text("session.json") == "{}"
+    assert sorted(path.name for path in folder.iterdir()) == [LOG, "manifest.json", "session.json"]
