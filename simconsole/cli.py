@@ -17,6 +17,7 @@ from simconsole.lifetimes import (
     ATTACHED,
     INTERRUPTED,
     SIGNALS,
+    act_promptly,
     end_at_once,
     handle,
     handled,
@@ -48,6 +49,7 @@ def main(arguments: list[str] | None = None) -> int:
     words = parser().parse_args(arguments)
     signals = SIGNALS if words.command in _AT_ONCE else SIGNALS[1:]
     if arguments is None:
+        act_promptly()
         handle(interrupted, signals)
         code = _run(words)
         ignore_signals()  # all is done, and the code is decided while Python still takes itself down

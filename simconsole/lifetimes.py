@@ -248,6 +248,7 @@ class Interrupt:
 
     def __init__(self) -> None:
         self.raised = False
+        self._received = 0
         self._stack = contextlib.ExitStack()
 
     def __enter__(self) -> Self:
@@ -266,6 +267,12 @@ class Interrupt:
         if self.raised:
             raise KeyboardInterrupt
 
+    def received(self) -> None:
+        """Count a signal that the process has got, whether Python has handled it yet or not. For another thread."""
+        self._received += 1
+        if self._received > 1:
+            end_at_once(INTERRUPTED)
+
     def _note(self, number: int, frame: FrameType | None) -> None:
         if self.raised:
             end_at_once(INTERRUPTED)
@@ -281,3 +288,26 @@ def ignore_signals() -> None:
 def interrupted(number: int, frame: FrameType | None) -> NoReturn:
     """End the process at once with code 130: a handler of signals."""
     end_at_once(INTERRUPTED)
+
+
+def act_promptly() -> None:
+    """Let a signal end the process also while its main thread is in C code, where Python calls no handler.
+
+    A compiler or an encoder may be there for seconds. A thread is told of every signal at once and does what its
+    handler is going to do, if that is to end the process.
+    """
+    read, write = os.pipe()
+    os.set_blocking(write, False)
+    signal.set_wakeup_fd(write, warn_on_full_buffer=False)
+    threading.Thread(target=_act_promptly, args=(read,), name="signals", daemon=True).start()
+
+
+def _act_promptly(read: int) -> None:
+    while numbers := os.read(read, 64):
+        for number in numbers:
+            handler = signal.getsignal(number)
+            if handler is interrupted:
+                end_at_once(INTERRUPTED)
+            owner = getattr(handler, "__self__", None)
+            if isinstance(owner, Interrupt):
+                owner.received()

@@ -199,3 +199,40 @@ def test_an_ignored_hang_up_stays_ignored() -> None:
         assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
     finally:
         signal.signal(signal.SIGHUP, before)
+
+
+IN_C_CODE = """
+import hashlib, sys
+from pathlib import Path
+from simconsole.lifetimes import SIGNALS, Interrupt, act_promptly, handle, interrupted
+act_promptly()
+handle(interrupted, SIGNALS)
+def work(name):
+    Path(sys.argv[1], name).write_bytes(b"now")
+    hashlib.pbkdf2_hmac("sha256", b"word", b"salt", 10**9)  # minutes, in which Python handles no signal
+if sys.argv[2] == "drive":
+    with Interrupt():
+        work("begun")
+work("begun")
+"""
+
+
+@pytest.mark.fault("P11")
+@pytest.mark.parametrize(
+    ("where", "signals"), [("exports", [signal.SIGTERM]), ("drive", [signal.SIGTERM, signal.SIGINT])]
+)
+def test_a_signal_ends_a_process_that_is_in_c_code(where: str, signals: list[signal.Signals], tmp_path: Path) -> None:
+    """At once where one does; where a drive is open the first one is the drive's, the second ends it.
+
+    Of two kinds: a signal that waits to be delivered takes in another one of its kind.
+    """
+    process = subprocess.Popen([sys.executable, "-c", IN_C_CODE, str(tmp_path), where])
+    try:
+        wait_for_file(tmp_path / "begun")
+        for number in signals:
+            assert process.poll() is None
+            process.send_signal(number)
+        assert process.wait(FOREVER_S) == lifetimes.INTERRUPTED
+    finally:
+        process.kill()
+        process.wait()
