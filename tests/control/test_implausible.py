@@ -13,6 +13,7 @@ SEED = 20_261
 DRIVEN = [Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED, Mode.SHARED]
 
 
+@pytest.mark.fault("R06")
 @pytest.mark.parametrize("tick_hz", [50, 250, 1000])
 @pytest.mark.parametrize("mode", DRIVEN)
 def test_five_in_a_row_are_not_followed_and_end_the_controllers_part(
@@ -43,6 +44,7 @@ def test_five_in_a_row_are_not_followed_and_end_the_controllers_part(
         assert 0.0 <= rig.command.road_wheel_rad <= angle, "nor afterwards"
 
 
+@pytest.mark.fault("R06")
 def test_a_slow_sender_ends_within_the_time_of_a_stale_command(make_rig: Callable[..., Rig]) -> None:
     """At 6 Hz five commands take most of a second; nothing valid has come for 200 ms by then."""
     rig = make_rig().drive(Mode.AUTONOMOUS, speed_mps=13.0)
