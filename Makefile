@@ -15,9 +15,9 @@ test: setup lint  ## All checks: format, lint, types, import contracts, tests
 	scripts/system-packages
 	$(BIN)/pytest --numprocesses auto --maxprocesses 4 --dist loadfile
 
-long: setup  ## The random and long checks at their full size, with seeds drawn anew; hours
+long: setup  ## The random and long checks at their full size, with seeds drawn anew: docs/long-run.md; hours
 	scripts/system-packages
-	$(BIN)/pytest --long --timeout 0 --write-faults --numprocesses 2 --dist worksteal
+	$(BIN)/pytest --long --timeout 0 --write-faults --write-long-run --numprocesses 2 --dist worksteal
 
 faults: setup  ## The fault cases, and what they measured into docs/faults.md; minutes
 	scripts/system-packages

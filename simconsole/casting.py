@@ -1,5 +1,6 @@
 """Who takes part in a session: opens the cast that the profile names, for headless and for paced drives."""
 
+import secrets
 import time
 from collections.abc import Callable
 from contextlib import ExitStack
@@ -12,9 +13,10 @@ from simconsole.bridge.operate import told
 from simconsole.drive import Cast, Recorder, Standby
 from simconsole.errors import BridgeError, ProfileError
 from simconsole.faulting import with_faults
-from simconsole.inline import STAND_S, LockstepLink, end_program, start_autopilot
+from simconsole.inline import STAND_S, LockstepLink, start_autopilot
 from simconsole.isolation import isolated
 from simconsole.ledger import Ledger
+from simconsole.lifetimes import Interrupt, end, tell_to_end, undone
 from simconsole.pacing import Pacer, UnpacedPacer, realtime_hints
 from simconsole.pipeline import Console
 from simconsole.ports import CommandSource, NobodyCommands, Station
@@ -41,6 +43,8 @@ LOOKED_AT = 16
 """In a drive that is not paced, hops are timed in each 16th tick."""
 LOOK_S = 0.2
 """How often a wait for somebody else asks whether it shall go on."""
+PROGRAM_END_S = 0.3
+"""How long a program that the drive has started may take to say good-bye; it has nothing else to finish."""
 
 if TYPE_CHECKING:
     from simconsole.bridge.lockstep import LockstepBridge
@@ -62,10 +66,10 @@ def open_headless(
     console: Console,
     recorder: Recorder,
     bundle: Path,
-    check: Callable[[], None],
+    interrupt: Interrupt,
     stack: ExitStack,
 ) -> Opened:
-    """Open a drive that runs as fast as it goes, everything inline. `check` is called while waiting; it may raise.
+    """Open a drive that runs as fast as it goes, everything inline. A raised `interrupt` ends all waiting.
 
     Raises:
         ProfileError: the session needs lockstep for what it asks.
@@ -82,7 +86,7 @@ def open_headless(
     of_can: Callable[[], dict[str, Any]] = dict
     acts: Callable[[], list[dict[str, Any]]] = list
     if resolved.session.mode.pacing == "lockstep":
-        link = _open_lockstep(resolved, console, bundle, check, stack)
+        link = _open_lockstep(resolved, console, bundle, interrupt, stack)
         commands, stations, counters, acts, standby = link, (link,), link.counters, link.acts, (link.stand,)
     elif resolved.session.features.autopilot is not None:
         raise ProfileError("mode.pacing: value free: lockstep or realtime, where features.autopilot drives")
@@ -96,7 +100,7 @@ def open_headless(
         standby=(*standby, *(() if can is None else (can.listen,))),
     )  # fmt: skip
     ledger = Ledger(time.monotonic_ns, console.tick_hz, every=LOOKED_AT)
-    cast = isolated(with_faults(cast, resolved, console.tick_hz))._replace(ledger=ledger)
+    cast = isolated(with_faults(cast, resolved, console.tick_hz), UnpacedPacer)._replace(ledger=ledger)
 
     def summary() -> dict[str, Any]:
         own = {**counters(), **of_can(), **told(acts())}
@@ -110,12 +114,12 @@ def open_realtime(
     console: Console,
     recorder: Recorder,
     bundle: Path,
-    check: Callable[[], None],
+    interrupt: Interrupt,
     stack: ExitStack,
 ) -> Opened:
     """Open a paced drive: every output in a process of its own, their inputs through shared memory.
 
-    `check` is called while waiting; it may raise.
+    A raised `interrupt` ends all waiting.
 
     Raises:
         StationError: shared memory or the stations cannot be had.
@@ -127,18 +131,28 @@ def open_realtime(
     check_commander(resolved.session)
     if resolved.session.outputs.bridge is not None:
         _check_address(resolved.session.outputs.bridge)
-    token = _own_token(resolved.session)
+    token, drive = _own_token(resolved.session), new_nonce()
     folder = make_run_folder()
     stack.callback(remove_run_folder, folder)
+    opening = stack.enter_context(ExitStack())
+    opening.enter_context(undone(lambda: remove_run_folder(folder)))
     ring, port, keys = make_memory(folder, console)
     ecu = add_can_memory(resolved, console, folder)
-    supervisor = Supervisor(folder, station_specs(resolved, console, folder, bundle))
+    supervisor = Supervisor(folder, station_specs(resolved, console, folder, bundle, drive))
     programs: list[Popen[bytes]] = []
-    stack.callback(_end_programs, programs)
-    stack.callback(supervisor.stop)
+    stack.callback(end, programs, PROGRAM_END_S)
+    stack.callback(supervisor.stop, lambda: ring.is_empty)
+    stack.callback(tell_to_end, programs)
     supervisor.start()
+    opening.close()  # from here on the warden removes the folder, however the core ends
 
-    address = _await_stations(resolved.session, folder, token, supervisor, programs, check)
+    address = _await_stations(
+        resolved.session,
+        folder,
+        lambda url, course, bridge: programs.append(start_autopilot(url, course, bridge, drive, token)),
+        supervisor,
+        interrupt.check,
+    )
     with_window = resolved.session.outputs.hud is not None
     seating = open_seating(resolved, console, stack, keys if with_window else None)
     missing = stack.enter_context(realtime_hints())
@@ -147,7 +161,9 @@ def open_realtime(
     standby = (supervisor.publish, port.stand, *((ecu.stand,) if isinstance(ecu, CommandPort) else ()))
     cast = Cast(seating.devices, port, recorder, outputs, pace, seating.seat, ecu=ecu, standby=standby)
     ledger = Ledger(time.monotonic_ns, console.tick_hz)
-    cast = isolated(with_faults(cast, resolved, console.tick_hz))._replace(ledger=ledger)
+    cast = isolated(with_faults(cast, resolved, console.tick_hz), lambda: Pacer(console.tick_hz))._replace(
+        ledger=ledger
+    )
 
     def summary() -> dict[str, Any]:
         kept = {**bridge_summary(folder), **can_summary(folder), **acts_summary(folder)}
@@ -161,12 +177,11 @@ def open_realtime(
 def _await_stations(
     session: SessionProfile,
     folder: Path,
-    token: str | None,
+    start: Callable[[str, str, BridgeProfile], None],
     supervisor: Supervisor,
-    programs: list[Popen[bytes]],
     check: Callable[[], None],
 ) -> str | None:
-    """Wait until every way in is open, starting the session's own autopilot; return where the bridge listens."""
+    """Wait until every way in is open, starting the session's own autopilot; return where the bridge is."""
 
     def alive() -> bool:
         check()
@@ -176,7 +191,7 @@ def _await_stations(
     if bridge is not None:
         address = bridge_address(folder, alive)
         if session.features.autopilot is not None:
-            programs.append(start_autopilot(address, session.features.autopilot, bridge, token))
+            start(address, session.features.autopilot, bridge)
     if session.outputs.can is not None:
         wait_for_can(folder, lambda: alive() and not supervisor.counters().get("canbus"))
     return address
@@ -198,13 +213,13 @@ def _idle(snapshot: Snapshot) -> None:
     time.sleep(STAND_S)
 
 
-def _end_programs(programs: list[Popen[bytes]]) -> None:
-    for program in programs:
-        end_program(program)
+def new_nonce() -> str:
+    """Return what tells this drive from all others, for the programs that it starts."""
+    return secrets.token_hex(16)
 
 
 def _open_lockstep(
-    resolved: ResolvedSession, console: Console, folder: Path, check: Callable[[], None], stack: ExitStack
+    resolved: ResolvedSession, console: Console, folder: Path, interrupt: Interrupt, stack: ExitStack
 ) -> LockstepLink:
     from simconsole.bridge.lockstep import LockstepBridge
 
@@ -212,16 +227,19 @@ def _open_lockstep(
     if session.outputs.bridge is None:
         raise ProfileError("outputs.bridge: value missing: a bridge, where mode.pacing is lockstep")
     period_ticks = max(1, session.mode.control_period_ms * console.tick_hz // 1000)
-    token = _own_token(session)
-    bridge = LockstepBridge(session.outputs.bridge, odometry_hz=console.tick_hz / period_ticks, folder=folder)
+    token, drive = _own_token(session), new_nonce()
+    odometry_hz = console.tick_hz / period_ticks
+    bridge = LockstepBridge(session.outputs.bridge, odometry_hz=odometry_hz, folder=folder, drive=drive)
     course = session.features.autopilot
     program = None
     if course is not None:
-        program = start_autopilot(bridge.url, course, session.outputs.bridge, token)
-        stack.callback(end_program, program)
-    stack.callback(bridge.close)  # before the program's end is waited for: it is what ends it
-    _wait_for_controller(bridge, program, session.mode.wait_for_controller_s, check)
-    return LockstepLink(bridge, period_ticks, session.mode.answer_timeout_s)
+        program = start_autopilot(bridge.url, course, session.outputs.bridge, drive, token)
+        stack.callback(end, [program], PROGRAM_END_S)
+    stack.callback(bridge.close)  # a good-bye, before the program's end is waited for
+    if program is not None:
+        stack.callback(tell_to_end, [program])
+    _wait_for_controller(bridge, program, session.mode.wait_for_controller_s, interrupt.check)
+    return LockstepLink(bridge, period_ticks, session.mode.answer_timeout_s, lambda: interrupt.raised)
 
 
 def _own_token(session: SessionProfile) -> str | None:

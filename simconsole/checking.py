@@ -3,30 +3,36 @@
 Worker of `simconsole check`.
 """
 
+import math
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from pathlib import Path
-from typing import NamedTuple
-
-import numpy as np
+from typing import Any, NamedTuple, Self, TextIO, TypeVar
 
 from simconsole import golden
 from simconsole.assembly import assemble
 from simconsole.compiling import compiled
 from simconsole.devices.script import ScriptSource
 from simconsole.devices.settings import settings
-from simconsole.drive import Cast, run
+from simconsole.drive import Cast, Recorder, run
 from simconsole.errors import ProfileError
 from simconsole.faulting import with_faults
+from simconsole.files import replaced
 from simconsole.handling.attempt import Result
 from simconsole.isolation import isolated
 from simconsole.kernels import Row
 from simconsole.manoeuvring import drive, judge_limit
-from simconsole.memory import MemoryRecorder
 from simconsole.pacing import UnpacedPacer
+from simconsole.pipeline import Console
 from simconsole.ports import DeviceSource, NobodySeated
 from simconsole.profiles.manoeuvre import Limit, Manoeuvre
 from simconsole.profiles.scenario import Check, ScenarioProfile
+from simconsole.recording.framing import START_OF_CHAIN, chain
+from simconsole.rows import Snapshot
 from simconsole.scripted import ScriptedCommands
 from simconsole.session_files import load_scenario, resolve
+
+R = TypeVar("R", bound=Recorder)
 
 
 class Verdict(NamedTuple):
@@ -53,18 +59,20 @@ def check_scenario(name_or_path: str, update_golden: bool = False) -> Verdict:
     scenario, path = load_scenario(name_or_path)
     if scenario.manoeuvre is not None:
         return _check_manoeuvre(scenario, scenario.manoeuvre, path)
-    recorder, columns = drive_scenario(scenario)
-    tick_hz = scenario.session.mode.tick_hz
-    judged = [judge(check, recorder.rows, columns, tick_hz, str(path)) for check in scenario.checks]
-    problems = [problem for problem in judged if problem is not None]
-    driven = golden.sample(recorder.rows, tick_hz, scenario.golden_hz, columns, recorder.digest.hex())
-    golden_path = path.parent / "golden" / f"{path.stem}.csv"
-    if update_golden:
-        golden_path.parent.mkdir(exist_ok=True)
-        golden_path.write_text(golden.write(driven), "utf-8")
-    else:
-        problems += _against_golden(golden_path, driven)
-    return Verdict(path.stem, not problems, recorder.ticks, recorder.digest.hex(), problems, scenario.title)
+    accepted = path.parent / "golden" / f"{path.stem}.csv"
+    with ExitStack() as stack:
+
+        def watched(console: Console) -> Watch:
+            sampled = (Accepting if update_golden else Comparing)(accepted, console.tick_hz, console.columns)
+            stack.enter_context(sampled)
+            bounds = [Bound(check, console.columns, console.tick_hz, str(path)) for check in scenario.checks]
+            return Watch(bounds, sampled, golden.step_ticks(console.tick_hz, scenario.golden_hz))
+
+        watch = drive_scenario(scenario, watched)
+        digest = watch.digest.hex()
+        judged = [bound.problem(watch.ticks) for bound in watch.bounds]
+        problems = [problem for problem in judged if problem is not None] + watch.samples.end(digest)
+    return Verdict(path.stem, not problems, watch.ticks, digest, problems, scenario.title)
 
 
 def _check_manoeuvre(scenario: ScenarioProfile, manoeuvre: Manoeuvre, path: Path) -> Verdict:
@@ -85,62 +93,163 @@ def _check_manoeuvre(scenario: ScenarioProfile, manoeuvre: Manoeuvre, path: Path
     )
 
 
-def drive_scenario(scenario: ScenarioProfile) -> tuple[MemoryRecorder, tuple[str, ...]]:
-    """Drive a scenario without files and return its rows and their columns."""
+def drive_scenario(scenario: ScenarioProfile, recorder_of: Callable[[Console], R]) -> R:
+    """Drive a scenario without files into the recorder that `recorder_of` makes, and return that."""
     resolved = resolve(scenario.session)
     console, state = assemble(resolved, compiled)
     tick_hz = console.tick_hz
-    ticks = round(scenario.duration_s * tick_hz)
     devices: DeviceSource = NobodySeated()
     if scenario.script is not None:
         devices = ScriptSource(scenario.script, settings(resolved.cockpit, tick_hz), tick_hz=tick_hz)
-    recorder = MemoryRecorder(ticks, console.width)
+    recorder = recorder_of(console)
     commands = ScriptedCommands(scenario.remote, scenario.events, tick_hz)
     ecu = ScriptedCommands(scenario.ecu, scenario.ecu_events, tick_hz)
     cast = Cast(devices, commands, recorder, (), UnpacedPacer(), ecu=ecu)
-    run(console, state, isolated(with_faults(cast, resolved, tick_hz)), ticks)
-    return recorder, console.columns
+    cast = isolated(with_faults(cast, resolved, tick_hz), UnpacedPacer)
+    cast = cast._replace(recorder=recorder)  # here a recorder that fails is a failure
+    run(console, state, cast, round(scenario.duration_s * tick_hz))
+    return recorder
 
 
-def judge(check: Check, rows: Row, columns: tuple[str, ...], tick_hz: int, origin: str) -> str | None:
-    """Return what is wrong with one bound, None if it holds; `origin` (the scenario's file) opens an error.
+class Watch:
+    """The recorder of a check: looks at every tick as it is driven and keeps none, so that a drive may be long.
 
-    Raises:
-        ProfileError: the bound names a column that no row has.
+    Attributes:
+        bounds: what every tick is held to.
+        samples: the golden's side.
+        ticks: seen so far.
+        digest: chained hash of them.
     """
-    if check.column not in columns:
-        raise ProfileError(f"{origin}: checks: column: value {check.column}: a column of a row, as in its golden")
-    first, last = _ticks(check, len(rows), tick_hz)
-    values = rows[first:last, columns.index(check.column)]
-    low = -np.inf if check.min is None else check.min
-    high = np.inf if check.max is None else check.max
-    good = (values >= low) & (values <= high)  # so that NaN is never good
-    if not len(values):
-        return f"{check.column}: no tick from {first + 1} to {last}, the drive has {len(rows)}"
-    if good.all():
-        return None
-    at = int(np.flatnonzero(~good)[0])
-    return f"tick {first + at + 1}: {check.column}: {float(values[at])!r} not in {low} to {high}"
+
+    def __init__(self, bounds: "Sequence[Bound]", samples: "Accepting | Comparing", step_ticks: int) -> None:
+        self.bounds, self.samples = bounds, samples
+        self._step_ticks = step_ticks
+        self.ticks = 0
+        self.digest = START_OF_CHAIN
+
+    def write(self, snapshot: Snapshot) -> int:
+        """Look at one tick."""
+        self.ticks += 1
+        self.digest = chain(self.digest, snapshot.tick, snapshot.row.tobytes())
+        for bound in self.bounds:
+            bound.see(snapshot.tick, snapshot.row)
+        if snapshot.tick % self._step_ticks == 0:
+            self.samples.see(snapshot.tick, snapshot.row)
+        return 0
 
 
-def _ticks(check: Check, ticks: int, tick_hz: int) -> tuple[int, int]:
-    """Return the rows a bound looks at, the last one not included."""
+class Bound:
+    """One bound on a column, over some of a drive's ticks."""
+
+    def __init__(self, check: Check, columns: tuple[str, ...], tick_hz: int, origin: str) -> None:
+        """`origin` (the scenario's file) opens an error.
+
+        Raises:
+            ProfileError: the bound names a column that no row has.
+        """
+        if check.column not in columns:
+            raise ProfileError(f"{origin}: checks: column: value {check.column}: a column of a row, as in its golden")
+        self._column, self._at = check.column, columns.index(check.column)
+        self._low = -math.inf if check.min is None else check.min
+        self._high = math.inf if check.max is None else check.max
+        self._first, self._last = _ticks(check, tick_hz)
+        self._found: str | None = None
+
+    def see(self, tick: int, row: Row) -> None:
+        """Hold one tick to it; the first that breaks it is what counts."""
+        if self._found is None and self._first <= tick and (self._last is None or tick <= self._last):
+            value = float(row[self._at])
+            if not self._low <= value <= self._high:  # so that NaN is never good
+                self._found = f"tick {tick}: {self._column}: {value!r} not in {self._low} to {self._high}"
+
+    def problem(self, ticks: int) -> str | None:
+        """Return what is wrong after a drive of so many ticks, None if the bound holds."""
+        last = ticks if self._last is None else self._last
+        if self._first > min(last, ticks):
+            return f"{self._column}: no tick from {self._first} to {last}, the drive has {ticks}"
+        return self._found
+
+
+def _ticks(check: Check, tick_hz: int) -> tuple[int, int | None]:
+    """Return the first and the last tick a bound looks at; None: to the end."""
     if check.at_s is not None:
-        last = max(1, round(check.at_s * tick_hz))
-        return last - 1, last
-    return round(check.from_s * tick_hz), ticks if check.until_s is None else round(check.until_s * tick_hz)
+        tick = max(1, round(check.at_s * tick_hz))
+        return tick, tick
+    return round(check.from_s * tick_hz) + 1, None if check.until_s is None else round(check.until_s * tick_hz)
 
 
-def _against_golden(path: Path, driven: golden.Golden) -> list[str]:
-    if not path.is_file():
-        return [f"{path}: no golden; accept one with --update-golden"]
-    accepted = golden.read(path.read_text("utf-8"), str(path))
-    if accepted.hash == driven.hash and accepted.columns == driven.columns:
+class Accepting:
+    """Writes what is driven as the new golden, which takes its place at the end."""
+
+    def __init__(self, path: Path, tick_hz: int, columns: tuple[str, ...]) -> None:
+        self._path, self._tick_hz, self._columns = path, tick_hz, columns
+        self._stack = ExitStack()
+
+    def __enter__(self) -> Self:
+        """Open its draft."""
+        self._path.parent.mkdir(exist_ok=True)
+        draft = self._stack.enter_context(replaced(self._path))
+        self._file = self._stack.enter_context(draft.open("w", encoding="utf-8", newline="\n"))
+        self._file.write(self._head(START_OF_CHAIN.hex()))
+        return self
+
+    def __exit__(self, *error: Any) -> None:
+        """Put it in its place, or remove it after an error."""
+        self._stack.__exit__(*error)
+
+    def see(self, tick: int, row: Row) -> None:
+        """Write one sample."""
+        self._file.write(golden.line(tick, row))
+
+    def end(self, digest: str) -> list[str]:
+        """Write the hash of the drive into its head; what is accepted differs from nothing."""
+        self._file.seek(0)
+        self._file.write(self._head(digest))
         return []
-    difference = golden.first_difference(accepted, driven)
-    if difference is None:
-        return [f"{path}: hash {driven.hash}, accepted {accepted.hash}; no sampled value differs"]
-    return [
-        f"{path}: tick {difference.tick}: {difference.column}: "
-        f"driven {difference.driven!r}, accepted {difference.accepted!r}"
-    ]
+
+    def _head(self, digest: str) -> str:
+        return golden.head(digest, self._tick_hz, self._columns)
+
+
+class Comparing:
+    """Holds what is driven against its golden."""
+
+    def __init__(self, path: Path, tick_hz: int, columns: tuple[str, ...]) -> None:
+        self._path, self._columns = path, columns
+        self._file: TextIO | None = None
+
+    def __enter__(self) -> Self:
+        """Open the golden, if there is one.
+
+        Raises:
+            ProfileError: it is none of this version.
+        """
+        if self._path.is_file():
+            self._file = self._path.open(encoding="utf-8", newline="")
+            self._golden = golden.Golden(self._file, str(self._path))
+            self._comparison = golden.Comparison(self._golden, self._columns)
+        return self
+
+    def __exit__(self, *error: Any) -> None:
+        """Close it."""
+        if self._file is not None:
+            self._file.close()
+
+    def see(self, tick: int, row: Row) -> None:
+        """Compare one sample."""
+        if self._file is not None:
+            self._comparison.see(tick, row)
+
+    def end(self, digest: str) -> list[str]:
+        """Return what is unlike the golden after the whole drive, one line or none."""
+        if self._file is None:
+            return [f"{self._path}: no golden; accept one with --update-golden"]
+        difference = self._comparison.first_difference()
+        if (self._golden.hash, self._golden.columns) == (digest, self._columns):
+            return []
+        if difference is None:
+            return [f"{self._path}: hash {digest}, accepted {self._golden.hash}; no sampled value differs"]
+        return [
+            f"{self._path}: tick {difference.tick}: {difference.column}: "
+            f"driven {difference.driven!r}, accepted {difference.accepted!r}"
+        ]

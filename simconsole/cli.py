@@ -6,13 +6,27 @@ that does it, loaded when it is called.
 """
 
 import argparse
+import os
 import sys
 from importlib import import_module
-from typing import Any
+from typing import Any, TextIO
 
 from simconsole import __version__
-from simconsole.commands.outcome import INTERRUPTED
-from simconsole.errors import SimConsoleError
+from simconsole.errors import SimConsoleError, one_line
+from simconsole.lifetimes import (
+    ATTACHED,
+    INTERRUPTED,
+    SIGNALS,
+    end_at_once,
+    handle,
+    handled,
+    ignore_signals,
+    interrupted,
+)
+
+_AT_ONCE = ("demo", "drive", "bridge", "report", "view")
+"""Commands that Ctrl-C ends at once where no drive takes it for itself: they leave nothing half made. To the others it
+is an exception, for some the way to their result."""
 
 
 def parser() -> argparse.ArgumentParser:
@@ -32,18 +46,36 @@ def parser() -> argparse.ArgumentParser:
 def main(arguments: list[str] | None = None) -> int:
     """Run one command and return its exit code. Errors a user can cause are one line on standard error."""
     words = parser().parse_args(arguments)
+    signals = SIGNALS if words.command in _AT_ONCE else SIGNALS[1:]
+    if arguments is None:
+        handle(interrupted, signals)
+        code = _run(words)
+        ignore_signals()  # all is done, and the code is decided while Python still takes itself down
+        if code == INTERRUPTED:
+            end_at_once(code)  # somebody waits for that
+        return code
+    with handled(interrupted, signals):
+        return _run(words)
+
+
+def _run(words: argparse.Namespace) -> int:
     module, function = words.does.split(":")
     try:
         outcome = getattr(import_module(f"simconsole.commands.{module}"), function)(words)
     except SimConsoleError as error:
-        print(f"simconsole {words.command}: {error}", file=sys.stderr)
+        _print(f"simconsole {words.command}: {error}", sys.stderr)
         if words.json:
             _print_json({"error": str(error)})
         return error.exit_code
+    except (MemoryError, OSError, ImportError) as error:  # the machine's limits, files, libraries: no bug of ours
+        print(f"simconsole {words.command}: {one_line(error)}", file=sys.stderr)
+        if words.json:
+            _print_json({"error": one_line(error)})
+        return SimConsoleError.exit_code
     except KeyboardInterrupt:
         return INTERRUPTED
     if outcome.text:
-        print(outcome.text)
+        _print(outcome.text)
     if words.json:
         _print_json(outcome.results)
     return int(outcome.code)
@@ -52,7 +84,15 @@ def main(arguments: list[str] | None = None) -> int:
 def _print_json(results: dict[str, Any]) -> None:
     import orjson
 
-    print(orjson.dumps(results, option=orjson.OPT_SERIALIZE_NUMPY).decode())
+    _print(orjson.dumps(results, option=orjson.OPT_SERIALIZE_NUMPY).decode())
+
+
+def _print(text: str, file: TextIO | None = None) -> None:
+    stream = sys.stdout if file is None else file
+    try:
+        print(text, file=stream, flush=True)
+    except OSError:  # nobody reads it: a closed terminal, a pipe without a reader; nor what Python flushes at its end
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def _command(commands: Any, name: str, does: str, summary: str) -> argparse.ArgumentParser:
@@ -120,6 +160,7 @@ def _driving(commands: Any) -> None:
     autopilot.add_argument("--namespace", default="", metavar="NS", help="of the console's topics")
     autopilot.add_argument("--rename", action="append", default=[], metavar="/TOPIC=/NAME", help="what one is called")
     autopilot.add_argument("--certificate", metavar="PEM", help="of a wss:// server; a token: SIMCONSOLE_TOKEN")
+    autopilot.add_argument(ATTACHED, action="store_true", help="end with whoever holds standard input")
 
 
 def _recordings(commands: Any) -> None:

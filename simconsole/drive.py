@@ -7,14 +7,14 @@ from simconsole.ledger import Hop, Ledger, unheard
 from simconsole.pipeline import Console, ConsoleState, advance
 from simconsole.ports import CommandSource, DeviceSource, NobodyCommands, Seat, Station
 from simconsole.rows import Snapshot, TickInputs
-from simconsole.signals import NO_EVENTS, Button, Event, EventInput
+from simconsole.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE, Button, Event, EventInput
 
 
 class Recorder(Protocol):
     """Where every tick goes first."""
 
-    def write(self, snapshot: Snapshot) -> None:
-        """Keep one tick; a failing disk must not raise."""
+    def write(self, snapshot: Snapshot) -> int:
+        """Keep one tick and return the events (mask) that the next one brings; a failing disk must not raise."""
 
 
 class Pace(Protocol):
@@ -34,6 +34,12 @@ class Faults(Protocol):
 Standby = Callable[[Snapshot], None]
 """Serves, listens or rests for a moment, with the last snapshot."""
 
+AT_REST_S: Final = 20.0
+"""Simulated time after which a vehicle that still rolls is left alone."""
+REST_MPS: Final = 0.05
+
+_END: Final = int(Event.END)
+_EMERGENCY: Final = int(Event.EMERGENCY_STOP)
 _PAUSE: Final = int(Event.PAUSE)
 _START: Final = int(Event.START)
 _BUTTON_PAUSE: Final = int(Button.PAUSE)
@@ -93,7 +99,7 @@ def run(
             carried &= ~_PAUSE
         edges = EventInput(float(carried), faults, float(int(ecu_events.events) | carried_ecu))
         state, snapshot = advance(state, TickInputs(sample, ros, edges, ecu), console, mark)
-        cast.recorder.write(snapshot)
+        recorded = cast.recorder.write(snapshot)
         mark(Hop.RECORD)
         for station, hop in stations:
             station.publish(snapshot)
@@ -103,6 +109,27 @@ def run(
             carried, carried_ecu = _stand(console, state, cast, snapshot, finished)
         else:
             carried = _PAUSE if int(snapshot.driver.edges) & _BUTTON_PAUSE else 0
+        carried |= recorded
+    return state
+
+
+def come_to_rest(console: Console, state: ConsoleState, recorder: Recorder) -> ConsoleState:
+    """End a drive whose loop has ended early, in the log only and without waiting; return the last state.
+
+    The first tick has the event END and, where the vehicle moves, EMERGENCY_STOP; nobody is in the seat and nobody
+    commands. The last tick recorded is one at rest, or AT_REST_S later: whoever drives on from it, or replays it, sees
+    that nobody drove on.
+    """
+    moves, last = abs(Snapshot(state.tick, console.tick_hz, state.row).vehicle.vx_mps) > REST_MPS, 1
+    if moves:
+        last = round(AT_REST_S * console.tick_hz)
+    edges = EventInput(float(_END | _EMERGENCY if moves else _END))
+    for _ in range(last if state.tick else 0):
+        state, snapshot = advance(state, TickInputs(NO_SAMPLE, NO_COMMAND, edges), console)
+        recorder.write(snapshot)
+        edges = NO_EVENTS
+        if abs(snapshot.vehicle.vx_mps) <= REST_MPS:
+            break
     return state
 
 

@@ -8,6 +8,7 @@
     |   +-- DeviceNotFound      the profile names a device that is not there
     |   +-- DeviceModeError     the device is there in a mode that cannot drive
     +-- BridgeError             the rosbridge link
+    |   +-- OtherDriveError     the server belongs to another drive than the one that started this program
     |   +-- LocalProtocolError  we broke the protocol: a bug here
     |   +-- RemoteProtocolError the peer broke the protocol: answered with a status
     |       +-- FrameError      below its messages: answered with a close code
@@ -17,6 +18,15 @@
 
 The command line prints the message on one line and exits with `exit_code`; a traceback means a bug.
 """
+
+
+def one_line(error: BaseException) -> str:
+    """Return what an error says, on one line; its name where it says nothing or is none of ours."""
+    said = " ".join(str(error).split())
+    if isinstance(error, SimConsoleError):
+        return said
+    kind = "out of memory" if isinstance(error, MemoryError) else type(error).__name__
+    return f"{kind}: {said}" if said else kind
 
 
 class SimConsoleError(Exception):
@@ -43,6 +53,12 @@ class DeviceModeError(DeviceError):
 
 class BridgeError(SimConsoleError):
     """The rosbridge link cannot be opened or has failed."""
+
+
+class OtherDriveError(BridgeError):
+    """The server refuses this program, which another drive has started; trying again would not help."""
+
+    exit_code = 1
 
 
 class LocalProtocolError(BridgeError):

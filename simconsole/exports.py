@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from simconsole.assembly import ResolvedSession, assemble
 from simconsole.compiling import plain
 from simconsole.kernels import Row
+from simconsole.lifetimes import remove_half_made, undone
 from simconsole.profiles.faults import words
 from simconsole.profiles.view import SceneProfile
 from simconsole.recording.bundle import add_export, open_bundle
@@ -41,6 +42,11 @@ def write_exports(folder: Path, report: bool = True, scene: bool = True) -> dict
         RecordingError: not a bundle.
         StationError: the scene's process failed.
     """
+    with undone(lambda: remove_half_made(folder)):
+        return _write_exports(folder, report, scene)
+
+
+def _write_exports(folder: Path, report: bool, scene: bool) -> dict[str, Any]:
     bundle = open_bundle(folder)
     resolved, table = recorded_session(bundle), bundle.log.table()
     with ThreadPoolExecutor(1) as beside:
@@ -78,7 +84,7 @@ def write_scene(folder: Path) -> Path:
 
 
 def open_viewer(path: Path) -> None:
-    """Open a scene in rerun's viewer, in a process of its own."""
+    """Open a scene in rerun's viewer, in a process of its own; it is the person's, and stays when this one ends."""
     subprocess.Popen([sys.executable, "-m", "rerun", str(path)], stdin=subprocess.DEVNULL)
 
 

@@ -2,15 +2,16 @@
 
 import os
 import subprocess
-import sys
+from collections.abc import Callable
 from typing import Any, Protocol
 
+from simconsole.errors import BridgeError
 from simconsole.ledger import Hop
+from simconsole.lifetimes import ATTACHED, DRIVE_VARIABLE, spawn
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.rows import Snapshot
 from simconsole.signals import Event, EventInput, RemoteCommand
 
-PROGRAM_END_S = 5.0
 STAND_S = 0.02
 TOKEN_VARIABLE = "SIMCONSOLE_TOKEN"
 """The environment's variable with the token that the commands show which connect to a server."""
@@ -19,8 +20,8 @@ TOKEN_VARIABLE = "SIMCONSOLE_TOKEN"
 class LockstepServer(Protocol):
     """What this module needs of bridge.lockstep."""
 
-    def exchange(self, snapshot: Snapshot, timeout_s: float) -> bool:
-        """Publish, then wait for the command that answers this very snapshot."""
+    def exchange(self, snapshot: Snapshot, timeout_s: float, stop: Callable[[], bool]) -> bool:
+        """Publish, then wait for the command that answers this very snapshot, until `stop` at most."""
 
     def publish(self, snapshot: Snapshot) -> None:
         """Publish what is due, without waiting."""
@@ -51,10 +52,17 @@ class LockstepLink:
 
     hop = Hop.EXCHANGE
 
-    def __init__(self, bridge: LockstepServer, period_ticks: int, timeout_s: float) -> None:
+    def __init__(
+        self,
+        bridge: LockstepServer,
+        period_ticks: int,
+        timeout_s: float,
+        stop: Callable[[], bool] = lambda: False,
+    ) -> None:
         self._bridge = bridge
         self._period_ticks = period_ticks
         self._timeout_s = timeout_s
+        self._stop = stop
         self._silent_at: float | None = None  # the command's sequence number when the controller went silent
         self._sequence = 0.0
         self._raised = 0
@@ -71,7 +79,7 @@ class LockstepLink:
             return
         self._silent_at = None
         self.exchanges += 1
-        if not self._bridge.exchange(snapshot, self._timeout_s):
+        if not self._bridge.exchange(snapshot, self._timeout_s, self._stop):
             self.unanswered += 1
             self._silent_at = self._sequence
             self._raised = int(Event.NO_ANSWER)
@@ -97,39 +105,34 @@ class LockstepLink:
 
 
 def start_autopilot(
-    url: str, course: str, bridge: BridgeProfile, token: str | None = None
+    url: str, course: str, bridge: BridgeProfile, drive: str, token: str | None = None
 ) -> "subprocess.Popen[bytes]":
-    """Start `simconsole autopilot` as a program of its own; `end_program` ends it.
+    """Start `simconsole autopilot` as a program of its own, which ends with this process.
 
     Args:
         url: the console's own server.
         course: what to follow.
         bridge: what its topics are called, and its certificate.
-        token: what the server asks for; it goes by the environment, for everyone can read a program's arguments.
+        drive: the drive's nonce, without which the program would take the next drive at this address for this one.
+        token: what the server asks for; both go by the environment, for everyone can read a program's arguments.
+
+    Raises:
+        BridgeError: it cannot be started.
     """
-    words = [sys.executable, "-m", "simconsole", "autopilot", "--url", _here(url), "--course", course]
+    words = ["-m", "simconsole", "autopilot", ATTACHED, "--url", _here(url), "--course", course]
     if bridge.namespace:
         words += ["--namespace", bridge.namespace]
     for standard, name in bridge.rename.items():
         words += ["--rename", f"{standard}={name}"]
     if bridge.certificate is not None:
         words += ["--certificate", bridge.certificate]
-    environment = dict(os.environ) if token is None else {**os.environ, TOKEN_VARIABLE: token}
-    # A group of its own: a terminal's Ctrl-C reaches the core only, which then ends the drive in order.
-    return subprocess.Popen(
-        words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, process_group=0, env=environment
-    )
+    shown = {DRIVE_VARIABLE: drive} if token is None else {DRIVE_VARIABLE: drive, TOKEN_VARIABLE: token}
+    try:
+        return spawn(words, environment={**os.environ, **shown})
+    except OSError as error:
+        raise BridgeError(f"the autopilot cannot be started: {error.strerror}") from None
 
 
 def _here(url: str) -> str:
     """Return the address for this machine of a server that listens on all addresses: no certificate names those."""
     return url.replace("//0.0.0.0:", "//127.0.0.1:").replace("//[::]:", "//[::1]:")
-
-
-def end_program(program: "subprocess.Popen[bytes]") -> None:
-    """Give a program that has lost its connection the time to end by itself, then end it."""
-    try:
-        program.wait(PROGRAM_END_S)
-    except subprocess.TimeoutExpired:
-        program.kill()
-        program.wait()

@@ -1,21 +1,38 @@
 """A drive kept in memory: its rows, and the chained hash that a log would have."""
 
+from typing import Final
+
 import numpy as np
 
+from simconsole.kernels import Row
 from simconsole.recording.framing import START_OF_CHAIN, chain
 from simconsole.rows import Snapshot
+
+FIRST_TICKS: Final = 4096
+"""Room is taken for so many at first, and twice as much whenever it is full."""
 
 
 class MemoryRecorder:
     """Keeps every row of a drive of at most `ticks` ticks; the hash continues that of an earlier drive."""
 
     def __init__(self, ticks: int, width: int, digest: bytes = START_OF_CHAIN) -> None:
-        self.rows = np.empty((ticks, width))
+        self._most = ticks
+        self._room = np.empty((min(ticks, FIRST_TICKS), width))
         self.ticks = 0
         self.digest = digest
 
-    def write(self, snapshot: Snapshot) -> None:
+    @property
+    def rows(self) -> Row:
+        """The rows so far (ticks, columns)."""
+        return self._room[: self.ticks]
+
+    def write(self, snapshot: Snapshot) -> int:
         """Keep one tick."""
-        self.rows[self.ticks] = snapshot.row
+        if self.ticks == len(self._room):
+            larger = np.empty((min(self._most, 2 * self.ticks), self._room.shape[1]))
+            larger[: self.ticks] = self._room
+            self._room = larger
+        self._room[self.ticks] = snapshot.row
         self.ticks += 1
         self.digest = chain(self.digest, snapshot.tick, snapshot.row.tobytes())
+        return 0

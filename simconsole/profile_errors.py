@@ -40,7 +40,7 @@ def _explain(message: str, values: object, struct: type[Any]) -> str:
     located = _LOCATED.fullmatch(message)
     assert located is not None, message
     what = located["what"]
-    path = _resolve(located["path"] or "", values, struct)
+    path = _resolve(message, located["path"] or "", values, struct)
     types = _types_at(path, struct, values)
     if unknown := _UNKNOWN.fullmatch(what):
         return _unknown_key((*path, unknown["name"]), types, _value_at((*path, unknown["name"]), values))
@@ -52,7 +52,7 @@ def _explain(message: str, values: object, struct: type[Any]) -> str:
     return f"{_dotted(path)}: value {_shown(_value_at(path, values))}: {_allowed(types, what)}"
 
 
-def _resolve(text: str, values: object, struct: type[Any]) -> Path:
+def _resolve(message: str, text: str, values: object, struct: type[Any]) -> Path:
     """Turn msgspec's path into steps. It writes `[...]` for a mapping's value; the guilty key is found by trial."""
     path: Path = ()
     for step in _STEP.finditer(text):
@@ -61,18 +61,20 @@ def _resolve(text: str, values: object, struct: type[Any]) -> Path:
         elif step["index"] != "...":
             path = (*path, int(step["index"]))
         else:
-            path = (*path, _guilty_key(path, values, struct))
+            path = (*path, _guilty_key(message, path, values, struct))
     return path
 
 
-def _guilty_key(path: Path, values: object, struct: type[Any]) -> str:
+def _guilty_key(message: str, path: Path, values: object, struct: type[Any]) -> str:
+    """Return the key whose value alone is refused in the same words; other keys may be refused for other reasons."""
     mapping = _value_at(path, values)
     assert isinstance(mapping, dict)
     for key, value in mapping.items():
         try:
             msgspec.convert(_with_value(values, path, {key: value}), struct)
-        except msgspec.ValidationError:
-            return str(key)
+        except msgspec.ValidationError as error:
+            if str(error) == message:
+                return str(key)
     return "..."
 
 
@@ -86,7 +88,7 @@ def _with_value(values: Any, path: Path, value: object) -> Any:
 
 def _value_at(path: Path, values: Any) -> Any:
     for step in path:
-        values = values[step]
+        values = _stepped(values, step)
     return values
 
 

@@ -49,6 +49,11 @@ class RingStation:
     def __init__(self, ring: Ring) -> None:
         self._ring = ring
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing was published yet."""
+        return self._ring.newest == 0
+
     def publish(self, snapshot: Snapshot) -> None:
         """Copy one row; its second stamp tells when, for the ledger."""
         self._ring.write(snapshot.row, snapshot.tick, time.monotonic_ns())
@@ -129,8 +134,13 @@ def add_can_memory(resolved: ResolvedSession, console: Console, folder: Path) ->
     return CommandPort(slot, EventCounters.create(folder / CAN_EVENTS), console.tick_hz)
 
 
-def station_specs(resolved: ResolvedSession, console: Console, folder: Path, bundle: Path) -> list[StationSpec]:
-    """Return the stations that the session's outputs name; writes what they need into the run folder."""
+def station_specs(
+    resolved: ResolvedSession, console: Console, folder: Path, bundle: Path, drive: str
+) -> list[StationSpec]:
+    """Return the stations that the session's outputs name; writes what they need into the run folder.
+
+    `drive` is the nonce of the drive.
+    """
     outputs = resolved.session.outputs
     tick_hz = console.tick_hz
     specs = []
@@ -138,6 +148,7 @@ def station_specs(resolved: ResolvedSession, console: Console, folder: Path, bun
         arguments = {
             "profile": msgspec.to_builtins(outputs.bridge),
             "tick_hz": tick_hz,
+            "drive": drive,
             "bundle": str(bundle.absolute()),
         }
         specs.append(StationSpec(name="bridge", target="simconsole.station_programs:bridge", arguments=arguments))

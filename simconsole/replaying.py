@@ -1,28 +1,37 @@
 """Replay of a bundle: build the console that the bundle describes and make every tick again."""
 
+import hashlib
 from pathlib import Path
 
 import numpy as np
 
+from simconsole import __version__, compiling
 from simconsole.assembly import ResolvedSession, assemble
 from simconsole.compiling import compiled
 from simconsole.errors import RecordingError
-from simconsole.pipeline import Console, ConsoleState, advance_row
+from simconsole.pipeline import Console, ConsoleState, advance_row, decide
 from simconsole.profile_files import parse
-from simconsole.recording.bundle import Bundle, open_bundle
+from simconsole.recording.bundle import SESSION_FILE, Bundle, open_bundle, session_problem
 from simconsole.recording.replay import ReplayResult, replay
-
-SESSION_FILE = "session.json"
 
 
 def recorded_session(bundle: Bundle) -> ResolvedSession:
     """Return the session as it was driven, every profile in full.
 
     Raises:
-        RecordingError: the bundle does not hold it.
+        RecordingError: the bundle does not hold it, or another one than the log was recorded with.
         ProfileError: it was altered into something that is no session.
     """
-    return parse(bundle.text(SESSION_FILE), ResolvedSession, str(bundle.folder / SESSION_FILE))
+    text, path = bundle.text(SESSION_FILE), bundle.folder / SESSION_FILE
+    if problem := session_problem(path, text, bundle.log.header):
+        raise RecordingError(problem)
+    return parse(text, ResolvedSession, str(path))
+
+
+def sources_sha256(console: Console) -> str:
+    """Return what a log says of the sources that made its rows."""
+    sources = compiling.digest(decide) + compiling.digest(console.platform.step)
+    return hashlib.sha256(sources.encode()).hexdigest()
 
 
 def state_at(folder: Path, tick: int) -> tuple[Console, ConsoleState]:
@@ -49,7 +58,7 @@ def replay_bundle(folder: Path) -> ReplayResult:
     """
     bundle = open_bundle(folder)
     console, state = assemble(recorded_session(bundle), compiled)
-    return replay(
+    found = replay(
         bundle.log,
         bundle.log.header,
         console.columns,
@@ -58,3 +67,13 @@ def replay_bundle(folder: Path) -> ReplayResult:
         first_tick=1,
         recorded_ticks=bundle.manifest.ticks if bundle.manifest.finished else None,
     )
+    remarks = bundle.remarks() + _other_sources(bundle, console)
+    return found._replace(problems=tuple(bundle.problems()), remarks=tuple(remarks))
+
+
+def _other_sources(bundle: Bundle, console: Console) -> list[str]:
+    header, here = bundle.log.header, sources_sha256(console)
+    if header.source_sha256 == here:
+        return []
+    recorded = f"{header.source_sha256[:12]} (simconsole {header.console_version})"
+    return [f"{bundle.log.path}: recorded with other sources: {recorded}, here {here[:12]} ({__version__})"]

@@ -16,8 +16,10 @@ from simconsole.signals import (
     Commander,
     DeviceSample,
     DriverInput,
+    Event,
     EventInput,
     Link,
+    Notice,
     RemoteCommand,
     VehicleCommand,
     VehicleState,
@@ -69,6 +71,9 @@ STAGES: Final[tuple[tuple[str, type[tuple[float, ...]]], ...]] = (
     ("torque", WheelTorque),
     ("motor", WheelMemory),
 )
+
+
+_RECORDING_FAILED: Final = int(Event.RECORDING_FAILED)
 
 
 class TickInputs(NamedTuple):
@@ -152,6 +157,16 @@ class Snapshot(NamedTuple):
     def arbitration(self) -> Arbitration:
         """Authority, mode and reason."""
         return Arbitration(*self.row[ARBITRATION_AT:COMMAND_AT].tolist())
+
+    @property
+    def recording_failed(self) -> bool:
+        """Whether nothing more is kept of this drive."""
+        return bool(int(self.row[EVENTS_AT]) & _RECORDING_FAILED)
+
+    @property
+    def notice(self) -> float:
+        """What people are told (`Notice`): a failed recording before anything that the arbiter tells."""
+        return float(Notice.RECORDING_FAILED) if self.recording_failed else self.arbitration.notice
 
     @property
     def command(self) -> VehicleCommand:

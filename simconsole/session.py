@@ -1,29 +1,30 @@
 """One session: open everything, drive, close everything, whatever happens in between."""
 
 import hashlib
-import signal
 import time
 from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
-from types import FrameType, TracebackType
-from typing import Any, NamedTuple, Self
+from typing import Any, NamedTuple
 
-from simconsole import __version__, compiling
+from simconsole import __version__
 from simconsole.assembly import ResolvedSession, assemble
 from simconsole.casting import Opened, open_headless, open_realtime
 from simconsole.compiling import compiled
-from simconsole.drive import run
-from simconsole.pipeline import Console, ConsoleState, advance, decide
+from simconsole.drive import come_to_rest, run
+from simconsole.lifetimes import Interrupt, remove_half_made, undone
+from simconsole.pipeline import Console, ConsoleState, advance
 from simconsole.profile_files import to_text
-from simconsole.recording.bundle import BundleWriter
+from simconsole.recording.bundle import SESSION_FILE, BundleWriter
 from simconsole.recording.framing import LogHeader
 from simconsole.recording.log import LogWriter
-from simconsole.replaying import SESSION_FILE
+from simconsole.replaying import sources_sha256
 from simconsole.rows import INPUT_WIDTH, Snapshot, TickInputs
-from simconsole.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE
+from simconsole.shared_memory import sweep
+from simconsole.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE, Event
 
 ENDLESS_TICKS = 2**53
+_RECORDING_FAILED = int(Event.RECORDING_FAILED)
 
 
 class DriveResult(NamedTuple):
@@ -47,19 +48,23 @@ def drive(
 
     `on_bridge` is told where the bridge of a paced drive listens, once it does.
 
-    SIGINT and SIGTERM end it in order: torque off, devices closed, the bundle finished.
+    SIGINT, SIGTERM and SIGHUP end it in order: the vehicle comes to rest in the log, torque goes off, the bundle is
+    finished, then everything is closed. A second one ends the process at once; before the first tick nothing is left.
 
     Raises:
         SimConsoleError: a device, port or file cannot be opened; what was opened before is closed again.
     """
+    sweep()
     console, state = assemble(resolved, compiled)
     warm_up(console, state)
     duration_s = resolved.session.scenario.duration_s
     ticks = ENDLESS_TICKS if duration_s is None else round(duration_s * console.tick_hz)
     with ExitStack() as stack:
-        bundle = stack.enter_context(_bundle(resolved, console, folder))
         interrupt = stack.enter_context(Interrupt())
-        opened = _open(resolved, console, bundle, interrupt.check, stack)
+        bundle = stack.enter_context(_bundle(resolved, console, folder))
+        stack.enter_context(undone(lambda: remove_half_made(folder)))
+        stack.enter_context(undone(lambda: bundle.__exit__(KeyboardInterrupt, KeyboardInterrupt(), None)))
+        opened = _open(resolved, console, bundle, interrupt, stack)
         if opened.bridge_url is not None:
             on_bridge(opened.bridge_url)
         began_s = time.monotonic()
@@ -71,6 +76,8 @@ def drive(
             lambda snapshot: interrupt.raised or watch(snapshot) or opened.finished(snapshot),
             resolved.session.mode.start == "on_request",
         )
+        if interrupt.raised:
+            state = come_to_rest(console, state, opened.cast.recorder)
         wall_s = time.monotonic() - began_s
         summary = {
             "wall_s": wall_s,
@@ -88,66 +95,41 @@ def warm_up(console: Console, state: ConsoleState) -> None:
 
 
 class LogRecorder:
-    """The drive loop's recorder: every tick into the log."""
+    """The drive loop's recorder: every tick into the log, and an alarm into every tick after it failed."""
 
     def __init__(self, log: LogWriter) -> None:
         self._log = log
 
-    def write(self, snapshot: Snapshot) -> None:
-        """Append one tick; a failing disk is noted in the log's `failure`."""
-        self._log.append(snapshot.tick, snapshot.row)
-
-
-class Interrupt:
-    """SIGINT and SIGTERM as a flag, while a drive is open: the loop ends between two ticks, never inside one."""
-
-    def __init__(self) -> None:
-        self.raised = False
-        self._before: dict[int, Any] = {}
-
-    def __enter__(self) -> Self:
-        """Take the signals over."""
-        for number in (signal.SIGINT, signal.SIGTERM):
-            self._before[number] = signal.signal(number, self._note)
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        """Give them back."""
-        for number, handler in self._before.items():
-            signal.signal(number, handler)
-
-    def check(self) -> None:
-        """Raise KeyboardInterrupt if a signal has come: for places where ending is safe, while things are opened."""
-        if self.raised:
-            raise KeyboardInterrupt
-
-    def _note(self, number: int, frame: FrameType | None) -> None:
-        self.raised = True
+    def write(self, snapshot: Snapshot) -> int:
+        """Append one tick; a failing disk, or whatever raises, is noted in the log's `failure` and told by an event."""
+        try:
+            self._log.append(snapshot.tick, snapshot.row)
+        except Exception as error:
+            self._log.failure = self._log.failure or f"{type(error).__name__}: {error}"
+            raise
+        return 0 if self._log.failure is None else _RECORDING_FAILED
 
 
 def _open(
-    resolved: ResolvedSession, console: Console, bundle: BundleWriter, check: Callable[[], None], stack: ExitStack
+    resolved: ResolvedSession, console: Console, bundle: BundleWriter, interrupt: Interrupt, stack: ExitStack
 ) -> Opened:
     recorder = LogRecorder(bundle.log)
     if resolved.session.mode.pacing == "realtime":
-        opened = open_realtime(resolved, console, recorder, bundle.folder, check, stack)
+        opened = open_realtime(resolved, console, recorder, bundle.folder, interrupt, stack)
     else:
-        opened = open_headless(resolved, console, recorder, bundle.folder, check, stack)
-    check()
+        opened = open_headless(resolved, console, recorder, bundle.folder, interrupt, stack)
+    interrupt.check()
     return opened
 
 
 def _bundle(resolved: ResolvedSession, console: Console, folder: Path) -> BundleWriter:
     text = to_text(resolved)
-    sources = compiling.digest(decide) + compiling.digest(console.platform.step)
     header = LogHeader(
         tick_hz=console.tick_hz,
         columns=console.columns,
         input_columns=INPUT_WIDTH,
         console_version=__version__,
-        source_sha256=hashlib.sha256(sources.encode()).hexdigest(),
+        source_sha256=sources_sha256(console),
         session_sha256=hashlib.sha256(text.encode()).hexdigest(),
     )
     return BundleWriter(folder, header, {SESSION_FILE: text}, {"simconsole": __version__})

@@ -6,10 +6,12 @@ Files live in /dev/shm where there is one. `multiprocessing.shared_memory` is no
 reader unlinks the segment.
 """
 
+import contextlib
 import mmap
 import os
 import shutil
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -18,6 +20,7 @@ from numpy.typing import NDArray
 
 from simconsole.errors import StationError
 from simconsole.kernels import Row
+from simconsole.lifetimes import undone
 from simconsole.signals import Event
 
 PREFIX: Final = "simconsole-"
@@ -194,15 +197,35 @@ def make_run_folder() -> Path:
     Raises:
         StationError: it cannot be made.
     """
-    base = _base()
-    sweep(base)
+    return _make(_base())
+
+
+@contextlib.contextmanager
+def temporary_folder() -> Iterator[Path]:
+    """Give a folder of mode 0700 for files that are too large for memory; it is gone after the block.
+
+    Where a signal ends the process at once it is gone, too; where the process is killed, at the next `sweep`.
+
+    Raises:
+        StationError: it cannot be made.
+    """
+    folder = _make(Path(tempfile.gettempdir()))
+    try:
+        with undone(lambda: remove_run_folder(folder)):
+            yield folder
+    finally:
+        remove_run_folder(folder)
+
+
+def _make(base: Path) -> Path:
+    sweep()
     try:
         folder = Path(tempfile.mkdtemp(prefix=f"{PREFIX}{os.getpid()}-", dir=base))
         if os.name == "posix":
             _owned[folder] = os.open(folder, os.O_RDONLY)
             _lock(_owned[folder])
     except OSError as error:
-        raise StationError(f"{base}: no run folder can be made: {error.strerror}") from None
+        raise StationError(f"{base}: no folder can be made there: {error.strerror}") from None
     return folder
 
 
@@ -214,14 +237,21 @@ def remove_run_folder(folder: Path) -> None:
         os.close(descriptor)
 
 
-def sweep(base: Path | None = None) -> list[Path]:
-    """Remove this user's run folders whose owner is dead; return them. Nothing where there is no POSIX."""
+def sweep(*bases: Path) -> list[Path]:
+    """Remove what dead processes of this user have left in `bases`: folders and files; return all of it.
+
+    Without bases, where they are made. Nothing where there is no POSIX.
+    """
     if os.name != "posix":
         return []
-    folders = [folder for folder in (base or _base()).glob(f"{PREFIX}*-*") if _is_stale(folder)]
-    for folder in folders:
-        remove_run_folder(folder)
-    return folders
+    places = set(bases) or {_base(), Path(tempfile.gettempdir())}
+    stale = [path for base in places for path in base.glob(f"{PREFIX}*-*") if _is_stale(path)]
+    for path in stale:
+        if path.is_dir():
+            remove_run_folder(path)
+        else:
+            path.unlink(missing_ok=True)
+    return stale
 
 
 def _base() -> Path:
@@ -236,12 +266,12 @@ def _reserve(descriptor: int, size: int) -> None:
         os.ftruncate(descriptor, size)
 
 
-def _is_stale(folder: Path) -> bool:
-    owner = folder.name.removeprefix(PREFIX).partition("-")[0]
+def _is_stale(path: Path) -> bool:
+    owner = path.name.removeprefix(PREFIX).partition("-")[0]
     if not owner.isdigit() or _alive(int(owner)):
         return False
     try:
-        descriptor = os.open(folder, os.O_RDONLY | os.O_NOFOLLOW)
+        descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
     except OSError:
         return False  # gone meanwhile, a link, or somebody else's
     try:

@@ -12,6 +12,7 @@ from typing import Any, Final
 import msgspec
 import numpy as np
 
+from simconsole.files import write_atomically
 from simconsole.kernels import Row
 from simconsole.ledger import Hop, Ledger
 from simconsole.profiles.bridge import BridgeProfile
@@ -43,7 +44,10 @@ NO_RECEIPT: Final = -1
 
 
 def bridge(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> None:
-    """Serve rosbridge. Arguments: `profile` (BridgeProfile), `tick_hz`, `bundle` (for recorded topics)."""
+    """Serve rosbridge.
+
+    Arguments: `profile` (BridgeProfile), `tick_hz`, `drive` (its nonce), `bundle` (for recorded topics).
+    """
     from simconsole.bridge.operate import Act
     from simconsole.bridge.server import serve
     from simconsole.bridge.wire import address_url
@@ -62,24 +66,19 @@ def bridge(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) ->
             file.write(msgspec.json.encode(act) + b"\n")
 
     def ready(port: int) -> None:
-        part = folder / f"{ADDRESS}.part"
-        part.write_text(address_url(profile.host, port, profile.certificate is not None), "utf-8")
-        part.replace(folder / ADDRESS)
+        url = address_url(profile.host, port, profile.certificate is not None)
+        write_atomically(folder / ADDRESS, url, durable=False)
 
     def write_counts(counts: dict[str, int]) -> None:
-        part = folder / f"{COUNTS}.part"
-        part.write_bytes(msgspec.json.encode(counts))
-        part.replace(folder / COUNTS)
+        write_atomically(folder / COUNTS, msgspec.json.encode(counts), durable=False)
 
     def write_standing(state: str) -> None:
-        part = folder / f"{LINK_STATUS}.part"
-        part.write_bytes(msgspec.json.encode({"state": state}))
-        part.replace(folder / LINK_STATUS)
+        write_atomically(folder / LINK_STATUS, msgspec.json.encode({"state": state}), durable=False)
 
     serve(
         profile, snapshots, write_command, events.raise_events, stop,
         on_ready=ready, on_act=keep_act, on_counts=write_counts, on_standing=write_standing,
-        folder=Path(arguments["bundle"]),
+        folder=Path(arguments["bundle"]), drive=arguments["drive"],
     )  # fmt: skip
 
 
@@ -106,9 +105,7 @@ def canbus(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) ->
         slot.write(np.array(command), NO_RECEIPT if receipt_ns is None else receipt_ns)
 
     def write_status(status: dict[str, Any]) -> None:
-        part = folder / f"{CAN_STATUS}.part"
-        part.write_bytes(msgspec.json.encode(status))
-        part.replace(folder / CAN_STATUS)
+        write_atomically(folder / CAN_STATUS, msgspec.json.encode(status), durable=False)
 
     try:
         serve(on_bus, snapshots, write_command, events.raise_events, write_status, stop)
@@ -245,10 +242,8 @@ class Receipts:
         if now_ns - self._saved_ns < self.SAVE_NS:
             return
         self._saved_ns = now_ns
-        part = self._path.with_suffix(".part")
         with contextlib.suppress(OSError):  # the run folder is gone: the core has ended
-            part.write_bytes(msgspec.json.encode(self._ledger.summary_us()))
-            part.replace(self._path)
+            write_atomically(self._path, msgspec.json.encode(self._ledger.summary_us()), durable=False)
 
 
 class NewestOnce:

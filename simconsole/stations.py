@@ -1,9 +1,8 @@
 """Stations: the processes around the core, and the warden that keeps them.
 
-The core starts one process, the warden, and holds the other end of its standard input. The warden starts every
-station, restarts those that die, and when the core's end closes, however the core ended, it ends them all and removes
-the run folder. So a restart never costs the tick loop a fork, and nothing outlives the core. Stations hold the same
-kind of pipe to the warden: without it they end by themselves.
+The core starts one process, the warden. The warden starts every station, restarts those that die, and when the core
+tells it to, or is gone, however it ended (lifetimes.py), it ends them all and removes the run folder. So a restart
+never costs the tick loop a fork, and nothing outlives the core: a station whose warden is gone ends by itself.
 
 ::
 
@@ -12,13 +11,11 @@ kind of pipe to the warden: without it they end by themselves.
 Run as `python -m simconsole.stations warden` or `... station`, with the description as one line on standard input.
 """
 
-import contextlib
 import importlib
 import os
 import signal
 import subprocess
 import sys
-import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -26,7 +23,9 @@ from typing import Any, Final
 
 import msgspec
 
-from simconsole.errors import SimConsoleError, StationError
+from simconsole.errors import SimConsoleError, StationError, one_line
+from simconsole.files import write_atomically
+from simconsole.lifetimes import ORPHAN_S, close_pipe, end, follow_parent, read_told, spawn
 from simconsole.rows import Snapshot
 from simconsole.shared_memory import remove_run_folder
 
@@ -36,6 +35,8 @@ BACK_OFF_S: Final = (0.05, 0.2, 1.0, 5.0)
 HEALTHY_S: Final = 10.0
 PATIENCE_S: Final = 3.0
 """How long a station may take to end before it is killed; a scene has a file to finish."""
+WARDEN_S: Final = 2.5 * ORPHAN_S
+"""How long a warden whose core is gone may take to end its stations and to remove the run folder."""
 LOOKS_PER_S: Final = 5
 STATUS: Final = "stations.json"
 
@@ -102,7 +103,7 @@ class Supervisor:
         if self._warden is None or self._warden.poll() is None:
             return
         self.warden_restarts += 1
-        _close_pipe(self._warden)
+        close_pipe(self._warden)
         try:
             self.start()
         except StationError:
@@ -123,18 +124,16 @@ class Supervisor:
         """Return how often each station was restarted, for the summary."""
         return {name: status.restarts for name, status in self.status().items()}
 
-    def stop(self) -> None:
-        """End warden and stations; afterwards the run folder is gone. Twice is harmless."""
+    def stop(self, at_once: Callable[[], bool] = lambda: False) -> None:
+        """End warden and stations; afterwards the run folder is gone. Twice is harmless.
+
+        Where `at_once()` says so they have nothing to finish, and ORPHAN_S instead of their patience.
+        """
         warden, self._warden = self._warden, None
         if warden is None:
             return
         self._last_status = self.status()
-        _close_pipe(warden)
-        try:
-            warden.wait(self._spec.patience_s * 2)
-        except subprocess.TimeoutExpired:
-            warden.kill()
-            warden.wait()
+        end([warden], self._spec.patience_s * 2, at_once, WARDEN_S)
         remove_run_folder(self.folder)
 
 
@@ -164,7 +163,7 @@ class _Kept:
             return True
         if self.process.poll() is None:
             return False
-        _close_pipe(self.process)
+        close_pipe(self.process)
         self.process = None
         self._back_off(now_s)
         return True
@@ -177,8 +176,8 @@ class _Kept:
         self.restarts += 1
 
 
-def warden(spec: WardenSpec, stop: Callable[[], bool]) -> None:
-    """Keep the stations of `spec` running until `stop`; then end them and remove the run folder."""
+def warden(spec: WardenSpec, stop: Callable[[], bool], hurry: Callable[[], bool]) -> None:
+    """Keep the stations of `spec` running until `stop`; then end them, soon with `hurry`, and remove the run folder."""
     kept = [_Kept(station, spec) for station in spec.stations]
     try:
         while not stop():
@@ -187,7 +186,7 @@ def warden(spec: WardenSpec, stop: Callable[[], bool]) -> None:
                 _write_status(Path(spec.folder), kept)
             time.sleep(POLL_S)
     finally:
-        _end([station.process for station in kept if station.process is not None], spec.patience_s)
+        end([station.process for station in kept if station.process is not None], spec.patience_s, hurry)
         if stop():  # else this warden broke, and the core's next one needs the folder
             remove_run_folder(Path(spec.folder))
 
@@ -213,41 +212,18 @@ def _write_status(folder: Path, kept: list[_Kept]) -> None:
         )
         for station in kept
     }
-    part = folder / f"{STATUS}.part"
     try:
-        part.write_bytes(msgspec.json.encode(status))
-        part.replace(folder / STATUS)
+        write_atomically(folder / STATUS, msgspec.json.encode(status), durable=False)
     except OSError:
         return  # the folder is gone: the core has ended and the pipe will say so
 
 
 def _spawn(role: str, spec: object, environment: Mapping[str, str]) -> "subprocess.Popen[bytes]":
-    # The child imports what its parent imports, and nothing that happens to lie in the working directory.
-    words = [sys.executable, "-P", "-m", "simconsole.stations", role]
-    path = os.pathsep.join(entry for entry in sys.path if entry)
     try:
-        process = subprocess.Popen(
-            words,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.DEVNULL,
-            env={**environment, "PYTHONPATH": path},
-            process_group=0,  # a terminal's Ctrl-C reaches the core only
-        )
+        told = msgspec.json.encode(spec) + b"\n"
+        return spawn(["-m", "simconsole.stations", role], told=told, environment=environment)
     except OSError as error:
         raise StationError(f"{role}: cannot be started: {error.strerror}") from None
-    assert process.stdin is not None
-    try:
-        process.stdin.write(msgspec.json.encode(spec) + b"\n")
-        process.stdin.flush()
-    except OSError:
-        pass  # it has died already; whoever looks next sees that
-    return process
-
-
-def _close_pipe(process: "subprocess.Popen[bytes]") -> None:
-    if process.stdin is not None:
-        with contextlib.suppress(OSError):
-            process.stdin.close()
 
 
 def _laid_over(environment: Mapping[str, str], changes: Mapping[str, str | None]) -> dict[str, str]:
@@ -258,51 +234,22 @@ def _laid_over(environment: Mapping[str, str], changes: Mapping[str, str | None]
     return merged
 
 
-def _end(processes: "Sequence[subprocess.Popen[bytes]]", patience_s: float) -> None:
-    for process in processes:
-        _close_pipe(process)
-    deadline_s = time.monotonic() + patience_s
-    for process in processes:
-        try:
-            process.wait(max(0.0, deadline_s - time.monotonic()))
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
-
-
-def _watch_pipe(patience_s: float | None) -> Callable[[], bool]:
-    """Return a function that is True once whoever started this process has closed the pipe or died.
-
-    A process that has not ended `patience_s` after that is stuck, and ended from here.
-    """
-    closed = threading.Event()
-
-    def watch() -> None:
-        # Not through sys.stdin: a thread that holds its lock would abort the interpreter's end.
-        while os.read(0, 4096):
-            pass
-        closed.set()
-        if patience_s is not None:
-            time.sleep(patience_s)
-            os._exit(1)
-
-    threading.Thread(target=watch, name="pipe", daemon=True).start()
-    return closed.is_set
-
-
 def main(words: list[str]) -> int:
     """Be the warden or a station."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the core's; the pipe tells when to end
-    line = sys.stdin.buffer.readline()
+    line = read_told()
+    if not line:
+        return 1
     try:
         if words == ["warden"]:
-            warden(msgspec.json.decode(line, type=WardenSpec), _watch_pipe(None))
+            core = follow_parent(None, WARDEN_S)
+            warden(msgspec.json.decode(line, type=WardenSpec), core.wants_end, core.is_gone)
         else:
             call = msgspec.json.decode(line, type=StationCall)
-            run_station(Path(call.folder), call.station, _watch_pipe(call.patience_s))
-    except SimConsoleError as error:
-        print(f"simconsole {' '.join(words)}: {error}", file=sys.stderr)
-        return error.exit_code
+            run_station(Path(call.folder), call.station, follow_parent(call.patience_s).wants_end)
+    except (SimConsoleError, OSError, MemoryError) as error:
+        print(f"simconsole {' '.join(words)}: {one_line(error)}", file=sys.stderr)
+        return SimConsoleError.exit_code
     return 0
 
 

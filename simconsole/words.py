@@ -60,6 +60,7 @@ _NOTICES: Final[dict[float, str]] = {
     Notice.CENTRING_WHEEL: "hands off: the wheel is being centred",
     Notice.CENTRE_WHEEL: "centre the wheel to start again",
     Notice.RELEASE_PEDALS: "release the pedals to start again",
+    Notice.RECORDING_FAILED: "recording failed: the drive is not kept",
 }
 
 LINK_NOBODY: Final = "nobody"

@@ -2,9 +2,11 @@
 
 A test that measures something keeps it with `record_property(NAME, TEXT)`; the figures stand above the summary line.
 A test of a case of the fault catalogue says which (`@pytest.mark.fault("P11")`) and keeps what it saw with `measured`.
-A random or long check takes its size and its seed from `sample` (tests/samples.py); `pytest --long` runs those whole.
+A random or long check takes its size and its seed from `sample` (tests/samples.py); `pytest --long` runs those whole
+and writes docs/long-run.md.
 """
 
+import datetime
 import os
 import signal
 from pathlib import Path
@@ -13,9 +15,10 @@ import pytest
 
 from tests.drives.fixtures import script, short
 from tests.faults import figures
-from tests.samples import Measured, Sample, measured, sample
+from tests.long_run import PAGE, Check, figure, page
+from tests.samples import SAMPLED, draw_seed, measured, module_sample, sample
 
-__all__ = ["Measured", "Sample", "measured", "sample", "script", "short"]
+__all__ = ["measured", "module_sample", "sample", "script", "short"]
 
 # A shell starts background jobs with SIGINT ignored, and every program a test starts would inherit that: a Ctrl-C sent
 # to it would be lost, however the tests themselves were started.
@@ -28,9 +31,15 @@ HARDWARE = Path(__file__).parent / "hardware"
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Add the option without which the tests that need a real wheel and a person are not even collected."""
     parser.addoption("--long", action="store_true", help="run random and long checks only, at their full size, anew")
-    parser.addoption("--seed", type=int, help="replay: the seed that a random test printed")
+    parser.addoption("--seed", type=int, help="replay: the seed that a run has told")
+    parser.addoption("--write-long-run", action="store_true", help="write what --long saw into docs/long-run.md")
     parser.addoption("--write-faults", action="store_true", help="write what was measured into docs/faults.md")
     parser.addoption("--hardware", metavar="COCKPIT", help="also test this cockpit's real devices (docs/hardware.md)")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Settle the seed of the run: processes that run tests get the options as they are after this."""
+    draw_seed(config)
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
@@ -45,7 +54,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         item.user_properties += [("case", mark.args[0]) for mark in item.iter_markers("fault")]
     if not config.getoption("--long"):
         return
-    chosen = [item for item in items if "sample" in getattr(item, "fixturenames", ())]
+    chosen = [item for item in items if not set(SAMPLED).isdisjoint(getattr(item, "fixturenames", ()))]
     config.hook.pytest_deselected(items=[item for item in items if item not in chosen])
     items[:] = chosen
 
@@ -67,22 +76,28 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, exitstatu
     option = terminalreporter.config.getoption
     passed = [(report.nodeid, report.user_properties) for report in terminalreporter.stats.get("passed", [])]
     for name, text in (each for _, properties in passed for each in properties):
-        if name not in ("case", "fault", "seed"):
+        if name not in ("case", "fault"):
             terminalreporter.write_line(f"measured: {name}: {text}")
     found = figures.seen(properties for _, properties in passed)
     for line in figures.lines(found, option("verbose") > 0):
         terminalreporter.write_line(line)
-    seeds = [
-        f"{nodeid.rpartition('::')[2]} {text}"
-        for nodeid, properties in passed
-        for name, text in properties
-        if name == "seed"
-    ]
-    if seeds:
-        drawn = ", ".join(seeds) if option("--long") or option("verbose") > 0 else "each of its name"
-        terminalreporter.write_line(f"seeds of {len(seeds)} random checks: {drawn}")
+    terminalreporter.write_line(f"seed {option('--seed')}")
+    if option("--write-long-run"):
+        PAGE.write_text(
+            page(_checks(terminalreporter), option("--seed"), datetime.datetime.now(datetime.UTC).date()), "utf-8"
+        )
     if option("--write-faults"):
         if exitstatus != pytest.ExitCode.OK:
             terminalreporter.write_line("docs/faults.md is left as it was: not all tests passed")
             return
         figures.write(found, whole=not option("--long"))
+
+
+def _checks(reporter: pytest.TerminalReporter) -> list[Check]:
+    """Return the checks of a run; one that could not be set up has failed."""
+    found = []
+    for outcome in ("passed", "failed", "error"):
+        for report in reporter.stats.get(outcome, []):
+            figures = [text for name, value in report.user_properties if (text := figure(name, value)) is not None]
+            found.append(Check(report.nodeid, figures, report.duration, outcome == "passed"))
+    return found

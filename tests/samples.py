@@ -1,15 +1,18 @@
 """How large a random or long check is, which seed it draws from, and where it keeps what it saw.
 
-`make test` runs a sample of each with a fixed seed; `make long` the full size with a seed drawn anew. Both print it,
-and `pytest --seed N` draws from it again.
+`make test` runs a sample of each with seeds that stay; `make long` the full size with seeds drawn anew. The run's seed
+stands in its last lines and before the output of each test; `pytest --seed N` draws the same again.
 """
 
 import secrets
 import zlib
 from collections.abc import Callable
-from typing import NamedTuple, Protocol
+from typing import Final, NamedTuple, Protocol
 
 import pytest
+
+SAMPLED: Final = ("sample", "module_sample")
+"""A test with one of these fixtures has a full size, and runs in `make long`."""
 
 
 class Sample(NamedTuple):
@@ -30,15 +33,28 @@ class Measured(Protocol):
         """Keep that of `case` (an id) `what` was `seen`, where `bar` is what is promised; all for a reader."""
 
 
+def draw_seed(config: pytest.Config) -> None:
+    """Settle the seed of the whole run before it is handed to other processes: what was given, else drawn or 0."""
+    if config.option.seed is None:
+        config.option.seed = secrets.randbits(31) if config.option.long else 0
+
+
+def sample_of(config: pytest.Config, name: str) -> Sample:
+    """Return size and seed of the check `name`; each check of a run has a seed of its own."""
+    print(f"seed {config.option.seed}")
+    return Sample(config.option.long, zlib.crc32(name.encode()) ^ config.option.seed)
+
+
 @pytest.fixture
-def sample(request: pytest.FixtureRequest, record_property: Callable[[str, object], None]) -> Sample:
+def sample(request: pytest.FixtureRequest) -> Sample:
     """Say how large this check is and which seed it draws from."""
-    given = request.config.getoption("--seed")
-    long = bool(request.config.getoption("--long"))
-    seed = given if given is not None else secrets.randbits(31) if long else zlib.crc32(request.node.name.encode())
-    print(f"seed {seed}")
-    record_property("seed", str(seed))
-    return Sample(long, seed)
+    return sample_of(request.config, request.node.name)
+
+
+@pytest.fixture(scope="module")
+def module_sample(request: pytest.FixtureRequest) -> Sample:
+    """Say the same of what all checks of a module share."""
+    return sample_of(request.config, request.node.name)
 
 
 @pytest.fixture

@@ -99,7 +99,7 @@ def test_verify_says_that_a_bundle_is_whole_or_what_is_wrong(short: Path, tmp_pa
 def test_compare_finds_a_bundle_equal_to_itself(short: Path) -> None:
     done = simconsole("compare", short, short, "--json")
     assert done.returncode == 0
-    assert results(done) == {"equal": True, "ticks": 750, "difference": None}
+    assert results(done) == {"equal": True, "ticks": 750, "difference": None, "problems": []}
 
 
 def test_report_is_written_again(short: Path, tmp_path: Path) -> None:
@@ -118,7 +118,7 @@ def test_view_writes_the_scene_without_opening_it(short: Path, tmp_path: Path) -
     (short / "scene.rrd").unlink()
     done = simconsole("view", short, "--no-open", "--json")
     assert done.returncode == 0, done.stderr
-    assert results(done) == {"scene": str(short / "scene.rrd")}
+    assert results(done) == {"scene": str(short / "scene.rrd"), "problems": []}
     assert (short / "scene.rrd").read_bytes()[:4] == b"RRF2"
 
 
@@ -130,3 +130,8 @@ def test_autopilot_against_nobody_is_one_line() -> None:
 def test_autopilot_on_an_unknown_course_is_one_line() -> None:
     line = complaint(simconsole("autopilot", "--url", "ws://127.0.0.1:9", "--course", "moon"))
     assert "worlds profile: value 'moon'" in line
+
+
+def test_a_file_that_cannot_be_written_is_one_line(tmp_path: Path) -> None:
+    done = simconsole("check", "launch_and_stop", "--junit", tmp_path / "nowhere" / "junit.xml")
+    assert "No such file or directory" in complaint(done)

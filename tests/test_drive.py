@@ -1,6 +1,7 @@
 """The loop while simulated time stands, and a drive that begins anew: recorded, and replayed bit for bit."""
 
 from collections.abc import Callable
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from simconsole.drive import Cast, run
 from simconsole.memory import MemoryRecorder
 from simconsole.pacing import UnpacedPacer
 from simconsole.pipeline import Console, advance_row
+from simconsole.ports import NobodySeated
 from simconsole.profile_files import parse
 from simconsole.profiles.device import ScriptProfile
 from simconsole.profiles.session import SessionProfile
@@ -178,3 +180,34 @@ def test_devices_read_while_time_stands_are_no_ticks(go: Callable[..., Driven]) 
     driven = go({(100, 1): Event.PAUSE, (101, 50): Event.START}, seconds=1.0)
     assert len(driven.rows) == HZ
     assert isinstance(driven.at(101).sample, DeviceSample)
+
+
+class FailingRecorder(MemoryRecorder):
+    """A recorder whose disk fails at one tick."""
+
+    def __init__(self, ticks: int, width: int, fails_at: int) -> None:
+        super().__init__(ticks, width)
+        self._fails_at = fails_at
+
+    def write(self, snapshot: Snapshot) -> int:
+        super().write(snapshot)
+        return int(Event.RECORDING_FAILED) if snapshot.tick >= self._fails_at else 0
+
+
+def test_a_failed_recording_is_an_event_of_every_tick_after_it_and_changes_nothing_else() -> None:
+    resolved = resolve(parse(SESSION, SessionProfile, "session"))
+    console, state = assemble(resolved, compiled)
+    rows = []
+    for fails_at in (100, 10_000):
+        recorder = FailingRecorder(300, console.width, fails_at)
+        shown: list[Snapshot] = []
+        station = SimpleNamespace(publish=shown.append)
+        cast = Cast(NobodySeated(), Operator({(200, 1): Event.MARK}), recorder, (station,), UnpacedPacer())
+        run(console, state, cast, 300)
+        rows.append(recorder.rows)
+        if fails_at == 100:
+            assert [snapshot.tick for snapshot in shown if snapshot.recording_failed] == list(range(101, 301))
+            assert [shown[at].notice for at in (99, 100)] == [Notice.NONE, Notice.RECORDING_FAILED]
+            assert shown[199].events.events == Event.RECORDING_FAILED | Event.MARK
+    told = console.columns.index("events.events")
+    assert np.array_equal(np.delete(rows[0], told, 1), np.delete(rows[1], told, 1), equal_nan=True)

@@ -1,4 +1,7 @@
+import json
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -56,3 +59,36 @@ def test_a_folder_that_is_no_bundle_gets_nothing(tmp_path: Path) -> None:
     with pytest.raises(RecordingError, match="not a bundle"):
         write_exports(tmp_path)
     assert list(tmp_path.iterdir()) == []
+
+
+SMALL = """
+import json, resource, sys
+from pathlib import Path
+from simconsole.commands.driven import finish
+from simconsole.session import drive
+from simconsole.session_files import load_session, resolve
+done = drive(resolve(load_session(sys.argv[1])), Path(sys.argv[2]))
+pages = int(Path("/proc/self/statm").read_text().split()[0])
+resource.setrlimit(resource.RLIMIT_AS, (pages * resource.getpagesize(),) * 2)
+outcome = finish(done, scene=False)
+print(json.dumps([outcome.code, outcome.results["exports_failure"], outcome.results["digest"], outcome.text]))
+"""
+
+
+def test_a_report_without_memory_changes_nothing_of_the_drives_result(tmp_path: Path) -> None:
+    session = tmp_path / "plain.yaml"
+    session.write_text(
+        "schema: 1\nscenario: {vehicle: hatchback, duration_s: 1}\ndevices: {driver: none}\n"
+        "outputs: {hud: null, scene: null}\nmode: {pacing: free}\n"
+    )
+    bundle = tmp_path / "bundle"
+    words = [sys.executable, "-c", SMALL, str(session), str(bundle)]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "Traceback" not in done.stderr
+    code, failure, digest, text = json.loads(done.stdout)
+    assert code == 0
+    assert failure
+    assert f"report and scene  not written: {failure}" in text
+    assert (verify(bundle), open_bundle(bundle).manifest.digest) == ([], digest)
+    assert sorted(path.name for path in bundle.iterdir()) == ["drive.log", "manifest.json", "session.json"]

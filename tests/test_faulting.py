@@ -6,7 +6,6 @@ from typing import Any, Final, NamedTuple, get_args
 import numpy as np
 import pytest
 
-from simconsole.checking import drive_scenario
 from simconsole.devices.record import TraceWriter
 from simconsole.devices.script import ScriptSource
 from simconsole.devices.settings import settings
@@ -27,6 +26,7 @@ from simconsole.rows import Snapshot, columns
 from simconsole.session import drive
 from simconsole.session_files import resolve
 from simconsole.signals import Event, Mode
+from tests.in_memory import drive_scenario
 
 TICK_HZ: Final = 100
 ALL_KINDS = """\

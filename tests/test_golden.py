@@ -2,56 +2,76 @@ import numpy as np
 import pytest
 
 from simconsole.errors import ProfileError
-from simconsole.golden import Golden, first_difference, read, sample, write
+from simconsole.golden import Comparison, Difference, Golden, Sample, head, line, step_ticks
 
 COLUMNS = ("sample.wheel_axis", "vehicle.vx_mps")
+ROWS = np.arange(20.0).reshape(10, 2) / 3.0
+TICKS = (2, 4, 6, 8, 10)
 
 
-def driven() -> Golden:
-    rows = np.arange(20.0).reshape(10, 2) / 3.0
-    return sample(rows, 10, 5, COLUMNS, "00ff")
+def text(rows: np.ndarray = ROWS, ticks: tuple[int, ...] = TICKS) -> str:
+    return head("00ff", 10, COLUMNS) + "".join(line(tick, rows[tick - 1]) for tick in ticks)
+
+
+def read(written: str) -> Golden:
+    return Golden(written.splitlines(keepends=True), "x.csv")
+
+
+def difference(
+    accepted: str, rows: np.ndarray, ticks: tuple[int, ...] = TICKS, columns: tuple[str, ...] = COLUMNS
+) -> Difference | None:
+    comparison = Comparison(read(accepted), columns)
+    for tick in ticks:
+        comparison.see(tick, rows[tick - 1])
+    return comparison.first_difference()
 
 
 def test_text_keeps_every_bit() -> None:
-    assert read(write(driven()), "x.csv") == driven()
+    golden = read(text())
+    assert (golden.hash, golden.tick_hz, golden.columns) == ("00ff", 10, COLUMNS)
+    samples: list[Sample] = list(golden)
+    assert samples == [(tick, tuple(ROWS[tick - 1].tolist())) for tick in TICKS]
 
 
 def test_samples_are_the_ticks_of_the_rate() -> None:
-    assert [tick for tick, _ in driven().samples] == [2, 4, 6, 8, 10]
-    assert driven().samples[0][1] == (2.0 / 3.0, 3.0 / 3.0)
+    assert [step_ticks(10, 5), step_ticks(250, 10), step_ticks(50, 100)] == [2, 25, 1]
 
 
 def test_one_changed_bit_is_named() -> None:
-    golden = driven()
-    tick, row = golden.samples[3]
-    changed = golden._replace(
-        samples=(*golden.samples[:3], (tick, (row[0], np.nextafter(row[1], 9.0))), golden.samples[4])
-    )
-    difference = first_difference(golden, changed)
-    assert difference is not None
-    assert (difference.tick, difference.column) == (8, "vehicle.vx_mps")
-    assert first_difference(golden, driven()) is None
+    changed = ROWS.copy()
+    changed[7, 1] = np.nextafter(changed[7, 1], 9.0)
+    changed[9, 0] += 1.0
+    assert difference(text(), changed) == (8, "vehicle.vx_mps", ROWS[7, 1], changed[7, 1])
+    assert difference(text(), ROWS) is None
+
+
+def test_only_columns_of_both_are_compared() -> None:
+    changed = ROWS[:, ::-1].copy()
+    assert difference(text(), changed, columns=("vehicle.vx_mps", "sample.wheel_axis")) is None
+    assert difference(text(), changed, columns=("vehicle.vx_mps", "new")) is None
+    assert difference(text(), changed, columns=("new", "vehicle.vx_mps")) is not None
 
 
 def test_nan_equals_nan_but_nothing_else() -> None:
-    golden = driven()._replace(samples=((2, (float("nan"), 1.0)),))
-    assert first_difference(golden, golden) is None
-    assert first_difference(golden, golden._replace(samples=((2, (0.0, 1.0)),))) is not None
+    nan = ROWS.copy()
+    nan[1, 0] = np.nan
+    assert difference(text(nan), nan) is None
+    assert difference(text(nan), ROWS) is not None
 
 
 def test_a_shorter_drive_differs() -> None:
-    golden = driven()
-    difference = first_difference(golden, golden._replace(samples=golden.samples[:-1]))
-    assert difference is not None
-    assert difference.tick == 10
+    assert difference(text(), ROWS, TICKS[:-1]) == (10, "tick", 10.0, 4.0)
+    assert difference(text(), ROWS, (4, 6, 8, 10)) == (2, "tick", 2.0, 4.0)
+    assert difference(text(ticks=TICKS[:-1]), ROWS) is None, "as far as it was accepted; the hash tells"
 
 
-@pytest.mark.parametrize("text", ["", "tick,a\n1,2\n", "# simconsole golden schema 9 tick_hz 10 hash 0\ntick,a\n"])
-def test_other_files_are_refused_by_name(text: str) -> None:
+@pytest.mark.parametrize("written", ["", "tick,a\n1,2\n", "# simconsole golden schema 9 tick_hz 10 hash 0\ntick,a\n"])
+def test_other_files_are_refused_by_name(written: str) -> None:
     with pytest.raises(ProfileError, match=r"x\.csv: line 1"):
-        read(text, "x.csv")
+        read(written)
 
 
-def test_a_bad_value_is_refused_with_its_line() -> None:
-    with pytest.raises(ProfileError, match=r"x\.csv: line 3"):
-        read("# simconsole golden schema 1 tick_hz 10 hash 0\ntick,a\n1,x\n", "x.csv")
+@pytest.mark.parametrize(("row", "why"), [("1,x", "not a number"), ("1", "1 values, not 2"), ("", "not a number")])
+def test_a_bad_value_is_refused_with_its_line(row: str, why: str) -> None:
+    with pytest.raises(ProfileError, match=rf"x\.csv: line 3: .*{why}"):
+        list(read(f"# simconsole golden schema 1 tick_hz 10 hash 0\ntick,a\n{row}\n"))

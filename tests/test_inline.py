@@ -1,9 +1,11 @@
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
 
-from simconsole.inline import TOKEN_VARIABLE, LockstepLink, end_program, start_autopilot
+from simconsole.inline import TOKEN_VARIABLE, LockstepLink, start_autopilot
+from simconsole.lifetimes import DRIVE_VARIABLE, close_pipe, end
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.rows import Snapshot
 from simconsole.signals import NO_COMMAND, Event, EventInput, RemoteCommand
@@ -22,7 +24,7 @@ class Server:
         self.exchanged: list[int] = []
         self.published: list[int] = []
 
-    def exchange(self, snapshot: Snapshot, timeout_s: float) -> bool:
+    def exchange(self, snapshot: Snapshot, timeout_s: float, stop: Callable[[], bool]) -> bool:
         self.exchanged.append(snapshot.tick)
         self.sequence += self.answers
         return self.answers
@@ -103,27 +105,37 @@ def test_a_missing_answer_does_not_hide_other_events(server: Server) -> None:
     assert int(link.take(6)[1].events) == Event.COMMANDER_LOST | Event.NO_ANSWER
 
 
-def test_an_autopilot_with_nobody_to_drive_for_is_ended() -> None:
-    program = start_autopilot("ws://127.0.0.1:9", "urban", BridgeProfile())
+def test_an_autopilot_whose_console_is_gone_ends_by_itself() -> None:
+    program = start_autopilot("ws://127.0.0.1:9", "urban", BridgeProfile(), "0" * 32)
     assert program.poll() is None
-    program.terminate()
-    end_program(program)
-    assert program.returncode is not None
+    close_pipe(program)
+    assert program.wait(60.0) == 1, "not by the ten seconds after which it gives up a server that is not there (2)"
+
+
+def test_an_autopilot_with_nobody_to_drive_for_is_ended() -> None:
+    program = start_autopilot("ws://127.0.0.1:9", "urban", BridgeProfile(), "0" * 32)
+    end([program], 60.0)
+    assert program.returncode == 1
 
 
 def test_a_token_goes_by_the_environment_and_a_server_on_all_addresses_is_reached_here(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     started: list[tuple[list[str], dict[str, str]]] = []
-    monkeypatch.setattr("subprocess.Popen", lambda words, **options: started.append((words, options["env"])))
+
+    def spawn(words: list[str], environment: dict[str, str]) -> None:
+        started.append((words, environment))
+
+    monkeypatch.setattr("simconsole.inline.spawn", spawn)
     monkeypatch.delenv(TOKEN_VARIABLE, raising=False)
     named = BridgeProfile(certificate="b.pem", namespace="/ego", rename={"/odom": "/here"})
-    start_autopilot("wss://0.0.0.0:9", "urban", named, "secret")
-    start_autopilot("ws://[::]:9", "urban", BridgeProfile())
+    start_autopilot("wss://0.0.0.0:9", "urban", named, "nonce", "secret")
+    start_autopilot("ws://[::]:9", "urban", BridgeProfile(), "nonce")
     (words, environment), (plain, without) = started
     names = ["--namespace", "/ego", "--rename", "/odom=/here"]
     assert words[4:] == ["--url", "wss://127.0.0.1:9", "--course", "urban", *names, "--certificate", "b.pem"]
     assert environment[TOKEN_VARIABLE] == "secret"
-    assert "secret" not in words
+    assert {"secret", "nonce"}.isdisjoint(words)
+    assert environment[DRIVE_VARIABLE] == without[DRIVE_VARIABLE] == "nonce"
     assert plain[4:] == ["--url", "ws://[::1]:9", "--course", "urban"]
     assert TOKEN_VARIABLE not in without

@@ -12,6 +12,7 @@ from simconsole.kernels import Row, approach, clip, is_finite, kernel, put, take
 from simconsole.lane_values import LANES
 from simconsole.lanes import lane_step
 from simconsole.trigonometry import atan, sin, wrap_angle
+from tests.samples import Sample
 
 GEARS = (3.5, 2.0, 1.3)
 IN_WIDTH = 3
@@ -115,10 +116,8 @@ STEPS = [step_early, step_choices, step_search, step_angles, step_looped]
 
 
 @pytest.mark.parametrize("step", STEPS, ids=lambda step: step.__name__)
-def test_a_lane_holds_what_the_plain_function_gives(step: Callable[..., None]) -> None:
-    seed = random.SystemRandom().randrange(2**32)
-    print(f"seed {seed}")
-    rng = random.Random(seed)
+def test_a_lane_holds_what_the_plain_function_gives(step: Callable[..., None], sample: Sample) -> None:
+    rng = random.Random(sample.seed)
     blocks = 40
     rows = np.zeros((blocks, OUT_AT + 2, LANES))
     for block in rows:

@@ -75,9 +75,10 @@ class Recorder:
         self._clock = clock
         self.rows: list[bytes] = []
 
-    def write(self, snapshot: Snapshot) -> None:
+    def write(self, snapshot: Snapshot) -> int:
         self._clock.spend(Hop.RECORD)
         self.rows.append(snapshot.row.tobytes())
+        return 0
 
 
 class Reader:

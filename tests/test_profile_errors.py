@@ -8,6 +8,7 @@ import pytest
 
 from simconsole.errors import ProfileError
 from simconsole.profile_errors import convert
+from simconsole.profiles.device import CockpitProfile
 
 
 class Side(Enum):
@@ -87,3 +88,17 @@ def test_long_value_is_cut() -> None:
     with pytest.raises(ProfileError) as caught:
         convert({**GOOD, "ratio": "9" * 1000}, Cockpit, "f.yaml")
     assert len(str(caught.value)) < 120
+
+
+def test_the_guilty_key_of_a_mapping_is_found_where_something_else_is_wrong_too() -> None:
+    """Every entry alone fails here, for `name` is missing: the one that fails in the same words is meant."""
+    with pytest.raises(ProfileError) as caught:
+        convert({"axes": {"wheel": {"index": 0}, "brake": {"button": 0}}}, Cockpit, "rig.yaml")
+    assert str(caught.value).startswith("rig.yaml: axes.brake.button: value 0: unknown key, one of ")
+
+
+def test_a_cockpit_without_a_wheel_that_says_where_it_comes_from_is_one_line() -> None:
+    good = {"status": "chosen", "source": "us"}
+    values = {"schema": 1, "title": "rig", "provenance": {"buttons": good, "autonomous": {"button": 0}}}
+    with pytest.raises(ProfileError, match=r"^rig\.yaml: provenance\.autonomous\.button: value 0: unknown key"):
+        convert(values, CockpitProfile, "rig.yaml")

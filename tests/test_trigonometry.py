@@ -10,8 +10,8 @@ import pytest
 
 from simconsole import trigonometry as trig
 from simconsole.compiling import compiled
+from tests.samples import Sample
 
-SEED = 20260807
 DIGITS = 60
 
 
@@ -46,20 +46,19 @@ def pi() -> Decimal:
         return 4 * arctan_reference(Decimal(1))
 
 
-def angles(limit: float, count: int) -> list[float]:
-    rng = random.Random(SEED)
-    print(f"seed {SEED}")
+def angles(limit: float, count: int, seed: int) -> list[float]:
+    rng = random.Random(seed)
     near_quarters = [math.nextafter(k * math.pi / 2, 1e9 * (-1) ** k) for k in range(-40, 41)]
     special = [0.0, -0.0, 1e-300, math.pi, -math.pi, 6.5, limit, -limit, *near_quarters]
     return special + [rng.uniform(-limit, limit) for _ in range(count)] + [rng.gauss(0.0, 2.0) for _ in range(count)]
 
 
 @pytest.mark.parametrize(("limit", "bound"), [(1e4, 2.5e-16), (1e6, 1e-15)])
-def test_sine_and_cosine_stay_within_the_stated_bound(limit: float, bound: float, pi: Decimal) -> None:
+def test_sine_and_cosine_stay_within_the_stated_bound(limit: float, bound: float, pi: Decimal, sample: Sample) -> None:
     worst = 0.0
     with localcontext() as context:
         context.prec = DIGITS + 30
-        for x in angles(limit, 600):
+        for x in angles(limit, sample.of(600, 60_000), sample.seed):
             exact = Decimal(x)
             worst = max(worst, float(abs(Decimal(trig.sin(x)) - sine_reference(exact, pi))))
             worst = max(worst, float(abs(Decimal(trig.cos(x)) - sine_reference(exact + pi / 2, pi))))
@@ -67,13 +66,12 @@ def test_sine_and_cosine_stay_within_the_stated_bound(limit: float, bound: float
     assert worst <= bound
 
 
-def test_arctangents_stay_within_three_units_in_the_last_place(pi: Decimal) -> None:
-    rng = random.Random(SEED)
-    print(f"seed {SEED}")
+def test_arctangents_stay_within_three_units_in_the_last_place(pi: Decimal, sample: Sample) -> None:
+    rng = random.Random(sample.seed)
     worst = 0.0
     with localcontext() as context:
         context.prec = DIGITS + 30
-        for _ in range(1500):
+        for _ in range(sample.of(1500, 100_000)):
             slope = rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(-20.0, 20.0)
             exact = arctan_reference(Decimal(slope))
             worst = max(worst, float(abs(Decimal(trig.atan(slope)) - exact)) / math.ulp(float(exact)))
@@ -95,8 +93,8 @@ def test_constants_are_pi(pi: Decimal) -> None:
     assert math.tau == trig.TWO_PI
 
 
-def test_symmetry_is_exact() -> None:
-    for x in angles(1e4, 300):
+def test_symmetry_is_exact(sample: Sample) -> None:
+    for x in angles(1e4, sample.of(300, 300_000), sample.seed):
         assert trig.sin(-x) == -trig.sin(x)
         assert trig.cos(-x) == trig.cos(x)
         assert trig.atan(-x) == -trig.atan(x)
@@ -115,8 +113,8 @@ def test_named_points() -> None:
     assert math.isnan(trig.atan2(1.0, math.nan))
 
 
-def test_wrapping_keeps_the_direction_and_the_range() -> None:
-    for x in angles(1e4, 600):
+def test_wrapping_keeps_the_direction_and_the_range(sample: Sample) -> None:
+    for x in angles(1e4, sample.of(600, 600_000), sample.seed):
         wrapped = trig.wrap_angle(x)
         assert abs(wrapped) <= trig.PI
         assert abs(math.sin(wrapped) - math.sin(x)) < 1e-15
@@ -126,27 +124,26 @@ def test_wrapping_keeps_the_direction_and_the_range() -> None:
 
 
 @pytest.mark.parametrize("function", [trig.sin, trig.cos, trig.atan, trig.wrap_angle])
-def test_compiled_twin_has_equal_bits(function: Callable[[float], float]) -> None:
+def test_compiled_twin_has_equal_bits(function: Callable[[float], float], sample: Sample) -> None:
     fast = compiled(function)
-    for x in [*angles(1e4, 3000), math.inf, -math.inf, 1e18]:
+    for x in [*angles(1e4, sample.of(3000, 3_000_000), sample.seed), math.inf, -math.inf, 1e18]:
         plain_bits, fast_bits = function(x), fast(x)
         assert plain_bits == fast_bits or (math.isnan(plain_bits) and math.isnan(fast_bits)), x
 
 
-def test_compiled_atan2_has_equal_bits() -> None:
-    rng = random.Random(SEED)
-    print(f"seed {SEED}")
+def test_compiled_atan2_has_equal_bits(sample: Sample) -> None:
+    rng = random.Random(sample.seed)
     fast = compiled(trig.atan2)
     values = [0.0, -0.0, 1.0, -1.0]
     pairs = [(y, x) for y in values for x in values]
-    pairs += [(rng.gauss(0.0, 1.0), rng.gauss(0.0, 1.0)) for _ in range(3000)]
+    pairs += [(rng.gauss(0.0, 1.0), rng.gauss(0.0, 1.0)) for _ in range(sample.of(3000, 3_000_000))]
     for y, x in pairs:
         assert trig.atan2(y, x) == fast(y, x)
 
 
 @pytest.mark.parametrize("execution", [lambda f: f, compiled])
-def test_direction_is_cosine_and_sine_to_the_last_bit(execution: Callable[..., Any]) -> None:
+def test_direction_is_cosine_and_sine_to_the_last_bit(execution: Callable[..., Any], sample: Sample) -> None:
     both = execution(trig.direction)
     quarters = [0.25 * k * math.pi for k in range(-40, 41)]
-    for angle in [*quarters, *angles(1e4, 5000)]:
+    for angle in [*quarters, *angles(1e4, sample.of(5000, 1_000_000), sample.seed)]:
         assert tuple(both(angle)) == (trig.cos(angle), trig.sin(angle)), angle

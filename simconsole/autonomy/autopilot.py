@@ -12,7 +12,7 @@ from typing import Any, Final
 from simconsole.autonomy.tally import Tally
 from simconsole.autonomy.tracker import Sighting, Steering, Tracker
 from simconsole.bridge.client import BridgeClient
-from simconsole.errors import BridgeError
+from simconsole.errors import BridgeError, OtherDriveError
 from simconsole.profile_files import MAX_DATA_BYTES, load
 from simconsole.profiles.world import WorldProfile
 from simconsole.signals import Mode
@@ -39,6 +39,7 @@ def run(
     patience_s: float = _PATIENCE_S,
     token: str | None = None,
     certificate: str | None = None,
+    drive: str | None = None,
 ) -> dict[str, Any]:
     """Drive until the server says good-bye or is gone for `patience_s`, or `stop()` says so; return statistics.
 
@@ -51,14 +52,16 @@ def run(
         patience_s: how long to try to connect, at the start and after a connection was lost.
         token: shown to the server.
         certificate: a PEM file that a wss:// server is checked against.
+        drive: the nonce of the drive that has started this program, if one has; shown to the server, too.
 
     Raises:
         ProfileError: the course cannot be read.
         BridgeError: nobody answers at `url`.
+        OtherDriveError: the server there belongs to another drive.
     """
     tracker = Tracker(Course(load("worlds", course_name, WorldProfile, max_bytes=MAX_DATA_BYTES)))
     tally = Tally()
-    with BridgeClient(url, token=token, certificate=certificate, until_good_bye=True) as client:
+    with BridgeClient(url, token=token, certificate=certificate, drive=drive, until_good_bye=True) as client:
         odometry, arbitration, command = (
             (rename or {}).get(topic, namespace + topic) for topic in (ODOMETRY, ARBITRATION, COMMAND)
         )
@@ -68,6 +71,8 @@ def run(
         client.connect(patience_s)
         try:
             ended = _answer(client, tracker, tally, (odometry, command), stop or _never, patience_s)
+        except OtherDriveError:
+            raise
         except BridgeError as error:
             ended = str(error)
         results = {"url": url, "course": course_name, "ended": ended, "connections": client.connections}

@@ -14,6 +14,7 @@ import orjson
 from websockets.asyncio.client import connect
 
 from simconsole.errors import BridgeError
+from simconsole.lifetimes import attached
 from simconsole.signals import RemoteCommand
 
 MESSAGES: Final = 1000
@@ -44,7 +45,7 @@ def load(seconds: float = 3.0) -> Load:
     """
     context = multiprocessing.get_context("spawn")
     ours, theirs = context.Pipe()
-    process = context.Process(target=_serve, args=(theirs,), daemon=True)
+    process = context.Process(target=attached, args=(_serve, theirs), daemon=True)
     process.start()
     try:
         if not ours.poll(_START_S):

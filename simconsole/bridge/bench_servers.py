@@ -17,6 +17,7 @@ from websockets.asyncio.server import ServerConnection
 from websockets.asyncio.server import serve as serve_websockets
 
 from simconsole.errors import BridgeError
+from simconsole.lifetimes import attached
 
 _START_S: Final = 30.0
 _TICKS_PER_S: Final = 100.0
@@ -62,7 +63,7 @@ def serving() -> Iterator[list[Served]]:
     try:
         for name, library, program in programs:
             ours, theirs = context.Pipe()
-            process = context.Process(target=program, args=(theirs,), daemon=True)
+            process = context.Process(target=attached, args=(program, theirs), daemon=True)
             process.start()
             started.append((process, ours))
             if not ours.poll(_START_S):

@@ -32,7 +32,7 @@ from simconsole.bridge.client_protocol import (
 from simconsole.bridge.link import ABNORMAL, Link
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.operations import Status
-from simconsole.errors import BridgeError
+from simconsole.errors import BridgeError, OtherDriveError
 
 State = Literal["connecting", "connected"]
 GOOD_BYES: Final = (1000, 1001)
@@ -56,6 +56,7 @@ class BridgeClient:
         registry: Registry | None = None,
         token: str | None = None,
         certificate: str | None = None,
+        drive: str | None = None,
         timeout_s: float = 2.0,
         comes_back: bool = True,
         until_good_bye: bool = False,
@@ -70,6 +71,7 @@ class BridgeClient:
             registry: message types, the standard ones without.
             token: shown to the server at once.
             certificate: a PEM file that a wss:// server is checked against, in place of the system's authorities.
+            drive: the nonce of the drive that has started this program, if one has; shown to the server, too.
             timeout_s: how long one attempt to connect may take.
             comes_back: connect again by itself, whenever `receive` or `publish` is called; without, the end of a
                 connection is a BridgeError.
@@ -82,7 +84,7 @@ class BridgeClient:
             BridgeError: `url` is not such an address, or the certificate cannot be read.
         """
         self.protocol = ClientProtocol(registry)
-        self._link = Link(url, timeout_s, token, certificate)
+        self._link = Link(url, timeout_s, token, certificate, drive)
         self._comes_back = comes_back
         self._until_good_bye = until_good_bye
         self._on_state = on_state
@@ -132,6 +134,7 @@ class BridgeClient:
 
         Raises:
             BridgeError: nobody listens there, the server refused, or it did not answer in time.
+            OtherDriveError: the server belongs to another drive; it is not asked again.
         """
         self.disconnect()
         deadline_s = time.monotonic() + patience_s
@@ -140,7 +143,7 @@ class BridgeClient:
                 return self._open()
             except BridgeError as error:
                 self._lost(error)
-                if time.monotonic() >= deadline_s:
+                if isinstance(error, OtherDriveError) or time.monotonic() >= deadline_s:
                     raise
             time.sleep(_RETRY_S)
 
@@ -217,6 +220,7 @@ class BridgeClient:
 
         Raises:
             BridgeError: the connection has ended, and this client does not come back.
+            OtherDriveError: another drive's server has taken its place.
         """
         deadline_s = time.monotonic() + timeout_s
         while not self._received:
@@ -255,6 +259,8 @@ class BridgeClient:
             self._open()
         except BridgeError as error:
             self._lost(error)
+            if isinstance(error, OtherDriveError):
+                raise
             return False
         return True
 

@@ -15,9 +15,9 @@ from simconsole.bridge.access import Access
 from simconsole.bridge.backoff import Liveness
 from simconsole.bridge.documents import Binary
 from simconsole.bridge.frames import CLOSE, MessageAssembler
-from simconsole.bridge.handshake import Admission, Opening, Refusal, admit
+from simconsole.bridge.handshake import Admission, Refusal, admit
 from simconsole.bridge.session import Session
-from simconsole.bridge.wire import CLOSE_S, RECEIVE_BYTES, is_unacknowledged
+from simconsole.bridge.wire import CLOSE_S, RECEIVE_BYTES, is_unacknowledged, opening_of
 from simconsole.errors import FrameError
 from simconsole.profiles.bridge import BridgeProfile
 
@@ -34,6 +34,10 @@ class Owner(Protocol):
     @property
     def access(self) -> Access:
         """Who may do what."""
+
+    @property
+    def drive(self) -> str | None:
+        """The nonce of the drive whose bridge this is."""
 
     def connected(self, peer: str, admission: Admission) -> Session:
         """Take in a client whose handshake is done."""
@@ -146,11 +150,7 @@ class Connection:
         self.socket.close()
 
     def _answer(self, request: Request) -> None:
-        headers = request.headers
-        opening = Opening(
-            request.path, headers.get_all("Host"), headers.get_all("Origin"), headers.get_all("Authorization")
-        )
-        decision = admit(opening, self._profile, self._owner.access, self._is_full)
+        decision = admit(opening_of(request), self._profile, self._owner.access, self._is_full, self._owner.drive)
         if isinstance(decision, Refusal):
             self._web.send_response(self._web.reject(decision.status, f"{decision.reason}\n"))
             return

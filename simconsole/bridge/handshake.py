@@ -1,8 +1,9 @@
-"""Who may open a connection: the Origin of web pages, the Host a server is addressed by (N15, N16), tokens, room.
+"""Who may come in: the Origin of web pages, the Host a server is addressed by (N15, N16), the drive, tokens, room.
 
 Each library that reads the first request asks `admit`, so that they cannot differ.
 """
 
+import hmac
 import ipaddress
 import re
 from collections.abc import Sequence
@@ -19,6 +20,9 @@ _LOCAL: Final = ("localhost", "127.0.0.1", "[::1]")
 _LOCAL_PAGE: Final = re.compile(r"https?://(?:localhost|127\.0\.0\.1|\[::1\])(?::\d{1,5})?")
 _PORT: Final = re.compile(r":\d{1,5}$")
 
+DRIVE_HEADER: Final = "X-Simconsole-Drive"
+"""Shown by a program that a drive has started, with that drive's nonce; by nobody else."""
+
 
 class Opening(NamedTuple):
     """A client's first request: its target, and every value it gives for the headers that matter."""
@@ -27,6 +31,7 @@ class Opening(NamedTuple):
     hosts: Sequence[str]
     origins: Sequence[str]
     authorizations: Sequence[str]
+    drives: Sequence[str] = ()
 
 
 class Admission(NamedTuple):
@@ -43,12 +48,16 @@ class Refusal(NamedTuple):
     reason: str
 
 
-def admit(opening: Opening, profile: BridgeProfile, access: Access, is_full: bool) -> Admission | Refusal:
-    """Decide on a first request."""
+def admit(
+    opening: Opening, profile: BridgeProfile, access: Access, is_full: bool, drive: str | None = None
+) -> Admission | Refusal:
+    """Decide on a first request to the server of a `drive` (its nonce), or of none."""
     if len(opening.hosts) != 1 or not is_host_allowed(opening.hosts[0], profile):
         return Refusal(HTTPStatus.FORBIDDEN, "this server does not answer to that Host")
     if not is_origin_allowed(opening.origins, profile):
         return Refusal(HTTPStatus.FORBIDDEN, "this server does not answer to pages of that Origin")
+    if not is_of_drive(opening.drives, drive):
+        return Refusal(HTTPStatus.FORBIDDEN, "this server belongs to another drive than the one that started you")
     try:
         role = role_at(opening.path, opening.authorizations[0] if opening.authorizations else None, access)
     except RemoteProtocolError:
@@ -65,6 +74,12 @@ def is_origin_allowed(origins: Sequence[str], profile: BridgeProfile) -> bool:
     return len(origins) == 1 and (
         _LOCAL_PAGE.fullmatch(origins[0]) is not None or origins[0] in profile.allowed_origins
     )
+
+
+def is_of_drive(shown: Sequence[str], drive: str | None) -> bool:
+    """Return whether a client belongs to `drive`: it shows that drive's nonce, or none (it comes from outside)."""
+    known = (drive or "").encode()
+    return all(bool(known) and hmac.compare_digest(one.encode("utf-8", "replace"), known) for one in shown)
 
 
 def is_host_allowed(host: str, profile: BridgeProfile) -> bool:

@@ -4,18 +4,20 @@ import logging
 import socket
 import ssl
 import time
+from http import HTTPStatus
 from typing import Final
 
 from websockets.client import ClientProtocol as WebSocketClientProtocol
-from websockets.exceptions import InvalidURI
+from websockets.exceptions import InvalidStatus, InvalidURI
 from websockets.frames import Frame
 from websockets.protocol import SEND_EOF, State
 from websockets.uri import parse_uri
 
 from simconsole.bridge.documents import Binary
 from simconsole.bridge.frames import CLOSE, MessageAssembler
+from simconsole.bridge.handshake import DRIVE_HEADER
 from simconsole.bridge.wire import RECEIVE_BYTES
-from simconsole.errors import BridgeError
+from simconsole.errors import BridgeError, OtherDriveError
 
 MAX_MESSAGE_BYTES: Final = 16_777_216
 ABNORMAL: Final = 1006
@@ -27,7 +29,9 @@ _logger = logging.getLogger("simconsole.bridge.client")
 class Link:
     """A connection that can be opened again and again. Nothing is sent, received or noticed but within a call."""
 
-    def __init__(self, url: str, timeout_s: float, token: str | None, certificate: str | None) -> None:
+    def __init__(
+        self, url: str, timeout_s: float, token: str | None, certificate: str | None, drive: str | None = None
+    ) -> None:
         """Remember where to connect.
 
         Args:
@@ -35,6 +39,7 @@ class Link:
             timeout_s: how long opening, and one sending, may take.
             token: shown to the server at once.
             certificate: a PEM file that a wss:// server is checked against, in place of the system's authorities.
+            drive: the nonce of the drive that has started this program, shown to the server.
 
         Raises:
             BridgeError: `url` is not such an address, or the certificate cannot be read.
@@ -52,6 +57,7 @@ class Link:
         self.url = url
         self._timeout_s = timeout_s
         self._token = token
+        self._drive = drive
         self._socket: socket.socket | None = None
         self._web: WebSocketClientProtocol | None = None
         self._messages = MessageAssembler(MAX_MESSAGE_BYTES)
@@ -70,6 +76,7 @@ class Link:
 
         Raises:
             BridgeError: nobody listens there, the server refused, or it did not answer in time.
+            OtherDriveError: the server belongs to another drive.
         """
         self._messages = MessageAssembler(MAX_MESSAGE_BYTES)
         self.close_code = None
@@ -87,6 +94,8 @@ class Link:
         request = self._web.connect()
         if self._token is not None:
             request.headers["Authorization"] = f"Bearer {self._token}"
+        if self._drive is not None:
+            request.headers[DRIVE_HEADER] = self._drive
         self._web.send_request(request)
         self._flush()
         web = self._web
@@ -96,7 +105,17 @@ class Link:
                 raise BridgeError(f"{self.url}: no answer within {self._timeout_s} s")
         if web.handshake_exc is not None:
             self.drop()
-            raise BridgeError(f"{self.url}: refused: {web.handshake_exc}")
+            raise self._refusal(web.handshake_exc)
+
+    def _refusal(self, why: Exception) -> BridgeError:
+        """Return what to raise where the server turned this client away."""
+        if not isinstance(why, InvalidStatus):
+            return BridgeError(f"{self.url}: refused: {why}")
+        response = why.response
+        said = (response.body or b"").decode("utf-8", "replace").strip()
+        text = f"{self.url}: refused: {why}{f', {said}' if said else ''}"
+        of_drive = self._drive is not None and response.status_code == HTTPStatus.FORBIDDEN
+        return OtherDriveError(text) if of_drive else BridgeError(text)
 
     def send(self, message: bytes) -> None:
         """Send a message, `Binary` or text.

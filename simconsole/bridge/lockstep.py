@@ -8,6 +8,7 @@ import logging
 import selectors
 import socket
 import time
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
@@ -51,6 +52,7 @@ class LockstepBridge:
         registry: Registry | None = None,
         odometry_hz: float | None = None,
         folder: Path | None = None,
+        drive: str | None = None,
     ) -> None:
         """Listen on the profile's host and port.
 
@@ -58,6 +60,7 @@ class LockstepBridge:
             profile: names, rates, limits.
             registry: message types; without, the standard ones and those of the profile's folder.
             folder: where topics are recorded if the profile says so.
+            drive: the nonce of the drive whose bridge it is.
             odometry_hz: rate of /odom in place of the profile's: the control rate, so that every answer is waited for.
 
         Raises:
@@ -73,6 +76,7 @@ class LockstepBridge:
         self.console.router.access = load_access(profile)
         if profile.upstream is not None:
             raise ProfileError("outputs.bridge.upstream: a drive in lockstep waits for its own clients only")
+        self.drive = drive
         self._tls = load_tls(profile)
         self._profile = profile
         self._now_ns = 0
@@ -147,14 +151,15 @@ class LockstepBridge:
         self._pump_ros2()
         self._flush()
 
-    def exchange(self, snapshot: Snapshot, timeout_s: float = 2.0) -> bool:
+    def exchange(self, snapshot: Snapshot, timeout_s: float = 2.0, stop: Callable[[], bool] = lambda: False) -> bool:
         """Send a snapshot, odometry in any case, and wait for the command that answers it.
 
         That is the first accepted command whose stamp equals the odometry's; a command of a type without a stamp
         answers by arriving. Whatever arrives before it is applied too.
 
         Returns:
-            False when no answer came within `timeout_s` of wall time, or the commander is gone and no other has spoken.
+            False when no answer came within `timeout_s` of wall time or until `stop`, or the commander is gone and no
+            other has spoken.
         """
         inputs = self.console.inputs
         self._now_ns = snapshot.t_ns
@@ -169,9 +174,9 @@ class LockstepBridge:
             if inputs.command.sequence != before and inputs.stamp_ns in (snapshot.t_ns, None):
                 return True
             left_s = deadline - time.monotonic()
-            if left_s <= 0.0 or inputs.command.sequence == self._lost_at or not self.clients:
+            if left_s <= 0.0 or stop() or inputs.command.sequence == self._lost_at or not self.clients:
                 return False
-            self._serve(left_s)
+            self._serve(min(left_s, _LOOK_S))
 
     def counts(self) -> dict[str, int]:
         """Return how many messages went to and from all clients."""

@@ -32,7 +32,7 @@ from simconsole.bridge.frames import (
     check_close,
     frame_head,
 )
-from simconsole.bridge.handshake import Admission, Opening, Refusal
+from simconsole.bridge.handshake import DRIVE_HEADER, Admission, Opening, Refusal
 from simconsole.bridge.transport import Client, House
 from simconsole.errors import FrameError
 from simconsole.profiles.bridge import BridgeProfile
@@ -231,6 +231,7 @@ class PicowsDoor:
                 headers.getall("Host", ()),
                 headers.getall("Origin", ()),
                 headers.getall("Authorization", ()),
+                headers.getall(DRIVE_HEADER, ()),
             )
         )
         if isinstance(decision, Refusal):

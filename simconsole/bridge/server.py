@@ -134,14 +134,17 @@ class BridgeServer:
         on_act: OnAct | None = None,
         clock_ns: Callable[[], int] = time.monotonic_ns,
         folder: Path | None = None,
+        drive: str | None = None,
     ) -> None:
         """Build the bridge; `start` opens it.
 
-        Arguments and errors as `ConsoleBridge`; `clock_ns` is its clock, `folder` where topics are recorded.
+        Arguments and errors as `ConsoleBridge`; `clock_ns` is its clock, `folder` where topics are recorded, `drive`
+        the nonce of the drive whose bridge it is.
         """
         registry = load_registry(profile) if registry is None else registry
         self.console = ConsoleBridge(profile, registry, on_command, on_events, on_act)
         self._folder = folder
+        self._drive = drive
         self._recorder: TopicRecorder | None = None
         self._profile = profile
         self._access = self.console.router.access = load_access(profile)
@@ -229,7 +232,7 @@ class BridgeServer:
     def admit(self, opening: Opening) -> Admission | Refusal:
         """Decide on a client's first request (`House`)."""
         is_full = len(self._clients) >= self._profile.limits.clients
-        return admit(opening, self._profile, self._access, is_full)
+        return admit(opening, self._profile, self._access, is_full, self._drive)
 
     def welcome(self, transport: Transport, peer: str, admission: Admission) -> Client:
         """Take a client in (`House`)."""
@@ -298,6 +301,7 @@ def serve(
     on_standing: Callable[[str], None] = lambda state: None,
     registry: Registry | None = None,
     folder: Path | None = None,
+    drive: str | None = None,
 ) -> None:
     """Run a bridge server until `stop()` says so; for a process of its own.
 
@@ -313,6 +317,7 @@ def serve(
         on_standing: gets how the link stands, within 0.1 s of a change and once a second.
         registry: message types; without, the standard ones and those of the profile's folder.
         folder: where topics are recorded if the profile says so.
+        drive: the nonce of the drive whose bridge it is.
 
     Raises:
         BridgeError: the address cannot be listened on.
@@ -328,6 +333,7 @@ def serve(
             on_events=write_events,
             on_act=on_act,
             folder=folder,
+            drive=drive,
         )
         await server.start()
         on_ready(server.port)

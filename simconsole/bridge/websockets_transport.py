@@ -15,7 +15,7 @@ from websockets.protocol import State
 from simconsole.bridge import wire
 from simconsole.bridge.backoff import Liveness
 from simconsole.bridge.frames import CLOSE, MessageAssembler, frame_head
-from simconsole.bridge.handshake import Admission, Opening, Refusal
+from simconsole.bridge.handshake import Admission, Refusal
 from simconsole.bridge.transport import Client, House
 from simconsole.errors import FrameError
 from simconsole.profiles.bridge import BridgeProfile
@@ -137,7 +137,7 @@ async def open_door(
 
     def admit(connection: ServerConnection, request: Request) -> Response | None:
         assert isinstance(connection, Connection)
-        decision = house.admit(_opening(request))
+        decision = house.admit(wire.opening_of(request))
         if isinstance(decision, Refusal):
             return connection.respond(decision.status, f"{decision.reason}\n")
         connection.admission = decision
@@ -170,8 +170,3 @@ async def open_door(
         logger=wire.logger,
         **options,
     )
-
-
-def _opening(request: Request) -> Opening:
-    headers = request.headers
-    return Opening(request.path, headers.get_all("Host"), headers.get_all("Origin"), headers.get_all("Authorization"))

@@ -5,14 +5,17 @@ import socket
 import ssl
 import struct
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from simconsole.bridge.access import OPEN, Access, Role, read_tokens
-from simconsole.bridge.handshake import check_exposure
+from simconsole.bridge.handshake import DRIVE_HEADER, Opening, check_exposure
 from simconsole.bridge.protocol import Outcome
 from simconsole.bridge.session import Session
 from simconsole.errors import BridgeError, ProfileError
 from simconsole.profiles.bridge import BridgeProfile
+
+if TYPE_CHECKING:
+    from websockets.http11 import Request
 
 RECEIVE_BYTES: Final = 65_536
 HANDSHAKE_S: Final = 5.0
@@ -66,6 +69,12 @@ def address_url(host: str, port: int, secure: bool = False) -> str:
     """Return the ws:// or wss:// address of a server."""
     scheme = "wss" if secure else "ws"
     return f"{scheme}://[{host}]:{port}" if ":" in host else f"{scheme}://{host}:{port}"
+
+
+def opening_of(request: "Request") -> Opening:
+    """Return what matters of a first request that websockets has read."""
+    names = ("Host", "Origin", "Authorization", DRIVE_HEADER)
+    return Opening(request.path, *(request.headers.get_all(name) for name in names))
 
 
 def load_access(profile: BridgeProfile) -> Access:

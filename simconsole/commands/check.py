@@ -9,12 +9,13 @@ from xml.etree import ElementTree
 
 from simconsole.checking import Verdict, check_scenario
 from simconsole.commands.outcome import Outcome, table
+from simconsole.lifetimes import end_with_parent
 
 
 def check(words: Namespace) -> Outcome:
     """Drive every scenario; code 1 if one breaks a bound or leaves its golden."""
     if words.jobs > 1:
-        with ProcessPoolExecutor(words.jobs, mp_context=get_context("spawn")) as pool:
+        with ProcessPoolExecutor(words.jobs, get_context("spawn"), end_with_parent) as pool:
             verdicts = list(pool.map(check_scenario, words.scenarios, [words.update_golden] * len(words.scenarios)))
     else:
         verdicts = [check_scenario(scenario, words.update_golden) for scenario in words.scenarios]

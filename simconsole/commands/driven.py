@@ -2,27 +2,50 @@
 
 from typing import Any
 
-from simconsole.commands.outcome import INTERRUPTED, Outcome, table
+from simconsole.commands.outcome import RECORDING_FAILED, Outcome, table
 from simconsole.commands.progress import Progress
+from simconsole.errors import one_line
 from simconsole.exports import REPORT, SCENE, write_exports
+from simconsole.lifetimes import INTERRUPTED
 from simconsole.session import DriveResult
 
 
 def finish(result: DriveResult, report: bool = True, scene: bool = True) -> Outcome:
-    """Write what is wanted beside the bundle; code 130 if the drive was interrupted, its bundle whole all the same.
+    """Write what is wanted beside the bundle; the drive's own result does not depend on whether that could be written.
 
-    Raises:
-        StationError: the scene's process failed.
+    The code is 1 if the recording failed, and 130 if the drive was interrupted, its bundle whole all the same.
     """
-    code = INTERRUPTED if result.interrupted else 0
-    results: dict[str, Any] = {"bundle": str(result.folder), "digest": result.digest, **result.summary}
+    code = 1 if result.recording_failure is not None else INTERRUPTED if result.interrupted else 0
+    results: dict[str, Any] = {
+        "bundle": str(result.folder),
+        "digest": result.digest,
+        **result.summary,
+        "recording_failure": result.recording_failure,
+        "exports_failure": None,
+    }
+    failed = [] if result.recording_failure is None else [(RECORDING_FAILED, result.recording_failure)]
+    if failed and (report or scene):  # where a log cannot be written, nothing else can: rerun would wait for long
+        report, scene, results["exports_failure"] = False, False, "not tried, for the recording failed"
     if not result.ticks:
-        return Outcome(code, results, f"{result.folder}: interrupted before the first tick")
-    with Progress("writing report and scene"):
-        metrics = write_exports(result.folder, report=report, scene=scene)
-    rows = _rows(result, metrics)
+        return Outcome(code, results, table([("bundle", f"{result.folder}: no tick was recorded"), *failed]))
+    try:
+        with Progress("writing report and scene" + (" (Ctrl-C: not now)" if result.interrupted else "")):
+            metrics = write_exports(result.folder, report=report, scene=scene)
+    except Exception as error:  # noqa: BLE001  too little memory shows in many ways, and the drive is in its bundle
+        results["exports_failure"] = said = one_line(error)
+        rows = [*_driven_rows(result), ("report and scene", f"not written: {said}"), *failed]
+        return Outcome(code, results, table(rows))
+    rows = [*_rows(result, metrics), *failed]
     rows += [("report", str(result.folder / REPORT))] * report + [("scene", str(result.folder / SCENE))] * scene
     return Outcome(code, {**results, **metrics}, table(rows))
+
+
+def _driven_rows(result: DriveResult) -> list[tuple[str, str]]:
+    return [
+        ("tick lateness", result.summary["lateness"]),
+        ("real-time factor", f"{result.summary['real_time_factor']:.1f}"),
+        ("bundle", str(result.folder)),
+    ]
 
 
 def _rows(result: DriveResult, metrics: dict[str, Any]) -> list[tuple[str, str]]:
@@ -40,11 +63,4 @@ def _rows(result: DriveResult, metrics: dict[str, Any]) -> list[tuple[str, str]]
             ("lateral error", f"RMS {rms:.2f} cm, max {largest:.2f} cm (base_link against the theoretical path)")
         )
     rows += [(f"mode at {c['t_s']:7.2f} s", f"{c['mode']} ({c['reason']})") for c in metrics["mode_changes"]]
-    rows += [
-        ("tick lateness", result.summary["lateness"]),
-        ("real-time factor", f"{result.summary['real_time_factor']:.1f}"),
-        ("bundle", str(result.folder)),
-    ]
-    if result.recording_failure is not None:
-        rows.append(("RECORDING FAILED", result.recording_failure))
-    return rows
+    return rows + _driven_rows(result)

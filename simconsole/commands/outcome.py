@@ -2,8 +2,7 @@
 
 from typing import Any, Final, NamedTuple
 
-INTERRUPTED: Final = 130
-"""Exit code of what SIGINT or SIGTERM ended, as a shell reports a Ctrl-C; a drive's bundle is whole all the same."""
+RECORDING_FAILED: Final = "RECORDING FAILED"
 
 
 class Outcome(NamedTuple):

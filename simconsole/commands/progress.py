@@ -2,9 +2,11 @@
 
 import sys
 import time
+from contextlib import suppress
 from types import TracebackType
 from typing import Final, Self
 
+from simconsole.commands.outcome import RECORDING_FAILED
 from simconsole.rows import Snapshot
 from simconsole.signals import Mode
 from simconsole.units import KMH_PER_MPS
@@ -42,10 +44,12 @@ class Progress:
             vehicle, mode = snapshot.vehicle, Mode(int(snapshot.arbitration.mode))
             way = f"{vehicle.distance_m:7.1f} m" + (f" of {self._length_m:.0f} m" if self._length_m else "")
             speed = f"{vehicle.vx_mps * KMH_PER_MPS:5.1f} km/h"
-            self._write(f"{self._what}: {snapshot.t_s:7.1f} s  {way}  {speed}  {mode_words(float(mode))}")
+            alarm = f"  {RECORDING_FAILED}" if snapshot.recording_failed else ""
+            self._write(f"{self._what}: {snapshot.t_s:7.1f} s  {way}  {speed}  {mode_words(float(mode))}{alarm}")
         return False
 
     def _write(self, line: str) -> None:
         if self._shown:
-            sys.stderr.write(f"\r\x1b[K{line}")
-            sys.stderr.flush()
+            with suppress(OSError):  # the terminal was closed
+                sys.stderr.write(f"\r\x1b[K{line}")
+                sys.stderr.flush()

@@ -2,6 +2,7 @@
 
 from argparse import Namespace
 from pathlib import Path
+from typing import Any
 
 from simconsole.commands.outcome import Outcome
 from simconsole.recording.bundle import open_bundle
@@ -19,10 +20,16 @@ def replay(words: Namespace) -> Outcome:
         "ticks": result.ticks,
         "digest": result.digest.hex(),
         "difference": None if result.difference is None else result.difference._asdict(),
+        "problems": result.problems,
+        "remarks": result.remarks,
     }
-    if result.equal:
-        return Outcome(0, results, f"{words.bundle}: {result.ticks} ticks replayed, every hash equal")
-    return Outcome(1, results, f"{words.bundle}: differs at {result.difference}")
+    if not result.equal:
+        verdict = f"{words.bundle}: differs at {result.difference}"
+    elif result.problems:
+        verdict = f"{words.bundle}: {result.ticks} ticks replayed, equal, but they are not the whole drive"
+    else:
+        verdict = f"{words.bundle}: {result.ticks} ticks replayed, every hash equal"
+    return Outcome(0 if result.good else 1, results, "\n".join((verdict, *result.problems, *result.remarks)))
 
 
 def verify(words: Namespace) -> Outcome:
@@ -35,16 +42,18 @@ def verify(words: Namespace) -> Outcome:
 
 def compare(words: Namespace) -> Outcome:
     """Compare two bundles tick by tick; code 1 with the first differing tick and field and a window around it."""
-    first, second = open_bundle(Path(words.bundle)).log, open_bundle(Path(words.other)).log
-    found = compare_logs(first, first.header, second, second.header)
+    first, second = open_bundle(Path(words.bundle)), open_bundle(Path(words.other))
+    found = compare_logs(first.log, first.log.header, second.log, second.log.header)
+    problems = first.problems() + second.problems()
     results = {
         "equal": found.equal,
         "ticks": found.ticks,
         "difference": None if found.difference is None else found.difference._asdict(),
+        "problems": problems,
     }
     if found.equal:
-        return Outcome(0, results, f"{found.ticks} ticks, all equal")
-    return Outcome(1, results, f"{found.difference or 'not equal'}\n{found.window}")
+        return _judged(problems, results, f"{found.ticks} ticks, all equal")
+    return Outcome(1, results, "\n".join((f"{found.difference or 'not equal'}\n{found.window}", *problems)))
 
 
 def report(words: Namespace) -> Outcome:
@@ -52,7 +61,7 @@ def report(words: Namespace) -> Outcome:
     from simconsole.exports import write_report
 
     metrics = write_report(Path(words.bundle))
-    return Outcome(0, metrics, str(Path(words.bundle) / "report.html"))
+    return _of_whole_drive(words.bundle, metrics, str(Path(words.bundle) / "report.html"))
 
 
 def view(words: Namespace) -> Outcome:
@@ -62,4 +71,16 @@ def view(words: Namespace) -> Outcome:
     path = write_scene(Path(words.bundle))
     if not words.no_open:
         open_viewer(path)
-    return Outcome(0, {"scene": str(path)}, str(path))
+    return _of_whole_drive(words.bundle, {"scene": str(path)}, str(path))
+
+
+def _of_whole_drive(name: str, results: dict[str, Any], text: str) -> Outcome:
+    """Return what was made from a bundle, and whether that is the whole drive."""
+    bundle = open_bundle(Path(name))
+    for _ in bundle.log:
+        pass
+    return _judged(bundle.problems(), {**results, "problems": bundle.problems()}, text)
+
+
+def _judged(problems: list[str], results: dict[str, Any], text: str) -> Outcome:
+    return Outcome(1 if problems else 0, results, "\n".join((text, *problems)))

@@ -6,6 +6,10 @@ from argparse import Namespace
 from simconsole.commands.outcome import Outcome, table
 from simconsole.errors import ProfileError
 from simconsole.inline import TOKEN_VARIABLE
+from simconsole.lifetimes import DRIVE_VARIABLE, follow_parent
+
+END_S = 0.5
+"""How long it may take to end once the console that started it says so."""
 
 
 def own_token() -> str | None:
@@ -14,21 +18,25 @@ def own_token() -> str | None:
 
 
 def autopilot(words: Namespace) -> Outcome:
-    """Follow a course over rosbridge until the console closes the connection.
+    """Follow a course over rosbridge until the console closes the connection, or ends where it started this program.
 
     Raises:
         ProfileError: a topic is renamed in no way.
+        OtherDriveError: the console there is not the one that started this program.
     """
+    stop = follow_parent(END_S).wants_end if words.attached else None
     from simconsole.autonomy.autopilot import run
 
     results = run(
         words.url,
         words.course,
+        stop=stop,
         namespace=words.namespace,
         rename=_renamed(words.rename),
         patience_s=words.wait,
         token=own_token(),
         certificate=words.certificate,
+        drive=os.environ.pop(DRIVE_VARIABLE, None),
     )
     return Outcome(0, results, table([(name, str(value)) for name, value in results.items()]))
 

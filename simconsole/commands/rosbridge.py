@@ -1,12 +1,13 @@
 """`simconsole bridge`: the rosbridge server alone, how any such server behaves, a certificate for ours."""
 
 import secrets
-import tempfile
 from argparse import Namespace
 from pathlib import Path
 
-from simconsole.commands.outcome import INTERRUPTED, Outcome, table
+from simconsole.commands.outcome import Outcome, table
 from simconsole.commands.remote import own_token
+from simconsole.lifetimes import INTERRUPTED
+from simconsole.shared_memory import temporary_folder
 
 
 def bridge(words: Namespace) -> Outcome:
@@ -45,8 +46,8 @@ def serve(words: Namespace) -> Outcome:
         check_ros2(session.outputs.bridge)
         load_registry(session.outputs.bridge)
         load_transport(session.outputs.bridge)
-    with tempfile.TemporaryDirectory(prefix="simconsole-bridge-") as folder:
-        result = drive(resolve(session), Path(folder), on_bridge=lambda url: print(f"rosbridge at {url}", flush=True))
+    with temporary_folder() as folder:
+        result = drive(resolve(session), folder, on_bridge=lambda url: print(f"rosbridge at {url}", flush=True))
     code = INTERRUPTED if result.interrupted else 0
     return Outcome(code, result.summary, f"served {result.ticks} ticks, lateness {result.summary['lateness']}")
 

@@ -21,6 +21,7 @@ from typing import Final
 
 from simconsole.devices.event_nodes import effect_slots, open_node, stop_effects
 from simconsole.errors import DeviceError
+from simconsole.lifetimes import read_told
 
 POLL_S: Final = 0.02
 STALL_S: Final = 0.1
@@ -106,7 +107,10 @@ def watch(memory: "memoryview[int]", brake: Brake, pipe: int) -> None:
 def main() -> int:
     """Be the watchdog."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the console's; the pipe tells when to end
-    told = json.loads(sys.stdin.buffer.readline())
+    line = read_told()
+    if not line:
+        return 1
+    told = json.loads(line)
     descriptor = os.open(told["memory"], os.O_RDONLY)
     memory = mmap.mmap(descriptor, MEMORY_BYTES, access=mmap.ACCESS_READ)
     os.close(descriptor)

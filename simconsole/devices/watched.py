@@ -4,7 +4,6 @@ import json
 import mmap
 import os
 import subprocess
-import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -13,6 +12,8 @@ from typing import Final
 from simconsole.devices.motor import EFFECT_S, Capability, HapticPort
 from simconsole.devices.watchdog import BEATS, FORCE, MEMORY_BYTES
 from simconsole.errors import DeviceError
+from simconsole.lifetimes import end, spawn
+from simconsole.shared_memory import PREFIX
 
 END_S: Final = 2.0
 
@@ -29,8 +30,8 @@ class Watchdog:
         Raises:
             DeviceError: its process cannot be started.
         """
-        memory = Path("/dev/shm")
-        descriptor, name = tempfile.mkstemp(prefix="simconsole-beat-", dir=memory if memory.is_dir() else None)
+        memory, prefix = Path("/dev/shm"), f"{PREFIX}{os.getpid()}-beat-"
+        descriptor, name = tempfile.mkstemp(prefix=prefix, dir=memory if memory.is_dir() else None)
         self._path = Path(name)
         self._process: subprocess.Popen[bytes] | None = None
         try:
@@ -59,30 +60,13 @@ class Watchdog:
         if process is None:
             return
         self.beat(force=False)
-        if process.stdin is not None:
-            process.stdin.close()
-        try:
-            process.wait(END_S)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
+        end([process], END_S)
         self._path.unlink(missing_ok=True)
 
     def _start(self, identity: tuple[int, int]) -> None:
         told = {"memory": str(self._path), "vendor_id": identity[0], "product_id": identity[1]}
-        # A group of its own, so that what stops or ends the console's group leaves the watchdog to act. The child
-        # imports what its parent imports, and nothing that happens to lie in the working directory.
-        path = os.pathsep.join(entry for entry in sys.path if entry)
-        self._process = subprocess.Popen(
-            [sys.executable, "-P", "-m", "simconsole.devices.watchdog"],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.DEVNULL,
-            env={**os.environ, "PYTHONPATH": path},
-            process_group=0,
-        )
-        assert self._process.stdin is not None
-        self._process.stdin.write(json.dumps(told).encode() + b"\n")
-        self._process.stdin.flush()
+        # Its group is its own, so that what stops or ends the console's group leaves the watchdog to act.
+        self._process = spawn(["-m", "simconsole.devices.watchdog"], told=json.dumps(told).encode() + b"\n")
 
 
 class WatchedPort:

@@ -37,14 +37,16 @@ class Alert(IntEnum):
     NONE = 0
     NOTICE = 1
     REFUSED = 2
-    TAKE_OVER = 3
-    MINIMAL_RISK = 4
-    TAKE_OVER_NOW = 5
-    EMERGENCY = 6
-    NO_DATA = 7
+    RECORDING_FAILED = 3
+    TAKE_OVER = 4
+    MINIMAL_RISK = 5
+    TAKE_OVER_NOW = 6
+    EMERGENCY = 7
+    NO_DATA = 8
 
 
 ALERT_WORDS: Final[dict[Alert, tuple[str, str]]] = {
+    Alert.RECORDING_FAILED: ("RECORDING FAILED", "drive is not kept"),
     Alert.TAKE_OVER: ("TAKE OVER", "take the wheel"),
     Alert.MINIMAL_RISK: ("CAR IS STOPPING", "steer or brake"),
     Alert.TAKE_OVER_NOW: ("TAKE OVER NOW", "steer or brake"),
@@ -59,6 +61,8 @@ def alert_of(view: HudView) -> Alert:
     found = Alert.NOTICE if view.notice_words else Alert.NONE
     if view.refusal_words:
         found = Alert.REFUSED
+    if view.recording_failed:
+        found = Alert.RECORDING_FAILED
     if view.mode == Mode.TAKEOVER_REQUESTED:
         found = Alert.TAKE_OVER_NOW if view.takeover_stage >= 2 else Alert.TAKE_OVER
     if view.mode == Mode.MINIMAL_RISK:
@@ -79,7 +83,7 @@ def _field(view: HudView, alert: Alert) -> tuple[Colour, Colour]:
         return (DANGER, TEXT) if flash_on(view.t_s) else (TEXT, DANGER)
     if alert is Alert.MINIMAL_RISK:
         return DANGER, TEXT
-    if alert is Alert.TAKE_OVER:
+    if alert in (Alert.TAKE_OVER, Alert.RECORDING_FAILED):
         return CAUTION, INK
     return (LINE, TEXT) if alert is Alert.NO_DATA else (PANEL, CAUTION)
 
@@ -162,6 +166,8 @@ def _trip(view: HudView, box: Box) -> list[DrawItem]:
 
 def _headline(view: HudView, alert: Alert, box: Box, ink: Colour, ground: Colour) -> list[DrawItem]:
     head, todo = ALERT_WORDS[alert]
+    if alert is Alert.RECORDING_FAILED:  # it stands to the end of the drive, and hides no answer meanwhile
+        todo = view.refusal_words or view.notice_words or todo
     side = 0.62 * box.h
     items = exclamation(Box(box.x + 0.3 * box.h, box.y + 0.12 * box.h, side, side), ink, ground, "alert.shape")
     left = box.x + 0.3 * box.h + side + 0.3 * box.h

@@ -107,6 +107,7 @@ def sample_views() -> list[HudView]:
     views += [asked._replace(takeover_stage=stage, remaining_s=10.0) for stage in (1, 2)]
     validities = (0.0, 1.0, 2.0, 3.0, 4.0)
     views += [wide._replace(wheel_validity=v, pedals_validity=v, shifter_validity=v) for v in validities]
+    views += [view._replace(recording_failed=True) for view in views]
     views.append(wide._replace(can_up=False, link="64 clients", force="limit"))
     views += [wide._replace(can_up=True, link=link) for link in (LINK_NOBODY, LINK_COMMANDER, LINK_CONNECTING)]
     views += [wide._replace(force=force, can_up=up) for force, up in (("limit", False), ("lost", True), ("on", None))]

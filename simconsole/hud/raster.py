@@ -6,6 +6,7 @@ costs the few items that moved. Needs neither a display nor a video driver.
 
 from __future__ import annotations
 
+import io
 import math
 import os
 from collections import OrderedDict
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
 
 CAP_PER_SIZE: Final = 0.501
 """Height of a capital in pygame's own font at size 1."""
+FONT_SCALE: Final = 0.6875
+"""What pygame takes a size for its own font times."""
 KEPT: Final = 600
 """Drawn shapes and words kept for the next frame."""
 LARGE_PX: Final = 200.0
@@ -41,8 +44,12 @@ class Painter:
     def __init__(self) -> None:
         os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")  # standard output belongs to --json
         import pygame.font
+        from pygame.pkgdata import getResource
 
         pygame.font.init()
+        # Read once: pygame would keep the file open for every size there is.
+        with getResource(pygame.font.get_default_font()) as file:  # type: ignore[no-untyped-call]
+            self._typeface: bytes = file.read()
         self._fonts: dict[int, pygame.font.Font] = {}
         self._kept: OrderedDict[DrawItem, tuple[pygame.Surface, tuple[int, int]]] = OrderedDict()
 
@@ -75,11 +82,17 @@ class Painter:
     def _sprite(self, item: DrawItem) -> tuple[pygame.Surface, tuple[int, int]]:
         return self._words(item) if isinstance(item, Text) else _shape(item)
 
+    def _font(self, size: int) -> pygame.font.Font:
+        """Return pygame's own font, as `Font(None, size)` does."""
+        import pygame
+
+        return pygame.font.Font(io.BytesIO(self._typeface), max(1, int(FONT_SCALE * size)))
+
     def _words(self, item: Text) -> tuple[pygame.Surface, tuple[int, int]]:
         import pygame
 
         size = max(1, math.ceil(WORDS_SCALE * item.cap_px / CAP_PER_SIZE - 1e-6))
-        font = self._fonts.get(size) or self._fonts.setdefault(size, pygame.font.Font(None, size))
+        font = self._fonts.get(size) or self._fonts.setdefault(size, self._font(size))
         large = font.render(item.text, True, item.colour)
         # Drawn large and scaled to the width the layout counts on: hinting would space small letters unevenly.
         width = round(text_width_px(item.text, item.cap_px))

@@ -53,6 +53,7 @@ class HudView(NamedTuple):
     reason_words: str = ""
     refusal_words: str = ""
     notice_words: str = ""
+    recording_failed: bool = False
     takeover_stage: int = 0
     remaining_s: float = 0.0
     throttle: float = 0.0
@@ -139,6 +140,7 @@ def view(
         reason_words=reason_words(arbitration.reason),
         refusal_words=reason_words(arbitration.refusal) if arbitration.refusal else "",
         notice_words=notice_words(arbitration.notice),
+        recording_failed=snapshot.recording_failed,
         takeover_stage=int(arbitration.takeover_stage),
         remaining_s=_remaining_s(snapshot, settings),
         throttle=command.throttle,

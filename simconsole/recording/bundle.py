@@ -7,6 +7,8 @@ at the end with sizes and checksums.
 
 import contextlib
 from collections.abc import Iterator, Mapping
+from functools import partial
+from hashlib import sha256
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Final
@@ -14,10 +16,12 @@ from typing import Any, Final
 import msgspec
 
 from simconsole.errors import RecordingError
-from simconsole.recording.framing import START_OF_CHAIN, LogHeader, chain
-from simconsole.recording.log import LogReader, LogWriter
+from simconsole.files import draft_of, give_back, reserve, sync_folder, write_atomically
+from simconsole.recording.framing import START_OF_CHAIN, Break, LogHeader, chain, frame_size
+from simconsole.recording.log import LAST_TICKS, LogReader, LogWriter
 from simconsole.recording.manifest import (
     MANIFEST,
+    ROOM_BYTES,
     Manifest,
     checksum_problem,
     file_entry,
@@ -26,8 +30,13 @@ from simconsole.recording.manifest import (
     size_problem,
     write_manifest,
 )
+from simconsole.signals import Event
 
 LOG: Final = "drive.log"
+SESSION_FILE: Final = "session.json"
+_EVENTS: Final = "events.events"
+BLOCK_BYTES: Final = 1 << 12
+"""What a file system allots at a time: the last ticks may begin and end inside a block."""
 
 
 class Bundle:
@@ -43,6 +52,28 @@ class Bundle:
         self.folder = folder
         self.manifest = manifest
         self.log = LogReader(folder / LOG)
+
+    def problems(self) -> list[str]:
+        """Return why this is not the whole drive, one line each: the recording failed, the log is damaged.
+
+        The log counts as found by the latest complete pass. A torn last tick of a drive that was not finished is what
+        a kill leaves, and no problem; see `remarks`.
+        """
+        failure = self.manifest.recording_failure or _alarm(self.log)
+        failed = [] if failure is None else [failure]
+        return failed + [f"{self.log.path}: {part}" for part in self.log.breaks if not self._expected(part)]
+
+    def remarks(self) -> list[str]:
+        """Return what is worth knowing, and no problem."""
+        unfinished = [] if self.manifest.finished else [_unfinished(self.folder)]
+        return unfinished + [
+            f"{self.log.path}: {part}: the last tick, as a drive that was killed leaves it"
+            for part in self.log.breaks
+            if self._expected(part)
+        ]
+
+    def _expected(self, part: Break) -> bool:
+        return part.torn and not self.manifest.finished
 
     def text(self, name: str) -> str:
         """Return one of the recorded profiles.
@@ -85,40 +116,50 @@ class BundleWriter:
         self._made = [path for path in (folder, *folder.parents) if not path.exists()]  # innermost first
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            if any(folder.iterdir()):
-                raise RecordingError(f"{folder}: cannot be recorded to: the folder is not empty")
+            filled = any(folder.iterdir())
+        except OSError as error:
+            raise RecordingError(f"{folder}: cannot be recorded to: {error.strerror}") from None
+        if filled:
+            raise RecordingError(f"{folder}: cannot be recorded to: the folder is not empty")
+        try:
             for name, text in texts.items():
-                (folder / plain_name(name, folder)).write_text(text, "utf-8")
+                write_atomically(folder / plain_name(name, folder), text)
             self.manifest = Manifest(
                 files={name: file_entry(folder / name) for name in texts},
                 versions=dict(versions or {}),
                 labels=dict(labels or {}),
             )
             write_manifest(folder, self.manifest)
+            last_ticks_bytes = LAST_TICKS * frame_size(len(header.columns)) + 2 * BLOCK_BYTES
+            reserve(folder / MANIFEST, ROOM_BYTES + last_ticks_bytes)
+            free_room = partial(give_back, folder / MANIFEST, ROOM_BYTES)
+            self.log = LogWriter(folder / LOG, header, free_room=free_room)
+            sync_folder(folder)  # a power cut takes ticks, not files
         except OSError as error:
+            self._discard()
             raise RecordingError(f"{folder}: cannot be recorded to: {error.strerror}") from None
-        self.log = LogWriter(folder / LOG, header)
+        except RecordingError:
+            self._discard()
+            raise
 
     def finish(self, summary: Mapping[str, Any]) -> Manifest:
         """Close the log and write the manifest with its checksums; `summary` holds JSON values.
 
-        Raises:
-            RecordingError: the manifest cannot be written (the unfinished one stays).
+        Where the manifest cannot be written, the unfinished one stays, and what is returned says so.
         """
         self.log.close()
+        self.manifest = msgspec.structs.replace(
+            self.manifest, ticks=self.log.ticks, digest=self.log.digest.hex(), recording_failure=self.log.failure
+        )
         try:
-            self.manifest = msgspec.structs.replace(
-                self.manifest,
-                finished=True,
-                files={**self.manifest.files, LOG: file_entry(self.folder / LOG)},
-                ticks=self.log.ticks,
-                digest=self.log.digest.hex(),
-                recording_failure=self.log.failure,
-                summary=dict(summary),
-            )
-            write_manifest(self.folder, self.manifest)
+            files = {**self.manifest.files, LOG: file_entry(self.folder / LOG)}
+            finished = msgspec.structs.replace(self.manifest, finished=True, files=files, summary=dict(summary))
+            write_manifest(self.folder, finished)
+            self.manifest = finished
         except OSError as error:
-            raise RecordingError(f"{self.folder}: {MANIFEST} cannot be written: {error.strerror}") from None
+            problem = f"{self.folder}: {MANIFEST} cannot be written: {error.strerror}"
+            if self.manifest.recording_failure is None:
+                self.manifest = msgspec.structs.replace(self.manifest, recording_failure=problem)
         return self.manifest
 
     def __enter__(self) -> "BundleWriter":
@@ -130,6 +171,8 @@ class BundleWriter:
         self.log.close()
         if error is not None and self.log.ticks == 0:
             self._discard()
+        with contextlib.suppress(OSError):
+            draft_of(self.folder / MANIFEST).unlink(missing_ok=True)  # the room for an end that never came
 
     def _discard(self) -> None:
         """Remove what was made. The folder was empty before, so that all in it belongs to this drive."""
@@ -174,7 +217,7 @@ def verify(folder: Path) -> list[str]:
         RecordingError: the folder has no manifest that can be read.
     """
     manifest = read_manifest(folder)
-    problems = [] if manifest.finished else [f"{folder / MANIFEST}: the drive was not finished"]
+    problems = [] if manifest.finished else [_unfinished(folder)]
     if manifest.recording_failure:
         problems.append(manifest.recording_failure)
     for name, entry in manifest.files.items():
@@ -182,6 +225,27 @@ def verify(folder: Path) -> list[str]:
             problems.append(problem)
     problems += _log_problems(folder / LOG, manifest)
     return problems
+
+
+def _unfinished(folder: Path) -> str:
+    return f"{folder / MANIFEST}: the drive was not finished"
+
+
+def _alarm(log: LogReader) -> str | None:
+    """Return one line if the last row holds the alarm: a drive that was killed after its recording had failed."""
+    if log.last is None or _EVENTS not in log.header.columns:
+        return None
+    if not int(log.last.row[log.header.columns.index(_EVENTS)]) & Event.RECORDING_FAILED:
+        return None
+    return f"{log.path}: recording stopped at tick {log.last.tick - 1}"
+
+
+def session_problem(path: Path, text: str, header: LogHeader) -> str | None:
+    """Return one line if `text` is not the session that the log of `header` was recorded with, else None."""
+    found = sha256(text.encode()).hexdigest()
+    if found == header.session_sha256:
+        return None
+    return f"{path}: altered: sha256 {found}, {LOG} was recorded with {header.session_sha256}"
 
 
 def _log_problems(path: Path, manifest: Manifest) -> Iterator[str]:
@@ -197,6 +261,13 @@ def _log_problems(path: Path, manifest: Manifest) -> Iterator[str]:
             broken = record.tick
         digest = record.digest
         ticks += 1
+    session = path.parent / SESSION_FILE
+    if SESSION_FILE in manifest.files:
+        with contextlib.suppress(OSError, UnicodeDecodeError):  # named with the other files
+            if problem := session_problem(session, session.read_text("utf-8"), log.header):
+                yield problem
+    if manifest.recording_failure is None and (alarm := _alarm(log)):
+        yield alarm
     yield from (f"{path}: {part}" for part in log.breaks)
     if broken is not None:
         yield f"{path}: the chained hash does not hold at tick {broken}"

@@ -29,6 +29,7 @@ SCHEMA: Final = 1
 HASH_BYTES: Final = 8
 START_OF_CHAIN: Final = bytes(HASH_BYTES)
 MAX_HEADER_BYTES: Final = 1 << 20
+TORN: Final = "torn"
 _HEAD: Final = Struct("<II")
 _TICK: Final = Struct("<q")
 _HASHER: Final = blake2b(digest_size=HASH_BYTES)
@@ -62,6 +63,11 @@ class Break(NamedTuple):
     offset: int
     size_bytes: int
     reason: str
+
+    @property
+    def torn(self) -> bool:
+        """Whether it is the beginning of a tick and no more, as a killed process leaves it; anything else is damage."""
+        return self.reason.startswith(TORN)
 
     def __str__(self) -> str:
         """One line for a person."""
@@ -152,7 +158,7 @@ def unseal(frame: bytes, width: int) -> Record | str:
     """Return the record in one frame, or why there is none. The row is a read-only view of the frame."""
     size, whole = len(frame), frame_size(width)
     if size < whole:
-        return f"torn, {size} of {whole} bytes"
+        return f"{TORN}, {size} of {whole} bytes"
     length, checksum = _HEAD.unpack_from(frame)
     if length != whole - _HEAD.size:
         return f"damaged, length {length} instead of {whole - _HEAD.size}"

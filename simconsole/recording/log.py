@@ -5,7 +5,8 @@ power cut loses at most the time between two syncs.
 """
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from threading import Event, Thread
 from types import TracebackType
@@ -30,6 +31,9 @@ from simconsole.recording.framing import (
 SYNC_INTERVAL_S: Final = 1.0
 """Longest time whose ticks a power cut may take."""
 
+LAST_TICKS: Final = 2
+"""So many more ticks are tried once recording has failed: the one that failed, and the next, which holds the alarm."""
+
 _synchronise = getattr(os, "fdatasync", os.fsync)
 
 
@@ -37,17 +41,29 @@ class LogWriter:
     """Appends rows to a new log file. A failing disk stops the recording, never the drive.
 
     Attributes:
-        failure: why recording stopped, or None while all is well. Worth an alert; checked by the session.
+        failure: why recording stopped, or None while all is well. Worth an alarm: the session raises it.
         ticks: rows that reached the file.
         digest: chained hash after the last of them.
         size_bytes: of the file's whole frames.
     """
 
-    def __init__(self, path: Path, header: LogHeader, sync_interval_s: float = SYNC_INTERVAL_S) -> None:
+    def __init__(
+        self,
+        path: Path,
+        header: LogHeader,
+        sync_interval_s: float = SYNC_INTERVAL_S,
+        free_room: Callable[[], None] = lambda: None,
+    ) -> None:
         """Create the file (it must not exist) and write the header.
 
+        Args:
+            path: the file.
+            header: what its rows mean.
+            sync_interval_s: longest time whose ticks a power cut may take.
+            free_room: gives back the room that was kept for the last ticks; may raise OSError.
+
         Raises:
-            RecordingError: the file cannot be created.
+            RecordingError: the file cannot be created or takes no header.
         """
         start = encode_header(header)
         try:
@@ -61,20 +77,36 @@ class LogWriter:
         self.digest = START_OF_CHAIN
         self.size_bytes = 0
         self._row_bytes = 8 * len(header.columns)
-        self._write(start)
+        self._free_room = free_room
+        self._last_ticks = LAST_TICKS
+        problem = self._problem(start)
+        if problem is not None:
+            os.close(self._fd)
+            raise RecordingError(f"{path}: cannot be recorded to: {problem}")
         self._closing = Event()
         self._syncer = Thread(target=self._sync, args=(sync_interval_s,), name="log sync", daemon=True)
         self._syncer.start()
 
     def append(self, tick: int, row: Row) -> None:
-        """Write one tick. Does nothing once recording has failed; a row of another width is a bug and raises."""
-        if self.failure is not None:
+        """Write one tick. Once recording has failed, only the last ticks; a row of another width is a bug and raises.
+
+        A failed write is tried once more in the room that was kept for it, so that the log's own last row can tell.
+        """
+        if self.failure is not None and self._last_ticks <= 0:
             return
         content = row.tobytes()
         if len(content) != self._row_bytes:
             raise ValueError(f"a row of {len(content)} bytes in a log of {self._row_bytes}")
         frame, digest = seal(self.digest, tick, content)
-        if self._write(frame):
+        problem = self._problem(frame)
+        if problem is not None:
+            self._fail(tick, problem)
+            with suppress(OSError):
+                self._free_room()
+            problem = self._problem(frame)
+        if self.failure is not None:
+            self._last_ticks = 0 if problem is not None else self._last_ticks - 1
+        if problem is None:
             self.ticks += 1
             self.digest = digest
 
@@ -87,7 +119,7 @@ class LogWriter:
         try:
             _synchronise(self._fd)
         except OSError as error:
-            self._fail(str(error.strerror))
+            self._fail(self.ticks, f"sync: {error.strerror}")
         os.close(self._fd)
 
     def __enter__(self) -> "LogWriter":
@@ -98,26 +130,25 @@ class LogWriter:
     ) -> None:
         self.close()
 
-    def _write(self, frame: bytes) -> bool:
+    def _problem(self, frame: bytes) -> str | None:
+        """Write a frame; return why it is not in the file. A part of one is taken back."""
         try:
             written = os.write(self._fd, frame)
+            if 0 < written < len(frame):
+                written += os.write(self._fd, frame[written:])  # a disk says only now why not all of it fitted
+            if written == len(frame) and os.fstat(self._fd).st_nlink > 0:
+                self.size_bytes += written
+                return None
+            problem = "the file was removed" if written == len(frame) else f"only {written} of {len(frame)} bytes fit"
         except OSError as error:
-            self._fail(str(error.strerror))
-            return False
-        if written == len(frame):
-            self.size_bytes += written
-            return True
-        self._fail(f"only {written} of {len(frame)} bytes of a tick fitted")
-        return False
-
-    def _fail(self, reason: str) -> None:
-        if self.failure is not None:
-            return
-        self.failure = f"{self.path}: recording stopped after {self.ticks} ticks: {reason}"
-        try:
+            problem = str(error.strerror)
+        with suppress(OSError):  # else the torn tail stays; readers name it and keep what is whole
             os.ftruncate(self._fd, self.size_bytes)
-        except OSError:
-            return  # the torn tail stays; readers name it and keep what is whole
+        return problem
+
+    def _fail(self, tick: int, problem: str | None) -> None:
+        if problem is not None and self.failure is None:
+            self.failure = f"{self.path}: recording stopped at tick {tick}: {problem}"
 
     def _sync(self, interval_s: float) -> None:
         while not self._closing.wait(interval_s):
@@ -125,7 +156,7 @@ class LogWriter:
                 _synchronise(self._fd)
             except OSError as error:
                 # Only noted: the tick loop is the one that writes and truncates.
-                self.failure = self.failure or f"{self.path}: recording stopped: sync: {error.strerror}"
+                self._fail(self.ticks, f"sync: {error.strerror}")
                 return
 
 
@@ -155,6 +186,7 @@ class LogReader:
     Attributes:
         header: what the rows mean.
         breaks: where the file was not whole, as found by the latest complete pass.
+        last: the last whole record, as found by the latest complete pass; None in a log without.
     """
 
     def __init__(self, path: Path) -> None:
@@ -165,6 +197,7 @@ class LogReader:
         """
         self.path = path
         self.breaks: tuple[Break, ...] = ()
+        self.last: Record | None = None
         try:
             with path.open("rb") as file:
                 self.header = Scan(file.read, str(path)).header
@@ -175,8 +208,10 @@ class LogReader:
         """Yield all whole records; never raises on a torn tail."""
         with self.path.open("rb", buffering=1 << 18) as file:
             scan = Scan(file.read, str(self.path))
-            yield from scan
-        self.breaks = tuple(scan.breaks)
+            record = None
+            for record in scan:
+                yield record
+        self.breaks, self.last = tuple(scan.breaks), record
 
     def table(self) -> LogTable:
         """Return all whole records as arrays."""

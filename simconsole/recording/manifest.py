@@ -1,6 +1,5 @@
 """The manifest of a bundle: which files belong to it, how large they are, and what they hash to."""
 
-import os
 from hashlib import sha256
 from pathlib import Path
 from typing import Any, Final
@@ -8,10 +7,13 @@ from typing import Any, Final
 import msgspec
 
 from simconsole.errors import RecordingError
+from simconsole.files import write_atomically
 
 SCHEMA: Final = 1
 MANIFEST: Final = "manifest.json"
 MAX_MANIFEST_BYTES: Final = 1 << 20
+ROOM_BYTES: Final = 1 << 16
+"""Kept on the disk from the start of a drive, so that its end can be written whatever fills the disk meanwhile."""
 
 
 class FileEntry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -103,10 +105,11 @@ def checksum_problem(path: Path, entry: FileEntry) -> str | None:
 
 def write_manifest(folder: Path, manifest: Manifest) -> None:
     """Replace manifest.json at once: a crash leaves the old one or the new one. Raises OSError."""
-    text = msgspec.json.format(msgspec.json.encode(manifest), indent=2)
-    draft = folder / f"{MANIFEST}.new"
-    with draft.open("wb") as file:
-        file.write(text + b"\n")
-        file.flush()
-        os.fsync(file.fileno())
-    draft.replace(folder / MANIFEST)
+    text = _text(manifest)
+    if manifest.recording_failure is not None and len(text) > ROOM_BYTES:
+        text = _text(msgspec.structs.replace(manifest, summary={}))  # why it failed matters more, and has its room
+    write_atomically(folder / MANIFEST, text)
+
+
+def _text(manifest: Manifest) -> bytes:
+    return msgspec.json.format(msgspec.json.encode(manifest), indent=2) + b"\n"

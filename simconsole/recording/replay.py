@@ -36,6 +36,13 @@ class ReplayResult(NamedTuple):
     ticks: int  # compared and found equal
     difference: Difference | None
     digest: bytes  # chained hash of the replayed rows
+    problems: tuple[str, ...] = ()  # why equal ticks are not a whole drive: a recording that failed, a damaged log
+    remarks: tuple[str, ...] = ()  # what is worth knowing, and no problem: a torn last tick, other sources
+
+    @property
+    def good(self) -> bool:
+        """Whether this is a success: all that was driven is there, and is equal."""
+        return self.equal and not self.problems
 
 
 def replay(

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 from simconsole.errors import RecordingError
+from simconsole.files import write_atomically
 from simconsole.handling.attempt import Result
 from simconsole.profiles.manoeuvre import Limit
 from simconsole.report.figures import panels_svg
@@ -39,7 +40,7 @@ def write_handling_report(path: Path, chapters: Sequence[Chapter]) -> None:
         "</body></html>\n"
     )
     try:
-        path.write_text(text, encoding="utf-8", newline="\n")
+        write_atomically(path, text)
     except OSError as error:
         raise RecordingError(f"{path}: cannot be written: {error.strerror}") from error
 

@@ -8,6 +8,7 @@ from typing import Any, Final
 from numpy.typing import ArrayLike
 
 from simconsole.errors import RecordingError
+from simconsole.files import write_atomically
 from simconsole.report.figures import map_svg, traces_svg
 from simconsole.report.metrics import metrics, mode_changes, track
 from simconsole.report.table import drive_of
@@ -90,7 +91,7 @@ def write_report(
     changes = mode_changes(drive, way)
     svgs = map_svg(drive, way, changes, course), traces_svg(drive, way, changes, course)
     try:
-        path.write_text(page(title, found, svgs, extra or {}, latency_us or {}), encoding="utf-8", newline="\n")
+        write_atomically(path, page(title, found, svgs, extra or {}, latency_us or {}))
     except OSError as error:
         raise RecordingError(f"{path}: cannot be written: {error.strerror}") from error
     return found

@@ -1,15 +1,20 @@
-"""A whole drive to scene.rrd, in a process of its own: `python -m simconsole.scene.export JOB.npz SCENE.rrd`."""
+"""A whole drive to scene.rrd, in a process of its own: `python -m simconsole.scene.export JOB.npz SCENE.rrd`.
+
+With `--attached` before them, as the console starts it, it ends with whoever holds its standard input.
+"""
 
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 from typing import Final
 
 from simconsole.errors import SimConsoleError, StationError
+from simconsole.files import replaced
+from simconsole.lifetimes import ATTACHED, end, follow_parent, spawn, undone
 from simconsole.scene.entities import world_shapes
 from simconsole.scene.job import Job, load_job, save_job
 from simconsole.scene.timeline import Memory, piece
+from simconsole.shared_memory import temporary_folder
 
 PIECE_S: Final = 60.0
 """Length of the pieces a drive is written in: bounds the memory, not the speed."""
@@ -24,19 +29,17 @@ def export(job: Job, path: Path) -> None:
     from simconsole.scene.rerun_view import RerunView
 
     world = None if job.drawing is None else world_shapes(job.drawing)
-    # Under its final name only once it is whole.
-    part = path.with_name(f"{path.name}.part")
-    view = RerunView(part, job.profile, job.dimensions, world)
-    memory = Memory()
-    step = max(1, round(PIECE_S * job.tick_hz))
-    for start in range(0, len(job.ticks), step):
-        end = start + step
-        added, memory = piece(
-            job.rows[start:end], job.columns, job.ticks[start:end], job.tick_hz, job.profile.rate_hz, memory
-        )
-        view.add(added)
-    view.close()
-    part.replace(path)
+    with replaced(path) as draft, undone(lambda: draft.unlink(missing_ok=True)):
+        view = RerunView(draft, job.profile, job.dimensions, world)
+        memory = Memory()
+        step = max(1, round(PIECE_S * job.tick_hz))
+        for start in range(0, len(job.ticks), step):
+            stop = start + step
+            added, memory = piece(
+                job.rows[start:stop], job.columns, job.ticks[start:stop], job.tick_hz, job.profile.rate_hz, memory
+            )
+            view.add(added)
+        view.close()
 
 
 def export_apart(job: Job, path: Path, deadline_s: float = 60.0) -> None:
@@ -45,21 +48,32 @@ def export_apart(job: Job, path: Path, deadline_s: float = 60.0) -> None:
     Raises:
         StationError: it failed or took too long; what it said is in the message.
     """
-    with tempfile.TemporaryDirectory(prefix="simconsole-scene-") as folder:
-        job_path = Path(folder) / "job.npz"
+    with temporary_folder() as folder, (folder / "said").open("w+b") as said:
+        job_path = folder / "job.npz"
         save_job(job_path, job)
-        command = [sys.executable, "-m", "simconsole.scene.export", str(job_path), str(path)]
+        words = ["-m", "simconsole.scene.export", ATTACHED, str(job_path), str(path)]
         try:
-            done = subprocess.run(command, capture_output=True, text=True, timeout=deadline_s, check=False)
+            process = spawn(words, stderr=said.fileno())
+        except OSError as error:
+            raise StationError(f"{path}: the scene was not written: {error.strerror}") from None
+        try:
+            process.wait(deadline_s)
         except subprocess.TimeoutExpired:
             raise StationError(f"{path}: the scene was not written within {deadline_s:g} s") from None
-    if done.returncode != 0:
-        said = (done.stderr.strip().splitlines() or [f"exit status {done.returncode}"])[-1]
-        raise StationError(f"{path}: the scene was not written: {said}")
+        finally:
+            end([process], 0.0)
+        said.seek(0)
+        lines = said.read().decode("utf-8", "replace").strip().splitlines()
+    if process.returncode != 0:
+        reason = (lines or [f"exit status {process.returncode}"])[-1]
+        raise StationError(f"{path}: the scene was not written: {reason}")
 
 
 def main(arguments: list[str]) -> int:
     """Export a job file; the exit code is 0, or 2 with one line of reason."""
+    if arguments[:1] == [ATTACHED]:
+        follow_parent(None)
+        arguments = arguments[1:]
     if len(arguments) != 2:
         print("usage: python -m simconsole.scene.export JOB.npz SCENE.rrd", file=sys.stderr)
         return 2

@@ -1,4 +1,4 @@
-"""A drive to scene.live.rrd while it is being driven, in a process of its own whose memory does not grow with it.
+"""A drive to scene.live.rrd while it is driven, in a process of its own whose memory does not grow with the drive.
 
 The file has no index, which rerun would collect until the end; scene.rrd, made from the log afterwards, has one.
 """

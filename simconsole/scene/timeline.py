@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simconsole.scene.entities import Array, Colour
-from simconsole.signals import Event, Mode
+from simconsole.signals import Event, Mode, Notice
 from simconsole.units import DEG_PER_RAD, KMH_PER_MPS, NS_PER_S, RPM_PER_RADPS
 from simconsole.words import commander_words, gear_words, indicator_words, mode_words, notice_words, reason_words
 
@@ -221,7 +221,7 @@ def _lanes(
         words = [lane_words(path, float(values[index])) for index in changed]
         lanes.append(Lane(path, times_ns[changed].tolist(), words))
         last[column] = float(values[-1])
-    for column in ("arbitration.reason", "arbitration.refusal", "arbitration.notice"):
+    for column in ("arbitration.reason", "arbitration.refusal", "arbitration.notice", "events.events"):
         last[column] = float(table[column][-1])
     return tuple(lanes), last
 
@@ -252,12 +252,22 @@ def _entries(table: dict[str, Array], times_ns: Ticks, seen: dict[str, float] | 
             (index, Entry(int(times_ns[index]), "WARN", words(told[index])))
             for index in changed[told[changed] != 0.0].tolist()
         )
+    failed = _recording_failed(table["events.events"])
+    before = 0.0 if seen is None else float(_recording_failed(np.array([seen["events.events"]]))[0])
+    alarm = notice_words(float(Notice.RECORDING_FAILED))
+    found.extend((index, Entry(int(times_ns[index]), "ERROR", alarm)) for index in _changes(failed, before).tolist())
     for who, column in (("event", "events.events"), ("event on CAN", "events.ecu_events")):
-        events = table[column]
+        events = table[column] - Event.RECORDING_FAILED * _recording_failed(table[column])  # it lasts: told once above
         for index in np.flatnonzero(events).tolist():
             named = (str(event.name).lower().replace("_", " ") for event in Event if int(events[index]) & event)
             found.append((index, Entry(int(times_ns[index]), "INFO", f"{who}: {', '.join(named)}")))
     yield from (entry for _, entry in sorted(found, key=lambda item: item[0]))
+
+
+def _recording_failed(events: Array) -> Array:
+    """Return 1.0 where nothing more was kept."""
+    failed: Array = ((events.astype(np.int64) & int(Event.RECORDING_FAILED)) != 0).astype(np.float64)
+    return failed
 
 
 def _strips(

@@ -72,6 +72,7 @@ class Notice(IntEnum):
     CENTRING_WHEEL = 2  # by its motor, before a restart
     CENTRE_WHEEL = 3  # the same, where it has no motor
     RELEASE_PEDALS = 4
+    RECORDING_FAILED = 5  # said by the console itself (rows.Snapshot.notice): the arbiter has no part in it
 
 
 class Commander(IntEnum):
@@ -98,7 +99,7 @@ class RemoteKind(IntEnum):
 
 
 class Event(IntFlag):
-    """Edges that happened since the last tick, whoever raised them."""
+    """Edges that happened since the last tick, whoever raised them; RECORDING_FAILED alone lasts."""
 
     EMERGENCY_STOP = 1
     RESET = 2
@@ -117,6 +118,8 @@ class Event(IntFlag):
     TOGGLE_ANTI_LOCK = 16384
     TOGGLE_TRACTION = 32768
     TOGGLE_STABILITY = 65536
+    RECORDING_FAILED = 131072  # in every tick from the one after the failure: nothing more is kept
+    END = 262144  # somebody has ended the drive by a signal; from here on the console brings the vehicle to rest
 
 
 class Button(IntFlag):

@@ -13,12 +13,13 @@ from simconsole.bridge.protocol import Outcome
 from simconsole.bridge.server import serve
 from simconsole.bridge.session import Session
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.rows import ARBITRATION_AT, COMMAND_AT, PLATFORM_AT, ROS_AT, SAMPLE_AT, VEHICLE_AT, Snapshot
-from simconsole.signals import Arbitration, DeviceSample, RemoteCommand, VehicleCommand, VehicleState
+from simconsole.rows import ARBITRATION_AT, COMMAND_AT, EVENTS_AT, PLATFORM_AT, ROS_AT, SAMPLE_AT, VEHICLE_AT, Snapshot
+from simconsole.signals import Arbitration, DeviceSample, EventInput, RemoteCommand, VehicleCommand, VehicleState
 
 STAGES: dict[type[Any], int] = {
     DeviceSample: SAMPLE_AT,
     RemoteCommand: ROS_AT,
+    EventInput: EVENTS_AT,
     VehicleCommand: COMMAND_AT,
     Arbitration: ARBITRATION_AT,
     VehicleState: VEHICLE_AT,

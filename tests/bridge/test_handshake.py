@@ -154,3 +154,37 @@ def test_server_that_others_can_reach_needs_token_and_tls(profile: dict[str, Any
 )
 def test_exposure_that_is_fine(profile: dict[str, Any]) -> None:
     check_exposure(BridgeProfile(**profile))
+
+
+NONCE, OTHER = "a" * 32, "b" * 32
+
+
+@pytest.mark.parametrize(
+    ("shown", "drive", "enters"),
+    [
+        ([], NONCE, True),  # a client from outside
+        ([], None, True),
+        ([NONCE], NONCE, True),
+        ([OTHER], NONCE, False),
+        ([NONCE], None, False),
+        ([""], None, False),
+        ([""], NONCE, False),
+        ([NONCE, OTHER], NONCE, False),
+        (["\udc80"], NONCE, False),
+    ],
+)
+def test_a_program_of_another_drive_is_refused(shown: list[str], drive: str | None, enters: bool) -> None:
+    found = admit(OPENING._replace(drives=shown), BridgeProfile(), ACCESS, False, drive)
+    if enters:
+        assert isinstance(found, Admission)
+    else:
+        assert isinstance(found, Refusal)
+        assert found.status == 403
+        assert "another drive" in found.reason
+
+
+def test_the_nonce_grants_nothing() -> None:
+    opening = OPENING._replace(path="/", drives=[NONCE])
+    found = admit(opening, BridgeProfile(), ACCESS, False, NONCE)
+    assert isinstance(found, Admission)
+    assert found.role is ACCESS.anonymous

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from simconsole.bridge.topics import ONCE, is_due, quaternion
-from simconsole.signals import NEVER_TICKS, Mode, Reason
+from simconsole.signals import NEVER_TICKS, Event, Mode, Reason
 
 TYPES = {
     "/clock": "rosgraph_msgs/Clock",
@@ -143,6 +143,11 @@ def test_arbitration_is_told_in_numbers_and_words(publish: Callable[..., dict[st
     ros, ecu = told["ros"], told["ecu"]
     assert (ros["commands_accepted"], ros["commands_refused"], ros["command_age"]) == (7, 2, 0.1)
     assert (ros["state"], ros["state_words"], ros["throttle"], ecu["brake"]) == (0, "no command yet", 0.25, 0.75)
+
+
+def test_a_failed_recording_is_a_notice(publish: Callable[..., dict[str, Any]]) -> None:
+    told = publish(notice=1.0, events=float(Event.RECORDING_FAILED | Event.MARK))["/console/arbitration"]
+    assert (told["notice"], told["notice_words"]) == (5, "recording failed: the drive is not kept")
 
 
 def test_command_that_never_came_has_no_age(publish: Callable[..., dict[str, Any]]) -> None:

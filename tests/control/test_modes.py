@@ -73,6 +73,11 @@ def test_no_trigger_that_takes_authority_hides_another() -> None:
     assert after(Mode.STOPPED, Trigger.RESET, Trigger.COMMAND_STALE, Trigger.TAKEOVER_ASKED) is Mode.PARKED
 
 
+def test_coming_to_rest_takes_nothing() -> None:
+    assert reacts(float(Mode.MINIMAL_RISK), int(Trigger.STANDSTILL))
+    assert not takes(float(Mode.MINIMAL_RISK), int(Trigger.STANDSTILL))
+
+
 def test_manual_in_a_car_that_stands_takes_nothing() -> None:
     asked = int(Trigger.MANUAL_ASKED)
     assert [mode for mode in Mode if reacts(float(mode), asked) and not takes(float(mode), asked)] == [

@@ -103,6 +103,26 @@ def test_a_controller_that_asks_for_what_the_person_steered_takes_over_their_sto
     assert arbitrate(other)[0].stop_steered == 0.0
 
 
+@pytest.mark.parametrize("event", [0, Event.COMMANDER_LOST, Event.NO_ANSWER])
+def test_a_controller_that_is_gone_does_not_steer_the_stop_that_it_steered(event: Event, now: Moment) -> None:
+    """Its last command asks for 0.04 rad; without it the wheels go from where they are held to straight."""
+    stopping = now.before._replace(mode=float(Mode.MINIMAL_RISK))
+    steered = now._replace(before=stopping, memory=now.memory._replace(stop_steered=1.0, steering_ticks=0.0))
+    calm = now.driver._replace(throttle=0.0, brake=0.0, hand_wheel_rad=0.2)
+    ecu_events = now.events._replace(ecu_events=float(event))
+    memory, *_, request = arbitrate(steered._replace(events=ecu_events, driver=calm))
+    assert memory.stop_steered == (0.0 if event else 1.0)
+    decay = now.settings.stop_road_wheel_decay_radps * now.tick_s
+    assert request.road_wheel_rad == pytest.approx(0.07 - decay if event else 0.04)
+
+
+def test_each_controllers_own_age_counts_where_it_steers_too_hard(now: Moment) -> None:
+    aged = now._replace(ros_age_before_ticks=11.0, ecu_age_before_ticks=22.0)
+    wild = {"road_wheel_rad": 0.5, "sequence": 9.0}
+    _, ros_link, ecu_link, *_ = arbitrate(aged._replace(ros=now.ros._replace(**wild), ecu=now.ecu._replace(**wild)))
+    assert (ros_link.implausible_ticks, ecu_link.implausible_ticks) == (12.0, 23.0)
+
+
 def test_a_restart_that_is_refused_says_so_and_changes_nothing_else(now: Moment) -> None:
     """The wheel is off the centre and the car moves; whatever else was refused in this tick gives way."""
     plain = arbitrate(now)

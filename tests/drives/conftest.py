@@ -6,11 +6,11 @@ import pytest
 
 from simconsole.recording.bundle import open_bundle
 from simconsole.recording.log import LogTable
-from tests.recording.conftest import rewrite_checksums, rewrite_log
+from tests.recording.conftest import rewrite_checksums, rewrite_log, rewrite_session
 
 from .console import results, simconsole
 
-__all__ = ["rewrite_checksums", "rewrite_log"]
+__all__ = ["rewrite_checksums", "rewrite_log", "rewrite_session"]
 
 
 class Demo(NamedTuple):

@@ -12,7 +12,9 @@ import pytest
 
 from simconsole.profile_files import profiles_folder
 from simconsole.recording.bundle import open_bundle, verify
+from simconsole.recording.replay import ReplayResult
 from simconsole.replaying import replay_bundle
+from tests.recording.conftest import change_header
 
 from .conftest import Demo
 from .console import complaint, results, simconsole
@@ -34,6 +36,8 @@ def test_replay_of_the_demo_finds_every_hash_equal(demo: Demo) -> None:
         "ticks": len(demo.table.ticks),
         "digest": demo.results["digest"],
         "difference": None,
+        "problems": [],
+        "remarks": [],
     }
     assert "every hash equal" in done.stdout
 
@@ -42,7 +46,7 @@ def test_twenty_replays_of_the_demo_are_equal(demo: Demo) -> None:
     # In two processes: each compiled code is loaded anew, and two cores share the work.
     with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
         found = list(pool.map(replay_bundle, [demo.bundle] * REPLAYS))
-    assert found == [(True, len(demo.table.ticks), None, bytes.fromhex(demo.results["digest"]))] * REPLAYS
+    assert found == [ReplayResult(True, len(demo.table.ticks), None, bytes.fromhex(demo.results["digest"]))] * REPLAYS
 
 
 def test_the_plain_functions_replay_what_compiled_code_drove(short: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -109,13 +113,13 @@ def test_a_forged_brake_value_in_the_demo_is_found_too(
 
 
 def test_one_changed_vehicle_value_is_named_with_tick_and_field(
-    copy: Path, rewrite_checksums: Callable[[Path], None]
+    copy: Path, rewrite_session: Callable[..., None]
 ) -> None:
     session = json.loads((copy / "session.json").read_text())
     session["vehicle"]["body"]["mass_kg"] *= 1.01
     (copy / "session.json").write_text(json.dumps(session))
     assert any("session.json" in problem for problem in verify(copy))
-    rewrite_checksums(copy)
+    rewrite_session(copy, session)
     assert verify(copy) == []
     done = simconsole("replay", copy, "--json")
     assert done.returncode == 1, done.stdout + done.stderr
@@ -125,12 +129,36 @@ def test_one_changed_vehicle_value_is_named_with_tick_and_field(
     assert f"tick {difference['tick']}: {difference['field']}: recorded" in done.stdout
 
 
-def test_a_session_altered_into_nonsense_is_one_line(copy: Path, rewrite_checksums: Callable[[Path], None]) -> None:
+def test_a_session_altered_into_nonsense_is_one_line(copy: Path, rewrite_session: Callable[..., None]) -> None:
     session = json.loads((copy / "session.json").read_text())
     session["vehicle"]["body"]["mass_kg"] = -1
-    (copy / "session.json").write_text(json.dumps(session))
-    rewrite_checksums(copy)
+    rewrite_session(copy, session)
     assert f"{copy / 'session.json'}: vehicle.body.mass_kg: value -1" in complaint(simconsole("replay", copy))
+
+
+@pytest.mark.parametrize("command", ["replay", "report", "view", "verify"])
+def test_a_session_that_the_log_was_not_recorded_with_is_refused(
+    copy: Path, rewrite_session: Callable[..., None], command: str
+) -> None:
+    """Nothing of this drive would differ by this value: only the log's own hash of the session can tell."""
+    session = json.loads((copy / "session.json").read_text())
+    session["session"]["features"]["control"]["stop_decel_mps2"] += 0.5
+    rewrite_session(copy, session, forged=False)
+    done = simconsole(command, copy, *(["--no-open"] if command == "view" else []))
+    line = done.stdout.strip() if command == "verify" else complaint(done)
+    assert done.returncode == (1 if command == "verify" else 2)
+    assert f"{copy / 'session.json'}: altered: sha256 " in line
+    assert len(line.splitlines()) == 1
+
+
+def test_other_sources_are_told_and_not_refused(copy: Path, rewrite_checksums: Callable[[Path], None]) -> None:
+    change_header(copy / "drive.log", source_sha256="5" * 64, console_version="0.0.9")
+    rewrite_checksums(copy)
+    done = simconsole("replay", copy, "--json")
+    assert done.returncode == 0, done.stdout + done.stderr
+    (remark,) = results(done)["remarks"]
+    assert f"{copy / 'drive.log'}: recorded with other sources: 555555555555 (simconsole 0.0.9), here " in remark
+    assert remark in done.stdout.splitlines()
 
 
 @pytest.mark.parametrize("command", ["replay", "report", "view"])
@@ -153,7 +181,7 @@ def test_compare_finds_two_drives_of_one_script_equal(short: Path, script: Path,
     assert done.returncode == 0, done.stderr
     compared = simconsole("compare", short, again, "--json")
     assert compared.returncode == 0, compared.stdout
-    assert results(compared) == {"equal": True, "ticks": 750, "difference": None}
+    assert results(compared) == {"equal": True, "ticks": 750, "difference": None, "problems": []}
     assert (short / "drive.log").read_bytes() == (again / "drive.log").read_bytes()
 
 

@@ -256,7 +256,7 @@ class Circuit:
         cast = Cast(person, tracker, recorder, (tracker, person, *stations), pace or UnpacedPacer())
         if state.tick:
             tracker.publish(start)
-        run(self.console, state, isolated(with_faults(cast, resolved, HZ)), round(seconds * HZ))
+        run(self.console, state, isolated(with_faults(cast, resolved, HZ), UnpacedPacer), round(seconds * HZ))
         return Driven(recorder.rows, state.tick + 1, self.console.columns, self.course)
 
     def state_at(self, distance_m: float) -> ConsoleState:

@@ -94,8 +94,9 @@ class Rows:
     def __init__(self) -> None:
         self.rows: list[Row] = []
 
-    def write(self, snapshot: Snapshot) -> None:
+    def write(self, snapshot: Snapshot) -> int:
         self.rows.append(snapshot.row)
+        return 0
 
 
 class Driven(NamedTuple):

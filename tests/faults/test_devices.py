@@ -14,7 +14,6 @@ import pytest
 from msgspec.structs import replace
 from numpy.typing import NDArray
 
-from simconsole.checking import drive_scenario
 from simconsole.devices.sdl import SdlSource
 from simconsole.devices.trace import COLUMNS, read_rows, row_text
 from simconsole.devices.virtual_cockpit import VirtualCockpit
@@ -27,6 +26,7 @@ from simconsole.profiles.faults import AxisName, Fault, Freeze, Invalid, Stuck, 
 from simconsole.profiles.scenario import ScenarioProfile
 from simconsole.rows import Snapshot
 from simconsole.signals import NO_SAMPLE, GateLimit, Mode, Reason, Validity
+from tests.in_memory import drive_scenario
 from tests.samples import Measured
 
 TICK_HZ: Final = 250

@@ -2,17 +2,14 @@
 
 import json
 import shutil
-import struct
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from zlib import crc32
 
 import pytest
 
-from simconsole.recording.framing import MAGIC
 from tests.drives.console import complaint, results, simconsole
-from tests.recording.conftest import rewrite_checksums
+from tests.recording.conftest import change_header, rewrite_checksums
 
 __all__ = ["rewrite_checksums"]
 
@@ -20,16 +17,6 @@ __all__ = ["rewrite_checksums"]
 @pytest.fixture
 def copy(short: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(short, tmp_path / "copy"))
-
-
-def change_header(log: Path, **changes: object) -> None:
-    """Write another header, its checksum right, before the same ticks."""
-    content = log.read_bytes()
-    start = len(MAGIC)
-    size, _ = struct.unpack_from("<II", content, start)
-    header = json.loads(content[start + 8 : start + 8 + size])
-    text = json.dumps({**header, **changes}).encode()
-    log.write_bytes(MAGIC + struct.pack("<II", len(text), crc32(text)) + text + content[start + 8 + size :])
 
 
 @pytest.mark.fault("F05")

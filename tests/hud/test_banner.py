@@ -98,3 +98,14 @@ def test_alert_colours_stay_apart_for_a_deuteranope() -> None:
         a, b = _deuteranope(one), _deuteranope(other)
         distance = sum((x - y) ** 2 for x, y in zip(a, b, strict=True)) ** 0.5
         assert distance > 60.0, (one, other)
+
+
+def test_a_failed_recording_is_told_to_the_end_and_hides_no_answer() -> None:
+    failed = in_mode(Mode.MANUAL, recording_failed=True)
+    assert said(failed, "alert.words") == ["RECORDING FAILED"]
+    assert said(failed, "alert.todo") == ["drive is not kept"]
+    held = failed._replace(notice_words="throttle is held: autopilot only steers")
+    assert said(held, "alert.todo") == [held.notice_words]
+    refused = held._replace(refusal_words="refused: too fast")
+    assert said(refused, "alert.todo") == ["refused: too fast"]
+    assert said(asked(1, recording_failed=True), "alert.words") == ["TAKE OVER"], "what saves the car comes first"

@@ -201,3 +201,13 @@ def test_sample_views_can_all_be_drawn(painter: Painter) -> None:
     small = Screen(700, 525, 1.6, 1.1)
     for shown in sample_views():
         assert pixels(render(shown, small, painter)).std() > 10.0
+
+
+def test_fonts_of_every_size_keep_no_file_open() -> None:
+    before = len(list(Path("/proc/self/fd").iterdir()))
+    fresh = Painter()
+    for screen in (SCREEN, TRIPLE):
+        for view in states().values():
+            fresh.paint(pygame.Surface((screen.width_px, screen.height_px)), layout(view, screen))
+    assert len(fresh._fonts) > 5
+    assert len(list(Path("/proc/self/fd").iterdir())) == before

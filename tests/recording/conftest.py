@@ -1,12 +1,14 @@
 import hashlib
 import json
+import struct
 from collections.abc import Callable
 from pathlib import Path
+from zlib import crc32
 
 import numpy as np
 import pytest
 
-from simconsole.recording.framing import START_OF_CHAIN, LogHeader, encode_header, seal
+from simconsole.recording.framing import MAGIC, START_OF_CHAIN, LogHeader, encode_header, seal
 from simconsole.recording.log import LogReader
 
 COLUMNS = ("sample.brake_axis", "sample.throttle_axis", "driver.brake", "vehicle.vx_mps")
@@ -17,6 +19,16 @@ def header() -> LogHeader:
     return LogHeader(
         tick_hz=250, columns=COLUMNS, input_columns=2, console_version="0", source_sha256="aa", session_sha256="bb"
     )
+
+
+def change_header(log: Path, **changes: object) -> None:
+    """Write another header, its checksum right, before the same ticks."""
+    content = log.read_bytes()
+    start = len(MAGIC)
+    size, _ = struct.unpack_from("<II", content, start)
+    header = json.loads(content[start + 8 : start + 8 + size])
+    text = json.dumps({**header, **changes}).encode()
+    log.write_bytes(MAGIC + struct.pack("<II", len(text), crc32(text)) + text + content[start + 8 + size :])
 
 
 def advance(tick: int, previous: np.ndarray, inputs: np.ndarray) -> np.ndarray:
@@ -78,5 +90,19 @@ def rewrite_checksums() -> Callable[[Path], None]:
             entry.update(size_bytes=len(content), sha256=hashlib.sha256(content).hexdigest())
         manifest["digest"] = [record.digest for record in LogReader(folder / "drive.log")][-1].hex()
         (folder / "manifest.json").write_text(json.dumps(manifest))
+
+    return rewrite
+
+
+@pytest.fixture
+def rewrite_session(rewrite_checksums: Callable[[Path], None]) -> Callable[..., None]:
+    """Write another session.json into a bundle; a forger makes the log's header and the manifest agree with it."""
+
+    def rewrite(folder: Path, session: object, forged: bool = True) -> None:
+        text = json.dumps(session)
+        (folder / "session.json").write_text(text)
+        if forged:
+            change_header(folder / "drive.log", session_sha256=hashlib.sha256(text.encode()).hexdigest())
+        rewrite_checksums(folder)
 
     return rewrite

@@ -53,7 +53,7 @@ def test_a_recording_that_stopped_says_so(tmp_path: Path, header: LogHeader, mon
         manifest = writer.finish({})
     assert manifest.ticks == 1
     assert verify(tmp_path / "drive") == [manifest.recording_failure]
-    assert "recording stopped after 1 ticks" in str(manifest.recording_failure)
+    assert "recording stopped at tick 2: only 0 of 56 bytes fit" in str(manifest.recording_failure)
 
 
 def test_a_folder_with_files_is_not_recorded_into(bundle: Path, header: LogHeader) -> None:

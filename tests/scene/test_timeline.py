@@ -4,8 +4,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from simconsole.scene.timeline import NEEDED, PLOTS, Memory, Piece, lane_words, piece, quaternions
-from simconsole.signals import Mode
+from simconsole.scene.timeline import NEEDED, PLOTS, Entry, Memory, Piece, lane_words, piece, quaternions
+from simconsole.signals import Event, Mode
 
 from .drives import CHANGES, COLUMNS, TICK_HZ, rows
 
@@ -65,6 +65,23 @@ def test_the_log_tells_modes_reasons_refusals_and_events_in_order(whole: Piece) 
         (1501, "INFO", "event: request manual, mark"),
         (2001, "WARN", "TAKE OVER: autopilot went silent"),
         (2503, "INFO", "MANUAL: driver turned the wheel"),
+    ]
+
+
+@pytest.mark.parametrize("cuts", [[], [1500], [2000, 2001]])
+def test_a_failed_recording_is_told_once_beside_the_other_events(cuts: list[int]) -> None:
+    table, at = rows(COUNT), COLUMNS.index("events.events")
+    table[2000:, at] += float(Event.RECORDING_FAILED)
+    table[2100, at] += float(Event.MARK)
+    memory = Memory()
+    entries: list[Entry] = []
+    for start, end in pairwise([0, *cuts, COUNT]):
+        added, memory = piece(table[start:end], COLUMNS, np.arange(start + 1, end + 1), TICK_HZ, 50, memory)
+        entries += added.entries
+    found = [(entry.t_ns // NS_PER_TICK, entry.level, entry.text) for entry in entries]
+    assert [entry for entry in found if entry[0] > 2000 and not entry[2].startswith(("TAKE OVER", "MANUAL"))] == [
+        (2001, "ERROR", "recording failed: the drive is not kept"),
+        (2101, "INFO", "event: mark"),
     ]
 
 

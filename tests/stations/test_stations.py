@@ -287,3 +287,23 @@ def mappings_of(folder: Path) -> list[str]:
         except OSError:
             continue
     return found
+
+
+WITHOUT_FILES = """
+import resource, sys
+from pathlib import Path
+from simconsole import stations
+def fail(*_):
+    resource.setrlimit(resource.RLIMIT_NOFILE, (3, 3))
+    Path("/dev/null").open()
+stations.run_station = fail
+sys.exit(stations.main(["station"]))
+"""
+
+
+def test_a_station_that_may_open_no_more_files_is_one_line(tmp_path: Path) -> None:
+    call = {"folder": str(tmp_path), "patience_s": 1.0, "station": {"name": "x", "target": "none:none"}}
+    words = [sys.executable, "-c", WITHOUT_FILES]
+    done = subprocess.run(words, input=json.dumps(call) + "\n", capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr == "simconsole station: OSError: [Errno 24] Too many open files: '/dev/null'\n"

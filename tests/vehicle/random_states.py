@@ -67,7 +67,6 @@ def random_cars(count: int, seed: int, steered_rad: float = 0.0, **command: floa
 
     The friction is 0.5 or more: on ice a car would still be sliding after 20 s.
     """
-    print(f"seed {seed}")
     rng = random.Random(seed)
     grounds = [
         platform(ground=Ground(rng.uniform(0.5, 1.2), rng.uniform(-0.1, 0.1), rng.uniform(-0.1, 0.1)))
@@ -91,7 +90,9 @@ def speeds_mps(cars: Cars) -> NDArray[np.float64]:
 
 
 if __name__ == "__main__":
-    drawn = random_cars(int(sys.argv[1]), random.SystemRandom().randrange(2**32), brake=1.0, clutch=1.0)
+    seed = random.SystemRandom().randrange(2**32)
+    print(f"seed {seed}")
+    drawn = random_cars(int(sys.argv[1]), seed, brake=1.0, clutch=1.0)
     settle(drawn, 20.0)
     left = speeds_mps(drawn)
     print(f"{len(left)} cars: at most {left.max():.2g} m/s after 20 s, {int((left >= 1e-6).sum())} at 1e-6 m/s or more")

@@ -18,6 +18,7 @@ from simconsole.vehicle.car.state import CAR_WIDTH, CarState
 from simconsole.vehicle.car.step import load_parameters
 from simconsole.vehicle.platform import Platform
 from simconsole.vehicle.registry import build
+from tests.samples import Sample
 
 from .commonroad import BMW, DURATION_S, SAMPLE_S, Input, Path, drive_multi_body, drive_single_track
 from .driving import LEVEL, ORIGIN
@@ -89,12 +90,11 @@ def passes(shares: list[float]) -> bool:
 
 
 @pytest.fixture(scope="module")
-def cases() -> list[Case]:
-    seed = random.SystemRandom().randrange(2**32)
-    print(f"seed {seed}")
-    rng = random.Random(seed)
+def cases(module_sample: Sample) -> list[Case]:
+    rng = random.Random(module_sample.seed)
+    count = module_sample.of(CASES, 10 * CASES)
     found: list[Case] = []
-    while len(found) < CASES:
+    while len(found) < count:
         speed = rng.uniform(5.0, 30.0)
         lateral = rng.uniform(0.3, 6.0) * rng.choice([-1.0, 1.0])
         given = Input(speed, math.atan(lateral * WHEELBASE_M / speed**2))
@@ -133,6 +133,6 @@ def test_yaw_rate_and_roll_in_steady_state(cases: list[Case]) -> None:
         yaw_errors.append(abs(ours.yaw_rate_radps[last].mean() / wanted - 1.0))
         roll_errors.append(abs(ours.roll_rad[last].mean() / case.truth.roll_rad[last].mean() - 1.0))
     print(f"{len(yaw_errors)} cases: yaw rate off by at most {max(yaw_errors):.2%}, roll by {max(roll_errors):.2%}")
-    assert len(yaw_errors) > CASES // 2
+    assert len(yaw_errors) > len(cases) // 2
     assert max(yaw_errors) < 0.01
     assert max(roll_errors) < 0.05

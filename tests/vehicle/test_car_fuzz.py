@@ -1,25 +1,22 @@
-"""Ten million steps of anything: finite, inside physical bounds, and at rest afterwards."""
+"""Millions of steps of anything: finite, inside physical bounds, and at rest afterwards."""
 
-import random
 from collections.abc import Callable
 
 import numpy as np
 import pytest
 
+from tests.samples import Sample
+
 from . import fuzzing
 
-STEPS = 10_000_000
-TIR_STEPS = 400_000
 
-
-def test_ten_million_steps_of_anything_stay_physical_and_end_at_rest(
-    record_property: Callable[[str, object], None],
+def test_millions_of_steps_of_anything_stay_physical_and_end_at_rest(
+    record_property: Callable[[str, object], None], sample: Sample
 ) -> None:
-    seed = random.SystemRandom().randrange(2**32)
-    print(f"seed {seed}")
-    found = fuzzing.fuzz(STEPS, seed)
+    steps = sample.of(10_000_000, 100_000_000)
+    found = fuzzing.fuzz(steps, sample.seed)
     record_property("car, fuzzed steps", f"{found.steps} in {found.seconds:.1f} s, rest {found.rest_mps:.1e} m/s")
-    assert found.steps >= STEPS
+    assert found.steps >= steps
     assert not found.beyond
     assert found.rest_mps < fuzzing.REST_MPS
     assert min(found.lowest["vx_mps"], found.lowest["vy_mps"]) < -fuzzing.HIT_MPS * 0.9, "nothing was hit"
@@ -27,14 +24,13 @@ def test_ten_million_steps_of_anything_stay_physical_and_end_at_rest(
     assert found.lowest["engine_running"] == 0.0
 
 
-def test_four_hundred_thousand_steps_on_a_tir_tyre_stay_physical_and_end_at_rest(
-    record_property: Callable[[str, object], None],
+def test_hundreds_of_thousands_of_steps_on_a_tir_tyre_stay_physical_and_end_at_rest(
+    record_property: Callable[[str, object], None], sample: Sample
 ) -> None:
-    seed = random.SystemRandom().randrange(2**32)
-    print(f"seed {seed}")
-    found = fuzzing.fuzz(TIR_STEPS, seed, fuzzing.SUBJECTS["tir"])
+    steps = sample.of(400_000, 10_000_000)
+    found = fuzzing.fuzz(steps, sample.seed, fuzzing.SUBJECTS["tir"])
     record_property("car on a .tir, fuzzed", f"{found.steps} in {found.seconds:.1f} s, rest {found.rest_mps:.1e} m/s")
-    assert found.steps >= TIR_STEPS
+    assert found.steps >= steps
     assert not found.beyond
     assert found.rest_mps < fuzzing.REST_MPS
     assert min(found.lowest["vx_mps"], found.lowest["vy_mps"]) < -fuzzing.HIT_MPS * 0.5, "nothing was hit"

@@ -1,19 +1,18 @@
 """The car at rest: the tyre law must hold it with no clamp of speed and no switch to kinematics."""
 
 import math
-import random
 
 import pytest
 
 from simconsole.kernels import put
 from simconsole.rows import PLATFORM_AT
 from simconsole.vehicle.platform import Ground, Pose
+from tests.samples import Sample
 
 from .driving import Drive, platform
 from .random_states import random_cars, settle, speeds_mps
 from .rolling import rolling
 
-STATES = 1000
 CREEP_M = 1e-4  # 0.1 mm
 SETTLING_S = 10.0
 WATCHED_S = 60.0
@@ -154,8 +153,8 @@ def test_holds_after_steering_on_the_spot(slope: float, brakes: dict[str, float]
     assert abs(drive.seen.x_m - before.x_m) < CREEP_M
 
 
-def test_from_any_state_full_brake_brings_rest() -> None:
-    cars = random_cars(STATES, random.SystemRandom().randrange(2**32), 0.5, brake=1.0, clutch=1.0)
+def test_from_any_state_full_brake_brings_rest(sample: Sample) -> None:
+    cars = random_cars(sample.of(1000, 5000), sample.seed, 0.5, brake=1.0, clutch=1.0)
     settle(cars, 20.0)
     print(f"at most {speeds_mps(cars).max():.2g} m/s after 20 s")
     assert speeds_mps(cars).max() < 1e-6

@@ -1,0 +1,33 @@
+"""A short drive to record, and what a drive that did not end leaves."""
+
+import json
+from pathlib import Path
+
+from simconsole.assembly import ResolvedSession
+from simconsole.profiles.session import SessionProfile
+from simconsole.session_files import load_session, override, resolve
+
+SECONDS = 2.0
+HZ = 250
+TICKS = round(SECONDS * HZ)
+
+
+def session(script: Path, seconds: float = SECONDS) -> ResolvedSession:
+    """A person who drives off, as fast as it goes."""
+    plain: SessionProfile = override(
+        load_session("seated"),
+        scenario={"duration_s": seconds},
+        devices={"driver": f"script:{script}"},
+        outputs={"hud": None, "scene": None, "report": False, "bridge": None},
+        mode={"pacing": "free"},
+    )
+    return resolve(plain)
+
+
+def unfinish(folder: Path, **changes: object) -> None:
+    """Leave what a drive that did not end leaves."""
+    manifest = json.loads((folder / "manifest.json").read_text())
+    for key in ("ticks", "digest", "summary"):
+        del manifest[key]
+    del manifest["files"]["drive.log"]
+    (folder / "manifest.json").write_text(json.dumps({**manifest, "finished": False, **changes}))

@@ -1,0 +1,18 @@
+"""A scenario driven into memory: for tests that look at rows."""
+
+from simconsole import checking
+from simconsole.memory import MemoryRecorder
+from simconsole.pipeline import Console
+from simconsole.profiles.scenario import ScenarioProfile
+
+
+def drive_scenario(scenario: ScenarioProfile) -> tuple[MemoryRecorder, tuple[str, ...]]:
+    """Drive it and return its rows and their columns."""
+    names: tuple[str, ...] = ()
+
+    def recorder_of(console: Console) -> MemoryRecorder:
+        nonlocal names
+        names = console.columns
+        return MemoryRecorder(round(scenario.duration_s * console.tick_hz), console.width)
+
+    return checking.drive_scenario(scenario, recorder_of), names
