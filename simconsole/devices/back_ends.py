@@ -1,26 +1,48 @@
 """Which way to the wheel's motor: SDL first, evdev where SDL finds none, or the one that the profile names."""
 
+import os
+
 from simconsole.devices.driver_files import Restoring, settings
 from simconsole.devices.evdev_haptics import open_evdev
+from simconsole.devices.event_nodes import effect_slots, open_node, stop_effects
 from simconsole.devices.haptics import open_haptics
 from simconsole.devices.motor import HapticPort
+from simconsole.errors import DeviceError
 from simconsole.profiles.force_feedback import ForceFeedback
 
 
 def open_motor(instance_id: int, identity: tuple[int, int], force: ForceFeedback) -> HapticPort:
     """Open the motor of a wheel; the port says why where there is no force.
 
-    Where its driver tells gain and autocentre, they are put back as they were when the motor is closed; where not, it
-    is left as the profile says.
+    The first act is to stop every effect that is on it, whoever left it running. Where its driver tells gain and
+    autocentre, they are put back as they were when the motor is closed; where not, it is left as the profile says.
 
     Args:
         instance_id: SDL's, of the wheel's open joystick.
         identity: Its USB vendor and product id.
         force: The cockpit's; its `back_end` may name one.
     """
+    stop_what_was_left(identity)
     before = settings(identity)
     port = _opened(instance_id, identity, force)
     return Restoring(port, before) if before and port.capability.constant else port
+
+
+def stop_what_was_left(identity: tuple[int, int]) -> None:
+    """Stop every effect of a wheel; SDL's own StopAll knows only those of its process.
+
+    Nothing where there is no access: the kernel takes away the effects of a process that ends, however it does.
+    """
+    try:
+        descriptor = open_node(identity)
+    except DeviceError:
+        return
+    try:
+        stop_effects(descriptor, effect_slots(descriptor))
+    except OSError:
+        return
+    finally:
+        os.close(descriptor)
 
 
 def _opened(instance_id: int, identity: tuple[int, int], force: ForceFeedback) -> HapticPort:

@@ -75,6 +75,15 @@ def effect_slots(descriptor: int) -> int:
     return int(struct.unpack("<i", slots)[0])
 
 
+def stop_effects(descriptor: int, slots: int) -> None:
+    """Stop every effect of a device, whoever loaded it. Raises OSError where the device has gone.
+
+    Only its owner may change an effect, but any process may stop it (`input_ff_event`, drivers/input/ff-core.c).
+    """
+    for slot in range(slots):
+        os.write(descriptor, EVENT.pack(0, 0, EV_FF, slot, 0))
+
+
 def _nodes() -> Iterator[Path]:
     try:
         yield from sorted(path for path in NODES.iterdir() if path.name.startswith("event"))

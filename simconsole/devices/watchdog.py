@@ -19,7 +19,7 @@ import time
 from pathlib import Path
 from typing import Final
 
-from simconsole.devices.event_nodes import EV_FF, EVENT, effect_slots, open_node
+from simconsole.devices.event_nodes import effect_slots, open_node, stop_effects
 from simconsole.errors import DeviceError
 from simconsole.lifetimes import read_told
 
@@ -76,8 +76,7 @@ class Brake:
         if self._descriptor is None:
             return False
         try:
-            for slot in range(self._slots):
-                os.write(self._descriptor, EVENT.pack(0, 0, EV_FF, slot, 0))
+            stop_effects(self._descriptor, self._slots)
         except OSError:  # unplugged, and perhaps back under another number
             self._close()
             return False

@@ -240,6 +240,7 @@ def test_in_shared_control_the_controllers_part_is_limited_as_in_autonomy(make_r
     assert rig.arbitration.remote_throttle == 1.0
 
 
+@pytest.mark.fault("R13")
 @pytest.mark.parametrize("tick_hz", [50, 250, 1000])
 def test_toggling_at_50_hz_never_jumps_and_never_locks_up(tick_hz: int, make_rig: MakeRig) -> None:
     """For 10 s; no step is larger than the limit of the mode in force."""

@@ -30,6 +30,7 @@ def test_everything_in_order_engages(control: ControlSettings) -> None:
     assert refusal(control) is None
 
 
+@pytest.mark.fault("R12")
 def test_a_person_must_be_there_and_off_the_brake(control: ControlSettings) -> None:
     absent = PERSON._replace(trusted=0.0)
     assert refusal(control, person=absent) is Reason.REFUSED_NOT_ARMED
@@ -53,6 +54,7 @@ def test_commands_must_be_fresh_valid_and_steady(control: ControlSettings) -> No
     assert refusal(control, Mode.STOPPED, link=LINK._replace(fresh_ticks=250.0)) is None
 
 
+@pytest.mark.fault("R12")
 @pytest.mark.parametrize(
     ("field", "good", "bad", "reason"),
     [

@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from typing import Any
 
+import pytest
+
 from simconsole.signals import Button, Event, Mode, Reason, Validity
 
 MakeRig = Callable[..., Any]
@@ -57,6 +59,7 @@ def test_a_refusal_is_shown_for_a_while_and_changes_nothing(make_rig: MakeRig) -
     assert shown == 3 * rig.tick_hz
 
 
+@pytest.mark.fault("R12")
 def test_asks_that_the_mode_does_not_grant_are_refused_by_name(make_rig: MakeRig) -> None:
     rig = make_rig().drive(Mode.MINIMAL_RISK, speed_mps=24.0)
     rig.send()
@@ -74,6 +77,7 @@ def test_asks_that_the_mode_does_not_grant_are_refused_by_name(make_rig: MakeRig
     assert rig.refusal is Reason.REFUSED_NO_COMMAND
 
 
+@pytest.mark.fault("R12")
 def test_what_is_in_force_is_not_refused(make_rig: MakeRig) -> None:
     for mode, event in (
         (Mode.AUTONOMOUS, Event.REQUEST_AUTONOMOUS),

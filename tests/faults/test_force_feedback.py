@@ -6,7 +6,6 @@ import math
 import os
 import signal
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +17,7 @@ from simconsole.rows import TORQUE_AT, VEHICLE_AT
 from simconsole.signals import Event, EventInput, Mode, VehicleState
 from tests.devices.closed_loop import Loop
 from tests.devices.mocked import calls, start
+from tests.samples import Measured
 
 LET_GO_S = 0.25
 SLOTS = 15  # of the mocked device
@@ -34,10 +34,11 @@ def last_force(log: list[dict[str, Any]]) -> tuple[float, float]:
 
 
 @pytest.mark.fault("D11")
-def test_d11_killed_process_leaves_no_force(tmp_path: Path) -> None:
+@pytest.mark.parametrize("back_end", ["sdl", "evdev"])
+def test_d11_killed_process_leaves_no_force(back_end: str, tmp_path: Path, measured: Measured) -> None:
     """D11: kill -9 at full torque. No effect outlives 200 ms even if the kernel did not erase them at close."""
     log = tmp_path / "calls.jsonl"
-    killed = start(log, "kill")
+    killed = start(log, "kill", back_end)
     killed.communicate(timeout=60.0)
     noted = calls(log)
     assert noted[-1]["what"] == "end"
@@ -46,11 +47,16 @@ def test_d11_killed_process_leaves_no_force(tmp_path: Path) -> None:
     ends_s, heard_s = last_force(noted)
     assert ends_s - heard_s <= LET_GO_S
     again = tmp_path / "again.jsonl"
-    restarted = start(again, "drive")
+    restarted = start(again, "drive", back_end)
     out, err = restarted.communicate(timeout=60.0)
     assert restarted.returncode == 0, out + err
-    upload = next(call for call in calls(again) if call["what"] == "upload")
-    assert upload["level"] == 0, "the first thing a new process loads pushes nothing"
+    acts = calls(again)
+    first = next(index for index, call in enumerate(acts) if call["what"] == "upload")
+    assert acts[first]["level"] == 0, "the first thing a new process loads pushes nothing"
+    stops = [(call["what"], call.get("value"), call.get("id")) for call in acts[:SLOTS]]
+    assert stops == [("play", 0, slot) for slot in range(SLOTS)], "before anything else, all stop"
+    seen = f"{len(stops)} stops before anything is loaded; no effect longer than {1e3 * (ends_s - heard_s):.0f} ms"
+    measured("D11", f"first acts after a restart, {back_end}", seen, "all stop; 250 ms")
 
 
 @pytest.mark.fault("D12")
@@ -77,16 +83,15 @@ def test_d12_hung_process_lets_go(tmp_path: Path) -> None:
 
 @pytest.mark.fault("D12")
 @pytest.mark.parametrize("back_end", ["sdl", "evdev"])
-def test_d12_watchdog_stops_what_a_hung_process_left(
-    back_end: str, tmp_path: Path, record_property: Callable[[str, object], None]
-) -> None:
+def test_d12_watchdog_stops_what_a_hung_process_left(back_end: str, tmp_path: Path, measured: Measured) -> None:
     """SIGSTOP at full torque: another process stops every effect, and no force is left 250 ms after the last start."""
     log = tmp_path / "calls.jsonl"
     mock = start(log, "hang", back_end, "watched")
     try:
         child = stopped_child(mock.pid)
         stops = wait_for_stops(log)
-        record_property(f"{back_end}: hung process let go by the watchdog", f"{1e3 * let_go_s(calls(log)):.0f} ms")
+        seen = f"{1e3 * let_go_s(calls(log)):.0f} ms after the last start of an effect"
+        measured("D12", f"hung process, {back_end}", seen, "250 ms")
         assert {call["id"] for call in stops} == set(range(SLOTS)), "all there are, whoever loaded them"
         assert let_go_s(calls(log)) <= LET_GO_S
         os.kill(child, signal.SIGKILL)
@@ -97,16 +102,15 @@ def test_d12_watchdog_stops_what_a_hung_process_left(
 
 
 @pytest.mark.fault("D11")
-def test_d11_watchdog_stops_what_a_killed_process_left(
-    tmp_path: Path, record_property: Callable[[str, object], None]
-) -> None:
+def test_d11_watchdog_stops_what_a_killed_process_left(tmp_path: Path, measured: Measured) -> None:
     log = tmp_path / "calls.jsonl"
     mock = start(log, "kill", "evdev", "watched")
     try:
         stops = wait_for_stops(log)
         assert {call["id"] for call in stops} == set(range(SLOTS))
         assert let_go_s(calls(log)) <= LET_GO_S
-        record_property("killed process let go by the watchdog", f"{1e3 * let_go_s(calls(log)):.0f} ms")
+        seen = f"{1e3 * let_go_s(calls(log)):.0f} ms after the last start of an effect"
+        measured("D11", "killed process", seen, "250 ms")
         mock.communicate(timeout=60.0)
     finally:
         mock.kill()
@@ -118,14 +122,15 @@ def test_watchdog_of_a_process_that_closes_its_motor_does_nothing(tmp_path: Path
     mock = start(log, "drive", "evdev", "watched")
     out, err = mock.communicate(timeout=60.0)
     assert mock.returncode == 0, out + err
-    assert {call["id"] for call in calls(log) if call["what"] == "play"} == {0, 1}, "the motor's own two effects"
+    acts = calls(log)[SLOTS:]  # the first are the motor's, which stops everything when it is opened
+    assert {call["id"] for call in acts if call["what"] == "play"} == {0, 1}, "the motor's own two effects"
 
 
 def wait_for_stops(log: Path) -> list[dict[str, Any]]:
     """Wait until the watchdog has stopped the last slot: the motor never touches that one."""
     deadline_s = time.monotonic() + 60.0
     while time.monotonic() < deadline_s:
-        noted = calls(log)
+        noted = calls(log)[SLOTS:]  # the first are the motor's, which stops everything when it is opened
         if any(call["what"] == "play" and call["id"] == SLOTS - 1 for call in noted):
             started = max(i for i, call in enumerate(noted) if call["what"] == "play" and call["value"] == 1)
             return [call for call in noted[started:] if call["what"] == "play" and call["value"] == 0]

@@ -20,10 +20,13 @@ from simconsole.bridge.wire import is_unacknowledged
 from simconsole.profiles.bridge import BridgeLimits, BridgeProfile
 from simconsole.signals import Event
 from tests.bridge.networks import CLOSE, Raw, far_end, go_deaf, lose
+from tests.samples import Measured
 
 CONTROL = "/control/command/control_cmd"
 S = 10**9
 MIB = 1 << 20
+MESSAGES = 6000
+"""Of odometry: more than the kernel and a queue of 1,000 keep for a reader that does not read."""
 
 
 @asynccontextmanager
@@ -145,10 +148,7 @@ def test_n04_program_that_is_merely_slow_is_not_cut(control: Callable[..., Any],
 
 
 @pytest.mark.fault("N05")
-def test_n05_stalled_subscriber_costs_the_others_nothing_and_no_memory(
-    record_property: Callable[[str, object], None],
-    transport: Any,
-) -> None:
+def test_n05_stalled_subscriber_costs_the_others_nothing_and_no_memory(transport: Any, measured: Measured) -> None:
     """A thousand messages of 20 kB: the others get every one, the stalled one's 20 MB are not kept anywhere."""
     messages, text = 1000, "x" * 20_000
     limits = BridgeLimits(queued_bytes=MIB)
@@ -189,14 +189,58 @@ def test_n05_stalled_subscriber_costs_the_others_nothing_and_no_memory(
             # What waits for it is the newest.
             assert f'"{messages - 1} '.encode() in session.outlets["/big"].texts[-1]
             assert gained < 10 * MIB
-            record_property(
-                "stalled subscriber",
-                f"others lost 0 of {messages}, memory grew by {gained / MIB:.1f} MB (bar 10), it lost {dropped}",
-            )
+            seen = f"others lost 0 of {messages}, memory grew by {gained / MIB:.1f} MiB, it lost {dropped}"
+            measured("N05", f"stalled subscriber, {transport}", seen, "0, 10 MiB")
         # It still read nothing, and the server has ended all the same.
         stalled.sock.close()
 
     asyncio.run(main())
+
+
+@pytest.mark.fault("N05")
+@pytest.mark.parametrize("transport", ["websockets", "picows"])
+def test_n05_stalled_subscriber_costs_the_server_no_processor_time(
+    transport: str, snapshot: Callable[..., Any], measured: Measured
+) -> None:
+    """The processor time for the same messages to three readers, with and without one more that reads nothing."""
+
+    async def spent_s(server: BridgeServer, stalled: bool) -> float:
+        peers = [await connect(server.url) for _ in range(3)]
+        half = await raw(server, receive_bytes=4096) if stalled else None
+        for peer in peers:
+            await say(peer, op="subscribe", topic="/odom", queue_length=1000)
+        if half is not None:
+            half.say(op="subscribe", topic="/odom", queue_length=1000)
+        router = server.console.router
+        await until(lambda: len(router.sessions) == 3 + stalled)
+        await until(lambda: all("/odom" in session.outlets for session in router.sessions))
+        began_s = time.process_time()
+        for tick in range(5, 5 * MESSAGES + 1, 5):
+            server.publish(snapshot(tick))
+            for peer in peers:
+                await peer.recv()
+        spent = time.process_time() - began_s
+        for peer in peers:
+            await peer.close()
+        if half is not None:
+            assert max(session.outgoing.dropped for session in router.sessions) > 0, "it was behind"
+            half.vanish()
+        await until(lambda: not router.sessions)
+        return spent
+
+    async def main() -> tuple[float, float]:
+        profile = BridgeProfile(port=0, transport=transport, stall_close_s=600.0, rates_hz={"/odom": 250.0})  # type: ignore[arg-type]
+        async with served(profile) as server:
+            await spent_s(server, False)
+            pairs = [(await spent_s(server, True), await spent_s(server, False)) for _ in range(3)]
+        return min(pair[0] for pair in pairs), min(pair[1] for pair in pairs)
+
+    beside_s, alone_s = asyncio.run(main())
+    seen = f"{beside_s / alone_s:.2f} times that without one"
+    measured(
+        "N05", f"processor time beside a stalled subscriber, {transport}", seen, "at most 1.5, the share of a fourth"
+    )
+    assert beside_s <= 1.5 * alone_s
 
 
 @pytest.mark.fault("N05")

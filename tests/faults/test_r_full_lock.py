@@ -7,44 +7,19 @@ The judge reads docs/faults.md, not the console: a command is wild if speed^2 ta
 import math
 import random
 from collections.abc import Callable
-from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 import pytest
 
-from simconsole.assembly import ResolvedSession, assemble
-from simconsole.compiling import compiled
-from simconsole.devices.settings import settings
-from simconsole.devices.uncalibrate import Intent, uncalibrate
-from simconsole.drive import Cast, run
-from simconsole.memory import MemoryRecorder
-from simconsole.pacing import UnpacedPacer
-from simconsole.pipeline import Console, ConsoleState
-from simconsole.profile_files import parse
-from simconsole.profiles.session import SessionProfile
-from simconsole.rows import Snapshot
-from simconsole.session_files import override, resolve
-from simconsole.signals import (
-    NO_COMMAND,
-    NO_EVENTS,
-    DeviceSample,
-    Event,
-    EventInput,
-    Mode,
-    Reason,
-    RemoteCommand,
-    RemoteKind,
-)
+from simconsole.signals import NO_EVENTS, EventInput, Mode, Reason, RemoteCommand
+from tests.faults.at_speed import LEFT_WITHIN_S, ready, said
 from tests.samples import Measured, Sample
 
-SESSION = "schema: 1\nscenario: {vehicle: hatchback}\ndevices: {driver: none}\n"
 RATES_HZ = (50, 250, 1000)
-STALE_S = 0.2
 WILD_MPS2 = 10.0
 MOST_RADPS = 1.0
 LOCK_RAD = math.radians(34.0)
-SPEED_MPS = 13.0
 PATTERN_S = 3.0
 Pattern = Callable[[float, random.Random], float | None]
 """The angle of a command sent so many seconds after the fault began; None: it is not sent."""
@@ -58,76 +33,26 @@ PATTERNS: dict[str, Pattern] = {
     "now and then": lambda t_s, chance: chance.choice((None, None, LOCK_RAD, -LOCK_RAD, 0.0)),
     "mostly missing": lambda t_s, chance: chance.choice((LOCK_RAD, 0.005, *(None,) * 12)),
 }
-
-
 ALWAYS = ("step", "left and right", "after silence")
 
 
-class Seated:
-    """A person with hands and feet at rest."""
-
-    def __init__(self, resolved: ResolvedSession, tick_hz: int) -> None:
-        self._rest = uncalibrate(Intent(), settings(resolved.cockpit, tick_hz))
-
-    def poll(self, tick: int) -> DeviceSample:
-        return self._rest
-
-    def close(self) -> None:
-        pass
-
-
 class Sender:
-    """A controller that drives straight on, engaged at 2 s, until its fault; then a pattern at a rate of its own."""
+    """A controller whose commands follow a pattern, at a rate of its own; before, it drove straight on."""
 
-    def __init__(self, tick_hz: int, first_tick: int, pattern: Pattern | None, period_s: float, seed: int) -> None:
-        self._tick_hz, self._first, self._pattern = tick_hz, first_tick, pattern
+    def __init__(self, tick_hz: int, start: int, pattern: Pattern, period_s: float, seed: int) -> None:
+        self._tick_hz, self._start, self._pattern = tick_hz, start, pattern
         self._period = max(1, round(period_s * tick_hz))
         self._chance = random.Random(seed)
-        self._command, self._received = NO_COMMAND, -1
-        self.sent: list[tuple[int, float]] = []
-        if first_tick > 1:
-            self._say(first_tick - 1, 0.0)
+        self._command, self._received = said(start, 0.0), start
+        self.sent: dict[int, float] = {}
 
     def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
-        after = tick - self._first
-        angle: float | None = 0.0
-        if self._pattern is not None:
-            angle = self._pattern(after / self._tick_hz, self._chance) if after % self._period == 0 else None
+        after = tick - self._start - 1
+        angle = self._pattern(after / self._tick_hz, self._chance) if after % self._period == 0 else None
         if angle is not None:
-            self._say(tick, angle)
-        events = EventInput(float(Event.REQUEST_AUTONOMOUS)) if tick == 2 * self._tick_hz else NO_EVENTS
-        if self._received < 0:
-            return NO_COMMAND, events
-        return self._command._replace(age_ticks=float(tick - self._received)), events
-
-    def _say(self, tick: int, angle: float) -> None:
-        self._received = tick
-        self.sent.append((tick, angle))
-        speed_mps = min(SPEED_MPS, 1.0 + max(0.0, 1.5 * (tick / self._tick_hz - 2.0)))
-        self._command = NO_COMMAND._replace(
-            kind=float(RemoteKind.SPEED), sequence=float(tick), road_wheel_rad=angle, speed_mps=speed_mps
-        )
-
-
-class Ready(NamedTuple):
-    """A console that drives at speed."""
-
-    resolved: ResolvedSession
-    console: Console
-    state: ConsoleState
-
-
-@cache
-def ready(tick_hz: int) -> Ready:
-    resolved = resolve(override(parse(SESSION, SessionProfile, "session"), mode={"tick_hz": tick_hz}))
-    console, state = assemble(resolved, compiled)
-    sender = Sender(tick_hz, 1, None, 0.0, 0)
-    cast = Cast(Seated(resolved, tick_hz), sender, MemoryRecorder(30 * tick_hz, console.width), (), UnpacedPacer())
-    state = run(console, state, cast, 14 * tick_hz)
-    snapshot = Snapshot(state.tick, tick_hz, state.row)
-    assert snapshot.arbitration.mode == Mode.AUTONOMOUS, Reason(int(snapshot.arbitration.reason))
-    assert snapshot.vehicle.vx_mps > 0.9 * SPEED_MPS
-    return Ready(resolved, console, ConsoleState(state.tick, state.row.copy()))
+            self.sent[tick] = angle
+            self._command, self._received = said(tick, angle), tick
+        return self._command._replace(age_ticks=float(tick - self._received)), NO_EVENTS
 
 
 class Answer(NamedTuple):
@@ -140,35 +65,25 @@ class Answer(NamedTuple):
 
 def answer(tick_hz: int, pattern: Pattern, period_s: float, seed: int) -> Answer:
     """Drive a pattern; judge each tick of it."""
-    resolved, console, start = ready(tick_hz)
-    ticks = round(PATTERN_S * tick_hz)
-    sender = Sender(tick_hz, start.tick + 1, pattern, period_s, seed)
-    recorder = MemoryRecorder(ticks, console.width)
-    cast = Cast(Seated(resolved, tick_hz), sender, recorder, (), UnpacedPacer())
-    run(console, ConsoleState(start.tick, start.row.copy()), cast, ticks)
-    rows = np.vstack((start.row, recorder.rows))  # the row before each tick, too
-
-    def column(name: str) -> np.ndarray:
-        return rows[:, console.columns.index(name)]
-
-    mode, angle, speed = column("arbitration.mode"), column("command.road_wheel_rad"), column("vehicle.vx_mps")
-    lateral = {
-        tick: speed[tick - start.tick - 1] ** 2 * math.tan(abs(sent)) / console.platform.wheelbase_m
-        for tick, sent in sender.sent
-        if tick > start.tick
-    }
-    wild = {tick for tick, mps2 in lateral.items() if mps2 > WILD_MPS2}
-    autonomous = np.flatnonzero(mode == Mode.AUTONOMOUS) + start.tick
-    plausible = np.array(sorted({start.tick} | set(lateral) - wild))
-    latest = plausible[np.searchsorted(plausible, autonomous, side="right") - 1]
+    at_speed = ready(tick_hz)
+    start = at_speed.state.tick
+    sender = Sender(tick_hz, start, pattern, period_s, seed)
+    driven = at_speed.drive(sender, PATTERN_S)
+    mode, angle = driven.column("arbitration.mode"), driven.column("command.road_wheel_rad")
+    per_tangent = driven.column("vehicle.vx_mps")[:-1] ** 2 / driven.wheelbase_m  # as the car was before each tick
+    plausible = [start]
+    plausible += [
+        tick for tick, sent in sender.sent.items() if per_tangent[tick - start - 1] * math.tan(abs(sent)) <= WILD_MPS2
+    ]
+    autonomous = np.flatnonzero(mode == Mode.AUTONOMOUS) + start
+    latest = np.array(plausible)[np.searchsorted(plausible, autonomous, side="right") - 1]
     longest = int((autonomous - latest).max()) + 1  # the tick that is not autonomous any more
     assert np.abs(np.diff(angle)).max() <= MOST_RADPS / tick_hz + 1e-9, "the rate of the wheels"
-    driven = mode[1:] == Mode.AUTONOMOUS
-    asked = speed[:-1] ** 2 * np.tan(np.abs(angle[1:])) / console.platform.wheelbase_m
-    assert (asked[driven] <= WILD_MPS2).all(), "a wild angle is never commanded"
-    left = np.flatnonzero(~driven)
+    still = mode[1:] == Mode.AUTONOMOUS
+    assert (per_tangent * np.tan(np.abs(angle[1:])) <= WILD_MPS2)[still].all(), "a wild angle is never commanded"
+    left = np.flatnonzero(~still)
     if len(left):
-        reason = column("arbitration.reason")[1:][left[0]]
+        reason = driven.column("arbitration.reason")[1:][left[0]]
         assert reason in (Reason.COMMAND_INVALID, Reason.COMMAND_STALE)
     return Answer(longest / tick_hz, bool(len(left)))
 
@@ -182,7 +97,7 @@ def test_r06_autonomy_ends_in_time_after_the_last_plausible_command(
     chance = random.Random(sample.seed)
     periods_s = [0.01, 0.02, 0.05, 0.1, 0.16, 0.19, 0.25]
     periods_s += [chance.uniform(0.004, 0.4) for _ in range(sample.of(5, 500))]
-    bar_s = STALE_S + 0.010 + 1.0 / tick_hz
+    bar_s = LEFT_WITHIN_S + 1.0 / tick_hz
     longest_s = 0.0
     for name, pattern in PATTERNS.items():
         for period_s in periods_s:

@@ -1,0 +1,116 @@
+"""A car that a controller drives straight on at 13 m/s, with a person whose hands and feet rest: a start for faults."""
+
+from functools import cache
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from simconsole.assembly import ResolvedSession, assemble
+from simconsole.compiling import compiled
+from simconsole.devices.settings import settings
+from simconsole.devices.uncalibrate import Intent, uncalibrate
+from simconsole.drive import Cast, run
+from simconsole.memory import MemoryRecorder
+from simconsole.pacing import UnpacedPacer
+from simconsole.pipeline import Console, ConsoleState
+from simconsole.ports import CommandSource
+from simconsole.profile_files import parse
+from simconsole.profiles.session import SessionProfile
+from simconsole.rows import Snapshot
+from simconsole.session_files import override, resolve
+from simconsole.signals import (
+    NO_COMMAND,
+    NO_EVENTS,
+    DeviceSample,
+    Event,
+    EventInput,
+    Mode,
+    Reason,
+    RemoteCommand,
+    RemoteKind,
+)
+
+SESSION: Final = "schema: 1\nscenario: {vehicle: hatchback}\ndevices: {driver: none}\n"
+SPEED_MPS: Final = 13.0
+ENGAGED_S: Final = 2.0
+READY_S: Final = 14.0
+STALE_S: Final = 0.2
+LEFT_WITHIN_S: Final = STALE_S + 0.010
+"""And a tick: how long after the last plausible command the car may be AUTONOMOUS."""
+
+
+class Seated:
+    """A person with hands and feet at rest."""
+
+    def __init__(self, resolved: ResolvedSession, tick_hz: int) -> None:
+        self._rest = uncalibrate(Intent(), settings(resolved.cockpit, tick_hz))
+
+    def poll(self, tick: int) -> DeviceSample:
+        return self._rest
+
+    def close(self) -> None:
+        pass
+
+
+class Steady:
+    """A controller that drives straight on and never fails; autonomy is asked for at 2 s."""
+
+    def __init__(self, tick_hz: int) -> None:
+        self._tick_hz = tick_hz
+
+    def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
+        events = EventInput(float(Event.REQUEST_AUTONOMOUS)) if tick == ENGAGED_S * self._tick_hz else NO_EVENTS
+        return said(tick, 0.0, 1.0 + max(0.0, 1.5 * (tick / self._tick_hz - ENGAGED_S))), events
+
+
+def said(tick: int, road_wheel_rad: float, speed_mps: float = SPEED_MPS) -> RemoteCommand:
+    """Return a command that has come in a tick."""
+    return NO_COMMAND._replace(
+        kind=float(RemoteKind.SPEED),
+        sequence=float(tick),
+        age_ticks=0.0,
+        road_wheel_rad=road_wheel_rad,
+        speed_mps=min(SPEED_MPS, speed_mps),
+    )
+
+
+class Driven(NamedTuple):
+    """Rows of a drive, the one before its first tick too: row i is that of tick `start` + i."""
+
+    rows: Any
+    columns: tuple[str, ...]
+    wheelbase_m: float
+
+    def column(self, name: str) -> Any:
+        return self.rows[:, self.columns.index(name)]
+
+
+class Ready(NamedTuple):
+    """A console with its car at speed, AUTONOMOUS."""
+
+    resolved: ResolvedSession
+    console: Console
+    state: ConsoleState
+
+    def drive(self, controller: CommandSource, seconds: float) -> Driven:
+        """Drive on with another controller."""
+        console, ticks = self.console, round(seconds * self.console.tick_hz)
+        recorder = MemoryRecorder(ticks, console.width)
+        cast = Cast(Seated(self.resolved, console.tick_hz), controller, recorder, (), UnpacedPacer())
+        run(console, ConsoleState(self.state.tick, self.state.row.copy()), cast, ticks)
+        return Driven(np.vstack((self.state.row, recorder.rows)), console.columns, console.platform.wheelbase_m)
+
+
+@cache
+def ready(tick_hz: int) -> Ready:
+    """Return the console of a rate, its car at speed."""
+    resolved = resolve(override(parse(SESSION, SessionProfile, "session"), mode={"tick_hz": tick_hz}))
+    console, state = assemble(resolved, compiled)
+    ticks = round(READY_S * tick_hz)
+    recorder = MemoryRecorder(ticks, console.width)
+    cast = Cast(Seated(resolved, tick_hz), Steady(tick_hz), recorder, (), UnpacedPacer())
+    state = run(console, state, cast, ticks)
+    snapshot = Snapshot(state.tick, tick_hz, state.row)
+    assert snapshot.arbitration.mode == Mode.AUTONOMOUS, Reason(int(snapshot.arbitration.reason))
+    assert snapshot.vehicle.vx_mps > 0.9 * SPEED_MPS
+    return Ready(resolved, console, ConsoleState(state.tick, state.row.copy()))
