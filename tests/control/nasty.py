@@ -22,13 +22,15 @@ from simconsole.signals import (
     VehicleState,
 )
 
-AUTONOMOUS, MINIMAL, STOPPED = float(Mode.AUTONOMOUS), float(Mode.MINIMAL_RISK), float(Mode.STOPPED)
+MANUAL, STOPPED = float(Mode.MANUAL), float(Mode.STOPPED)
 LIVE, LOST = float(Validity.LIVE), float(Validity.LOST)
 ACCELERATION, SPEED, TWIST, POSE = (
     float(kind) for kind in (RemoteKind.ACCELERATION, RemoteKind.SPEED, RemoteKind.TWIST, RemoteKind.POSE)
 )
 
 STOP_BUTTON: Final = int(Button.EMERGENCY_STOP.value)
+ASK_AUTONOMOUS: Final = int(Event.REQUEST_AUTONOMOUS.value)
+ASK_SHARED: Final = int(Event.REQUEST_SHARED.value)
 RESET_EVENT: Final = int(Event.RESET.value)
 EVENTS: Final = np.array([float(event) for event in Event])
 COMMON: Final = np.array(
@@ -100,7 +102,7 @@ def held(g: Row, value_at: int, left_at: int, rest: float) -> None:
 
 
 @kernel
-def person(g: Row, u: Row, mode: float, storm: bool, chance: float, hz: float) -> None:
+def person(g: Row, u: Row, storm: bool, chance: float, hz: float) -> None:
     """Move the person's hands and feet, and let their devices come and go."""
     held(g, THROTTLE, THROTTLE_LEFT, 0.0)
     held(g, BRAKE, BRAKE_LEFT, 0.0)
@@ -144,7 +146,7 @@ def person(g: Row, u: Row, mode: float, storm: bool, chance: float, hz: float) -
 
 
 @kernel
-def events(g: Row, u: Row, mode: float, storm: bool, chance: float) -> None:
+def events(g: Row, u: Row, mode: float, storm: bool, chance: float, calm: float) -> None:
     """Raise edges of operators, the console and the ECU."""
     mask = 0
     if u[18] < chance:
@@ -157,6 +159,8 @@ def events(g: Row, u: Row, mode: float, storm: bool, chance: float) -> None:
         mask |= int(pick(EVENTS, u[21]))
     if mode >= STOPPED and u[22] < 0.02:
         mask |= RESET_EVENT
+    if mode <= MANUAL and u[23] < 2.0 * calm:
+        mask |= ASK_SHARED if u[24] < 0.3 else ASK_AUTONOMOUS
     g[EVENT_MASK] = float(mask)
     mask = 0
     if u[25] < 0.5 * chance:
@@ -245,7 +249,7 @@ def send(g: Row, at: int, what: float, u: Row, first: int, stale_ticks: float) -
 
 
 @kernel
-def draw(g: Row, u: Row, mode: float, hz: float, stop_s: float) -> tuple[float, float]:
+def draw(g: Row, u: Row, hz: float, stop_s: float) -> tuple[float, float]:
     """Draw the tick's phase: how much happens (the chance of one thing) and whether this tick is a storm."""
     g[LEFT] -= 1.0
     if g[LEFT] <= 0.0:

@@ -6,133 +6,86 @@ flags, and a mode is judged by what it bears.
 """
 
 import math
-from typing import Final, NamedTuple
 
 from simconsole.kernels import Row, is_finite, kernel
-from simconsole.profiles.control import ControlProfile
-from simconsole.signals import (
-    NEVER_TICKS,
-    Arbitration,
-    Button,
-    Commander,
-    DriverInput,
-    Event,
-    Mode,
-    Reason,
-    RemoteCommand,
-    RemoteKind,
-    Validity,
-    VehicleState,
+from simconsole.signals import NEVER_TICKS, Arbitration, DriverInput, RemoteCommand, VehicleState
+from tests.control.oracle_rules import (
+    AGE,
+    ARMED,
+    ASKED,
+    AUTONOMOUS,
+    AUTONOMOUS_ASKED,
+    B_AUTONOMOUS,
+    B_MANUAL,
+    B_RESET,
+    B_SHARED,
+    B_STOP,
+    B_TAKEOVER,
+    BRAKE,
+    BY_REQUEST,
+    COMMAND_INVALID,
+    COMMAND_STALE,
+    COMMANDER_LOST,
+    COUNT,
+    DEVICE_LOST,
+    E_AUTONOMOUS,
+    E_LEFT,
+    E_MANUAL,
+    E_NO_ANSWER,
+    E_RESET,
+    E_SHARED,
+    E_STALL,
+    E_STOP,
+    E_TAKEOVER,
+    ECU,
+    ECU_AT,
+    EFFECT,
+    EMERGENCY,
+    EMERGENCY_STOP,
+    FRESH,
+    GOOD,
+    INVALID,
+    LAST_KIND,
+    LIVE,
+    LOOP_STALL,
+    MANUAL,
+    MANUAL_ASKED,
+    MINIMAL,
+    MODE,
+    NO_REACTION,
+    NOBODY,
+    PARKED,
+    PERSON_READY,
+    QUIET,
+    RECEIVED,
+    REFERENCE,
+    REFERRED,
+    REFUSED,
+    RESET,
+    ROS,
+    ROS_AT,
+    RUN,
+    SEEN,
+    SHARED,
+    SHARED_ASKED,
+    SINCE,
+    SPEED_KIND,
+    STALE,
+    STANDING,
+    STANDSTILL,
+    STEADY,
+    STEERING,
+    STOPPED,
+    TAKEOVER,
+    TAKEOVER_ASKED,
+    TURNED,
+    TWIST_KIND,
+    WAIT,
+    WHO,
+    WIDTH,
+    WILD,
+    Rules,
 )
-
-PARKED, MANUAL, SHARED, AUTONOMOUS, TAKEOVER, MINIMAL, STOPPED, EMERGENCY_STOP = map(float, Mode)
-NOBODY, ROS, ECU = map(float, Commander)
-TRIGGERS: Final = (
-    *("EMERGENCY", "BRAKE", "STEERING", "MANUAL_ASKED", "LOOP_STALL", "DEVICE_LOST", "COMMANDER_LOST"),
-    *("COMMAND_STALE", "COMMAND_INVALID", "TAKEOVER_ASKED", "NO_REACTION", "STANDSTILL", "RESET"),
-    *("AUTONOMOUS_ASKED", "SHARED_ASKED", "PERSON_READY"),
-)
-EMERGENCY, BRAKE, STEERING, MANUAL_ASKED, LOOP_STALL, DEVICE_LOST, COMMANDER_LOST = range(7)
-COMMAND_STALE, COMMAND_INVALID, TAKEOVER_ASKED, NO_REACTION, STANDSTILL, RESET = range(7, 13)
-AUTONOMOUS_ASKED, SHARED_ASKED, PERSON_READY = range(13, 16)
-COUNT: Final = len(TRIGGERS)
-
-ASKS: Final = float(
-    Event.RESET | Event.REQUEST_MANUAL | Event.REQUEST_AUTONOMOUS | Event.REQUEST_TAKEOVER | Event.REQUEST_SHARED
-)
-E_STOP, E_RESET, E_MANUAL, E_AUTONOMOUS, E_TAKEOVER, E_SHARED, E_LEFT, E_STALL, E_NO_ANSWER, E_RESTART = (
-    float(event)
-    for event in (
-        *(Event.EMERGENCY_STOP, Event.RESET, Event.REQUEST_MANUAL, Event.REQUEST_AUTONOMOUS, Event.REQUEST_TAKEOVER),
-        *(Event.REQUEST_SHARED, Event.COMMANDER_LOST, Event.LOOP_STALL, Event.NO_ANSWER, Event.RESTART),
-    )
-)
-B_STOP, B_RESET, B_MANUAL, B_AUTONOMOUS, B_TAKEOVER, B_SHARED, B_RESTART = (
-    float(button)
-    for button in (
-        *(Button.EMERGENCY_STOP, Button.RESET, Button.MANUAL, Button.AUTONOMOUS, Button.TAKEOVER, Button.SHARED),
-        Button.RESTART,
-    )
-)
-ARMED, LIVE = float(Validity.ARMED), float(Validity.LIVE)
-SPEED_KIND, TWIST_KIND = float(RemoteKind.SPEED), float(RemoteKind.TWIST)
-LAST_KIND: Final = float(max(RemoteKind))
-
-# What the oracle remembers: a block for each controller, then the rest.
-SEEN, REFUSED, RUN, AGE, RECEIVED, STEADY, LEASE, FRESH, INVALID, STALE, WILD = range(11)
-BLOCK: Final = 11
-ROS_AT, ECU_AT = 0, BLOCK
-MODE, SINCE, WAIT, BY_REQUEST, REFERENCE, REFERRED, TURNED, STANDING, WHO, REASON, EFFECT, ASKED = range(
-    2 * BLOCK, 2 * BLOCK + 12
-)
-WIDTH: Final = 2 * BLOCK + 12
-
-
-class Rules(NamedTuple):
-    """The settings that decide on modes, in SI and ticks. An age expires rounded down, a while lasts rounded up."""
-
-    person_required: float
-    preferred: float
-    wheelbase_m: float
-    brake: float
-    accelerator: float
-    moved_rad: float
-    moved_still_rad: float
-    turned_radps: float
-    turned_ticks: float
-    stale_ticks: float
-    lease_ticks: float
-    invalid_most: float
-    wild_mps2: float
-    no_reaction_ticks: float
-    stands_mps: float
-    stands_ticks: float
-    steady_ticks: float
-    steady_again_ticks: float
-    fast_mps: float
-    apart_mps: float
-    cornering_mps2: float
-    apart_rad: float
-    apart_above_mps: float
-    leaves_ticks: float
-
-
-def rules(profile: ControlProfile, tick_hz: int, preferred: Commander, wheelbase_m: float) -> Rules:
-    """Return what the profile promises at this rate."""
-
-    def within(seconds: float) -> float:
-        return float(math.floor(seconds * tick_hz + 1e-9))
-
-    def lasting(seconds: float) -> float:
-        return float(math.ceil(seconds * tick_hz - 1e-9))
-
-    p = profile
-    return Rules(
-        person_required=float(p.person_required),
-        preferred=float(preferred),
-        wheelbase_m=wheelbase_m,
-        brake=p.brake_override,
-        accelerator=p.throttle_override,
-        moved_rad=math.radians(p.steering_override_deg),
-        moved_still_rad=math.radians(p.steering_override_deg - p.steering_override_hysteresis_deg),
-        turned_radps=math.radians(p.steering_override_rate_degps),
-        turned_ticks=lasting(p.steering_override_hold_s),
-        stale_ticks=within(p.command_stale_s),
-        lease_ticks=within(p.commander_lease_s),
-        invalid_most=float(p.invalid_commands_max),
-        wild_mps2=p.implausible_lateral_accel_ratio * p.automatic_lateral_accel_mps2,
-        no_reaction_ticks=lasting(p.minimal_risk_after_s),
-        stands_mps=p.standstill_speed_mps,
-        stands_ticks=max(1.0, lasting(p.standstill_s)),
-        steady_ticks=max(1.0, lasting(p.engage_stable_s)),
-        steady_again_ticks=max(1.0, lasting(p.reengage_stable_s)),
-        fast_mps=p.engage_speed_max_mps,
-        apart_mps=p.engage_speed_deviation_mps,
-        cornering_mps2=p.engage_lateral_accel_mps2,
-        apart_rad=p.engage_road_wheel_deviation_rad,
-        apart_above_mps=p.engage_deviation_speed_mps,
-        leaves_ticks=p.command_stale_s * tick_hz + 0.01 * tick_hz + 1.0,
-    )
 
 
 @kernel
@@ -152,7 +105,7 @@ def is_wild(command: RemoteCommand, speed_mps: float, r: Rules) -> bool:
 @kernel
 def all_finite(command: RemoteCommand) -> bool:
     """Return whether every number of a command is one."""
-    for value in command:
+    for value in command:  # noqa: SIM110 - a kernel has no generators
         if not is_finite(value):
             return False
     return True
@@ -161,23 +114,24 @@ def all_finite(command: RemoteCommand) -> bool:
 @kernel
 def hear(o: Row, at: int, command: RemoteCommand, speed_mps: float, r: Rules) -> None:
     """Take in what one controller has said by this tick."""
-    came = command.sequence > o[at + SEEN]
-    refused = command.refused - o[at + REFUSED]
-    o[at + SEEN], o[at + REFUSED] = command.sequence, command.refused
     known = 1.0 <= command.kind <= LAST_KIND and command.kind == float(int(command.kind))
     finite = all_finite(command)
     wild = finite and known and is_wild(command, speed_mps, r)
-    if finite and known and not wild:
+    plausible = finite and known and not wild
+    came = finite and command.sequence > o[at + SEEN]
+    refused = command.refused - o[at + REFUSED] if finite else 0.0
+    if finite:  # what is refused meanwhile counts when a finite one comes
+        o[at + SEEN], o[at + REFUSED] = command.sequence, command.refused
+    if plausible:
         o[at + AGE] = command.age_ticks
         o[at + RECEIVED] = command.age_ticks
     else:
-        o[at + AGE] = 1.0 if wild and came and o[at + FRESH] == 0.0 else o[at + AGE] + 1.0  # TEMP
+        o[at + AGE] += 1.0
         o[at + RECEIVED] += 1.0
-    if came and finite and known and not wild:
+    if came and plausible:
         o[at + RUN] = 0.0
-    if came and wild:
-        o[at + RUN] += 1.0
-    o[at + RUN] += refused
+    else:
+        o[at + RUN] += refused + (1.0 if came and wild else 0.0)
     fresh = finite and known and command.age_ticks < r.stale_ticks
     o[at + WILD] = 1.0 if wild else 0.0
     o[at + FRESH] = 1.0 if fresh else 0.0
@@ -187,42 +141,49 @@ def hear(o: Row, at: int, command: RemoteCommand, speed_mps: float, r: Rules) ->
         o[at + INVALID] = 1.0
     good = fresh and not wild and refused <= 0.0 and o[at + INVALID] == 0.0
     o[at + STEADY] = o[at + STEADY] + 1.0 if good else 0.0
-    if fresh and o[at + INVALID] == 0.0:
-        o[at + LEASE] = r.lease_ticks
-    elif o[at + LEASE] > 0.0:
-        o[at + LEASE] -= 1.0
+    o[at + GOOD] = 1.0 if fresh and not wild and o[at + INVALID] == 0.0 else 0.0
+    o[at + QUIET] = 0.0 if fresh else o[at + QUIET] + 1.0
 
 
 @kernel
-def choose(o: Row, r: Rules) -> None:
-    """Say whose commands count: the same as before while the remote side drives, else who is preferred and there."""
-    if SHARED <= o[MODE] <= MINIMAL:
-        return
+def choose(o: Row, who: float, r: Rules) -> bool:
+    """Take in whose commands count, and return whether it may be them.
+
+    While the remote side drives they are the same as before. Else one who is well and preferred comes first, one who is
+    well before nobody, and nobody stays whose lease is over. When a lease ends that nothing good has renewed is left
+    open here: no mode hangs on it.
+    """
+    if SHARED <= o[MODE] <= MINIMAL and o[WHO] != NOBODY:
+        return bool(who == o[WHO])
+    o[WHO] = who
     first, second = (ECU, ROS) if r.preferred == ECU else (ROS, ECU)
-    o[WHO] = NOBODY
-    if o[(ECU_AT if second == ECU else ROS_AT) + LEASE] > 0.0:
-        o[WHO] = second
-    if o[(ECU_AT if first == ECU else ROS_AT) + LEASE] > 0.0:
-        o[WHO] = first
+    first_at, second_at = (ECU_AT, ROS_AT) if r.preferred == ECU else (ROS_AT, ECU_AT)
+    if o[first_at + GOOD] != 0.0:
+        return who == first
+    if who == first:
+        return bool(o[first_at + QUIET] <= r.lease_ticks)
+    if o[second_at + GOOD] != 0.0:
+        return who == second
+    return who == NOBODY or bool(o[second_at + QUIET] <= r.lease_ticks)
 
 
 @kernel
 def bears(mode: float, trigger: int, person_required: float) -> float:
     """Return the mode that a trigger which takes authority leaves of this one: the upper rows of the table."""
-    automatic = mode == AUTONOMOUS or mode == TAKEOVER
+    automatic = mode in (AUTONOMOUS, TAKEOVER)
     if trigger == EMERGENCY:
         return EMERGENCY_STOP
-    if trigger == BRAKE or trigger == STEERING:
+    if trigger in (BRAKE, STEERING):
         return MANUAL if automatic or mode == MINIMAL else mode
     if trigger == MANUAL_ASKED:
         return mode if mode == EMERGENCY_STOP else MANUAL
     if trigger == LOOP_STALL:
-        return MINIMAL if automatic or mode == MANUAL or mode == SHARED else mode
+        return MINIMAL if automatic or mode in (MANUAL, SHARED) else mode
     if trigger == DEVICE_LOST:
-        if mode == MANUAL or mode == SHARED:
+        if mode in (MANUAL, SHARED):
             return MINIMAL
         return TAKEOVER if mode == AUTONOMOUS and person_required != 0.0 else mode
-    if trigger == COMMANDER_LOST or trigger == COMMAND_STALE or trigger == COMMAND_INVALID:
+    if trigger in (COMMANDER_LOST, COMMAND_STALE, COMMAND_INVALID):
         if mode == SHARED:
             return MANUAL
         return MINIMAL if automatic else mode
@@ -238,16 +199,16 @@ def bears(mode: float, trigger: int, person_required: float) -> float:
 @kernel
 def steps(mode: float, trigger: int) -> float:
     """Return the mode that a step towards driving or towards rest leads to: the lower rows of the table."""
-    rests = mode == PARKED or mode == STOPPED
+    rests = mode in (PARKED, STOPPED)
     if trigger == MANUAL_ASKED and rests:
         return MANUAL
     if trigger == STANDSTILL and mode == MINIMAL:
         return STOPPED
-    if trigger == RESET and (mode == STOPPED or mode == EMERGENCY_STOP):
+    if trigger == RESET and (mode in (STOPPED, EMERGENCY_STOP)):
         return PARKED
-    if trigger == AUTONOMOUS_ASKED and (rests or mode == MANUAL or mode == SHARED or mode == TAKEOVER):
+    if trigger == AUTONOMOUS_ASKED and (rests or mode in (MANUAL, SHARED, TAKEOVER)):
         return AUTONOMOUS
-    if trigger == SHARED_ASKED and (mode == MANUAL or mode == AUTONOMOUS):
+    if trigger == SHARED_ASKED and (mode in (MANUAL, AUTONOMOUS)):
         return SHARED
     if trigger == PERSON_READY and mode == PARKED:
         return MANUAL
@@ -315,14 +276,14 @@ def gather(
         and (driver.throttle_validity == ARMED or driver.throttle_validity == LIVE)
         and (driver.brake_validity == ARMED or driver.brake_validity == LIVE)
     )
-    released = driver.throttle < r.accelerator or driver.brake >= r.brake  # TEMP
+    released = driver.throttle < r.accelerator or driver.brake >= r.brake
     for trigger in range(COUNT):
         present[trigger] = 0.0
     stop = has(driver.pressed, B_STOP) or has(edges, B_STOP) or has(mask, E_STOP)
     present[EMERGENCY] = 1.0 if stop else 0.0
     present[BRAKE] = 1.0 if trusted and driver.brake >= r.brake else 0.0
     present[STEERING] = 1.0 if turned(o, driver, trusted, explained, r) else 0.0
-    rests = mode == PARKED or mode == STOPPED
+    rests = mode in (PARKED, STOPPED)
     wants_manual = has(mask, E_MANUAL) or has(edges, B_MANUAL)
     present[MANUAL_ASKED] = 1.0 if wants_manual and trusted and (released or not rests) else 0.0
     present[LOOP_STALL] = 1.0 if has(mask, E_STALL) else 0.0
@@ -335,9 +296,7 @@ def gather(
     present[TAKEOVER_ASKED] = 1.0 if has(mask, E_TAKEOVER) or has(edges, B_TAKEOVER) else 0.0
     if mode == TAKEOVER and o[WAIT] + 1.0 >= r.no_reaction_ticks and (o[BY_REQUEST] != 0.0 or not trusted):
         present[NO_REACTION] = 1.0
-    if mode == TAKEOVER and o[SINCE] + 1.0 >= r.no_reaction_ticks and not trusted:
-        present[NO_REACTION] = 1.0
-    o[STANDING] = o[STANDING] + 1.0 if abs(vehicle.vx_mps) < r.stands_mps else 0.0
+    o[STANDING] = o[STANDING] + 1.0 if abs(vehicle.vx_mps) <= r.stands_mps else 0.0
     stands = o[STANDING] >= r.stands_ticks
     present[STANDSTILL] = 1.0 if stands else 0.0
     wants_reset = has(mask, E_RESET) or has(edges, B_RESET)
@@ -360,7 +319,7 @@ def gather(
 def withstands(mode: float, present: Row, person_required: float) -> bool:
     """Return whether no trigger that takes authority would change this mode."""
     for trigger in range(STANDSTILL):
-        step = trigger == MANUAL_ASKED and (mode == PARKED or mode == STOPPED)
+        step = trigger == MANUAL_ASKED and (mode in (PARKED, STOPPED))
         if present[trigger] != 0.0 and not step and bears(mode, trigger, person_required) != mode:
             return False
     return True
@@ -371,7 +330,7 @@ def settle(o: Row, present: Row, r: Rules) -> None:
     """Find the mode that this tick ends in, and begin the waits that belong to it."""
     before = mode = o[MODE]
     effect = -1
-    rests = mode == PARKED or mode == STOPPED
+    rests = mode in (PARKED, STOPPED)
     requested = False
     for trigger in range(STANDSTILL):
         if present[trigger] == 0.0 or (trigger == MANUAL_ASKED and rests):
@@ -384,10 +343,10 @@ def settle(o: Row, present: Row, r: Rules) -> None:
     if effect < 0:
         for trigger in range(MANUAL_ASKED, COUNT):
             step = trigger >= STANDSTILL or trigger == MANUAL_ASKED
-            if step and present[trigger] != 0.0 and steps(mode, trigger) != mode:
-                if withstands(steps(mode, trigger), present, r.person_required):
-                    effect, mode = trigger, steps(mode, trigger)
-                    break
+            after = steps(mode, trigger)
+            if step and present[trigger] != 0.0 and after != mode and withstands(after, present, r.person_required):
+                effect, mode = trigger, after
+                break
     o[SINCE] = 0.0 if mode != before else o[SINCE] + 1.0
     o[WAIT] += 1.0
     if mode == TAKEOVER and before != TAKEOVER:
@@ -396,7 +355,7 @@ def settle(o: Row, present: Row, r: Rules) -> None:
         effect = TAKEOVER_ASKED if requested else effect
     elif mode == TAKEOVER and requested and o[BY_REQUEST] == 0.0:
         o[BY_REQUEST] = 1.0
-        o[WAIT] = 0.0
+        o[WAIT] = o[WAIT] if present[DEVICE_LOST] != 0.0 else 0.0
         effect = TAKEOVER_ASKED
     o[MODE], o[EFFECT] = mode, float(effect)
 
@@ -414,17 +373,21 @@ def foresee(
     explained: tuple[float, float],
     seen: Arbitration,
     r: Rules,
-) -> None:
-    """Take one tick: leave in `o[MODE]` the mode that it must end in, and in `present` what was present."""
+) -> bool:
+    """Take one tick: leave in `o[MODE]` the mode that it must end in, and in `present` what was present.
+
+    Returns whether the commander is one that may be it.
+    """
     hear(o, ROS_AT, ros, vehicle.vx_mps, r)
     hear(o, ECU_AT, ecu, vehicle.vx_mps, r)
-    choose(o, r)
+    known = choose(o, seen.commander, r)
     before = o[MODE]
     gather(o, present, driver, events, ecu_events, ros, ecu, vehicle, explained, seen, r)
     settle(o, present, r)
     if not AUTONOMOUS <= before <= MINIMAL and AUTONOMOUS <= o[MODE] <= MINIMAL:
         there = driver.wheel_validity == ARMED or driver.wheel_validity == LIVE
         o[REFERENCE], o[REFERRED], o[TURNED] = driver.hand_wheel_rad - explained[0], 1.0 if there else 0.0, 0.0
+    return known
 
 
 @kernel
@@ -433,12 +396,4 @@ def blank(o: Row) -> None:
     for index in range(WIDTH):
         o[index] = 0.0
     for at in (ROS_AT, ECU_AT):
-        o[at + AGE] = o[at + RECEIVED] = NEVER_TICKS
-
-
-REASONS: Final = (
-    *(Reason.EMERGENCY, Reason.BRAKE_OVERRIDE, Reason.STEERING_OVERRIDE, Reason.PERSON_ASKED, Reason.LOOP_STALL),
-    *(Reason.DEVICE_LOST, Reason.COMMANDER_LOST, Reason.COMMAND_STALE, Reason.COMMAND_INVALID, Reason.REMOTE_ASKED),
-    *(Reason.NO_REACTION, Reason.STANDSTILL, Reason.RESET, Reason.PERSON_ASKED, Reason.OPERATOR_ASKED, Reason.ARMED),
-)
-"""What each trigger gives as its reason, in the order of TRIGGERS."""
+        o[at + AGE] = o[at + RECEIVED] = o[at + QUIET] = NEVER_TICKS

@@ -10,7 +10,6 @@ from simconsole.control.moment import Moment
 from simconsole.control.settings import ControlSettings
 from simconsole.kernels import Row, is_finite, kernel, put, take
 from simconsole.signals import (
-    NEVER_TICKS,
     ArbiterMemory,
     Arbitration,
     DriverInput,
@@ -46,7 +45,8 @@ from tests.control.nasty import (
     move,
     person,
 )
-from tests.control.oracle import (
+from tests.control.oracle import foresee, has
+from tests.control.oracle_rules import (
     ASKED,
     AUTONOMOUS,
     AUTONOMOUS_ASKED,
@@ -61,12 +61,10 @@ from tests.control.oracle import (
     MANUAL,
     MANUAL_ASKED,
     MODE,
-    NOBODY,
     PARKED,
     REASONS,
     RECEIVED,
     RESET,
-    ROS,
     SHARED,
     SHARED_ASKED,
     STOPPED,
@@ -74,8 +72,6 @@ from tests.control.oracle import (
     WHO,
     WILD,
     Rules,
-    foresee,
-    has,
 )
 from tests.control.random_drives import (
     ARBITRATION_AT,
@@ -85,7 +81,6 @@ from tests.control.random_drives import (
     ECU_LINK_AT,
     LINK_WIDTH,
     MEMORY_WIDTH,
-    OUTPUT_WIDTH,
     ROS_LINK_AT,
     SETTINGS_WIDTH,
 )
@@ -105,6 +100,7 @@ DRIVER_COLUMN: Final = 7
 ROS_COLUMN: Final = DRIVER_COLUMN + len(DriverInput._fields)
 ECU_COLUMN: Final = ROS_COLUMN + len(RemoteCommand._fields)
 RECENT: Final = 3
+THROTTLE_FIELD: Final = VehicleCommand._fields.index("throttle")
 RESTART_TICKS: Final = ArbiterMemory._fields.index("restart_ticks")
 
 BREACHES: Final = (
@@ -139,6 +135,7 @@ def judge(
     driver: DriverInput,
     new_refusal: bool,
     nothing_asked: bool,
+    may_command: bool,
     r: Rules,
 ) -> float:
     """Return the breach of this tick, 0 for none. `before` is the row of the tick before."""
@@ -154,7 +151,7 @@ def judge(
         return NOT_GRANTED
     if mode != o[MODE]:
         return MODE_BREACH
-    if arbitration.commander != o[WHO]:
+    if not may_command:
         return COMMANDER_BREACH
     effect = int(o[EFFECT])
     if effect >= 0:
@@ -177,8 +174,10 @@ def judge(
     driven = SHARED <= mode <= TAKEOVER
     if driven and o[at + RECEIVED] > r.leaves_ticks:
         return TOO_LONG
-    if driven and o[at + WILD] != 0.0 and driver.throttle == 0.0 and was.mode == mode:
-        if command.throttle > before[COMMAND_AT + 1] + 1e-12:
+    if driven and o[at + WILD] != 0.0 and driver.throttle == 0.0:
+        held = before[COMMAND_AT + THROTTLE_FIELD]
+        held = was.remote_throttle if was.remote_throttle > held else held  # authority may still fade in towards it
+        if command.throttle > held + 1e-12:
             return FOLLOWED
     return 0.0
 
@@ -211,9 +210,9 @@ def walk(
         u = draws[index]
         ros_before, ecu_before = g[ROS_AT + 5], g[ECU_AT + 5]
         mode = before[ARBITRATION_AT]
-        chance, storm = draw(g, u, mode, hz, figures[5])
-        person(g, u, mode, storm > 0.0, 0.3 if storm > 0.0 else chance, hz)
-        events(g, u, mode, storm > 0.0, 0.5 if storm > 0.0 else chance)
+        chance, storm = draw(g, u, hz, figures[5])
+        person(g, u, storm > 0.0, 0.3 if storm > 0.0 else chance, hz)
+        events(g, u, mode, storm > 0.0, 0.5 if storm > 0.0 else chance, 1.0 / hz)
         move(g, u, chance, hz, before[COMMAND_AT + 1], before[COMMAND_AT + 2])
         ros = controller(g, ROS_AT, u, 28, hz, r.stale_ticks, 0.3 / hz)
         ecu = controller(g, ECU_AT, u, 37, hz, r.stale_ticks, 0.3 / hz)
@@ -253,7 +252,9 @@ def walk(
         command = gate(
             request, ecu if arbitration.commander == ECU else ros, arbitration, command, vehicle, s, tick_s, 0.0
         )
-        foresee(o, present, driver, g[EVENT_MASK], g[ECU_MASK], ros, ecu, vehicle, (explained, 0.0), arbitration, r)
+        may_command = foresee(
+            o, present, driver, g[EVENT_MASK], g[ECU_MASK], ros, ecu, vehicle, (explained, 0.0), arbitration, r
+        )
         given[0], given[1], given[2], given[3], given[4] = figures[0], mode, g[EVENT_MASK], g[ECU_MASK], explained
         given[5], given[6] = g[SPEED_NOW], g[AY]
         put(given, DRIVER_COLUMN, driver)
@@ -266,7 +267,11 @@ def walk(
                     if present[other] != 0.0:
                         counts[(int(mode) * COUNT + one) * COUNT + other] += 1.0
         nothing_asked = (
-            o[ASKED] == 0.0 and g[ECU_MASK] == 0.0 and not has(g[EVENT_MASK], E_RESTART) and not has(g[EDGES], B_RESTART) and before[RESTART_TICKS] == 0.0
+            o[ASKED] == 0.0
+            and g[ECU_MASK] == 0.0
+            and not has(g[EVENT_MASK], E_RESTART)
+            and not has(g[EDGES], B_RESTART)
+            and before[RESTART_TICKS] == 0.0
         )
         breach = judge(
             o,
@@ -277,6 +282,7 @@ def walk(
             driver,
             was.refusal == 0.0 and arbitration.refusal != 0.0,
             nothing_asked,
+            may_command,
             r,
         )
         at = BLOCK if o[WHO] == ECU else 0
