@@ -33,6 +33,7 @@ Whatever has to last does so for at least its time, rounded up to whole ticks; a
   The angle is taken when a mode in which the car drives itself (AUTONOMOUS to MINIMAL_RISK) is entered from one in
   which it does not, and anew when a lost wheel is back; autonomy asked for again in between takes none. Where only a
   pedal is lost the wheel counts on, but takes effect only when all are trusted.
+- A controller that is invalid is not stale as well, whatever its age: its reason is COMMAND_INVALID.
 - COMMANDER_LOST and NO_ANSWER on the console's own side concern the ROS side: they do nothing while the ECU commands.
 - A take-over request during a wait for lost devices joins that wait while they are lost, and begins its own once they
   are back; either way its reason is given from then on.

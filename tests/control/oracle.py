@@ -137,7 +137,7 @@ def hear(o: Row, at: int, command: RemoteCommand, speed_mps: float, r: Rules) ->
     o[at + FRESH] = 1.0 if fresh else 0.0
     o[at + STALE] = 0.0 if known and command.age_ticks < r.stale_ticks else 1.0
     o[at + INVALID] = 0.0
-    if not finite or o[at + RUN] >= r.invalid_most or (wild and o[at + AGE] >= r.stale_ticks):
+    if not finite or o[at + RUN] >= r.invalid_most or (wild and fresh and o[at + AGE] >= r.stale_ticks):
         o[at + INVALID] = 1.0
     good = fresh and not wild and refused <= 0.0 and o[at + INVALID] == 0.0
     o[at + STEADY] = o[at + STEADY] + 1.0 if good else 0.0
@@ -291,7 +291,8 @@ def gather(
     present[COMMANDER_LOST] = 1.0 if has(mask, E_LEFT) else 0.0
     at = ECU_AT if who == ECU else ROS_AT
     if who != NOBODY:
-        present[COMMAND_STALE] = 1.0 if o[at + STALE] != 0.0 or has(mask, E_NO_ANSWER) else 0.0
+        silent = o[at + STALE] != 0.0 or has(mask, E_NO_ANSWER)
+        present[COMMAND_STALE] = 1.0 if silent and o[at + INVALID] == 0.0 else 0.0
         present[COMMAND_INVALID] = o[at + INVALID]
     present[TAKEOVER_ASKED] = 1.0 if has(mask, E_TAKEOVER) or has(edges, B_TAKEOVER) else 0.0
     if mode == TAKEOVER and o[WAIT] + 1.0 >= r.no_reaction_ticks and (o[BY_REQUEST] != 0.0 or not trusted):

@@ -138,7 +138,7 @@ def may_meet(mode: int, one: int, other: int) -> bool:
         return False
     if DEVICE_LOST in pair and pair & {BRAKE, STEERING, MANUAL_ASKED, SHARED_ASKED, PERSON_READY}:
         return False
-    if EMERGENCY in pair and RESET in pair:
+    if pair in ({EMERGENCY, RESET}, {COMMAND_STALE, COMMAND_INVALID}):
         return False
     engages = pair & {AUTONOMOUS_ASKED, SHARED_ASKED}
     return not (engages and pair & {BRAKE, COMMAND_INVALID})

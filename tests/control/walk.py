@@ -65,6 +65,7 @@ from tests.control.oracle_rules import (
     REASONS,
     RECEIVED,
     RESET,
+    RUN,
     SHARED,
     SHARED_ASKED,
     STOPPED,
@@ -211,6 +212,11 @@ def walk(
         ros_before, ecu_before = g[ROS_AT + 5], g[ECU_AT + 5]
         mode = before[ARBITRATION_AT]
         chance, storm = draw(g, u, hz, figures[5])
+        at = BLOCK if o[WHO] == ECU else 0
+        ends = mode == TAKEOVER and abs(before[0] + 1.0 - r.no_reaction_ticks) < 1.5
+        ends = ends or (SHARED <= mode <= TAKEOVER and o[at + RUN] >= r.invalid_most - 2.0)
+        if ends and u[0] < 0.3:  # what comes in the very tick in which a wait runs out is worth a storm
+            storm = 1.0
         person(g, u, storm > 0.0, 0.3 if storm > 0.0 else chance, hz)
         events(g, u, mode, storm > 0.0, 0.5 if storm > 0.0 else chance, 1.0 / hz)
         move(g, u, chance, hz, before[COMMAND_AT + 1], before[COMMAND_AT + 2])
