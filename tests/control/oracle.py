@@ -276,7 +276,7 @@ def gather(
         and (driver.throttle_validity == ARMED or driver.throttle_validity == LIVE)
         and (driver.brake_validity == ARMED or driver.brake_validity == LIVE)
     )
-    released = driver.throttle < r.accelerator or driver.brake >= r.brake
+    released = driver.throttle < r.accelerator
     for trigger in range(COUNT):
         present[trigger] = 0.0
     stop = has(driver.pressed, B_STOP) or has(edges, B_STOP) or has(mask, E_STOP)
