@@ -29,6 +29,7 @@ DRIVES: Final = (
     "short_drives",
     "speed_loop",
     "stops",
+    "walk",
 )
 LEFT_OUT: Final = tuple(f"test_{name}.py" for name in (*DRIVES, "coverage", "mutation_page"))
 """Tests that drive for seconds cost more than all others and kill one mutant in two hundred; the last two are no tests

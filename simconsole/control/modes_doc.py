@@ -15,16 +15,42 @@ and a lost controller in one tick are a safe stop in that tick, and a take-over 
 request when the wheel is back.
 
 The others (`STANDSTILL` to `PERSON_READY`, and `MANUAL_ASKED` in a car that stands parked or stopped) are steps towards
-driving or towards rest. Of these the strongest one takes effect, and only in a tick in which none of the first kind
-did, and only if the mode that it leads to would withstand all of the first kind that are present. What was asked for
-and not granted is refused with its reason in the same tick and never kept (`REFUSED_OVERRULED` where only something
-stronger stood against it); `PERSON_READY` and `STANDSTILL` are no asks: they are looked at again in the next tick.
+driving or towards rest. One of these takes effect, and only in a tick in which none of the first kind did: the
+strongest whose mode would withstand all of the first kind that are present. What was asked for and not granted is
+refused with its reason in the same tick and never kept (`REFUSED_OVERRULED` where only something stronger stood against
+it); `PERSON_READY` and `STANDSTILL` are no asks: they are looked at again in the next tick.
 
 `STOPPED` and `EMERGENCY_STOP` latch: only an act of a person or an operator leaves them. Autonomy is only ever entered
 by such an act, and only if every engage condition of `simconsole/control/engage.py` holds.
 """
 
-_AUTHORITY = """## What each mode does
+_AUTHORITY = """## When triggers count
+
+Whatever has to last does so for at least its time, rounded up to whole ticks; an age that expires does so rounded down.
+
+- Wheel and pedals (accelerator and brake) are trusted while they are armed or live.
+- STEERING: moved by 8 deg (7 once it counts) or faster than 60 deg/s, from one sample to another at least 50 ms later.
+  The angle is taken when a mode in which the car drives itself (AUTONOMOUS to MINIMAL_RISK) is entered from one in
+  which it does not, and anew when a lost wheel is back; autonomy asked for again in between takes none. Where only a
+  pedal is lost the wheel counts on, but takes effect only when all are trusted.
+- A controller that is invalid is not stale as well, whatever its age: its reason is COMMAND_INVALID.
+- COMMANDER_LOST and NO_ANSWER on the console's own side concern the ROS side: they do nothing while the ECU commands.
+- A take-over request during a wait for lost devices joins that wait while they are lost, and begins its own once they
+  are back; either way its reason is given from then on.
+- STANDSTILL: at most 0.1 m/s for 0.3 s. RESET needs the same.
+
+## When autonomy and shared control are granted
+
+A controller that commands is fresh, not invalid, and has been so without a refused or implausible command for 100 ms
+(at least for one tick; for a second from TAKEOVER_REQUESTED and the modes after it); the person does not press the
+brake, and has wheel and pedals trusted (autonomy: only if `person_required`); at most 25 m/s, 1 m/s2 of lateral
+acceleration, 10 m/s between speed asked for and driven and, above 1 m/s, 0.35 rad between road wheels asked for and
+there.
+
+What is refused while the newest command is not finite counts when a finite one comes. An invalid controller does not
+renew its lease.
+
+## What each mode does
 
 | mode | steering | throttle and brake | clutch and gears |
 |---|---|---|---|

@@ -9,7 +9,7 @@ ROOT = Path(__file__).parents[2]
 ROOM = ROOT / "simconsole" / "control"
 DRIVES = (
     *("arbitration", "commander", "pairs", "random", "reactions"),
-    *("shared_drives", "short_drives", "speed_loop", "stops"),
+    *("shared_drives", "short_drives", "speed_loop", "stops", "walk"),
 )
 """Tests that drive for seconds would take what single tests should take, and compiled code is not seen line by line."""
 LEFT_OUT = tuple(f"test_{name}.py" for name in (*DRIVES, "coverage", "mutation_page"))
