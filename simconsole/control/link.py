@@ -53,8 +53,7 @@ def watch_link(
     wild = fresh and implausible(remote, vehicle, settings)
     wild_ticks = 0.0
     if wild:
-        plausible_before = before.implausible_ticks == 0.0 and before.fresh > 0.0
-        wild_ticks = (age_before_ticks if plausible_before else before.implausible_ticks) + 1.0
+        wild_ticks = _plausible_age(before, age_before_ticks, settings) + 1.0
     wild_count = before.implausible
     run = before.invalid_run + refused
     if remote.sequence != before.sequence_seen:
@@ -64,7 +63,7 @@ def watch_link(
         run = _MANY
     fresh_ticks = before.fresh_ticks + 1.0 if fresh and refused == 0.0 and not wild else 0.0
     invalid = run >= settings.invalid_commands_max or wild_ticks >= settings.stale_ticks
-    if fresh and not invalid:
+    if fresh and not wild and not invalid:
         lease = settings.lease_ticks
     return Link(
         remote.sequence,
@@ -78,6 +77,14 @@ def watch_link(
         wild_count,
         wild_ticks,
     )
+
+
+@kernel
+def _plausible_age(before: Link, age_before_ticks: float, settings: ControlSettings) -> float:
+    """Return how old the last plausible command was in the tick before; after a silence it is stale in any case."""
+    if before.implausible_ticks > 0.0:
+        return before.implausible_ticks
+    return age_before_ticks if before.fresh > 0.0 else settings.stale_ticks
 
 
 @kernel

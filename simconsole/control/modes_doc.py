@@ -47,8 +47,8 @@ brake, and has wheel and pedals trusted (autonomy: only if `person_required`); a
 acceleration, 10 m/s between speed asked for and driven and, above 1 m/s, 0.35 rad between road wheels asked for and
 there.
 
-What is refused while the newest command is not finite counts when a finite one comes. An invalid controller does not
-renew its lease.
+What is refused while the newest command is not finite counts when a finite one comes. Neither an
+invalid controller nor an implausible command renews the lease.
 
 ## What each mode does
 

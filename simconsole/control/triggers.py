@@ -107,7 +107,7 @@ def manual_refusal(mode: float, person: Person, settings: ControlSettings) -> fl
         return _REFUSED_EMERGENCY
     if person.trusted == 0.0:
         return _REFUSED_NOT_ARMED
-    if (mode in (_STOPPED, _PARKED)) and person.throttle >= settings.throttle_override:
+    if (mode in (_STOPPED, _PARKED)) and person.accelerator >= settings.throttle_override:
         return _REFUSED_THROTTLE
     return GRANTED
 
@@ -127,7 +127,7 @@ def person_triggers(mode: float, person: Person, steering: bool, settings: Contr
         needed = settings.person_required > 0.0 or mode in (_MANUAL, _SHARED)
         return _DEVICE_LOST if needed else 0
     present = _BRAKE if person.brake >= settings.brake_override else 0
-    if person.throttle < settings.throttle_override:
+    if person.accelerator < settings.throttle_override:
         present |= _PERSON_READY
     if steering:
         present |= _STEERING

@@ -35,7 +35,7 @@ BEFORE = Arbitration(*(0.0,) * len(Arbitration._fields))._replace(
     remote_brake=0.6,
 )
 IN_FORCE = VehicleCommand(*(0.0,) * len(VehicleCommand._fields))._replace(road_wheel_rad=0.1, throttle=0.3, brake=0.2)
-PERSON = Person(1.0, 1.0, 0.05, 0.1, 0.0)
+PERSON = Person(1.0, 1.0, 0.05, 0.1, 0.0, 0.1)
 FRESH = Link(*(0.0,) * len(Link._fields))._replace(fresh=1.0)
 STALE = FRESH._replace(fresh=0.0)
 OFFERED = RemoteRequest(0.12, 0.7, 0.35, -1.0, 0.55)
@@ -310,7 +310,7 @@ def test_in_shared_the_car_shifts_only_if_the_controller_has_pedals(now: Moment)
 
 def test_the_blend_weighs_both_and_the_persons_brake_counts_in_full(now: Moment) -> None:
     asked = RemoteSide(0.2, 0.8, 0.1, 1.0, 0.0, 0.0, 0.0)
-    person = Person(1.0, 1.0, -0.1, 0.4, 0.05)
+    person = Person(1.0, 1.0, -0.1, 0.4, 0.05, 0.4)
     shift = Transmission(0.2, 3.0, 1.0)
     driver = now.driver._replace(handbrake=0.6)
 

@@ -12,7 +12,7 @@ from simconsole.control.moment import Moment
 from simconsole.control.person import Person
 from simconsole.signals import Commander, Event, Link, LinkState, Mode, Reason, RemoteKind
 
-THERE = Person(1.0, 1.0, 0.0, 0.0, 0.0)
+THERE = Person(1.0, 1.0, 0.0, 0.0, 0.0, 0.0)
 STEADY = Link(7.0, 0.0, 0.0, 900.0, 1.0, 0.0, 100.0, float(LinkState.STEADY), 0.0, 0.0)
 START = float(Reason.START)
 
@@ -43,7 +43,7 @@ def test_each_request_has_its_own_refusal(now: Moment) -> None:
         assert decided(fast, event) == (Mode.MANUAL, START, 0.0, too_fast, 0.0, 0.0)
     stopped = now._replace(before=now.before._replace(mode=float(Mode.STOPPED)))
     assert decided(stopped, Event.RESET) == (Mode.STOPPED, START, 0.0, float(Reason.REFUSED_MOVING), 0.0, 0.0)
-    foot = THERE._replace(throttle=0.9)
+    foot = THERE._replace(accelerator=0.9)
     assert decided(stopped, Event.REQUEST_MANUAL, foot)[3] == Reason.REFUSED_THROTTLE_PRESSED
     alone = now._replace(settings=now.settings._replace(person_required=0.0))
     absent = THERE._replace(trusted=0.0)

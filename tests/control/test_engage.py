@@ -7,7 +7,7 @@ from simconsole.control.person import Person
 from simconsole.control.settings import ControlSettings
 from simconsole.signals import Link, LinkState, Mode, Reason, RemoteCommand, RemoteKind, VehicleState
 
-PERSON = Person(1.0, 1.0, 0.0, 0.0, 0.0)
+PERSON = Person(1.0, 1.0, 0.0, 0.0, 0.0, 0.0)
 LINK = Link(10.0, 0.0, 0.0, 1000.0, 1.0, 0.0, 125.0, float(LinkState.STEADY), 0.0, 0.0)
 REMOTE = RemoteCommand(*(0.0,) * len(RemoteCommand._fields))._replace(kind=float(RemoteKind.SPEED), speed_mps=10.0)
 VEHICLE = VehicleState(*(0.0,) * len(VehicleState._fields))._replace(vx_mps=10.0)

@@ -109,7 +109,7 @@ def test_steering_that_cannot_be_meant_counts_as_refused(control: ControlSetting
         assert link.invalid == (1.0 if count == 5 else 0.0)
         again = watch(wild, link, AT_SPEED, control)
         assert again == link._replace(implausible_ticks=link.implausible_ticks + 1.0, lease_ticks=again.lease_ticks)
-    assert (link.implausible_ticks, link.state, link.lease_ticks) == (5.0, LinkState.INVALID, 124.0)
+    assert (link.implausible_ticks, link.state, link.lease_ticks) == (5.0, LinkState.INVALID, 120.0)
     link = watch(REMOTE._replace(road_wheel_rad=MEANT_RAD, sequence=9.0), link, AT_SPEED, control)
     assert (link.invalid_run, link.implausible, link.implausible_ticks, link.fresh_ticks) == (0.0, 5.0, 0.0, 1.0)
     assert link.state == LinkState.UNSTEADY
@@ -140,8 +140,13 @@ def test_one_that_stays_in_force_is_invalid_when_the_one_before_would_be_stale(c
         assert (lost.implausible, lost.implausible_ticks, lost.state) == (1.0, 0.0, LinkState.INVALID)
 
 
-def test_where_nothing_plausible_was_in_force_the_first_wild_one_counts_from_itself(control: ControlSettings) -> None:
+def test_after_a_silence_a_wild_one_is_invalid_at_once_and_renews_nothing(control: ControlSettings) -> None:
     wild = REMOTE._replace(road_wheel_rad=1.0)
-    assert watch(wild, NO_LINK, AT_SPEED, control, NEVER_TICKS).implausible_ticks == 1.0
     stale = watch(REMOTE._replace(age_ticks=control.stale_ticks), NO_LINK, AT_SPEED, control)
-    assert watch(wild._replace(sequence=2.0), stale, AT_SPEED, control, control.stale_ticks).implausible_ticks == 1.0
+    for before, age in ((NO_LINK, NEVER_TICKS), (stale, control.stale_ticks), (stale, 3.0)):
+        link = watch(wild._replace(sequence=2.0), before._replace(lease_ticks=9.0), AT_SPEED, control, age)
+        assert (link.implausible_ticks, link.invalid) == (control.stale_ticks + 1.0, 1.0)
+        assert (link.lease_ticks, link.state) == (8.0, LinkState.INVALID)
+    plausible = watch(REMOTE, NO_LINK, AT_SPEED, control)
+    assert plausible.lease_ticks == control.lease_ticks
+    assert watch(wild._replace(sequence=2.0), plausible, AT_SPEED, control).lease_ticks == control.lease_ticks - 1.0

@@ -226,7 +226,7 @@ def test_from_every_mode_a_person_gets_back_to_manual(long_drive: Drive) -> None
 
 @pytest.mark.parametrize("tick_hz", [50, 1000])
 def test_plain_and_compiled_give_equal_bits(tick_hz: int) -> None:
-    drives = [random_drive(tick_hz, SEED - tick_hz, 3000, execution) for execution in (plain, compiled)]
+    drives = [random_drive(tick_hz, SEED - tick_hz, 6000, execution) for execution in (plain, compiled)]
     assert drives[0].outputs.tobytes() == drives[1].outputs.tobytes()
     assert len(set(drives[0].modes)) >= 6
 

@@ -10,7 +10,7 @@ from simconsole.control.settings import ControlSettings
 from simconsole.signals import Button, DriverInput, Event, Mode, Reason
 
 DRIVER = DriverInput(*(0.0,) * len(DriverInput._fields))
-THERE = Person(1.0, 1.0, 0.0, 0.0, 0.0)
+THERE = Person(1.0, 1.0, 0.0, 0.0, 0.0, 0.0)
 ASKED = int(Event.RESTART)
 
 

@@ -24,7 +24,7 @@ from simconsole.signals import Button, DriverInput, Event, Link, Mode, Reason
 
 NOBODY = DriverInput(*(0.0,) * len(DriverInput._fields))
 NOTHING = Asked(*(0.0,) * len(Asked._fields))
-THERE = Person(1.0, 1.0, 0.0, 0.0, 0.0)
+THERE = Person(1.0, 1.0, 0.0, 0.0, 0.0, 0.0)
 GOOD = Link(*(0.0,) * len(Link._fields))._replace(fresh=1.0)
 
 
@@ -69,10 +69,10 @@ def test_manual_is_refused_in_an_emergency_and_without_a_person(mode: Mode, cont
     assert manual_refusal(float(mode), THERE, control) == usual
     absent = Reason.REFUSED_EMERGENCY if mode is Mode.EMERGENCY_STOP else Reason.REFUSED_NOT_ARMED
     assert manual_refusal(float(mode), THERE._replace(trusted=0.0), control) == absent
-    foot = THERE._replace(throttle=control.throttle_override)
+    foot = THERE._replace(accelerator=control.throttle_override)
     pressed = Reason.REFUSED_THROTTLE_PRESSED if mode in (Mode.PARKED, Mode.STOPPED) else usual
     assert manual_refusal(float(mode), foot, control) == pressed
-    assert manual_refusal(float(mode), THERE._replace(throttle=control.throttle_override - 1e-9), control) == usual
+    assert manual_refusal(float(mode), THERE._replace(accelerator=control.throttle_override - 1e-9), control) == usual
 
 
 def test_a_reset_needs_a_released_button_and_standstill() -> None:
@@ -91,9 +91,9 @@ def test_triggers_of_the_cockpit(mode: Mode, control: ControlSettings) -> None:
     assert present(THERE, steering=True) == {"PERSON_READY", "STEERING"}
     assert present(THERE._replace(brake=control.brake_override)) == {"PERSON_READY", "BRAKE"}
     assert present(THERE._replace(brake=control.brake_override - 1e-9)) == {"PERSON_READY"}
-    assert present(THERE._replace(throttle=control.throttle_override)) == set()
-    assert present(THERE._replace(throttle=control.throttle_override - 1e-9)) == {"PERSON_READY"}
-    assert present(THERE._replace(throttle=0.9, brake=0.9), steering=True) == {"STEERING", "BRAKE"}
+    assert present(THERE._replace(accelerator=control.throttle_override)) == set()
+    assert present(THERE._replace(accelerator=control.throttle_override - 1e-9)) == {"PERSON_READY"}
+    assert present(THERE._replace(accelerator=0.9, brake=0.9), steering=True) == {"STEERING", "BRAKE"}
     lost = THERE._replace(trusted=0.0, brake=1.0)
     assert present(lost, steering=True) == {"DEVICE_LOST"}
     alone = control._replace(person_required=0.0)
