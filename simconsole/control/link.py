@@ -49,20 +49,25 @@ def watch_link(
     if refused < 0.0:
         refused = 0.0
     in_time = 0.0 <= remote.age_ticks < settings.stale_ticks
-    fresh = in_time and remote.sequence > 0.0 and known_kind(remote.kind)
-    wild = fresh and implausible(remote, vehicle, settings)
+    known = remote.sequence > 0.0 and known_kind(remote.kind)
+    fresh = in_time and known
+    too_hard = known and implausible(remote, vehicle, settings)
+    wild = fresh and too_hard
     wild_ticks = 0.0
     if wild:
         wild_ticks = _plausible_age(before, age_before_ticks, settings) + 1.0
     wild_count = before.implausible
     run = before.invalid_run + refused
-    if remote.sequence != before.sequence_seen:
-        run = run + 1.0 if wild else 0.0
-        wild_count += 1.0 if wild else 0.0
+    if remote.sequence != before.sequence_seen and too_hard:
+        run += 1.0
+        wild_count += 1.0
+    elif remote.sequence != before.sequence_seen and known:
+        run = 0.0
     if run > _MANY:
         run = _MANY
-    fresh_ticks = before.fresh_ticks + 1.0 if fresh and refused == 0.0 and not wild else 0.0
     invalid = run >= settings.invalid_commands_max or wild_ticks >= settings.stale_ticks
+    well = fresh and refused == 0.0 and not wild and not invalid
+    fresh_ticks = before.fresh_ticks + 1.0 if well else 0.0
     if fresh and not wild and not invalid:
         lease = settings.lease_ticks
     return Link(

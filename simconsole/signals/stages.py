@@ -66,7 +66,7 @@ class Link(NamedTuple):
     sequence_seen: float
     refused_seen: float
     invalid_run: float  # refused or implausible commands in a row
-    fresh_ticks: float  # how long commands have been fresh, plausible and none refused
+    fresh_ticks: float  # how long commands have been fresh, plausible, none refused and the controller not invalid
     fresh: float  # 1: there is a command, it is finite, of a known kind and young enough
     invalid: float  # 1: it is not finite, or too many in a row were refused or implausible
     lease_ticks: float  # for how long it may still be the commander without a fresh command

@@ -59,7 +59,7 @@ NASTY: Final = np.array([math.nan, math.inf, -math.inf])
 GOOD, CALM, WILD, MISSING, REFUSED, LATE, NOT_FINITE, STRANGE = range(8)
 PATTERN_LENGTH: Final = 6
 
-DRAWS: Final = 49
+DRAWS: Final = 50
 """Uniform numbers that one tick uses."""
 
 # The generator's state: the person's, the vehicle's, then a block for each controller.

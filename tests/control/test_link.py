@@ -45,6 +45,19 @@ def test_refused_commands_count_in_a_row(control: ControlSettings) -> None:
     assert (link.invalid_run, link.invalid, link.fresh_ticks) == (0.0, 0.0, 1.0)
 
 
+def test_a_controller_that_was_invalid_begins_to_be_steady_only_when_it_is_valid_again(
+    control: ControlSettings,
+) -> None:
+    """Its last command stays fresh meanwhile: the first good one after it must not find it steady."""
+    link = watch(REMOTE._replace(refused=5.0), watch(REMOTE, NO_LINK, VEHICLE, control), VEHICLE, control)
+    assert link.invalid == 1.0
+    for age in range(1, int(control.engage_stable_ticks) + 9):
+        link = watch(REMOTE._replace(refused=5.0, age_ticks=float(age)), link, VEHICLE, control)
+        assert (link.fresh, link.invalid, link.fresh_ticks) == (1.0, 1.0, 0.0)
+    link = watch(REMOTE._replace(refused=5.0, sequence=2.0), link, VEHICLE, control)
+    assert (link.invalid, link.fresh_ticks, link.state) == (0.0, 1.0, LinkState.UNSTEADY)
+
+
 def test_many_refused_in_one_tick_count_at_once(control: ControlSettings) -> None:
     link = watch(REMOTE, NO_LINK, VEHICLE, control)
     assert watch(REMOTE._replace(refused=5.0), link, VEHICLE, control).invalid == 1.0
@@ -113,6 +126,18 @@ def test_steering_that_cannot_be_meant_counts_as_refused(control: ControlSetting
     link = watch(REMOTE._replace(road_wheel_rad=MEANT_RAD, sequence=9.0), link, AT_SPEED, control)
     assert (link.invalid_run, link.implausible, link.implausible_ticks, link.fresh_ticks) == (0.0, 5.0, 0.0, 1.0)
     assert link.state == LinkState.UNSTEADY
+
+
+def test_a_row_is_ended_by_a_plausible_command_only(control: ControlSettings) -> None:
+    """Not by one of no known kind, and one that steers too hard counts though it comes too late to be in force."""
+    four = watch(REMOTE._replace(refused=4.0), watch(REMOTE, NO_LINK, AT_SPEED, control), AT_SPEED, control)
+    assert four.invalid_run == 4.0
+    later = REMOTE._replace(refused=4.0, sequence=2.0)
+    late = {"age_ticks": control.stale_ticks}
+    assert watch(later._replace(kind=17.0), four, AT_SPEED, control).invalid_run == 4.0
+    assert watch(later._replace(**late), four, AT_SPEED, control).invalid_run == 0.0
+    wild = watch(later._replace(road_wheel_rad=1.0, **late), four, AT_SPEED, control)
+    assert (wild.invalid_run, wild.invalid, wild.implausible, wild.implausible_ticks) == (5.0, 1.0, 1.0, 0.0)
 
 
 def test_refused_and_implausible_ones_make_one_row(control: ControlSettings) -> None:

@@ -34,6 +34,7 @@ from tests.control.nasty import (
     HUMAN,
     PRESSED,
     RATE,
+    REFUSALS,
     ROS_AT,
     SPEED_NOW,
     THROTTLE,
@@ -217,6 +218,9 @@ def walk(
         ends = ends or (SHARED <= mode <= TAKEOVER and o[at + RUN] >= r.invalid_most - 2.0)
         if ends and u[0] < 0.3:  # what comes in the very tick in which a wait runs out is worth a storm
             storm = 1.0
+        if mode == TAKEOVER and (u[49] < 0.3 / hz or (ends and u[49] < 0.2)):  # short, and all may happen in it
+            storm = 1.0
+            g[(ECU_AT if o[WHO] == ECU else ROS_AT) + REFUSALS] += r.invalid_most
         person(g, u, storm > 0.0, 0.3 if storm > 0.0 else chance, hz)
         events(g, u, mode, storm > 0.0, 0.5 if storm > 0.0 else chance, 1.0 / hz)
         move(g, u, chance, hz, before[COMMAND_AT + 1], before[COMMAND_AT + 2])
