@@ -47,7 +47,7 @@ def test_p01_a_disk_that_fails_at_any_moment(
     generator = random.Random(sample.seed)
     resolved = session(script)
     latest = 0
-    for moment in range(sample.of(10, 100)):
+    for moment in range(sample.of(3, 10)):
         at = generator.randrange(80, TICKS - 10)
         place = tmp_path / f"disk{moment}"
         with disk.mounted(place):
