@@ -33,18 +33,7 @@ def watch_link(
     """
     lease = before.lease_ticks - 1.0 if before.lease_ticks > 0.0 else 0.0
     if not command_finite(remote):
-        return Link(
-            before.sequence_seen,
-            before.refused_seen,
-            before.invalid_run,
-            0.0,
-            0.0,
-            1.0,
-            lease,
-            _INVALID,
-            before.implausible,
-            0.0,
-        )
+        return _spoilt(before, lease)
     refused = remote.refused - before.refused_seen
     if refused < 0.0:
         refused = 0.0
@@ -71,16 +60,33 @@ def watch_link(
     if fresh and not wild and not invalid:
         lease = settings.lease_ticks
     return Link(
-        remote.sequence,
-        remote.refused,
-        run,
-        fresh_ticks,
-        1.0 if fresh else 0.0,
-        1.0 if invalid else 0.0,
-        lease,
-        _state(remote.sequence, fresh, invalid, fresh_ticks >= settings.engage_stable_ticks),
-        wild_count,
-        wild_ticks,
+        sequence_seen=remote.sequence,
+        refused_seen=remote.refused,
+        invalid_run=run,
+        fresh_ticks=fresh_ticks,
+        fresh=1.0 if fresh else 0.0,
+        invalid=1.0 if invalid else 0.0,
+        lease_ticks=lease,
+        state=_state(remote.sequence, fresh, invalid, fresh_ticks >= settings.engage_stable_ticks),
+        implausible=wild_count,
+        implausible_ticks=wild_ticks,
+    )
+
+
+@kernel
+def _spoilt(before: Link, lease_ticks: float) -> Link:
+    """Return the link after a command that is not finite: invalid, and nothing of the command is remembered."""
+    return Link(
+        sequence_seen=before.sequence_seen,
+        refused_seen=before.refused_seen,
+        invalid_run=before.invalid_run,
+        fresh_ticks=0.0,
+        fresh=0.0,
+        invalid=1.0,
+        lease_ticks=lease_ticks,
+        state=_INVALID,
+        implausible=before.implausible,
+        implausible_ticks=0.0,
     )
 
 

@@ -1,8 +1,7 @@
 """A second implementation of who drives, written from docs/modes.md, docs/can.md and the profile's comments.
 
-It shares no code with simconsole/control and sees no state of it: from the inputs alone it keeps its own ages, runs
-and waits, and says which mode each tick must end in. Its form is its own too: what is present in a tick is a row of
-flags, and a mode is judged by what it bears.
+It shares no code with simconsole/control and sees no state of it: from the inputs alone it keeps its own ages, runs and
+waits, and says which mode each tick must end in. What is present is a row of flags; a mode is judged by what it bears.
 """
 
 import math

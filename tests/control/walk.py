@@ -185,6 +185,72 @@ def judge(
 
 
 @kernel
+def happen(g: Row, u: Row, o: Row, before: Row, figures: Row, hz: float, r: Rules) -> None:
+    """Let a tick's person, events and vehicle happen."""
+    mode = before[ARBITRATION_AT]
+    chance, storm = draw(g, u, hz, figures[5])
+    at = BLOCK if o[WHO] == ECU else 0
+    ends = mode == TAKEOVER and abs(before[0] + 1.0 - r.no_reaction_ticks) < 1.5
+    ends = ends or (SHARED <= mode <= TAKEOVER and o[at + RUN] >= r.invalid_most - 2.0)
+    if ends and u[0] < 0.3:  # what comes in the very tick in which a wait runs out is worth a storm
+        storm = 1.0
+    if mode == TAKEOVER and (u[49] < 0.3 / hz or (ends and u[49] < 0.2)):  # short, and all may happen in it
+        storm = 1.0
+        g[(ECU_AT if o[WHO] == ECU else ROS_AT) + REFUSALS] += r.invalid_most
+    person(g, u, storm > 0.0, 0.3 if storm > 0.0 else chance, hz)
+    events(g, u, mode, storm > 0.0, 0.5 if storm > 0.0 else chance, 1.0 / hz)
+    move(g, u, chance, hz, before[COMMAND_AT + 1], before[COMMAND_AT + 2])
+
+
+@kernel
+def driver_of(g: Row) -> DriverInput:
+    """Return the person as the cockpit reads them."""
+    return DriverInput(
+        g[WHEEL], g[RATE], g[THROTTLE], g[BRAKE], 0.0, 0.0, 1.0,
+        float(int(g[PRESSED]) | int(g[EDGES])), g[EDGES], g[WHEEL_VALID], g[GAS_VALID], g[BRAKE_VALID],
+        LIVE, LIVE, 0.0, 0.0, 0.0, LIVE,
+    )  # fmt: skip
+
+
+@kernel
+def vehicle_of(g: Row, before: Row) -> VehicleState:
+    """Return the vehicle after the tick before."""
+    return VehicleState(
+        0.0, 0.0, 0.0, 0.0, 0.0, 0.0, g[SPEED_NOW], 0.0, 0.0, 0.0, g[AY], before[COMMAND_AT], 0.0, 0.0, 1.0, 1.0,
+        0.0, 0.0, -0.2, 3.8, -9.2, 0.0,
+    )  # fmt: skip
+
+
+@kernel
+def note(
+    given: Row, g: Row, figures: Row, mode: float, driver: DriverInput, ros: RemoteCommand, ecu: RemoteCommand
+) -> None:
+    """Write down what came in, for whoever reads of a breach."""
+    given[0], given[1], given[2], given[3] = figures[0], mode, g[EVENT_MASK], g[ECU_MASK]
+    given[4], given[5], given[6] = g[EXPLAINED] * figures[2], g[SPEED_NOW], g[AY]
+    put(given, DRIVER_COLUMN, driver)
+    put(given, ROS_COLUMN, ros)
+    put(given, ECU_COLUMN, ecu)
+
+
+@kernel
+def count(counts: Row, present: Row, mode: float) -> None:
+    """Count which triggers met in this mode."""
+    for one in range(COUNT):
+        if present[one] != 0.0:
+            for other in range(one, COUNT):
+                if present[other] != 0.0:
+                    counts[(int(mode) * COUNT + one) * COUNT + other] += 1.0
+
+
+@kernel
+def nothing_asked(g: Row, o: Row, before: Row) -> bool:
+    """Return whether nobody asked for anything that could be refused."""
+    restarts = has(g[EVENT_MASK], E_RESTART) or has(g[EDGES], B_RESTART) or before[RESTART_TICKS] != 0.0
+    return bool(o[ASKED] == 0.0 and g[ECU_MASK] == 0.0 and not restarts)
+
+
+@kernel
 def walk(
     draws: Row,
     g: Row,
@@ -212,29 +278,10 @@ def walk(
         u = draws[index]
         ros_before, ecu_before = g[ROS_AT + 5], g[ECU_AT + 5]
         mode = before[ARBITRATION_AT]
-        chance, storm = draw(g, u, hz, figures[5])
-        at = BLOCK if o[WHO] == ECU else 0
-        ends = mode == TAKEOVER and abs(before[0] + 1.0 - r.no_reaction_ticks) < 1.5
-        ends = ends or (SHARED <= mode <= TAKEOVER and o[at + RUN] >= r.invalid_most - 2.0)
-        if ends and u[0] < 0.3:  # what comes in the very tick in which a wait runs out is worth a storm
-            storm = 1.0
-        if mode == TAKEOVER and (u[49] < 0.3 / hz or (ends and u[49] < 0.2)):  # short, and all may happen in it
-            storm = 1.0
-            g[(ECU_AT if o[WHO] == ECU else ROS_AT) + REFUSALS] += r.invalid_most
-        person(g, u, storm > 0.0, 0.3 if storm > 0.0 else chance, hz)
-        events(g, u, mode, storm > 0.0, 0.5 if storm > 0.0 else chance, 1.0 / hz)
-        move(g, u, chance, hz, before[COMMAND_AT + 1], before[COMMAND_AT + 2])
+        happen(g, u, o, before, figures, hz, r)
         ros = controller(g, ROS_AT, u, 28, hz, r.stale_ticks, 0.3 / hz)
         ecu = controller(g, ECU_AT, u, 37, hz, r.stale_ticks, 0.3 / hz)
-        driver = DriverInput(
-            g[WHEEL], g[RATE], g[THROTTLE], g[BRAKE], 0.0, 0.0, 1.0,
-            float(int(g[PRESSED]) | int(g[EDGES])), g[EDGES], g[WHEEL_VALID], g[GAS_VALID], g[BRAKE_VALID],
-            LIVE, LIVE, 0.0, 0.0, 0.0, LIVE,
-        )  # fmt: skip
-        vehicle = VehicleState(
-            0.0, 0.0, 0.0, 0.0, 0.0, 0.0, g[SPEED_NOW], 0.0, 0.0, 0.0, g[AY], before[COMMAND_AT], 0.0, 0.0, 1.0, 1.0,
-            0.0, 0.0, -0.2, 3.8, -9.2, 0.0,
-        )  # fmt: skip
+        driver, vehicle = driver_of(g), vehicle_of(g, before)
         explained = g[EXPLAINED] * figures[2]
         command = VehicleCommand(*take(before, COMMAND_AT, COMMAND_WIDTH))
         was = Arbitration(*take(before, ARBITRATION_AT, ARBITRATION_WIDTH))
@@ -265,24 +312,9 @@ def walk(
         may_command = foresee(
             o, present, driver, g[EVENT_MASK], g[ECU_MASK], ros, ecu, vehicle, (explained, 0.0), arbitration, r
         )
-        given[0], given[1], given[2], given[3], given[4] = figures[0], mode, g[EVENT_MASK], g[ECU_MASK], explained
-        given[5], given[6] = g[SPEED_NOW], g[AY]
-        put(given, DRIVER_COLUMN, driver)
-        put(given, ROS_COLUMN, ros)
-        put(given, ECU_COLUMN, ecu)
+        note(given, g, figures, mode, driver, ros, ecu)
         recent[int(figures[0]) % RECENT] = given
-        for one in range(COUNT):
-            if present[one] != 0.0:
-                for other in range(one, COUNT):
-                    if present[other] != 0.0:
-                        counts[(int(mode) * COUNT + one) * COUNT + other] += 1.0
-        nothing_asked = (
-            o[ASKED] == 0.0
-            and g[ECU_MASK] == 0.0
-            and not has(g[EVENT_MASK], E_RESTART)
-            and not has(g[EDGES], B_RESTART)
-            and before[RESTART_TICKS] == 0.0
-        )
+        count(counts, present, mode)
         breach = judge(
             o,
             present,
@@ -291,7 +323,7 @@ def walk(
             command,
             driver,
             was.refusal == 0.0 and arbitration.refusal != 0.0,
-            nothing_asked,
+            nothing_asked(g, o, before),
             may_command,
             r,
         )
