@@ -61,8 +61,12 @@ def test_every_effect_is_finite_and_started_again_while_ticks_come(driven: list[
 
 
 def test_gain_and_autocentre_are_set_first_and_left_as_the_profile_says(driven: list[dict[str, Any]]) -> None:
-    assert [call["what"] for call in driven[:3]] == ["gain", "autocentre", "upload"]
-    assert [call["value"] for call in driven[:2]] == [65535, 0]
+    """Before them every effect is stopped that may have been left running."""
+    first = next(index for index, call in enumerate(driven) if call["what"] != "play")
+    assert first > 1
+    assert {call["value"] for call in driven[:first]} == {0}
+    assert [call["what"] for call in driven[first : first + 3]] == ["gain", "autocentre", "upload"]
+    assert [call["value"] for call in driven[first : first + 2]] == [65535, 0]
     end = [call for call in driven if call["what"] in ("gain", "autocentre")][-2:]
     assert [call["value"] for call in end] == [65535, round(0.2 * 65535)]
 
@@ -80,7 +84,7 @@ def test_after_closing_nothing_plays(driven: list[dict[str, Any]]) -> None:
             playing[call["id"]] = call["value"]
         if call["what"] == "remove":
             playing.pop(call["id"], None)
-    assert playing == {}
+    assert not any(playing.values())
     assert driven[-1] == {**driven[-1], "what": "end", "code": 0}
 
 
