@@ -21,7 +21,7 @@ class Nothing(NamedTuple):
     nothing: float
 
 
-class Sample(NamedTuple):
+class Known(NamedTuple):
     rows: NDArray[np.float64]
     columns: tuple[str, ...]
     tick_hz: int
@@ -33,7 +33,7 @@ def course() -> Course:
 
 
 @pytest.fixture(scope="session")
-def sample(course: Course) -> Sample:
+def known(course: Course) -> Known:
     names = columns(Nothing)
     rows = np.zeros((30 * TICK_HZ, len(names)))
     at = {name: index for index, name in enumerate(names)}
@@ -56,4 +56,4 @@ def sample(course: Course) -> Sample:
             if time_s < 25.0
             else Reason.STEERING_OVERRIDE
         )
-    return Sample(rows, names, TICK_HZ)
+    return Known(rows, names, TICK_HZ)

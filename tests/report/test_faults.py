@@ -10,21 +10,21 @@ from simconsole.report.metrics import metrics
 from simconsole.report.page import write_report
 from simconsole.report.table import drive_of
 
-from .conftest import Sample
+from .conftest import Known
 
 
 @pytest.fixture
-def faulty(sample: Sample) -> Sample:
-    rows = sample.rows.copy()
+def faulty(known: Known) -> Known:
+    rows = known.rows.copy()
     masks = np.zeros(len(rows))
     masks[10:20] += 1
     masks[15:30] += 4
     masks[40:50] += 1
-    rows[:, sample.columns.index("events.faults")] = masks
-    return Sample(rows, sample.columns, sample.tick_hz)
+    rows[:, known.columns.index("events.faults")] = masks
+    return Known(rows, known.columns, known.tick_hz)
 
 
-def test_every_span_of_every_fault_in_order(faulty: Sample) -> None:
+def test_every_span_of_every_fault_in_order(faulty: Known) -> None:
     spans = fault_spans(drive_of(*faulty), ["unplug device wheel", "noise axis wheel"])
     assert spans == [
         FaultSpan("unplug device wheel", 11, 20),
@@ -33,7 +33,7 @@ def test_every_span_of_every_fault_in_order(faulty: Sample) -> None:
     ]
 
 
-def test_metrics_and_page_name_them(faulty: Sample, tmp_path: Path) -> None:
+def test_metrics_and_page_name_them(faulty: Known, tmp_path: Path) -> None:
     found = write_report(tmp_path / "r.html", *faulty, None, "title", faults=["unplug <wheel>"])
     assert found["faults"][0] == {
         "fault": "unplug <wheel>",
@@ -47,7 +47,7 @@ def test_metrics_and_page_name_them(faulty: Sample, tmp_path: Path) -> None:
     assert "unplug &lt;wheel&gt;</td><td class=n>0.220 s</td><td class=n>0.400 s" in page
 
 
-def test_a_drive_without_faults_has_none_and_says_nothing(sample: Sample, tmp_path: Path) -> None:
-    assert metrics(drive_of(*sample), None)["faults"] == []
-    write_report(tmp_path / "r.html", *sample, None, "title")
+def test_a_drive_without_faults_has_none_and_says_nothing(known: Known, tmp_path: Path) -> None:
+    assert metrics(drive_of(*known), None)["faults"] == []
+    write_report(tmp_path / "r.html", *known, None, "title")
     assert "Faults" not in (tmp_path / "r.html").read_text("utf-8")

@@ -11,20 +11,20 @@ from simconsole.report.table import drive_of
 from simconsole.world.course import Course
 
 
-def drawn(sample: Any, course: Course | None) -> tuple[str, str]:
-    drive = drive_of(*sample)
+def drawn(known: Any, course: Course | None) -> tuple[str, str]:
+    drive = drive_of(*known)
     way = track(drive, course)
     changes = mode_changes(drive, way)
     return map_svg(drive, way, changes, course), traces_svg(drive, way, changes, course)
 
 
 @pytest.fixture(scope="module")
-def svgs(sample: Any, course: Course) -> tuple[str, str]:
-    return drawn(sample, course)
+def svgs(known: Any, course: Course) -> tuple[str, str]:
+    return drawn(known, course)
 
 
-def test_same_drive_same_bytes(sample: Any, course: Course, svgs: tuple[str, str]) -> None:
-    assert drawn(sample, course) == svgs
+def test_same_drive_same_bytes(known: Any, course: Course, svgs: tuple[str, str]) -> None:
+    assert drawn(known, course) == svgs
 
 
 def test_both_are_whole_svg_without_a_date(svgs: tuple[str, str]) -> None:
@@ -39,18 +39,18 @@ def test_map_has_both_paths_and_both_ends(svgs: tuple[str, str]) -> None:
         assert colour in svgs[0]
 
 
-def test_map_shows_the_driven_path_where_it_was(sample: Any, course: Course, svgs: tuple[str, str]) -> None:
-    moved = sample.rows.copy()
-    moved[:, sample.columns.index("vehicle.y_m")] += 5.0
-    other, _ = drawn(sample._replace(rows=moved), course)
+def test_map_shows_the_driven_path_where_it_was(known: Any, course: Course, svgs: tuple[str, str]) -> None:
+    moved = known.rows.copy()
+    moved[:, known.columns.index("vehicle.y_m")] += 5.0
+    other, _ = drawn(known._replace(rows=moved), course)
     assert other != svgs[0]
 
 
 @pytest.mark.parametrize("with_course", [True, False])
-def test_odd_drives_are_drawn_too(sample: Any, course: Course, with_course: bool) -> None:
-    still = sample._replace(rows=np.repeat(sample.rows[:1], 20, axis=0))
-    by_hand = sample._replace(rows=sample.rows[:200])
-    one = sample._replace(rows=sample.rows[:1])
+def test_odd_drives_are_drawn_too(known: Any, course: Course, with_course: bool) -> None:
+    still = known._replace(rows=np.repeat(known.rows[:1], 20, axis=0))
+    by_hand = known._replace(rows=known.rows[:200])
+    one = known._replace(rows=known.rows[:1])
     for odd in (still, by_hand, one):
         for svg in drawn(odd, course if with_course else None):
             assert ElementTree.fromstring(svg).tag.endswith("svg")

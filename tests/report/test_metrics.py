@@ -9,8 +9,8 @@ from simconsole.report.table import drive_of
 from simconsole.world.course import Course
 
 
-def test_metrics_of_a_known_drive(sample: Any, course: Course) -> None:
-    found = metrics(drive_of(*sample), course)
+def test_metrics_of_a_known_drive(known: Any, course: Course) -> None:
+    found = metrics(drive_of(*known), course)
     assert found["ticks"] == 1500
     assert found["duration_s"] == 30.0
     assert found["distance_m"] == pytest.approx(300.0, abs=1.5)
@@ -22,8 +22,8 @@ def test_metrics_of_a_known_drive(sample: Any, course: Course) -> None:
     assert found["time_in_mode_s"] == {"MANUAL": 10.0, "AUTONOMOUS": 20.0}
 
 
-def test_lateral_errors_are_those_of_the_autonomous_part_only(sample: Any, course: Course) -> None:
-    part = metrics(drive_of(*sample), course)["autonomous"]
+def test_lateral_errors_are_those_of_the_autonomous_part_only(known: Any, course: Course) -> None:
+    part = metrics(drive_of(*known), course)["autonomous"]
     assert part["duration_s"] == 20.0
     assert part["distance_m"] == pytest.approx(200.0, abs=1.0)
     assert part["lateral_rms_m"] == pytest.approx(0.02 / math.sqrt(2.0), rel=0.03)
@@ -32,8 +32,8 @@ def test_lateral_errors_are_those_of_the_autonomous_part_only(sample: Any, cours
     assert 50.0 <= part["lateral_max_at_m"] <= 251.0
 
 
-def test_mode_changes_and_refusals_in_order(sample: Any, course: Course) -> None:
-    drive = drive_of(*sample)
+def test_mode_changes_and_refusals_in_order(known: Any, course: Course) -> None:
+    drive = drive_of(*known)
     changes = metrics(drive, course)["mode_changes"]
     assert [(c["tick"], c["mode"], c["refused"]) for c in changes] == [
         (1, "MANUAL", False),
@@ -51,28 +51,28 @@ def test_mode_changes_and_refusals_in_order(sample: Any, course: Course) -> None
     assert mode_changes(drive, track(drive, course))[2].x_m == pytest.approx(course.at(2640.0).x_m, abs=1e-6)
 
 
-def test_distance_runs_on_over_the_start_line(sample: Any, course: Course) -> None:
-    way = track(drive_of(*sample), course)
+def test_distance_runs_on_over_the_start_line(known: Any, course: Course) -> None:
+    way = track(drive_of(*known), course)
     assert way.s_m[-1] - way.s_m[0] == pytest.approx(10.0 * 1499 / 50, abs=1e-6)
     assert (np.diff(way.s_m) > 0.0).all()
 
 
-def test_a_vehicle_that_is_put_elsewhere_did_not_drive_there(sample: Any, course: Course) -> None:
-    rows = sample.rows.copy()
-    rows[750:, sample.columns.index("vehicle.y_m")] += 40.0
-    found = metrics(drive_of(rows, sample.columns, 50), course)
+def test_a_vehicle_that_is_put_elsewhere_did_not_drive_there(known: Any, course: Course) -> None:
+    rows = known.rows.copy()
+    rows[750:, known.columns.index("vehicle.y_m")] += 40.0
+    found = metrics(drive_of(rows, known.columns, 50), course)
     assert found["distance_m"] == pytest.approx(300.0, abs=2.0)
 
 
-def test_without_course_or_autopilot_those_parts_are_none(sample: Any, course: Course) -> None:
-    alone = metrics(drive_of(*sample), None)
+def test_without_course_or_autopilot_those_parts_are_none(known: Any, course: Course) -> None:
+    alone = metrics(drive_of(*known), None)
     assert alone["speed_limit_kmh"] is None
     assert alone["autonomous"]["lateral_rms_m"] is None
     assert alone["autonomous"]["distance_m"] == pytest.approx(200.0, abs=1.0)
-    assert metrics(drive_of(sample.rows[:200], sample.columns, 50), course)["autonomous"] is None
+    assert metrics(drive_of(known.rows[:200], known.columns, 50), course)["autonomous"] is None
 
 
-def test_speeding_is_counted(sample: Any, course: Course) -> None:
-    rows = sample.rows.copy()
-    rows[100:125, sample.columns.index("vehicle.vx_mps")] = 14.0
-    assert metrics(drive_of(rows, sample.columns, 50), course)["above_limit_s"] == 0.5
+def test_speeding_is_counted(known: Any, course: Course) -> None:
+    rows = known.rows.copy()
+    rows[100:125, known.columns.index("vehicle.vx_mps")] = 14.0
+    assert metrics(drive_of(rows, known.columns, 50), course)["above_limit_s"] == 0.5

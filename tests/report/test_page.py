@@ -28,21 +28,21 @@ class Outside(HTMLParser):
                 self.fetched.append(value)
 
 
-def written(path: Path, sample: Any, course: Course | None, title: str, *more: Any, **options: Any) -> dict[str, Any]:
-    return write_report(path, sample.rows, sample.columns, sample.tick_hz, course, title, *more, **options)
+def written(path: Path, known: Any, course: Course | None, title: str, *more: Any, **options: Any) -> dict[str, Any]:
+    return write_report(path, known.rows, known.columns, known.tick_hz, course, title, *more, **options)
 
 
-def test_latency_of_each_hop_stands_in_the_page_only(tmp_path: Path, sample: Any) -> None:
+def test_latency_of_each_hop_stands_in_the_page_only(tmp_path: Path, known: Any) -> None:
     hops = {"read": {"p50": 35.5, "p99": 56.25, "max": 113.0, "count": 1000}}
-    found = written(tmp_path / "r.html", sample, None, "title", latency_us=hops)
+    found = written(tmp_path / "r.html", known, None, "title", latency_us=hops)
     row = "<tr><td>read</td><td class=n>35.5</td><td class=n>56.2</td><td class=n>113.0</td><td class=n>1000</td></tr>"
     assert row in (tmp_path / "r.html").read_text("utf-8")
     assert "latency_us" not in found
 
 
-def test_page_is_whole_and_needs_nothing_else(tmp_path: Path, sample: Any, course: Course) -> None:
+def test_page_is_whole_and_needs_nothing_else(tmp_path: Path, known: Any, course: Course) -> None:
     path = tmp_path / "report.html"
-    found = written(path, sample, course, "Drive <1> & more", {"Vehicle": "hatchback", "Note": "a < b"})
+    found = written(path, known, course, "Drive <1> & more", {"Vehicle": "hatchback", "Note": "a < b"})
     text = path.read_text()
     page = Outside()
     page.feed(text)
@@ -56,21 +56,21 @@ def test_page_is_whole_and_needs_nothing_else(tmp_path: Path, sample: Any, cours
     assert len(text) < 400_000
 
 
-def test_same_drive_same_bytes(tmp_path: Path, sample: Any, course: Course) -> None:
+def test_same_drive_same_bytes(tmp_path: Path, known: Any, course: Course) -> None:
     first, second = tmp_path / "a.html", tmp_path / "b.html"
-    assert written(first, sample, course, "Drive") == written(second, sample, course, "Drive")
+    assert written(first, known, course, "Drive") == written(second, known, course, "Drive")
     assert first.read_bytes() == second.read_bytes()
 
 
-def test_drive_without_course_is_reported_too(tmp_path: Path, sample: Any) -> None:
-    found = written(tmp_path / "ball.html", sample, None, "Ball")
+def test_drive_without_course_is_reported_too(tmp_path: Path, known: Any) -> None:
+    found = written(tmp_path / "ball.html", known, None, "Ball")
     assert found["autonomous"]["lateral_rms_m"] is None
     assert "no course in this world" in (tmp_path / "ball.html").read_text()
 
 
-def test_unwritable_file_is_one_line(tmp_path: Path, sample: Any) -> None:
+def test_unwritable_file_is_one_line(tmp_path: Path, known: Any) -> None:
     with pytest.raises(RecordingError, match="cannot be written") as caught:
-        written(tmp_path / "no" / "report.html", sample, None, "Drive")
+        written(tmp_path / "no" / "report.html", known, None, "Drive")
     assert "\n" not in str(caught.value)
 
 
@@ -79,8 +79,8 @@ def test_importing_the_report_loads_no_matplotlib() -> None:
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
-def test_take_overs_are_listed(sample: Any, course: Course) -> None:
-    drive = drive_of(sample.rows, sample.columns, sample.tick_hz)
+def test_take_overs_are_listed(known: Any, course: Course) -> None:
+    drive = drive_of(known.rows, known.columns, known.tick_hz)
     html = page("t", metrics(drive, course), (), {}, {})
     assert "<h2>Take-overs</h2>" in html
     row = html.partition("<h2>Take-overs</h2>")[2].partition("</table>")[0]

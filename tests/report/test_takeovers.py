@@ -105,6 +105,6 @@ def test_only_what_ends_with_the_person_counts_and_each_has_its_own_span() -> No
     assert second["peak_hand_wheel_radps"] == 2.0
 
 
-def test_a_drive_without_any_has_none(sample: Any) -> None:
+def test_a_drive_without_any_has_none(known: Any) -> None:
     assert takeovers(made_up({0.0: Mode.MANUAL}), NONE) == []
-    assert len(takeovers(drive_of(sample.rows, sample.columns, sample.tick_hz), NONE)) == 1
+    assert len(takeovers(drive_of(known.rows, known.columns, known.tick_hz), NONE)) == 1
