@@ -13,9 +13,9 @@ from pathlib import Path
 
 import pytest
 
+from tests import long_run
 from tests.drives.fixtures import script, short
 from tests.faults import figures
-from tests.long_run import PAGE, Check, figure, page
 from tests.samples import SAMPLED, draw_seed, measured, module_sample, sample
 
 __all__ = ["measured", "module_sample", "sample", "script", "short"]
@@ -83,9 +83,7 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, exitstatu
         terminalreporter.write_line(line)
     terminalreporter.write_line(f"seed {option('--seed')}")
     if option("--write-long-run"):
-        PAGE.write_text(
-            page(_checks(terminalreporter), option("--seed"), datetime.datetime.now(datetime.UTC).date()), "utf-8"
-        )
+        long_run.write(_checks(terminalreporter), option("--seed"), datetime.datetime.now(datetime.UTC).date())
     if option("--write-faults"):
         if exitstatus != pytest.ExitCode.OK:
             terminalreporter.write_line("docs/faults.md is left as it was: not all tests passed")
@@ -93,11 +91,12 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, exitstatu
         figures.write(found, whole=not option("--long"))
 
 
-def _checks(reporter: pytest.TerminalReporter) -> list[Check]:
+def _checks(reporter: pytest.TerminalReporter) -> list[long_run.Check]:
     """Return the checks of a run; one that could not be set up has failed."""
     found = []
     for outcome in ("passed", "failed", "error"):
         for report in reporter.stats.get(outcome, []):
-            figures = [text for name, value in report.user_properties if (text := figure(name, value)) is not None]
-            found.append(Check(report.nodeid, figures, report.duration, outcome == "passed"))
+            told = [long_run.figure(name, value) for name, value in report.user_properties]
+            figures = [text for text in told if text is not None]
+            found.append(long_run.Check(report.nodeid, figures, report.duration, outcome == "passed"))
     return found

@@ -24,6 +24,7 @@ from tests.samples import Measured, Sample
 from tests.stations.test_realtime import TICK_HZ, drive
 
 MIB = 1 << 20
+GARBAGE_TICKS = 4000
 
 # A person at the wheel for some ticks, and beside the loop somebody who makes garbage in circles: as much as is asked
 # for, a share of it in each tick. Before the drive there is a heap that is costly to look through.
@@ -104,21 +105,22 @@ def test_p07_a_loop_that_makes_no_circles_is_never_stopped_by_a_full_collection(
 @pytest.mark.fault("P07")
 def test_p07_two_gibibytes_of_garbage_do_not_hold_up_the_ticks(sample: Sample, measured: Measured) -> None:
     """What was there before the drive is never looked at again: a collection costs what the garbage of it costs."""
-    ticks = sample.of(4000, 40_000)
-    found = littered(ticks, 2 << 30)
-    assert found["made"] > 1.9 * (1 << 30)
-    assert found["frozen"] > found["heap"]
-    assert found["collections"], "the garbage was collected meanwhile"
-    assert found["grown"] < 64 * MIB
-    longest_ns = max(took_ns for _, took_ns in found["collections"])
-    took_ms = np.array(found["took_ns"]) / 1e6
-    p999_ms = float(np.percentile(took_ms, 99.9))
-    seen = f"p99.9 {p999_ms:.2f} ms of CPU time, median {np.median(took_ms):.2f} ms"
-    measured("P07", f"a tick that also makes {found['made'] / ticks / 1024:.0f} KiB of garbage", seen, "5 ms")
-    seen = f"{longest_ns / 1e6:.2f} ms; of the whole heap, not frozen, {found['whole_ns'] / 1e6:.0f} ms"
-    measured("P07", "longest collection in the drive", seen, "a fifth of the latter")
-    assert 5 * longest_ns < found["whole_ns"]
-    assert p999_ms <= 5.0
+    for _ in range(sample.of(1, 10)):
+        found = littered(GARBAGE_TICKS, 2 << 30)
+        assert found["made"] > 1.9 * (1 << 30)
+        assert found["frozen"] > found["heap"]
+        assert found["collections"], "the garbage was collected meanwhile"
+        assert found["grown"] < 64 * MIB
+        longest_ns = max(took_ns for _, took_ns in found["collections"])
+        took_ms = np.array(found["took_ns"]) / 1e6
+        p999_ms = float(np.percentile(took_ms, 99.9))
+        seen = f"p99.9 {p999_ms:.2f} ms of CPU time, median {np.median(took_ms):.2f} ms"
+        made_kib = found["made"] / GARBAGE_TICKS / 1024
+        measured("P07", f"a tick that also makes {made_kib:.0f} KiB of garbage", seen, "5 ms")
+        seen = f"{longest_ns / 1e6:.2f} ms; of the whole heap, not frozen, {found['whole_ns'] / 1e6:.0f} ms"
+        measured("P07", "longest collection in the drive", seen, "a fifth of the latter")
+        assert 5 * longest_ns < found["whole_ns"]
+        assert p999_ms <= 5.0
 
 
 SOAK = """\
