@@ -71,13 +71,15 @@ def answer(tick_hz: int, pattern: Pattern, period_s: float, seed: int) -> Answer
     driven = at_speed.drive(sender, PATTERN_S)
     mode, angle = driven.column("arbitration.mode"), driven.column("command.road_wheel_rad")
     per_tangent = driven.column("vehicle.vx_mps")[:-1] ** 2 / driven.wheelbase_m  # as the car was before each tick
-    plausible = [start]
-    plausible += [
-        tick for tick, sent in sender.sent.items() if per_tangent[tick - start - 1] * math.tan(abs(sent)) <= WILD_MPS2
-    ]
-    autonomous = np.flatnonzero(mode == Mode.AUTONOMOUS) + start
-    latest = np.array(plausible)[np.searchsorted(plausible, autonomous, side="right") - 1]
-    longest = int((autonomous - latest).max()) + 1  # the tick that is not autonomous any more
+    # A command counts from when it came, if it is plausible at the speed of any tick in which it is the newest.
+    came = np.array([start, *sorted(sender.sent)])
+    tangents = np.array([0.0, *(math.tan(abs(sender.sent[tick])) for tick in sorted(sender.sent))])
+    ticks = np.arange(start + 1, start + len(mode))
+    newest = np.searchsorted(came, ticks, side="right") - 1
+    plausible = per_tangent * tangents[newest] <= WILD_MPS2
+    latest = np.maximum.accumulate(np.where(plausible, came[newest], start))
+    autonomous = mode[1:] == Mode.AUTONOMOUS
+    longest = int((ticks - latest)[autonomous].max()) + 1  # the tick that is not autonomous any more
     assert np.abs(np.diff(angle)).max() <= MOST_RADPS / tick_hz + 1e-9, "the rate of the wheels"
     still = mode[1:] == Mode.AUTONOMOUS
     assert (per_tangent * np.tan(np.abs(angle[1:])) <= WILD_MPS2)[still].all(), "a wild angle is never commanded"
