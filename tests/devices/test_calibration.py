@@ -16,7 +16,7 @@ from simconsole.profile_files import load
 from simconsole.profiles.device import MIN_TRAVEL_RAW, ButtonBinding, CockpitProfile
 from simconsole.signals import NEVER_TICKS, NO_SAMPLE, Button, DeviceSample
 
-from .people import TICK_S, Seat
+from tests.devices.people import TICK_S, Seat
 
 PROFILE = load("devices", "t500rs_th8rs", CockpitProfile)
 SETTINGS = settings(PROFILE, 250)

@@ -12,7 +12,7 @@ from simconsole.devices.watch import Watch
 from simconsole.errors import DeviceNotFound
 from simconsole.profiles.device import CockpitProfile
 
-from .people import Seat
+from tests.devices.people import Seat
 
 pytestmark = pytest.mark.usefixtures("sdl")
 

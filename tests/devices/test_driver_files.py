@@ -11,7 +11,7 @@ from simconsole.devices.simulated_wheel import SimulatedWheel
 from simconsole.errors import DeviceError
 from simconsole.profiles.force_feedback import ForceFeedback
 
-from .port_contract import closes_twice_and_then_has_no_force, takes_every_level_in_any_order
+from tests.devices.port_contract import closes_twice_and_then_has_no_force, takes_every_level_in_any_order
 
 WHEEL, OTHER = (0x044F, 0xB65E), (0x044F, 0xB660)
 FORCE = ForceFeedback(max_torque_nm=4.0)

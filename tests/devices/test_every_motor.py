@@ -12,8 +12,8 @@ from simconsole.devices.simulated_wheel import SimulatedWheel
 from simconsole.devices.watched import Watchdog, WatchedPort
 from simconsole.profiles.force_feedback import ForceFeedback
 
-from .mocked import start
-from .port_contract import CHECKS
+from tests.devices.mocked import start
+from tests.devices.port_contract import CHECKS
 
 Judge = Callable[[str], str]
 """Takes the name of a check and returns what is wrong, empty where it holds."""

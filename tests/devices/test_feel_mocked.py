@@ -8,7 +8,7 @@ import msgspec
 from simconsole.devices.calibrate import write_profile
 from simconsole.profiles.device import CockpitProfile
 
-from .mocked import calls, run_behind
+from tests.devices.mocked import calls, run_behind
 
 FF_CONSTANT = 0x52
 STEERING = 0x4000

@@ -23,8 +23,8 @@ from simconsole.profiles.device import CockpitProfile, PedalAxis, RoleBinding
 from simconsole.profiles.faults import Unplug
 from simconsole.signals import NEVER_TICKS, DeviceSample, DriverInput
 
-from .conftest import TICK_HZ
-from .people import Seat
+from tests.devices.conftest import TICK_HZ
+from tests.devices.people import Seat
 
 LEVER = RoleBinding(role="handbrake", vendor_id=0x10C4, product_id=0x82C0, name="USB handbrake", axes=1, buttons=0)
 

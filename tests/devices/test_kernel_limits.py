@@ -9,7 +9,7 @@ from simconsole.devices import event_nodes, kernel_limits
 from simconsole.devices.kernel_limits import AxisLimits, KernelLimits, notes, problems, read_limits, steering_range_deg
 from simconsole.profiles.device import CockpitProfile
 
-from .mocked import start
+from tests.devices.mocked import start
 
 
 def test_dead_zone_and_range_of_a_wheel_are_read_and_said(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from simconsole.devices.validity import STALE
 from simconsole.keys import Key
 from simconsole.signals import Button, DriverInput
 
-from .people import Seat
+from tests.devices.people import Seat
 
 
 class Board:

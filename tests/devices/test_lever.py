@@ -7,7 +7,7 @@ from simconsole.devices.uncalibrate import Intent
 from simconsole.devices.validity import LIVE, UNKNOWN
 from simconsole.signals import NEVER_TICKS, Button
 
-from .people import Seat
+from tests.devices.people import Seat
 
 DWELL = 25
 

@@ -11,7 +11,7 @@ from simconsole.errors import ProfileError
 from simconsole.profiles.device import ScriptPoint, ScriptProfile
 from simconsole.signals import Button, DriverInput
 
-from .people import Seat
+from tests.devices.people import Seat
 
 HZ = 250
 

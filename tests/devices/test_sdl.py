@@ -20,7 +20,7 @@ from simconsole.profile_files import load
 from simconsole.profiles.device import CockpitProfile
 from simconsole.signals import NEVER_TICKS, Button, DriverInput
 
-from .people import Seat
+from tests.devices.people import Seat
 
 Plug = Callable[[VirtualSpec], VirtualDevice]
 

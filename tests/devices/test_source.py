@@ -27,7 +27,7 @@ from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.faults import Stuck
 from simconsole.profiles.force_feedback import ForceFeedback
 
-from .people import Seat
+from tests.devices.people import Seat
 
 HZ = 250
 SCRIPT = "points:\n- {time_s: 0, throttle: 0}\n- {time_s: 0.4, throttle: 0}\n- {time_s: 0.5, throttle: 0.8, gear: 1}\n"

@@ -8,7 +8,7 @@ from simconsole.recording.bundle import open_bundle
 from simconsole.recording.log import LogTable
 from tests.recording.conftest import rewrite_checksums, rewrite_log, rewrite_session
 
-from .console import results, simconsole
+from tests.drives.console import results, simconsole
 
 __all__ = ["rewrite_checksums", "rewrite_log", "rewrite_session"]
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from .console import simconsole
+from tests.drives.console import simconsole
 
 SCRIPT = """\
 points:

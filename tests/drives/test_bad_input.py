@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from .console import complaint, environment, simconsole
+from tests.drives.console import complaint, environment, simconsole
 
 SESSION = "schema: 1\noutputs: {hud: null, scene: null}\nmode: {pacing: free}\n"
 

@@ -16,8 +16,8 @@ from simconsole.recording.log import LogTable
 from simconsole.replaying import replay_bundle
 from simconsole.signals import Mode
 
-from .console import PATIENCE_S, Running, environment
-from .controllers import free_port
+from tests.drives.console import PATIENCE_S, Running, environment
+from tests.drives.controllers import free_port
 
 EXAMPLE = Path(simconsole.__file__).parents[1] / "examples" / "roll_a_ball" / "roll_a_ball.py"
 WAYPOINTS_M = [(2.0, 0.0), (2.0, 2.0), (0.0, 2.0), (0.0, 0.0)]

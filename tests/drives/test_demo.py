@@ -11,7 +11,7 @@ from simconsole.recording.bundle import open_bundle, verify
 from simconsole.signals import Button, Event, Mode, Reason, Validity
 from simconsole.units import RAD_PER_DEG
 
-from .conftest import Demo
+from tests.drives.conftest import Demo
 
 
 def test_it_writes_a_whole_bundle_with_report_and_scene(demo: Demo) -> None:

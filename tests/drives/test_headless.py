@@ -12,7 +12,7 @@ from simconsole.devices.trace import COLUMNS
 from simconsole.recording.bundle import open_bundle, verify
 from simconsole.signals import NEVER_TICKS, Mode, Validity
 
-from .console import PATIENCE_S, environment, results, simconsole, words
+from tests.drives.console import PATIENCE_S, environment, results, simconsole, words
 
 PERSON = """\
 schema: 1

@@ -17,8 +17,8 @@ from simconsole.session import DriveResult, drive
 from simconsole.session_files import load_session, override, resolve
 from simconsole.signals import Event, Mode, Reason
 
-from .console import Running, wait_until
-from .controllers import Controller, command, free_port
+from tests.drives.console import Running, wait_until
+from tests.drives.controllers import Controller, command, free_port
 
 TICK_HZ = 250
 PERIOD_TICKS = 5

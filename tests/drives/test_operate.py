@@ -8,7 +8,7 @@ import numpy as np
 from simconsole.recording.bundle import open_bundle
 from simconsole.signals import Event, Mode
 
-from .console import Running, results, simconsole, wait_until
+from tests.drives.console import Running, results, simconsole, wait_until
 
 SESSION = """schema: 1
 scenario: {vehicle: hatchback, duration_s: 4}

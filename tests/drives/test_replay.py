@@ -16,8 +16,8 @@ from simconsole.recording.replay import ReplayResult
 from simconsole.replaying import replay_bundle
 from tests.recording.conftest import change_header
 
-from .conftest import Demo
-from .console import complaint, results, simconsole
+from tests.drives.conftest import Demo
+from tests.drives.console import complaint, results, simconsole
 
 REPLAYS = 20
 FORGED_TICK = 400

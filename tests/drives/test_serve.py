@@ -4,8 +4,8 @@ import json
 import signal
 from pathlib import Path
 
-from .console import Running, complaint, results, simconsole, wait_until
-from .controllers import Controller, command, free_port
+from tests.drives.console import Running, complaint, results, simconsole, wait_until
+from tests.drives.controllers import Controller, command, free_port
 
 
 def test_a_controller_reads_and_commands_a_standing_car(tmp_path: Path) -> None:

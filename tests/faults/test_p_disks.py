@@ -17,8 +17,8 @@ from simconsole.signals import Event
 from tests.drives.console import results, simconsole
 from tests.samples import Measured, Sample
 
-from .disks import DISKS, SIZE_BYTES, Disk, memory
-from .recorded import TICKS, session, unfinish
+from tests.faults.disks import DISKS, SIZE_BYTES, Disk, memory
+from tests.faults.recorded import TICKS, session, unfinish
 
 
 class Watcher:

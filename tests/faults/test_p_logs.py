@@ -24,7 +24,7 @@ from simconsole.session import drive
 from tests.drives.console import results, simconsole
 from tests.samples import Measured, Sample
 
-from .recorded import HZ, session, unfinish
+from tests.faults.recorded import HZ, session, unfinish
 
 KILLED = """
 import mmap, os, sys, time

@@ -10,7 +10,7 @@ from simconsole.report.metrics import metrics
 from simconsole.report.page import write_report
 from simconsole.report.table import drive_of
 
-from .conftest import Known
+from tests.report.conftest import Known
 
 
 @pytest.fixture

@@ -10,7 +10,7 @@ from simconsole.report.takeovers import takeovers
 from simconsole.rows import columns
 from simconsole.signals import Mode, Reason
 
-from .conftest import Nothing
+from tests.report.conftest import Nothing
 
 HZ = 50
 NONE: Any = np.zeros(0)

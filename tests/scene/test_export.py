@@ -13,7 +13,7 @@ from simconsole.scene.export import export_apart, main
 from simconsole.scene.job import Job, load_job, save_job
 from simconsole.scene.timeline import NEEDED, PLOTS
 
-from .drives import COLUMNS, job
+from tests.scene.drives import COLUMNS, job
 
 WORLD = {"/world/road/surface", "/world/road/paint", "/world/road/edges", "/world/road/centre", "/world/road/ground",
          "/world/path/theoretical", "/world/lights/posts", "/world/lights/lamps", "/map/road/edges",

@@ -4,8 +4,8 @@ from pathlib import Path
 
 from simconsole.scene.job import save_job
 
-from .drives import job
-from .test_export import DRIVE, WORLD, contents, rerun_rrd
+from tests.scene.drives import job
+from tests.scene.test_export import DRIVE, WORLD, contents, rerun_rrd
 
 # The live drive is fed from a job's rows, 100 ticks at a time, as a ring would give them.
 FEEDER = """

@@ -10,7 +10,7 @@ import pytest
 from simconsole.scene.job import save_job
 from tests.samples import Measured, Sample
 
-from .drives import job
+from tests.scene.drives import job
 
 # Every call of the ring is a second of the drive: as many pieces an hour as in a seated one.
 FEEDER = """

@@ -7,7 +7,7 @@ import pytest
 from simconsole.scene.timeline import NEEDED, PLOTS, Entry, Memory, Piece, lane_words, piece, quaternions
 from simconsole.signals import Event, Mode
 
-from .drives import CHANGES, COLUMNS, TICK_HZ, rows
+from tests.scene.drives import CHANGES, COLUMNS, TICK_HZ, rows
 
 COUNT = 3000
 NS_PER_TICK = 4_000_000

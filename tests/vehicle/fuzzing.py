@@ -28,7 +28,7 @@ from simconsole.vehicle.car.state import CarState
 from simconsole.vehicle.platform import Ground, Patch, Platform
 from simconsole.vehicle.registry import build
 
-from .driving import LEVEL, ORIGIN, platform
+from tests.vehicle.driving import LEVEL, ORIGIN, platform
 
 CARS: Final = 1024
 SUBSTEPS: Final = 4

@@ -18,7 +18,7 @@ from simconsole.vehicle.car.state import CarState
 from simconsole.vehicle.car.step import step
 from simconsole.vehicle.platform import Ground
 
-from .driving import IDLE, platform
+from tests.vehicle.driving import IDLE, platform
 
 GROUNDS: Final = 100
 SPREAD: Final = {

@@ -10,7 +10,7 @@ from simconsole.vehicle.car.state import CarState
 from simconsole.vehicle.platform import Ground
 from simconsole.vehicle.registry import build
 
-from .driving import LEVEL, ORIGIN, Drive
+from tests.vehicle.driving import LEVEL, ORIGIN, Drive
 
 RADIUS_M = 0.306
 

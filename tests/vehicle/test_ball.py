@@ -9,7 +9,7 @@ import pytest
 from simconsole.compiling import compiled, plain
 from simconsole.vehicle.platform import Ground, Pose
 
-from .driving import IDLE, LEVEL, TICK_S, Drive, platform
+from tests.vehicle.driving import IDLE, LEVEL, TICK_S, Drive, platform
 
 SEED = 11
 LEVEL_POSE = Pose(0.0, 0.0, 0.0)

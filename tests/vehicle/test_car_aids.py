@@ -9,8 +9,8 @@ import pytest
 
 from simconsole.vehicle.platform import Ground
 
-from .driving import TICK_S, Drive, platform
-from .rolling import RADIUS_M, rolling
+from tests.vehicle.driving import TICK_S, Drive, platform
+from tests.vehicle.rolling import RADIUS_M, rolling
 
 
 def test_traction_control_keeps_the_driven_wheels_near_the_road() -> None:

@@ -7,7 +7,7 @@ import pytest
 from simconsole.units import KMH_PER_MPS
 from simconsole.vehicle.platform import Ground
 
-from .driving import TICK_S, Drive, platform
+from tests.vehicle.driving import TICK_S, Drive, platform
 
 SEED = 41
 

@@ -19,7 +19,7 @@ from simconsole.vehicle.car.tyre import Tyre, tyre
 from simconsole.vehicle.platform import Ground, Patch
 from simconsole.vehicle.registry import build
 
-from .driving import LEVEL, ORIGIN, TICK_S, Drive
+from tests.vehicle.driving import LEVEL, ORIGIN, TICK_S, Drive
 
 HATCHBACK = load("vehicles", "hatchback", CarProfile)
 WHEELS = ("fl", "fr", "rl", "rr")

@@ -20,8 +20,8 @@ from simconsole.vehicle.platform import Platform
 from simconsole.vehicle.registry import build
 from tests.samples import Sample
 
-from .commonroad import BMW, DURATION_S, SAMPLE_S, Input, Path, drive_multi_body, drive_single_track
-from .driving import LEVEL, ORIGIN
+from tests.vehicle.commonroad import BMW, DURATION_S, SAMPLE_S, Input, Path, drive_multi_body, drive_single_track
+from tests.vehicle.driving import LEVEL, ORIGIN
 
 CASES = 200
 WHEELBASE_M = BMW.a + BMW.b

@@ -8,7 +8,7 @@ import pytest
 from simconsole.units import KMH_PER_MPS, STANDARD_GRAVITY_MPS2
 from simconsole.vehicle.platform import Ground, Pose
 
-from .driving import LEVEL, TICK_S, Drive, platform
+from tests.vehicle.driving import LEVEL, TICK_S, Drive, platform
 
 
 def launched(throttle: float = 0.5, release_s: float = 1.5, ground: Ground = LEVEL, gear: float = 1.0) -> Drive:

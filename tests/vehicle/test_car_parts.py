@@ -17,7 +17,7 @@ from simconsole.vehicle.car.steering import aligning_moment, hand_wheel_torque, 
 from simconsole.vehicle.car.suspension import wheel_load
 from simconsole.vehicle.car.tyre import Tyre, tyre
 
-from .driving import LEVEL
+from tests.vehicle.driving import LEVEL
 
 CAR = car_parameters(load("vehicles", "hatchback", CarProfile), LEVEL)
 LOAD_N = CAR.front.static_n

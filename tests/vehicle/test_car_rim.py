@@ -6,8 +6,8 @@ import pytest
 
 from simconsole.vehicle.platform import Ground
 
-from .driving import TICK_S, Drive, platform
-from .rolling import rolling
+from tests.vehicle.driving import TICK_S, Drive, platform
+from tests.vehicle.rolling import rolling
 
 
 @pytest.mark.parametrize("speed_mps", [3.0, 15.0, 30.0])

@@ -9,9 +9,9 @@ from simconsole.rows import PLATFORM_AT
 from simconsole.vehicle.platform import Ground, Pose
 from tests.samples import Sample
 
-from .driving import Drive, platform
-from .random_states import random_cars, settle, speeds_mps
-from .rolling import rolling
+from tests.vehicle.driving import Drive, platform
+from tests.vehicle.random_states import random_cars, settle, speeds_mps
+from tests.vehicle.rolling import rolling
 
 CREEP_M = 1e-4  # 0.1 mm
 SETTLING_S = 10.0

@@ -16,8 +16,8 @@ from simconsole.vehicle.car.state import CarState
 from simconsole.vehicle.platform import MOST_PATCHES, Ground, Patch, Pose
 from simconsole.vehicle.registry import build
 
-from .driving import ORIGIN, TICK_S, Drive, platform
-from .rolling import rolling
+from tests.vehicle.driving import ORIGIN, TICK_S, Drive, platform
+from tests.vehicle.rolling import rolling
 
 DRAG_AREA_M2 = 0.68
 MASS_KG = 1300.0

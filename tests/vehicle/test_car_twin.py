@@ -21,7 +21,7 @@ from simconsole.signals import VehicleCommand
 from simconsole.vehicle.car.state import CarState
 from simconsole.vehicle.platform import Ground, Platform
 
-from .driving import IDLE, Drive, platform
+from tests.vehicle.driving import IDLE, Drive, platform
 
 SEED = 16
 FUSED = re.compile(r"\bv?f?n?m(?:add|sub)\d*[sp][sd]\b|\bfmadd\b|\bfmsub\b|\bfmla\b")

@@ -7,7 +7,7 @@ import pytest
 
 from simconsole.units import KMH_PER_MPS
 
-from .driving import Drive, platform
+from tests.vehicle.driving import Drive, platform
 
 FOLDER = Path(__file__).resolve().parents[2] / "profiles" / "vehicles"
 NUMBER = re.compile(r"[:\[]\s*-?\d")

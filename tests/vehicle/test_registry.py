@@ -11,7 +11,7 @@ from simconsole.profiles.vehicle import BallProfile, CarProfile, VehicleProfile
 from simconsole.vehicle.platform import Pose
 from simconsole.vehicle.registry import build
 
-from .driving import LEVEL, Drive, platform
+from tests.vehicle.driving import LEVEL, Drive, platform
 
 
 def hatchback() -> CarProfile:

@@ -28,7 +28,7 @@ from simconsole.vehicle.registry import build
 from simconsole.vehicle_files import load_vehicle
 from tests.samples import Sample
 
-from .driving import IDLE, LEVEL, ORIGIN, SUBSTEPS, Drive
+from tests.vehicle.driving import IDLE, LEVEL, ORIGIN, SUBSTEPS, Drive
 
 FOLDER = profiles_folder() / "vehicles"
 TEXT = (FOLDER / "tyres" / "example.tir").read_text()

@@ -15,7 +15,7 @@ from simconsole.profiles.tyre import COMBINED, parse_tir
 from simconsole.vehicle.car.pac2002 import Slip, coefficients, elliptic, pac2002, steady
 from tests.samples import Sample
 
-from .commonroad import BMW
+from tests.vehicle.commonroad import BMW
 
 TEXT = (Path(__file__).parent / "adams_205_60r15.tir").read_text()
 ADAMS = parse_tir(TEXT, "adams_205_60r15.tir")
