@@ -17,11 +17,11 @@ from multiprocessing.context import SpawnProcess
 
 import numpy as np
 
-from simconsole.bridge.client import BridgeClient
-from simconsole.bridge.lockstep import LockstepBridge
-from simconsole.errors import BridgeError
+from simconsole.bridge.client.bridge_client import BridgeClient
+from simconsole.bridge.transport.lockstep_server import LockstepBridge
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.rows import PLATFORM_AT, VEHICLE_AT, Snapshot
+from simconsole.values.errors import BridgeError
+from simconsole.values.state_vector import PLATFORM_AT, VEHICLE_AT, Snapshot
 
 TICK_HZ = 250
 PERIOD_TICKS = 5

@@ -17,14 +17,14 @@ from pathlib import Path
 
 import numpy as np
 
+from simconsole.canbus.bus.port import CanPort
+from simconsole.canbus.bus.worker import OnBus, load_codec, log_paths, serve
 from simconsole.canbus.codec import CONSOLE
 from simconsole.canbus.messages import BUILDERS
 from simconsole.canbus.node import CanNode
-from simconsole.canbus.port import CanPort
 from simconsole.canbus.schedule import Schedule
-from simconsole.canbus.station import OnBus, load_codec, log_paths, serve
 from simconsole.profiles.can import CanProfile
-from simconsole.rows import PLATFORM_AT, Snapshot
+from simconsole.values.state_vector import PLATFORM_AT, Snapshot
 
 TICK_HZ = 250
 MESSAGES = 10

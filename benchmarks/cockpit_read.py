@@ -12,13 +12,13 @@ import statistics
 import time
 from collections.abc import Callable
 
-from simconsole.compiling import compiled
-from simconsole.devices.calibration import NOBODY, calibrate, settings
-from simconsole.devices.sdl import SdlSource
-from simconsole.devices.uncalibrate import Intent, uncalibrate
-from simconsole.devices.virtual_cockpit import VirtualCockpit
-from simconsole.profile_files import load
+from simconsole.devices.calibration.calibrator import NOBODY, calibrate, settings
+from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate
+from simconsole.devices.sources.sdl import SdlSource
+from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.profiles.device import CockpitProfile
+from simconsole.profiles.files.loader import load
+from simconsole.values.host.jit import compiled
 
 TICK_HZ = 250
 BAR_US = 20.0

@@ -15,18 +15,18 @@ from pathlib import Path
 
 import numpy as np
 
-from simconsole.assembly import assemble
-from simconsole.compiling import compiled
-from simconsole.devices.script import ScriptSource
-from simconsole.devices.settings import settings
-from simconsole.drive import Cast, run
-from simconsole.pacing import UnpacedPacer
+from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.synthetic.script import ScriptSource
+from simconsole.drivers.scripted import ScriptedCommands
+from simconsole.recording.bundles.log import LogWriter
 from simconsole.recording.framing import LogHeader
-from simconsole.recording.log import LogWriter
-from simconsole.rows import INPUT_WIDTH
-from simconsole.scripted import ScriptedCommands
-from simconsole.session import LogRecorder, warm_up
-from simconsole.session_files import load_scenario, resolve
+from simconsole.session.lifecycle import LogRecorder, warm_up
+from simconsole.session.pacing import UnpacedPacer
+from simconsole.session.resolution import load_scenario, resolve
+from simconsole.tick.assembly import assemble
+from simconsole.tick.loop import Cast, run
+from simconsole.values.host.jit import compiled
+from simconsole.values.state_vector import INPUT_WIDTH
 
 
 def header(columns: tuple[str, ...], tick_hz: int) -> LogHeader:

@@ -32,15 +32,15 @@ from vehiclemodels.vehicle_dynamics_mb import vehicle_dynamics_mb
 from vehiclemodels.vehicle_dynamics_st import vehicle_dynamics_st
 from vehiclemodels.vehicle_dynamics_std import vehicle_dynamics_std
 
-from simconsole.compiling import compiled
-from simconsole.fleet import Fleet
-from simconsole.kernels import put
-from simconsole.profile_files import load
+from simconsole.profiles.files.loader import load
 from simconsole.profiles.vehicle import CarProfile
-from simconsole.rows import COMMAND_AT, PLATFORM_AT
-from simconsole.signals import VehicleCommand
-from simconsole.vehicle.platform import Ground, Platform, Pose
-from simconsole.vehicle.registry import build
+from simconsole.values.host.jit import compiled
+from simconsole.values.kernels import put
+from simconsole.values.platform import Ground, Platform, Pose
+from simconsole.values.signals import VehicleCommand
+from simconsole.values.state_vector import COMMAND_AT, PLATFORM_AT
+from simconsole.vehicle.batch.fleet import Fleet
+from simconsole.vehicle.platforms import build
 
 SPEED_MPS = 20.0
 ROAD_WHEEL_RAD = 0.02

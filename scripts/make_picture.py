@@ -14,14 +14,14 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
 
-from simconsole.hud.raster import snapshot_png
-from simconsole.recording.bundle import open_bundle
-from simconsole.replaying import recorded_session
-from simconsole.report.figure_map import draw_map
-from simconsole.report.figures import STYLE
-from simconsole.report.metrics import mode_changes, track
-from simconsole.report.table import drive_of
-from simconsole.rows import Snapshot
+from simconsole.evaluation.metrics.drive_metrics import mode_changes, track
+from simconsole.evaluation.metrics.table import drive_of
+from simconsole.evaluation.report.figure_map import draw_map
+from simconsole.evaluation.report.figures import STYLE
+from simconsole.hud.window.raster import snapshot_png
+from simconsole.recording.bundles.bundle import open_bundle
+from simconsole.recording.bundles.replay_bundle import recorded_session
+from simconsole.values.state_vector import Snapshot
 from simconsole.world.course import Course
 
 HEIGHT_PX = 540

@@ -7,7 +7,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Final, NamedTuple
 
-PAGE: Final = Path(__file__).parents[1] / "docs" / "long-run.md"
+from tests.paths import ROOT
+
+PAGE: Final = ROOT / "docs" / "long-run.md"
 HEAD: Final = "| check | seen | took | machine | day | seed | outcome |\n|---|---|---|---|---|---|---|\n"
 INTRODUCTION: Final = """# The long run
 

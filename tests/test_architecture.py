@@ -1,6 +1,7 @@
 """The house rules: who may import whom, and what every source file must look like."""
 
 import ast
+import graphlib
 import itertools
 import os
 import re
@@ -16,13 +17,14 @@ from typing import Any, NamedTuple, get_type_hints
 
 import pytest
 
-from simconsole import signals
+from simconsole.values import signals
+from tests.paths import ROOT
 
-ROOT = Path(__file__).resolve().parents[1]
 CONTRACTS = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
 LAYERS, FORBIDDEN, INDEPENDENT = CONTRACTS
-FLOORS = [re.findall(r"[\w.]+", layer) for layer in LAYERS["layers"]]
-FIRST_PURE_FLOOR = next(index for index, floor in enumerate(FLOORS) if "simconsole.pipeline" in floor)
+ROOMS = [re.findall(r"\w+", layer) for layer in LAYERS["layers"]]
+"""The rooms from top to bottom, those side by side together."""
+MODULES_OF_A_PACKAGE = 20
 HEAVY = ["pygame", "rerun", "numba", "matplotlib"]
 LINUX_ONLY = {"evdev", "fcntl", "grp", "posix", "pty", "pwd", "resource", "syslog", "termios", "tty", "udev", "pyudev"}
 
@@ -57,8 +59,15 @@ def modules() -> dict[str, Path]:
     return {module_name(path): path for path in sorted((ROOT / "simconsole").rglob("*.py"))}
 
 
-def owners(module: str, listed: list[str]) -> list[str]:
-    return [entry for entry in listed if module == entry or module.startswith(f"{entry}.")]
+def matches(module: str, pattern: str) -> bool:
+    """Whether a module is meant by a pattern of a contract: `*` is one name, `**` any number of them."""
+    regex = re.escape(pattern).replace(r"\.\*\*", r"(\.\w+)*").replace(r"\*", r"\w+")
+    return re.fullmatch(regex, module) is not None
+
+
+def pure() -> list[str]:
+    """The modules that may not touch the machine."""
+    return [name for name in modules() if any(matches(name, pattern) for pattern in FORBIDDEN["source_modules"])]
 
 
 def python_files() -> list[Path]:
@@ -81,25 +90,60 @@ def top_level_imports(tree: ast.AST) -> Iterator[str]:
             yield from top_level_imports(node)
 
 
-def test_every_module_stands_on_one_floor() -> None:
-    listed = list(itertools.chain(*FLOORS))
-    split_rooms = {entry.rpartition(".")[0] for entry in listed}
-    homeless = [name for name in modules() if not owners(name, listed) and name not in split_rooms]
-    assert homeless == [], "add them to the layers contract in pyproject.toml"
-    twice = [name for name in modules() if len(owners(name, listed)) > 1]
-    assert twice == []
+def test_the_root_holds_rooms_only() -> None:
+    entries = {path.name for path in (ROOT / "simconsole").iterdir()} - {"__pycache__", "py.typed"}
+    assert {name for name in entries if name.endswith(".py")} == {"__init__.py", "__main__.py"}
+    assert len(entries) <= 20
 
 
-def test_package_with_modules_on_several_floors_imports_nothing_itself() -> None:
-    split_rooms = {entry.rpartition(".")[0] for entry in itertools.chain(*FLOORS)}
-    for room in split_rooms:
-        tree = ast.parse((ROOT / Path(*room.split(".")) / "__init__.py").read_text())
-        assert list(top_level_imports(tree)) == [], room
+def packages() -> list[Path]:
+    return [path.parent for path in sorted((ROOT / "simconsole").rglob("__init__.py"))]
 
 
-def test_pure_floors_are_the_ones_that_the_forbidden_contract_covers() -> None:
-    pure = set(itertools.chain(*FLOORS[FIRST_PURE_FLOOR:]))
-    assert pure == set(FORBIDDEN["source_modules"])
+@pytest.mark.parametrize("package", packages(), ids=lambda path: str(path.relative_to(ROOT)))
+def test_package_is_small_enough_to_overlook(package: Path) -> None:
+    held = [path for path in package.glob("*.py") if path.name != "__init__.py"]
+    assert len(held) <= MODULES_OF_A_PACKAGE
+
+
+def test_packages_do_not_import_each_other_in_circles() -> None:
+    """Folders as they lie: a room's own modules and each of its sub-packages are one node each."""
+    known = modules()
+
+    def package(module: str) -> str:
+        return module if known[module].name == "__init__.py" else module.rpartition(".")[0]
+
+    graph: dict[str, set[str]] = {package(name): set() for name in known}
+    for name, path in known.items():
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("simconsole."):
+                targets = [f"{node.module}.{alias.name}" for alias in node.names]
+                graph[package(name)] |= {package(to if to in known else node.module or "") for to in targets}
+    order = graphlib.TopologicalSorter({name: targets - {name} for name, targets in graph.items()})
+    order.prepare()  # it raises where there is a circle, and names it
+
+
+def test_contracts_are_short_and_name_folders() -> None:
+    text = (ROOT / "pyproject.toml").read_text()
+    contracts = text[text.index("[[tool.importlinter.contracts]]") :]
+    assert len([line for line in contracts.splitlines() if line and not line.startswith("#")]) <= 40
+    assert not set(FORBIDDEN["source_modules"]) & modules().keys()
+
+
+def test_folders_with_pure_modules_hold_nothing_else() -> None:
+    """A reader sees from the path whether a module may touch the machine."""
+    clean = set(pure())
+    folders = {modules()[name].parent for name in clean if modules()[name].name != "__init__.py"}
+    mixed = [name for name, path in modules().items() if path.parent in folders and name not in clean]
+    assert [name for name in mixed if modules()[name].name != "__init__.py"] == []
+
+
+def test_package_that_holds_both_kinds_imports_nothing_itself() -> None:
+    clean = set(pure())
+    for package in packages():
+        inside = [name for name, path in modules().items() if package in path.parents]
+        if len({name in clean for name in inside}) > 1:
+            assert list(top_level_imports(ast.parse((package / "__init__.py").read_text()))) == [], package
 
 
 class House(NamedTuple):
@@ -125,9 +169,13 @@ def house(tmp_path: Path) -> House:
     return House(tmp_path)
 
 
-def some_module(entry: str) -> str:
-    """A module that is not a package, in this entry of a contract."""
-    return next(name for name, path in modules().items() if owners(name, [entry]) and path.name != "__init__.py")
+def some_module(room: str) -> str:
+    """A module of a room that is not a package."""
+    return next(
+        name
+        for name, path in modules().items()
+        if f"{name}.".startswith(f"simconsole.{room}.") and path.name != "__init__.py"
+    )
 
 
 def test_contracts_hold_in_this_tree(house: House) -> None:
@@ -137,24 +185,35 @@ def test_contracts_hold_in_this_tree(house: House) -> None:
 
 
 def test_planted_upward_imports_are_found(house: House) -> None:
-    """One import from each floor to the one above, all at once: each is named."""
+    """One import from each layer of rooms to the one above, all at once: each is named."""
     steps = []
-    for above, below in itertools.pairwise(FLOORS):
-        upper = some_module(next(entry for entry in above if entry != "simconsole.__main__"))
-        lower = some_module(below[0])
+    for above, below in itertools.pairwise(ROOMS[1:]):
+        upper, lower = some_module(above[0]), some_module(below[-1])
         house.plant(lower, f"import {upper}")
         steps.append((lower, upper))
     code, output = house.lint()
     assert code == 1
-    assert "Downwards only BROKEN" in output
+    assert "Rooms import downwards only BROKEN" in output
     for lower, upper in steps:
         assert f"{lower} -> {upper}" in output
 
 
+def test_planted_imports_between_rooms_side_by_side_are_found(house: House) -> None:
+    apart = [room for layer in ROOMS for room in layer if len(layer) > 1]
+    pairs = [(some_module(room), some_module(other)) for layer in ROOMS for room, other in itertools.pairwise(layer)]
+    assert len(apart) > 8
+    for importer, imported in pairs:
+        house.plant(importer, f"import {imported}")
+    _, output = house.lint()
+    for importer, imported in pairs:
+        assert f"{importer} -> {imported}" in output
+
+
 def test_planted_forbidden_imports_are_found(house: House) -> None:
-    """Each forbidden module, in a core of its own where there are enough, hidden in a function: each is named."""
-    cores = [some_module(entry) for entry in FORBIDDEN["source_modules"] if entry.count(".") > 1]
-    planted = list(zip(itertools.cycle(cores), FORBIDDEN["forbidden_modules"]))  # one side is endless
+    """Each forbidden module, in a pure module of its own, hidden in a function: each is named."""
+    cores = [name for name in pure() if modules()[name].name != "__init__.py"]
+    planted = list(zip(cores[:: len(cores) // 20], itertools.cycle(FORBIDDEN["forbidden_modules"])))  # one is endless
+    assert {forbidden for _, forbidden in planted} == set(FORBIDDEN["forbidden_modules"])
     for core, forbidden in planted:
         house.plant(core, f"def planted() -> None:\n    import {forbidden}\n")
     code, output = house.lint()
@@ -162,6 +221,13 @@ def test_planted_forbidden_imports_are_found(house: House) -> None:
     assert f"{FORBIDDEN['name']} BROKEN" in output
     for core, forbidden in planted:
         assert f"{core} -> {forbidden}" in output
+
+
+def test_a_new_room_must_find_its_place(house: House) -> None:
+    (house.root / "simconsole" / "annexe.py").write_text('"""A module at the root."""\n')
+    code, output = house.lint()
+    assert code == 1
+    assert "simconsole.annexe" in output
 
 
 def test_planted_imports_between_outside_rooms_are_found(house: House) -> None:
@@ -187,9 +253,8 @@ def loaded_by(code: str, *, forbid: list[str]) -> set[str]:
 
 @pytest.mark.parametrize("words", [["--help"], ["drive", "--help"], ["doctor", "--help"]])
 def test_help_loads_no_heavy_library(words: list[str]) -> None:
-    code = (
-        f"import contextlib\nfrom simconsole.cli import main\nwith contextlib.suppress(SystemExit):\n    main({words})"
-    )
+    code = "import contextlib\nfrom simconsole.cli.main import main\n"
+    code += f"with contextlib.suppress(SystemExit):\n    main({words})"
     assert loaded_by(code, forbid=[*HEAVY, "numpy", "websockets", "asyncio"]) == set()
 
 
@@ -205,8 +270,7 @@ def test_help_is_there_and_its_time_is_printed(record_property: Callable[[str, o
 
 
 def test_importing_every_core_loads_no_heavy_library() -> None:
-    pure = list(itertools.chain(*FLOORS[FIRST_PURE_FLOOR:]))
-    code = "\n".join(f"import {name}" for name in modules() if owners(name, pure))
+    code = "\n".join(f"import {name}" for name in pure())
     assert loaded_by(code, forbid=[*HEAVY, "websockets", "asyncio"]) == set()
 
 

@@ -21,8 +21,7 @@ import pytest
 from packaging.requirements import Requirement
 
 from simconsole import __version__
-
-ROOT = Path(__file__).resolve().parents[1]
+from tests.paths import ROOT
 
 
 class Installation(NamedTuple):

@@ -7,19 +7,19 @@ from unittest import mock
 import numpy as np
 from msgspec.structs import replace
 
-from simconsole.compiling import compiled, plain
-from simconsole.kernels import Row, put
-from simconsole.profile_files import load
+from simconsole.profiles.files.loader import load
 from simconsole.profiles.vehicle import CarProfile
-from simconsole.rows import COMMAND_AT, PLATFORM_AT, VEHICLE_AT
-from simconsole.signals import VehicleCommand
-from simconsole.units import STANDARD_GRAVITY_MPS2
-from simconsole.vehicle.car import assembly as car_assembly
-from simconsole.vehicle.car import step as car_step
-from simconsole.vehicle.car.assembly import car_parameters
+from simconsole.values.host.jit import compiled, plain
+from simconsole.values.kernels import Row, put
+from simconsole.values.platform import Ground, Pose
+from simconsole.values.signals import VehicleCommand
+from simconsole.values.state_vector import COMMAND_AT, PLATFORM_AT, VEHICLE_AT
+from simconsole.values.units import STANDARD_GRAVITY_MPS2
+from simconsole.vehicle.car import car_platform as car_assembly
+from simconsole.vehicle.car import car_step
+from simconsole.vehicle.car.car_platform import car_parameters
 from simconsole.vehicle.car.state import CarState
-from simconsole.vehicle.platform import Ground, Pose
-from simconsole.vehicle.registry import build
+from simconsole.vehicle.platforms import build
 
 LEVEL = Ground(1.0, 0.0, 0.0)
 NOTHING = VehicleCommand(*(0.0,) * len(VehicleCommand._fields))

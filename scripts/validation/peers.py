@@ -16,14 +16,14 @@ from vehiclemodels.vehicle_dynamics_mb import vehicle_dynamics_mb
 from vehiclemodels.vehicle_dynamics_st import vehicle_dynamics_st
 from vehiclemodels.vehicle_dynamics_std import vehicle_dynamics_std
 
-from simconsole.compiling import compiled
-from simconsole.kernels import put
-from simconsole.profile_files import load
+from simconsole.profiles.files.loader import load
 from simconsole.profiles.vehicle import CarProfile
-from simconsole.rows import COMMAND_AT, PLATFORM_AT
+from simconsole.values.host.jit import compiled
+from simconsole.values.kernels import put
+from simconsole.values.platform import Ground, Pose
+from simconsole.values.state_vector import COMMAND_AT, PLATFORM_AT
 from simconsole.vehicle.car.state import CarState
-from simconsole.vehicle.platform import Ground, Pose
-from simconsole.vehicle.registry import build
+from simconsole.vehicle.platforms import build
 
 INPUTS = ((10.0, 0.02), (10.0, 0.06), (15.0, 0.03), (20.0, 0.02), (20.0, 0.035), (30.0, 0.012), (30.0, 0.017))
 """Speed in m/s and road-wheel angle in rad, below 6 m/s2 of lateral acceleration."""

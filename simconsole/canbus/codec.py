@@ -9,8 +9,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from simconsole.canbus.protection import LENGTH, protected
-from simconsole.errors import CanError
-from simconsole.kernels import is_finite
+from simconsole.values.errors import CanError
+from simconsole.values.kernels import is_finite
 
 if TYPE_CHECKING:
     from cantools.database import Message

@@ -7,7 +7,7 @@ from typing import Final, NamedTuple
 
 from simconsole.canbus.codec import COMMAND, CONSOLE, ECU, Codec, Frame
 from simconsole.canbus.protection import Check, Receiver
-from simconsole.signals import Mode
+from simconsole.values.signals import Mode
 
 _TIMEOUT_PERIODS: Final = 10
 _NS_PER_MS: Final = 1_000_000

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Mapping
 from typing import Final, NamedTuple
 
-from simconsole.rows import Snapshot
-from simconsole.signals import DriverInput, Event, RemoteKind, Validity, VehicleState
-from simconsole.units import RPM_PER_RADPS
+from simconsole.values.signals import DriverInput, Event, RemoteKind, Validity, VehicleState
+from simconsole.values.state_vector import Snapshot
+from simconsole.values.units import RPM_PER_RADPS
 
 REQUESTS: Final[dict[int, Event]] = {
     1: Event.REQUEST_AUTONOMOUS,

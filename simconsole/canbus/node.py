@@ -6,10 +6,10 @@ from simconsole.canbus.codec import COMMAND, CONSOLE, ECU, Codec, Frame
 from simconsole.canbus.messages import BUILDERS, COMMAND_KIND, REQUESTS, Link, Moment
 from simconsole.canbus.protection import COUNTERS, Check, Receiver
 from simconsole.canbus.schedule import Schedule
-from simconsole.errors import CanError
 from simconsole.profiles.can import CanProfile
-from simconsole.rows import Snapshot
-from simconsole.signals import NO_COMMAND, Event
+from simconsole.values.errors import CanError
+from simconsole.values.signals import NO_COMMAND, Event
+from simconsole.values.state_vector import Snapshot
 
 _NEVER_MS: Final = 1e9
 _NS_PER_MS: Final = 1e6

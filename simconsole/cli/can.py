@@ -5,10 +5,10 @@ from pathlib import Path
 
 import msgspec
 
-from simconsole.commands.outcome import Outcome
-from simconsole.errors import CanError
+from simconsole.cli.outcome import Outcome
 from simconsole.profiles.can import CanProfile
-from simconsole.units import RAD_PER_DEG
+from simconsole.values.errors import CanError
+from simconsole.values.units import RAD_PER_DEG
 
 _DIRECTIONS = {"drive": 1.0, "neutral": 0.0, "reverse": -1.0}
 _INDICATORS = {"left": 1.0, "off": 0.0, "right": -1.0}
@@ -21,10 +21,10 @@ def can(words: Namespace) -> Outcome:
         CanError: the bus, a log or an option cannot be used.
         ProfileError: the DBC is missing.
     """
+    from simconsole.canbus.bus.bus_tools import monitor, replay, send
+    from simconsole.canbus.bus.worker import load_codec
     from simconsole.canbus.ecu import Wish
     from simconsole.canbus.messages import REQUESTS
-    from simconsole.canbus.station import load_codec
-    from simconsole.canbus.tools import monitor, replay, send
 
     profile, codec = _profile(words), load_codec()
     if words.action == "monitor":

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
-from simconsole.checking import Verdict, check_scenario
-from simconsole.commands.outcome import Outcome, table
-from simconsole.lifetimes import end_with_parent
+from simconsole.cli.outcome import Outcome, table
+from simconsole.evaluation.checks.scenario_check import Verdict, check_scenario
+from simconsole.processes.lifetimes import end_with_parent
 
 
 def check(words: Namespace) -> Outcome:
@@ -41,7 +41,7 @@ def _line(verdict: Verdict) -> str:
 
 
 def _write_report(path: Path, verdicts: list[Verdict]) -> None:
-    from simconsole.report.handling_page import Chapter, write_handling_report
+    from simconsole.evaluation.report.manoeuvre_page import Chapter, write_handling_report
 
     chapters = [
         Chapter(verdict.scenario, verdict.title, verdict.result, verdict.limits, tuple(verdict.problems))

@@ -4,11 +4,11 @@ import time
 from argparse import Namespace
 from pathlib import Path
 
-from simconsole.commands.driven import finish
-from simconsole.commands.outcome import Outcome
-from simconsole.commands.progress import Progress
-from simconsole.session import drive
-from simconsole.session_files import load_session, override, resolve
+from simconsole.cli.driven import finish
+from simconsole.cli.outcome import Outcome
+from simconsole.cli.progress import Progress
+from simconsole.session.lifecycle import drive
+from simconsole.session.resolution import load_session, override, resolve
 
 
 def demo(words: Namespace) -> Outcome:

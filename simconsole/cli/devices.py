@@ -4,10 +4,10 @@ import sys
 from argparse import Namespace
 from pathlib import Path
 
-from simconsole.commands.outcome import Outcome
-from simconsole.devices.commands import check_devices, list_devices, record_devices
-from simconsole.profile_files import load
+from simconsole.cli.outcome import Outcome
+from simconsole.devices.setup.device_commands import check_devices, list_devices, record_devices
 from simconsole.profiles.device import CockpitProfile
+from simconsole.profiles.files.loader import load
 
 
 def devices(words: Namespace) -> Outcome:
@@ -26,12 +26,12 @@ def devices(words: Namespace) -> Outcome:
         results = check_devices(cockpit, say=print, duration_s=words.duration_s, virtual=words.virtual, show=show)
         return Outcome(0 if results["ok"] else 1, results)
     if words.action == "calibrate":
-        from simconsole.devices.calibrate import calibrate_devices
+        from simconsole.devices.setup.calibrate import calibrate_devices
 
         path = Path(words.out or "cockpit.yaml")
         return Outcome(0, calibrate_devices(cockpit, path, say=_say, virtual=cockpit if words.virtual else None))
     if words.action == "feel":
-        from simconsole.devices.feel import feel_devices
+        from simconsole.devices.setup.force_feedback_setup import feel_devices
 
         results = feel_devices(cockpit, say=_say, strength=words.strength / 100.0, virtual=words.virtual)
         return Outcome(0 if results["ok"] else 1, results)

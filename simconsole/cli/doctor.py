@@ -8,7 +8,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from simconsole import __version__
-from simconsole.commands.outcome import Outcome, table
+from simconsole.cli.outcome import Outcome, table
 
 LIBRARIES = ("numpy", "numba", "pygame-ce", "websockets", "msgspec", "orjson", "rerun-sdk", "matplotlib", "pyyaml")
 

@@ -5,13 +5,13 @@ import time
 from argparse import Namespace
 from pathlib import Path
 
-from simconsole.commands.driven import finish
-from simconsole.commands.outcome import Outcome
-from simconsole.commands.progress import Progress
-from simconsole.errors import DeviceNotFound, ProfileError
+from simconsole.cli.driven import finish
+from simconsole.cli.outcome import Outcome
+from simconsole.cli.progress import Progress
 from simconsole.profiles.session import SessionProfile
-from simconsole.session import drive as drive_session
-from simconsole.session_files import load_session, override, resolve
+from simconsole.session.lifecycle import drive as drive_session
+from simconsole.session.resolution import load_session, override, resolve
+from simconsole.values.errors import DeviceNotFound, ProfileError
 
 
 def drive(words: Namespace) -> Outcome:

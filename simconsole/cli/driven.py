@@ -2,12 +2,12 @@
 
 from typing import Any
 
-from simconsole.commands.outcome import RECORDING_FAILED, Outcome, table
-from simconsole.commands.progress import Progress
-from simconsole.errors import one_line
-from simconsole.exports import REPORT, SCENE, write_exports
-from simconsole.lifetimes import INTERRUPTED
-from simconsole.session import DriveResult
+from simconsole.cli.outcome import RECORDING_FAILED, Outcome, table
+from simconsole.cli.progress import Progress
+from simconsole.evaluation.report.exports import REPORT, SCENE, write_exports
+from simconsole.processes.lifetimes import INTERRUPTED
+from simconsole.session.lifecycle import DriveResult
+from simconsole.values.errors import one_line
 
 
 def finish(result: DriveResult, report: bool = True, scene: bool = True) -> Outcome:

@@ -12,8 +12,7 @@ from importlib import import_module
 from typing import Any, TextIO
 
 from simconsole import __version__
-from simconsole.errors import SimConsoleError, one_line
-from simconsole.lifetimes import (
+from simconsole.processes.lifetimes import (
     ATTACHED,
     INTERRUPTED,
     SIGNALS,
@@ -24,6 +23,7 @@ from simconsole.lifetimes import (
     ignore_signals,
     interrupted,
 )
+from simconsole.values.errors import SimConsoleError, one_line
 
 _AT_ONCE = ("demo", "drive", "bridge", "report", "view")
 """Commands that Ctrl-C ends at once where no drive takes it for itself: they leave nothing half made. To the others it

@@ -4,9 +4,9 @@ import time
 from argparse import Namespace
 from typing import Any
 
-from simconsole.commands.outcome import Outcome
-from simconsole.commands.remote import own_token
-from simconsole.errors import BridgeError
+from simconsole.cli.outcome import Outcome
+from simconsole.cli.remote import own_token
+from simconsole.values.errors import BridgeError
 
 _PATIENCE_S = 5.0
 
@@ -17,8 +17,8 @@ def operate(words: Namespace) -> Outcome:
     Raises:
         BridgeError: nobody listens there, or nobody answers.
     """
-    from simconsole.bridge.client import BridgeClient
-    from simconsole.bridge.operate import OPERATE
+    from simconsole.bridge.client.bridge_client import BridgeClient
+    from simconsole.bridge.console.operator_acts import OPERATE
 
     args = {"act": words.act, "note": words.note, "participant": words.participant, "trial": words.trial}
     answers: list[tuple[Any, bool]] = []

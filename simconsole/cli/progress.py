@@ -6,11 +6,11 @@ from contextlib import suppress
 from types import TracebackType
 from typing import Final, Self
 
-from simconsole.commands.outcome import RECORDING_FAILED
-from simconsole.rows import Snapshot
-from simconsole.signals import Mode
-from simconsole.units import KMH_PER_MPS
-from simconsole.words import mode_words
+from simconsole.cli.outcome import RECORDING_FAILED
+from simconsole.values.labels import mode_words
+from simconsole.values.signals import Mode
+from simconsole.values.state_vector import Snapshot
+from simconsole.values.units import KMH_PER_MPS
 
 INTERVAL_S: Final = 0.2
 TICKS_BETWEEN_LOOKS: Final = 64

@@ -4,15 +4,15 @@ from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
-from simconsole.commands.outcome import Outcome
-from simconsole.recording.bundle import open_bundle
-from simconsole.recording.bundle import verify as verify_bundle
+from simconsole.cli.outcome import Outcome
+from simconsole.recording.bundles.bundle import open_bundle
+from simconsole.recording.bundles.bundle import verify as verify_bundle
 from simconsole.recording.compare import compare as compare_logs
 
 
 def replay(words: Namespace) -> Outcome:
     """Re-simulate a bundle from its recorded inputs; code 1 and the first differing tick and field otherwise."""
-    from simconsole.replaying import replay_bundle
+    from simconsole.recording.bundles.replay_bundle import replay_bundle
 
     result = replay_bundle(Path(words.bundle))
     results = {
@@ -58,7 +58,7 @@ def compare(words: Namespace) -> Outcome:
 
 def report(words: Namespace) -> Outcome:
     """Write report.html into the bundle."""
-    from simconsole.exports import write_report
+    from simconsole.evaluation.report.exports import write_report
 
     metrics = write_report(Path(words.bundle))
     return _of_whole_drive(words.bundle, metrics, str(Path(words.bundle) / "report.html"))
@@ -66,7 +66,7 @@ def report(words: Namespace) -> Outcome:
 
 def view(words: Namespace) -> Outcome:
     """Write scene.rrd into the bundle and open it in rerun, unless told not to."""
-    from simconsole.exports import open_viewer, write_scene
+    from simconsole.evaluation.report.exports import open_viewer, write_scene
 
     path = write_scene(Path(words.bundle))
     if not words.no_open:

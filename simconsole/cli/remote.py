@@ -3,10 +3,10 @@
 import os
 from argparse import Namespace
 
-from simconsole.commands.outcome import Outcome, table
-from simconsole.errors import ProfileError
-from simconsole.inline import TOKEN_VARIABLE
-from simconsole.lifetimes import DRIVE_VARIABLE, follow_parent
+from simconsole.cli.outcome import Outcome, table
+from simconsole.processes.lifetimes import DRIVE_VARIABLE, follow_parent
+from simconsole.session.lockstep import TOKEN_VARIABLE
+from simconsole.values.errors import ProfileError
 
 END_S = 0.5
 """How long it may take to end once the console that started it says so."""
@@ -25,7 +25,7 @@ def autopilot(words: Namespace) -> Outcome:
         OtherDriveError: the console there is not the one that started this program.
     """
     stop = follow_parent(END_S).wants_end if words.attached else None
-    from simconsole.autonomy.autopilot import run
+    from simconsole.drivers.autopilot.program import run
 
     results = run(
         words.url,

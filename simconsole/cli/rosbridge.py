@@ -4,10 +4,10 @@ import secrets
 from argparse import Namespace
 from pathlib import Path
 
-from simconsole.commands.outcome import Outcome, table
-from simconsole.commands.remote import own_token
-from simconsole.lifetimes import INTERRUPTED
-from simconsole.shared_memory import temporary_folder
+from simconsole.cli.outcome import Outcome, table
+from simconsole.cli.remote import own_token
+from simconsole.processes.lifetimes import INTERRUPTED
+from simconsole.processes.shared_memory import temporary_folder
 
 
 def bridge(words: Namespace) -> Outcome:
@@ -17,12 +17,12 @@ def bridge(words: Namespace) -> Outcome:
 
 def serve(words: Namespace) -> Outcome:
     """Serve rosbridge on a standing car that nobody sits in, in real time, until interrupted; nothing is kept."""
-    from simconsole.bridge.message_files import load_registry
-    from simconsole.bridge.ros2 import check as check_ros2
-    from simconsole.bridge.transport import load_transport
-    from simconsole.bridge.wire import load_access, load_tls
-    from simconsole.session import drive
-    from simconsole.session_files import load_session, override, resolve
+    from simconsole.bridge.ros2.node import check as check_ros2
+    from simconsole.bridge.transport.interface import load_transport
+    from simconsole.bridge.transport.message_files import load_registry
+    from simconsole.bridge.transport.wire import load_access, load_tls
+    from simconsole.session.lifecycle import drive
+    from simconsole.session.resolution import load_session, override, resolve
 
     certificate = words.certificate
     section = {
@@ -54,7 +54,7 @@ def serve(words: Namespace) -> Outcome:
 
 def check(words: Namespace) -> Outcome:
     """Try how the server at `words.url` behaves where rosbridge servers differ; 1 if it deviates anywhere."""
-    from simconsole.bridge import conformance
+    from simconsole.bridge.tools import conformance
 
     url = words.url or f"ws://{words.host}:{words.port}"
     rows = conformance.check(url, own_token())
@@ -68,7 +68,7 @@ def check(words: Namespace) -> Outcome:
 
 def bench(words: Namespace) -> Outcome:
     """Measure what our server carries, beside a bare broker and the server at `words.url` if one is given."""
-    from simconsole.bridge import bench, bench_load, bench_peers
+    from simconsole.bridge.tools import bench, bench_load, bench_peers
 
     found = bench.bench(url=words.url, seconds=words.duration_s or 1.0)
     rates_hz = {case: figures.rate_hz for case, figures in found.items()}
@@ -105,7 +105,7 @@ def bench(words: Namespace) -> Outcome:
 
 def cert(words: Namespace) -> Outcome:
     """Write a self-signed certificate for `--host`, its key and a control token, readable by their owner alone."""
-    from simconsole.commands.certificate import make, write_private
+    from simconsole.cli.certificate import make, write_private
 
     folder = Path(words.out)
     folder.mkdir(parents=True, exist_ok=True)

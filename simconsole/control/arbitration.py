@@ -16,19 +16,19 @@ from simconsole.control.authority import (
     steered_stop,
     transmission_of,
 )
-from simconsole.control.commander import Controllers, look
-from simconsole.control.decision import Decision, decide, takeover_stage
 from simconsole.control.lights import Lights, lights_of, switched
-from simconsole.control.moment import Moment
-from simconsole.control.person import Person, person_of
-from simconsole.control.restart import Restart, restart_of
-from simconsole.control.settings import ControlSettings
+from simconsole.control.modes.decision import Decision, decide, takeover_stage
+from simconsole.control.modes.restart import Restart, restart_of
+from simconsole.control.modes.takeover import WheelWatch, steering_taken, throttle_held, throttle_overrides, watch_wheel
+from simconsole.control.modes.triggers import link_lost
+from simconsole.control.requests.commander import Controllers, look
+from simconsole.control.requests.control_settings import ControlSettings
+from simconsole.control.requests.person import Person, person_of
+from simconsole.control.requests.stops import slow
+from simconsole.control.requests.tick_context import Moment
 from simconsole.control.shared import consent
-from simconsole.control.stops import slow
-from simconsole.control.takeover import WheelWatch, steering_taken, throttle_held, throttle_overrides, watch_wheel
-from simconsole.control.triggers import link_lost
-from simconsole.kernels import kernel
-from simconsole.signals import ArbiterMemory, Arbitration, Link, Mode, Notice, Request
+from simconsole.values.kernels import kernel
+from simconsole.values.signals import ArbiterMemory, Arbitration, Link, Mode, Notice, Request
 
 _SHARED: Final = float(Mode.SHARED)
 _AUTONOMOUS: Final = float(Mode.AUTONOMOUS)

@@ -2,16 +2,16 @@
 
 from typing import Final, NamedTuple
 
-from simconsole.control.angles import gentle_angle, gentle_step, lateral_apart
-from simconsole.control.decision import Decision
 from simconsole.control.lights import Lights
-from simconsole.control.moment import Moment
-from simconsole.control.person import Person
-from simconsole.control.remote import RemoteRequest
-from simconsole.control.settings import ControlSettings
-from simconsole.control.stops import safe_stop, stop_start
-from simconsole.kernels import approach, clip, kernel
-from simconsole.signals import Arbitration, DriverInput, Link, Mode, Reason, Request, VehicleCommand
+from simconsole.control.modes.decision import Decision
+from simconsole.control.requests.angles import gentle_angle, gentle_step, lateral_apart
+from simconsole.control.requests.control_settings import ControlSettings
+from simconsole.control.requests.person import Person
+from simconsole.control.requests.remote import RemoteRequest
+from simconsole.control.requests.stops import safe_stop, stop_start
+from simconsole.control.requests.tick_context import Moment
+from simconsole.values.kernels import approach, clip, kernel
+from simconsole.values.signals import Arbitration, DriverInput, Link, Mode, Reason, Request, VehicleCommand
 
 _PARKED: Final = float(Mode.PARKED)
 _MANUAL: Final = float(Mode.MANUAL)

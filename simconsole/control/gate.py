@@ -7,11 +7,11 @@ narrower. Throttle is the exception downwards: with the brake pressed or in a st
 
 from typing import Final, NamedTuple
 
-from simconsole.control.angles import gentle_angle, gentle_step
-from simconsole.control.longitudinal import known
-from simconsole.control.settings import ControlSettings
-from simconsole.kernels import approach, clip, is_finite, kernel
-from simconsole.signals import (
+from simconsole.control.requests.angles import gentle_angle, gentle_step
+from simconsole.control.requests.control_settings import ControlSettings
+from simconsole.control.requests.longitudinal import known
+from simconsole.values.kernels import approach, clip, is_finite, kernel
+from simconsole.values.signals import (
     NEVER_TICKS,
     Arbitration,
     Event,

@@ -8,9 +8,9 @@ emergency stop.
 
 from typing import Final, NamedTuple
 
-from simconsole.control.person import mask
-from simconsole.kernels import kernel
-from simconsole.signals import ArbiterMemory, Button, DriverInput, Link, Mode, RemoteCommand
+from simconsole.control.requests.person import mask
+from simconsole.values.kernels import kernel
+from simconsole.values.signals import ArbiterMemory, Button, DriverInput, Link, Mode, RemoteCommand
 
 _AUTONOMOUS: Final = float(Mode.AUTONOMOUS)
 _TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)

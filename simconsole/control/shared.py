@@ -8,12 +8,12 @@ controller (traded control after the method of tud-hri/joan: a torque threshold 
 import math
 from typing import Final, NamedTuple
 
-from simconsole.control.angles import lateral_apart
-from simconsole.control.longitudinal import known
-from simconsole.control.moment import Moment
-from simconsole.control.settings import ControlSettings
-from simconsole.kernels import clip, kernel
-from simconsole.signals import VehicleState
+from simconsole.control.requests.angles import lateral_apart
+from simconsole.control.requests.control_settings import ControlSettings
+from simconsole.control.requests.longitudinal import known
+from simconsole.control.requests.tick_context import Moment
+from simconsole.values.kernels import clip, kernel
+from simconsole.values.signals import VehicleState
 
 BY_LINE_CROSSING: Final = 1.0
 TRADED: Final = 2.0

@@ -3,10 +3,10 @@
 from collections.abc import Callable
 from typing import Final
 
-from simconsole.devices.uncalibrate import Intent
-from simconsole.rows import Snapshot
-from simconsole.signals import Mode
-from simconsole.units import MPS_PER_KMH
+from simconsole.devices.calibration.uncalibrate import Intent
+from simconsole.values.signals import Mode
+from simconsole.values.state_vector import Snapshot
+from simconsole.values.units import MPS_PER_KMH
 
 SETTLE_S: Final = 0.6
 """Pedals at rest until the console has seen them; and what the automatic needs to leave its gear."""

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 from simconsole.profiles.scenario import EventStep, RemoteStep
-from simconsole.signals import NEVER_TICKS, NO_COMMAND, Event, EventInput, RemoteCommand, RemoteKind
-from simconsole.units import RAD_PER_DEG
+from simconsole.values.signals import NEVER_TICKS, NO_COMMAND, Event, EventInput, RemoteCommand, RemoteKind
+from simconsole.values.units import RAD_PER_DEG
 
 
 class ScriptedCommands:

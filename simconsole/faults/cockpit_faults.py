@@ -7,12 +7,10 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from typing import Any, Final, Protocol, TypeAlias
 
-from simconsole.devices.cockpit import CockpitSettings
-from simconsole.devices.lever import SHIFTER_SHIFT
-from simconsole.devices.motor import Source
-from simconsole.devices.uncalibrate import WHEEL_MASK, button_masks
-from simconsole.errors import ProfileError
-from simconsole.kernels import clip
+from simconsole.devices.calibration.cockpit_settings import CockpitSettings
+from simconsole.devices.calibration.lever import SHIFTER_SHIFT
+from simconsole.devices.calibration.uncalibrate import WHEEL_MASK, button_masks
+from simconsole.devices.force_feedback.motor import Source
 from simconsole.profiles.device import CockpitProfile, RoleName
 from simconsole.profiles.faults import (
     Burst,
@@ -27,7 +25,9 @@ from simconsole.profiles.faults import (
     TwoGears,
     Unplug,
 )
-from simconsole.signals import NEVER_TICKS, NO_SAMPLE, DeviceSample
+from simconsole.values.errors import ProfileError
+from simconsole.values.kernels import clip
+from simconsole.values.signals import NEVER_TICKS, NO_SAMPLE, DeviceSample
 
 AGES: Final[dict[RoleName, str]] = {
     "wheel": "wheel_age_ticks",

@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 from typing import Final, Protocol
 
-from simconsole.ports import CommandSource
 from simconsole.profiles.faults import Astray, Disconnected, Fault, LateCommands, NotFinite, Refused, Silent
-from simconsole.signals import NEVER_TICKS, Event, EventInput, RemoteCommand
-from simconsole.units import RAD_PER_DEG
+from simconsole.values.protocols import CommandSource
+from simconsole.values.signals import NEVER_TICKS, Event, EventInput, RemoteCommand
+from simconsole.values.units import RAD_PER_DEG
 
 _STOPPING: Final = (Silent, Disconnected, Refused)
 """Faults under which no new command is taken."""

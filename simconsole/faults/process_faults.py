@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 from typing import Protocol
 
-from simconsole.drive import Pace
-from simconsole.ports import CommandSource, DeviceSource
-from simconsole.rows import Snapshot
-from simconsole.signals import DeviceSample, Event, EventInput, RemoteCommand
+from simconsole.tick.loop import Pace
+from simconsole.values.protocols import CommandSource, DeviceSource
+from simconsole.values.signals import DeviceSample, Event, EventInput, RemoteCommand
+from simconsole.values.state_vector import Snapshot
 
 STALL_MS = 100.0
 """As pacing counts a stall."""

@@ -8,16 +8,16 @@ needs no faults; the row tells which were on (`events.faults`, a bit for each pl
 from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple, get_args
 
-from simconsole.assembly import ResolvedSession
-from simconsole.commanding_faults import FaultyCommands
-from simconsole.devices.faults import FaultyDevices, Switched
-from simconsole.devices.settings import settings
-from simconsole.drive import Cast
-from simconsole.process_faults import RaisingCommands, RaisingDevices, RaisingStation, StallingPace
+from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.faults.cockpit_faults import FaultyDevices, Switched
+from simconsole.faults.command_faults import FaultyCommands
+from simconsole.faults.process_faults import RaisingCommands, RaisingDevices, RaisingStation, StallingPace
 from simconsole.profiles import faults as kinds
 from simconsole.profiles.faults import Fault, Onset
-from simconsole.rows import Snapshot
-from simconsole.signals import Button, Event, Mode
+from simconsole.tick.assembly import ResolvedSession
+from simconsole.tick.loop import Cast
+from simconsole.values.signals import Button, Event, Mode
+from simconsole.values.state_vector import Snapshot
 
 
 class Armed(NamedTuple):

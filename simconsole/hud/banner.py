@@ -25,7 +25,7 @@ from simconsole.hud.draw import (
 from simconsole.hud.screen import DRIVING_ARCMIN, SECONDARY_ARCMIN, Screen
 from simconsole.hud.shapes import exclamation, mode_shape
 from simconsole.hud.view import HudView
-from simconsole.signals import Mode
+from simconsole.values.signals import Mode
 
 FLASH_HZ: Final = 2.0
 """Only escalated alerts flash, between 1 and 5 Hz."""

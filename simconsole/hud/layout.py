@@ -6,15 +6,22 @@ dial and steering side by side, then a strip of lamps. Each thing has one place 
 
 from typing import Final, NamedTuple
 
-from simconsole.errors import ProfileError
 from simconsole.hud.banner import alert_of, banner, slot
 from simconsole.hud.dial import dial
 from simconsole.hud.draw import BACKGROUND, Box, DrawItem, Rect, Text, bounds
 from simconsole.hud.panels import pedals, status, steering
 from simconsole.hud.screen import Screen
 from simconsole.hud.view import HudView
-from simconsole.signals import Mode, Notice, Reason
-from simconsole.words import LINK_COMMANDER, LINK_CONNECTING, LINK_NOBODY, mode_words, notice_words, reason_words
+from simconsole.values.errors import ProfileError
+from simconsole.values.labels import (
+    LINK_COMMANDER,
+    LINK_CONNECTING,
+    LINK_NOBODY,
+    mode_words,
+    notice_words,
+    reason_words,
+)
+from simconsole.values.signals import Mode, Notice, Reason
 
 GAP: Final = 0.02
 

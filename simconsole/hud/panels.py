@@ -22,9 +22,9 @@ from simconsole.hud.draw import (
 from simconsole.hud.screen import DRIVING_ARCMIN, SECONDARY_ARCMIN
 from simconsole.hud.shapes import exclamation
 from simconsole.hud.view import HudView
-from simconsole.signals import Validity
-from simconsole.units import DEG_PER_RAD
-from simconsole.words import LINK_CONNECTING, LINK_DOWN, LINK_LOST, LINK_NOBODY, LINK_RETRYING, validity_words
+from simconsole.values.labels import LINK_CONNECTING, LINK_DOWN, LINK_LOST, LINK_NOBODY, LINK_RETRYING, validity_words
+from simconsole.values.signals import Validity
+from simconsole.values.units import DEG_PER_RAD
 
 FULL_STEERING_DEG: Final = 40.0
 """Road-wheel angle at the end of the steering scale."""

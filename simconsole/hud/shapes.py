@@ -1,7 +1,7 @@
 """One shape for each mode: whoever cannot tell the colours, or cannot read at a glance, still tells the modes apart."""
 
 from simconsole.hud.draw import Arc, Box, Colour, DrawItem, Point, Polygon, Rect, around
-from simconsole.signals import Mode
+from simconsole.values.signals import Mode
 
 
 def mode_shape(mode: float, box: Box, colour: Colour, ground: Colour) -> list[DrawItem]:

@@ -4,10 +4,10 @@ from typing import Final, NamedTuple
 
 from simconsole.profiles.control import ControlProfile
 from simconsole.profiles.view import HudProfile
-from simconsole.rows import MEMORY_AT, MEMORY_WIDTH, Snapshot
-from simconsole.signals import NEVER_TICKS, ArbiterMemory, Event, GateLimit, Mode
-from simconsole.units import KMH_PER_MPS, RPM_PER_RADPS
-from simconsole.words import commander_words, gear_words, mode_words, notice_words, reason_words
+from simconsole.values.labels import commander_words, gear_words, mode_words, notice_words, reason_words
+from simconsole.values.signals import NEVER_TICKS, ArbiterMemory, Event, GateLimit, Mode
+from simconsole.values.state_vector import MEMORY_AT, MEMORY_WIDTH, Snapshot
+from simconsole.values.units import KMH_PER_MPS, RPM_PER_RADPS
 
 STALE_S: Final = 0.5
 """Older snapshots are not shown: NO DATA."""
@@ -77,7 +77,7 @@ class HudView(NamedTuple):
     distance_m: float = 0.0
     force: str = "none"  # of the wheel's motor: none, on, limit (more is wished for than it has), lost
     can_up: bool | None = None  # None: this drive has no CAN bus
-    link: str | None = None  # how the rosbridge link stands (simconsole.words); None: this drive has no bridge
+    link: str | None = None  # how the rosbridge link stands (simconsole.values.labels); None: this drive has no bridge
 
 
 def shown_speed(speed_mps: float, t_s: float, memory: HudMemory) -> tuple[int, float]:

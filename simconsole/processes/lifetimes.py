@@ -18,7 +18,7 @@ from pathlib import Path
 from types import FrameType, TracebackType
 from typing import TYPE_CHECKING, Any, Final, NoReturn, Self
 
-from simconsole.files import DRAFT
+from simconsole.values.host.files import DRAFT
 
 if TYPE_CHECKING:
     import subprocess

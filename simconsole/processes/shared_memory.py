@@ -18,10 +18,10 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simconsole.errors import StationError
-from simconsole.kernels import Row
-from simconsole.lifetimes import undone
-from simconsole.signals import Event
+from simconsole.processes.lifetimes import undone
+from simconsole.values.errors import StationError
+from simconsole.values.kernels import Row
+from simconsole.values.signals import Event
 
 PREFIX: Final = "simconsole-"
 MAGIC: Final = 0x53494D52494E4701  # 'SIMRING', layout 1

@@ -8,7 +8,8 @@ never costs the tick loop a fork, and nothing outlives the core: a station whose
 
     core ──stdin──> warden ──stdin──> bridge, hud, scene
 
-Run as `python -m simconsole.stations warden` or `... station`, with the description as one line on standard input.
+Run as `python -m simconsole.processes.supervisor warden` or `... station`, with the description as one line on
+standard input.
 """
 
 import importlib
@@ -23,11 +24,11 @@ from typing import Any, Final
 
 import msgspec
 
-from simconsole.errors import SimConsoleError, StationError, one_line
-from simconsole.files import write_atomically
-from simconsole.lifetimes import ORPHAN_S, close_pipe, end, follow_parent, read_told, spawn
-from simconsole.rows import Snapshot
-from simconsole.shared_memory import remove_run_folder
+from simconsole.processes.lifetimes import ORPHAN_S, close_pipe, end, follow_parent, read_told, spawn
+from simconsole.processes.shared_memory import remove_run_folder
+from simconsole.values.errors import SimConsoleError, StationError, one_line
+from simconsole.values.host.files import write_atomically
+from simconsole.values.state_vector import Snapshot
 
 POLL_S: Final = 0.05
 BACK_OFF_S: Final = (0.05, 0.2, 1.0, 5.0)
@@ -221,7 +222,7 @@ def _write_status(folder: Path, kept: list[_Kept]) -> None:
 def _spawn(role: str, spec: object, environment: Mapping[str, str]) -> "subprocess.Popen[bytes]":
     try:
         told = msgspec.json.encode(spec) + b"\n"
-        return spawn(["-m", "simconsole.stations", role], told=told, environment=environment)
+        return spawn(["-m", "simconsole.processes.supervisor", role], told=told, environment=environment)
     except OSError as error:
         raise StationError(f"{role}: cannot be started: {error.strerror}") from None
 

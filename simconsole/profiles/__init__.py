@@ -1,1 +1,1 @@
-"""Typed profiles with bounds and defaults; simconsole.profile_files reads them."""
+"""Typed profiles with bounds and defaults; simconsole.profiles.files.loader reads them."""

@@ -13,7 +13,7 @@ from typing import Any, Final, TypeAlias
 import msgspec
 import yaml
 
-from simconsole.errors import ProfileError
+from simconsole.values.errors import ProfileError
 
 Plain: TypeAlias = "bool | int | float | str | list[Plain] | dict[str, Plain] | None"
 """What a profile's text can hold."""

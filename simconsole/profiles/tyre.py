@@ -5,7 +5,7 @@ from typing import Final
 
 import msgspec
 
-from simconsole.errors import ProfileError
+from simconsole.values.errors import ProfileError
 
 NEEDED: Final = (
     *("FNOMIN", "UNLOADED_RADIUS", "PCX1", "PDX1", "PKX1", "PCY1", "PDY1", "PKY1", "PKY2"),

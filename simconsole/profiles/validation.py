@@ -11,7 +11,7 @@ from typing import Any, Final, TypeVar
 import msgspec
 import msgspec.inspect
 
-from simconsole.errors import ProfileError
+from simconsole.values.errors import ProfileError
 
 T = TypeVar("T")
 

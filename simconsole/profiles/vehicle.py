@@ -6,7 +6,7 @@ from typing import Annotated, Literal, TypeAlias
 import msgspec
 
 from simconsole.profiles.tyre import TirTyre
-from simconsole.units import STANDARD_GRAVITY_MPS2
+from simconsole.values.units import STANDARD_GRAVITY_MPS2
 
 Length: TypeAlias = Annotated[float, msgspec.Meta(ge=0.01, le=10.0)]
 Share: TypeAlias = Annotated[float, msgspec.Meta(ge=0.0, le=1.0)]

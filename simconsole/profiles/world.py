@@ -1,6 +1,6 @@
 """The world profile: a closed course as exact path primitives, and what stands on it.
 
-Written by `python -m simconsole.world.generate` from a readable plan (profiles/course_plan.py); nothing here is
+Written by `python -m simconsole.world.tools.generate` from a readable plan (profiles/course_plan.py); nothing here is
 meant to be edited by hand. Positions along the course (`s_m`) count from its start.
 """
 

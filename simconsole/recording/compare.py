@@ -9,8 +9,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from simconsole.kernels import Row
 from simconsole.recording.framing import LogHeader, Record
+from simconsole.values.kernels import Row
 
 CONTEXT_TICKS: Final = 3
 SHOWN_FIELDS: Final = 6

@@ -21,8 +21,8 @@ from zlib import crc32
 import msgspec
 import numpy as np
 
-from simconsole.errors import RecordingError
-from simconsole.kernels import Row
+from simconsole.values.errors import RecordingError
+from simconsole.values.kernels import Row
 
 MAGIC: Final = b"\x89SIMLOG\n"  # a byte above 127 first: no text file starts so, and a 7-bit copy destroys it
 SCHEMA: Final = 1

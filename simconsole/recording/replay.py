@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from simconsole.errors import RecordingError
-from simconsole.kernels import Row
 from simconsole.recording.framing import START_OF_CHAIN, LogHeader, Record, chain
+from simconsole.values.errors import RecordingError
+from simconsole.values.kernels import Row
 
 AdvanceRow = Callable[[int, Row, Row], Row]
 """`advance(tick, previous_row, input_row) -> row`: makes row `tick` from the row before it and recorded inputs."""

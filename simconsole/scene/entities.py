@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simconsole.scene.triangles import Indices, triangulate
-from simconsole.signals import Mode
+from simconsole.values.signals import Mode
 from simconsole.world.drawing import Drawing
 
 Array = NDArray[np.float64]

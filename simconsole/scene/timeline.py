@@ -10,9 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simconsole.scene.entities import Array, Colour
-from simconsole.signals import Event, Mode, Notice
-from simconsole.units import DEG_PER_RAD, KMH_PER_MPS, NS_PER_S, RPM_PER_RADPS
-from simconsole.words import commander_words, gear_words, indicator_words, mode_words, notice_words, reason_words
+from simconsole.values.labels import (
+    commander_words,
+    gear_words,
+    indicator_words,
+    mode_words,
+    notice_words,
+    reason_words,
+)
+from simconsole.values.signals import Event, Mode, Notice
+from simconsole.values.units import DEG_PER_RAD, KMH_PER_MPS, NS_PER_S, RPM_PER_RADPS
 
 Ticks = NDArray[np.int64]
 
@@ -155,7 +162,7 @@ def piece(
 
     Args:
         rows: float64 [N, columns], in the order of their ticks; N at least 1.
-        columns: name of each column, `stage.field_unit` (simconsole.rows.columns).
+        columns: name of each column, `stage.field_unit` (simconsole.values.state_vector.columns).
         ticks: int64 [N].
         tick_hz: ticks per second.
         rate_hz: how often poses and plots are kept; changes of mode and log lines keep their exact tick.

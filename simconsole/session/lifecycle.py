@@ -8,20 +8,20 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from simconsole import __version__
-from simconsole.assembly import ResolvedSession, assemble
-from simconsole.casting import Opened, open_headless, open_realtime
-from simconsole.compiling import compiled
-from simconsole.drive import come_to_rest, run
-from simconsole.lifetimes import Interrupt, remove_half_made, undone
-from simconsole.pipeline import Console, ConsoleState, advance
-from simconsole.profile_files import to_text
-from simconsole.recording.bundle import SESSION_FILE, BundleWriter
+from simconsole.processes.lifetimes import Interrupt, remove_half_made, undone
+from simconsole.processes.shared_memory import sweep
+from simconsole.profiles.files.loader import to_text
+from simconsole.recording.bundles.bundle import SESSION_FILE, BundleWriter
+from simconsole.recording.bundles.log import LogWriter
+from simconsole.recording.bundles.replay_bundle import sources_sha256
 from simconsole.recording.framing import LogHeader
-from simconsole.recording.log import LogWriter
-from simconsole.replaying import sources_sha256
-from simconsole.rows import INPUT_WIDTH, Snapshot, TickInputs
-from simconsole.shared_memory import sweep
-from simconsole.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE, Event
+from simconsole.session.opening import Opened, open_headless, open_realtime
+from simconsole.tick.advance import Console, ConsoleState, advance
+from simconsole.tick.assembly import ResolvedSession, assemble
+from simconsole.tick.loop import come_to_rest, run
+from simconsole.values.host.jit import compiled
+from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE, Event
+from simconsole.values.state_vector import INPUT_WIDTH, Snapshot, TickInputs
 
 ENDLESS_TICKS = 2**53
 _RECORDING_FAILED = int(Event.RECORDING_FAILED)

@@ -5,12 +5,12 @@ import subprocess
 from collections.abc import Callable
 from typing import Any, Protocol
 
-from simconsole.errors import BridgeError
-from simconsole.ledger import Hop
-from simconsole.lifetimes import ATTACHED, DRIVE_VARIABLE, spawn
+from simconsole.processes.lifetimes import ATTACHED, DRIVE_VARIABLE, spawn
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.rows import Snapshot
-from simconsole.signals import Event, EventInput, RemoteCommand
+from simconsole.values.errors import BridgeError
+from simconsole.values.latency import Hop
+from simconsole.values.signals import Event, EventInput, RemoteCommand
+from simconsole.values.state_vector import Snapshot
 
 STAND_S = 0.02
 TOKEN_VARIABLE = "SIMCONSOLE_TOKEN"

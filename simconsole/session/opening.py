@@ -8,21 +8,15 @@ from pathlib import Path
 from subprocess import Popen
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from simconsole.assembly import ResolvedSession
-from simconsole.bridge.operate import told
-from simconsole.drive import Cast, Recorder, Standby
-from simconsole.errors import BridgeError, ProfileError
-from simconsole.faulting import with_faults
-from simconsole.inline import STAND_S, LockstepLink, start_autopilot
-from simconsole.isolation import isolated
-from simconsole.ledger import Ledger
-from simconsole.lifetimes import Interrupt, end, tell_to_end, undone
-from simconsole.pacing import Pacer, UnpacedPacer, realtime_hints
-from simconsole.pipeline import Console
-from simconsole.ports import CommandSource, NobodyCommands, Station
+from simconsole.bridge.console.operator_acts import told
+from simconsole.faults.schedule import with_faults
+from simconsole.processes.lifetimes import Interrupt, end, tell_to_end, undone
+from simconsole.processes.shared_memory import make_run_folder, remove_run_folder
+from simconsole.processes.supervisor import Supervisor
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.session import SessionProfile
-from simconsole.realtime import (
+from simconsole.session.lockstep import STAND_S, LockstepLink, start_autopilot
+from simconsole.session.paced import (
     CommandPort,
     acts_summary,
     add_can_memory,
@@ -34,10 +28,16 @@ from simconsole.realtime import (
     station_specs,
     wait_for_can,
 )
-from simconsole.rows import Snapshot
-from simconsole.seating import open_seating
-from simconsole.shared_memory import make_run_folder, remove_run_folder
-from simconsole.stations import Supervisor
+from simconsole.session.pacing import Pacer, UnpacedPacer, realtime_hints
+from simconsole.session.seat import open_seating
+from simconsole.tick.advance import Console
+from simconsole.tick.assembly import ResolvedSession
+from simconsole.tick.isolation import isolated
+from simconsole.tick.loop import Cast, Recorder, Standby
+from simconsole.values.errors import BridgeError, ProfileError
+from simconsole.values.latency import Ledger
+from simconsole.values.protocols import CommandSource, NobodyCommands, Station
+from simconsole.values.state_vector import Snapshot
 
 LOOKED_AT = 16
 """In a drive that is not paced, hops are timed in each 16th tick."""
@@ -47,8 +47,8 @@ PROGRAM_END_S = 0.3
 """How long a program that the drive has started may take to say good-bye; it has nothing else to finish."""
 
 if TYPE_CHECKING:
-    from simconsole.bridge.lockstep import LockstepBridge
-    from simconsole.canbus.station import InlineCan
+    from simconsole.bridge.transport.lockstep_server import LockstepBridge
+    from simconsole.canbus.bus.worker import InlineCan
 
 
 class Opened(NamedTuple):
@@ -199,9 +199,9 @@ def _await_stations(
 
 def _check_address(profile: BridgeProfile) -> None:
     """Listen for a moment where the bridge will: a taken port is one line now, not a station that dies and dies."""
-    from simconsole.bridge.message_files import load_registry
-    from simconsole.bridge.ros2 import check
-    from simconsole.bridge.wire import listen
+    from simconsole.bridge.ros2.node import check
+    from simconsole.bridge.transport.message_files import load_registry
+    from simconsole.bridge.transport.wire import listen
 
     load_registry(profile)
     check(profile)
@@ -221,7 +221,7 @@ def new_nonce() -> str:
 def _open_lockstep(
     resolved: ResolvedSession, console: Console, folder: Path, interrupt: Interrupt, stack: ExitStack
 ) -> LockstepLink:
-    from simconsole.bridge.lockstep import LockstepBridge
+    from simconsole.bridge.transport.lockstep_server import LockstepBridge
 
     session = resolved.session
     if session.outputs.bridge is None:
@@ -246,7 +246,7 @@ def _own_token(session: SessionProfile) -> str | None:
     """Return what the session's own autopilot shows its bridge; None where it has to show nothing."""
     if session.outputs.bridge is None or session.features.autopilot is None:
         return None
-    from simconsole.bridge.wire import control_token
+    from simconsole.bridge.transport.wire import control_token
 
     return control_token(session.outputs.bridge)
 
@@ -282,8 +282,8 @@ def _open_can(resolved: ResolvedSession, console: Console, bundle: Path, stack: 
     session = resolved.session
     if session.outputs.can is None:
         return None
+    from simconsole.canbus.bus.worker import InlineCan, put_on_bus
     from simconsole.canbus.messages import wheel_columns
-    from simconsole.canbus.station import InlineCan, put_on_bus
 
     on_bus = put_on_bus(
         session.outputs.can,

@@ -3,22 +3,16 @@
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import msgspec
 import numpy as np
 
-from simconsole.assembly import ResolvedSession
-from simconsole.bridge.operate import told
-from simconsole.errors import BridgeError, CanError
-from simconsole.exports import LIVE_SCENE, scene_job
-from simconsole.ledger import Hop
-from simconsole.pipeline import Console
-from simconsole.ports import CommandSource, NobodyCommands
-from simconsole.rows import REMOTE_WIDTH, Snapshot
-from simconsole.shared_memory import EventCounters, Ring
-from simconsole.signals import NEVER_TICKS, NO_COMMAND, EventInput, RemoteCommand
-from simconsole.station_programs import (
+from simconsole.bridge.console.operator_acts import told
+from simconsole.processes.shared_memory import EventCounters, Ring
+from simconsole.processes.supervisor import StationSpec
+from simconsole.session.scene_job import LIVE_SCENE, scene_job
+from simconsole.session.worker_programs import (
     ACTS,
     ADDRESS,
     CAN_COMMAND,
@@ -35,8 +29,16 @@ from simconsole.station_programs import (
     SNAPSHOTS,
     command_of,
 )
-from simconsole.stations import StationSpec
-from simconsole.units import NS_PER_S
+from simconsole.tick.advance import Console
+from simconsole.tick.assembly import ResolvedSession
+from simconsole.values.errors import BridgeError, CanError
+from simconsole.values.latency import Hop
+from simconsole.values.protocols import CommandSource, NobodyCommands
+from simconsole.values.signals import NEVER_TICKS, NO_COMMAND, EventInput, RemoteCommand
+from simconsole.values.state_vector import REMOTE_WIDTH, Snapshot
+from simconsole.values.units import NS_PER_S
+
+PROGRAMS: Final = "simconsole.session.worker_programs"
 
 START_PATIENCE_S = 20.0
 
@@ -151,7 +153,7 @@ def station_specs(
             "drive": drive,
             "bundle": str(bundle.absolute()),
         }
-        specs.append(StationSpec(name="bridge", target="simconsole.station_programs:bridge", arguments=arguments))
+        specs.append(StationSpec(name="bridge", target=f"{PROGRAMS}:bridge", arguments=arguments))
     if outputs.can is not None:
         from simconsole.canbus.messages import wheel_columns
 
@@ -161,7 +163,7 @@ def station_specs(
             "wheels": wheel_columns(console.columns),
             "bundle": str(bundle.absolute()),
         }
-        specs.append(StationSpec(name="canbus", target="simconsole.station_programs:canbus", arguments=arguments))
+        specs.append(StationSpec(name="canbus", target=f"{PROGRAMS}:canbus", arguments=arguments))
     if outputs.hud is not None:
         arguments = {
             "profile": msgspec.to_builtins(outputs.hud),
@@ -170,9 +172,9 @@ def station_specs(
             "can": outputs.can is not None,
             "bridge": outputs.bridge is not None,
         }
-        specs.append(StationSpec(name="hud", target="simconsole.station_programs:hud", arguments=arguments))
+        specs.append(StationSpec(name="hud", target=f"{PROGRAMS}:hud", arguments=arguments))
     if outputs.scene is not None:
-        from simconsole.scene.job import save_job
+        from simconsole.scene.viewer.job import save_job
 
         rows, ticks = np.empty((0, console.width)), np.empty(0, np.int64)
         save_job(folder / SCENE_JOB, scene_job(resolved, rows, ticks, console.columns, tick_hz))
@@ -181,7 +183,7 @@ def station_specs(
             "tick_hz": tick_hz,
             "bridge": outputs.bridge is not None,
         }
-        specs.append(StationSpec(name="scene", target="simconsole.station_programs:scene", arguments=arguments))
+        specs.append(StationSpec(name="scene", target=f"{PROGRAMS}:scene", arguments=arguments))
     return specs
 
 

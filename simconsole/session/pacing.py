@@ -12,9 +12,9 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, Final
 
-from simconsole.ledger import Histogram
-from simconsole.signals import Event
-from simconsole.units import NS_PER_S
+from simconsole.values.latency import Histogram
+from simconsole.values.signals import Event
+from simconsole.values.units import NS_PER_S
 
 CATCH_UP_TICKS: Final = 5
 STALL_NS: Final = 100_000_000

@@ -4,15 +4,15 @@ from pathlib import Path
 
 import msgspec
 
-from simconsole.assembly import ResolvedSession
-from simconsole.errors import ProfileError
-from simconsole.profile_errors import convert
-from simconsole.profile_files import MAX_DATA_BYTES, find, load
 from simconsole.profiles.device import CockpitProfile, ScriptProfile
+from simconsole.profiles.files.loader import MAX_DATA_BYTES, find, load
+from simconsole.profiles.files.vehicle_files import load_vehicle
 from simconsole.profiles.scenario import ScenarioProfile
 from simconsole.profiles.session import VEHICLE_FILES, SessionProfile
+from simconsole.profiles.validation import convert
 from simconsole.profiles.world import WorldProfile
-from simconsole.vehicle_files import load_vehicle
+from simconsole.tick.assembly import ResolvedSession
+from simconsole.values.errors import ProfileError
 
 
 def resolve(session: SessionProfile, cockpit: str | None = None) -> ResolvedSession:

@@ -6,17 +6,17 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from typing import TYPE_CHECKING, NamedTuple
 
-from simconsole.assembly import ResolvedSession
-from simconsole.compiling import compiled
-from simconsole.errors import ProfileError
-from simconsole.pipeline import Console
-from simconsole.ports import DeviceSource, NobodySeated, Seat, Station
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.force_feedback import ForceFeedback
-from simconsole.rows import Snapshot
+from simconsole.tick.advance import Console
+from simconsole.tick.assembly import ResolvedSession
+from simconsole.values.errors import ProfileError
+from simconsole.values.host.jit import compiled
+from simconsole.values.protocols import DeviceSource, NobodySeated, Seat, Station
+from simconsole.values.state_vector import Snapshot
 
 if TYPE_CHECKING:
-    from simconsole.devices.motor import HapticPort
+    from simconsole.devices.force_feedback.motor import HapticPort
 
 
 class Seating(NamedTuple):
@@ -50,7 +50,7 @@ def open_seating(
         return _open_person(resolved, console, stack)
     if driver == "keyboard" and keys is None:
         raise ProfileError("devices.driver: value keyboard: needs a window, so not with --headless or hud: false")
-    from simconsole.devices.source import open_source
+    from simconsole.devices.sources.driver_source import open_source
 
     devices = open_source(driver, resolved.cockpit, tick_hz=console.tick_hz, keys=keys)
     stack.callback(devices.close)
@@ -68,11 +68,11 @@ def _say(line: str) -> None:
 
 def _with_motor(devices: DeviceSource, cockpit: CockpitProfile, force: ForceFeedback, stack: ExitStack) -> Seating:
     """Add the wheel's motor; without one everything else works, and the person is told."""
-    from simconsole.devices.back_ends import open_motor
-    from simconsole.devices.kernel_limits import notes, problems, wheel_limits
-    from simconsole.devices.motor import MotorisedSource, NoHaptics, WheelMotor
-    from simconsole.devices.sdl import SdlSource
-    from simconsole.devices.watched import open_watchdog, watched
+    from simconsole.devices.force_feedback.motor import MotorisedSource, NoHaptics, WheelMotor
+    from simconsole.devices.haptics.back_ends import open_motor
+    from simconsole.devices.haptics.watched import open_watchdog, watched
+    from simconsole.devices.sources.kernel_limits import notes, problems, wheel_limits
+    from simconsole.devices.sources.sdl import SdlSource
 
     assert isinstance(devices, SdlSource)
     wheel = {"id": devices.instance_id("wheel")}
@@ -103,12 +103,12 @@ def _with_motor(devices: DeviceSource, cockpit: CockpitProfile, force: ForceFeed
 
 
 def _open_person(resolved: ResolvedSession, console: Console, stack: ExitStack) -> Seating:
-    from simconsole.devices.motor import MotorisedSource, SimulatedWheelPort, WheelMotor
-    from simconsole.devices.person import SimulatedPerson
-    from simconsole.devices.sdl import SdlSource
-    from simconsole.devices.settings import settings
-    from simconsole.devices.simulated_wheel import SimulatedWheel, step_wheel
-    from simconsole.devices.virtual_cockpit import VirtualCockpit
+    from simconsole.devices.calibration.calibration_settings import settings
+    from simconsole.devices.force_feedback.motor import MotorisedSource, SimulatedWheelPort, WheelMotor
+    from simconsole.devices.force_feedback.simulated_wheel import SimulatedWheel, step_wheel
+    from simconsole.devices.sources.sdl import SdlSource
+    from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
+    from simconsole.drivers.seated.simulated_person import SimulatedPerson
 
     plan = resolved.session.devices.person
     if plan is None:

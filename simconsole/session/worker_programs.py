@@ -1,6 +1,7 @@
 """What each station process does: its room's own loop, between the ring and the slots. The only glue of its kind.
 
-Every function takes (folder, arguments, stop) as `simconsole.stations` calls it, and waits for nothing but its room.
+Every function takes (folder, arguments, stop) as `simconsole.processes.supervisor` calls it, and waits for nothing but
+its room.
 """
 
 import contextlib
@@ -12,18 +13,18 @@ from typing import Any, Final
 import msgspec
 import numpy as np
 
-from simconsole.files import write_atomically
-from simconsole.kernels import Row
-from simconsole.ledger import Hop, Ledger
+from simconsole.processes.shared_memory import EventCounters, Record, Ring
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.can import CanProfile
 from simconsole.profiles.control import ControlProfile
 from simconsole.profiles.view import HudProfile
-from simconsole.rows import REMOTE_WIDTH, Snapshot
-from simconsole.shared_memory import EventCounters, Record, Ring
-from simconsole.signals import RemoteCommand
-from simconsole.units import NS_PER_S
-from simconsole.words import LINK_DOWN
+from simconsole.values.host.files import write_atomically
+from simconsole.values.kernels import Row
+from simconsole.values.labels import LINK_DOWN
+from simconsole.values.latency import Hop, Ledger
+from simconsole.values.signals import RemoteCommand
+from simconsole.values.state_vector import REMOTE_WIDTH, Snapshot
+from simconsole.values.units import NS_PER_S
 
 SNAPSHOTS: Final = "snapshots"
 COMMAND: Final = "bridge.command"
@@ -48,9 +49,9 @@ def bridge(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) ->
 
     Arguments: `profile` (BridgeProfile), `tick_hz`, `drive` (its nonce), `bundle` (for recorded topics).
     """
-    from simconsole.bridge.operate import Act
-    from simconsole.bridge.server import serve
-    from simconsole.bridge.wire import address_url
+    from simconsole.bridge.console.operator_acts import Act
+    from simconsole.bridge.transport.server import serve
+    from simconsole.bridge.transport.wire import address_url
 
     profile = msgspec.convert(arguments["profile"], BridgeProfile)
     receipts = Receipts(folder / f"{LATENCY}.bridge.json")
@@ -87,7 +88,7 @@ def canbus(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) ->
 
     Arguments: `profile` (CanProfile), `tick_hz`, `wheels` (columns or None), `bundle` (for the logs).
     """
-    from simconsole.canbus.station import put_on_bus, serve
+    from simconsole.canbus.bus.worker import put_on_bus, serve
 
     receipts = Receipts(folder / f"{LATENCY}.canbus.json")
     snapshots = NewestOnce(Ring.open(folder / SNAPSHOTS), int(arguments["tick_hz"]), receipts.received)
@@ -119,7 +120,7 @@ def hud(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> No
     Arguments: `profile` (HudProfile), `control` (ControlProfile), `tick_hz`, `can` (a bus?), `bridge` (one?).
     """
     from simconsole.hud.view import settings_of
-    from simconsole.hud.window import Ports, run
+    from simconsole.hud.window.pygame_window import Ports, run
 
     profile = msgspec.convert(arguments["profile"], HudProfile)
     control = msgspec.convert(arguments["control"], ControlProfile)
@@ -147,8 +148,8 @@ def scene(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> 
 
     Arguments: `path` (the .rrd), `tick_hz`, `bridge` (one?).
     """
-    from simconsole.scene.follow import Ports, follow
-    from simconsole.scene.job import load_job
+    from simconsole.scene.viewer.follow import Ports, follow
+    from simconsole.scene.viewer.job import load_job
 
     ring, tick_hz = Ring.open(folder / SNAPSHOTS), int(arguments["tick_hz"])
     seen = ring.newest
@@ -206,7 +207,7 @@ class LinkWatch(_Watch):
     """Says how the rosbridge link stands; silence of the bridge counts as down."""
 
     def __call__(self) -> str:
-        """Return one word of `simconsole.words`, or how many clients there are."""
+        """Return one word of `simconsole.values.labels`, or how many clients there are."""
         return str(self.status().get("state", LINK_DOWN))
 
 

@@ -10,17 +10,33 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from simconsole.control.arbitration import arbitrate, watched
-from simconsole.control.commander import ECU
 from simconsole.control.gate import gate
-from simconsole.control.moment import Moment
-from simconsole.control.settings import ControlSettings
-from simconsole.devices.calibration import calibrate
-from simconsole.devices.cockpit import CockpitSettings
-from simconsole.devices.force_settings import NO_FORCE, ForceSettings
-from simconsole.devices.torque import wheel_torque
-from simconsole.kernels import Row, kernel, put, take
-from simconsole.ledger import Hop, Mark, unheard
-from simconsole.rows import (
+from simconsole.control.requests.commander import ECU
+from simconsole.control.requests.control_settings import ControlSettings
+from simconsole.control.requests.tick_context import Moment
+from simconsole.devices.calibration.calibrator import calibrate
+from simconsole.devices.calibration.cockpit_settings import CockpitSettings
+from simconsole.devices.force_feedback.force_settings import NO_FORCE, ForceSettings
+from simconsole.devices.force_feedback.torque import wheel_torque
+from simconsole.values.kernels import Row, kernel, put, take
+from simconsole.values.latency import Hop, Mark, unheard
+from simconsole.values.platform import Platform
+from simconsole.values.signals import (
+    NO_COMMAND,
+    NO_SAMPLE,
+    ArbiterMemory,
+    Arbitration,
+    DeviceSample,
+    DriverInput,
+    EventInput,
+    Link,
+    RemoteCommand,
+    VehicleCommand,
+    VehicleState,
+    WheelMemory,
+    WheelTorque,
+)
+from simconsole.values.state_vector import (
     ARBITRATION_AT,
     ARBITRATION_WIDTH,
     COMMAND_AT,
@@ -51,22 +67,6 @@ from simconsole.rows import (
     TickInputs,
     columns,
 )
-from simconsole.signals import (
-    NO_COMMAND,
-    NO_SAMPLE,
-    ArbiterMemory,
-    Arbitration,
-    DeviceSample,
-    DriverInput,
-    EventInput,
-    Link,
-    RemoteCommand,
-    VehicleCommand,
-    VehicleState,
-    WheelMemory,
-    WheelTorque,
-)
-from simconsole.vehicle.platform import Platform
 
 Execution = Callable[[Callable[..., Any]], Callable[..., Any]]
 """How kernels run: `compiling.compiled` or `compiling.plain`."""

@@ -4,18 +4,18 @@ import math
 
 from msgspec import Struct, structs
 
-from simconsole.control.settings import settings as control_settings
-from simconsole.devices.calibration import settings as cockpit_settings
-from simconsole.devices.force_settings import force_settings
-from simconsole.pipeline import Console, ConsoleState, Execution, build_console, initial_state
+from simconsole.control.requests.control_settings import settings as control_settings
+from simconsole.devices.calibration.calibrator import settings as cockpit_settings
+from simconsole.devices.force_feedback.force_settings import force_settings
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.session import Aids, Environment, SessionProfile
 from simconsole.profiles.vehicle import CarProfile, VehicleProfile
 from simconsole.profiles.world import WorldProfile
-from simconsole.signals import Commander
-from simconsole.units import RAD_PER_DEG
-from simconsole.vehicle.platform import Ground, Patch, Pose
-from simconsole.vehicle.registry import build
+from simconsole.tick.advance import Console, ConsoleState, Execution, build_console, initial_state
+from simconsole.values.platform import Ground, Patch, Pose
+from simconsole.values.signals import Commander
+from simconsole.values.units import RAD_PER_DEG
+from simconsole.vehicle.platforms import build
 
 
 class ResolvedSession(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

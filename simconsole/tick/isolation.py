@@ -9,10 +9,10 @@ import contextlib
 import sys
 from collections.abc import Callable
 
-from simconsole.drive import Cast, Pace, Recorder, Standby
-from simconsole.ports import CommandSource, DeviceSource, Seat, Station
-from simconsole.rows import Snapshot
-from simconsole.signals import NO_COMMAND, NO_SAMPLE, DeviceSample, Event, EventInput, RemoteCommand
+from simconsole.tick.loop import Cast, Pace, Recorder, Standby
+from simconsole.values.protocols import CommandSource, DeviceSource, Seat, Station
+from simconsole.values.signals import NO_COMMAND, NO_SAMPLE, DeviceSample, Event, EventInput, RemoteCommand
+from simconsole.values.state_vector import Snapshot
 
 
 def isolated(cast: Cast, spare: Callable[[], Pace]) -> Cast:

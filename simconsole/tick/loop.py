@@ -3,11 +3,11 @@
 from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple, Protocol
 
-from simconsole.ledger import Hop, Ledger, unheard
-from simconsole.pipeline import Console, ConsoleState, advance
-from simconsole.ports import CommandSource, DeviceSource, NobodyCommands, Seat, Station
-from simconsole.rows import Snapshot, TickInputs
-from simconsole.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE, Button, Event, EventInput
+from simconsole.tick.advance import Console, ConsoleState, advance
+from simconsole.values.latency import Hop, Ledger, unheard
+from simconsole.values.protocols import CommandSource, DeviceSource, NobodyCommands, Seat, Station
+from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE, Button, Event, EventInput
+from simconsole.values.state_vector import Snapshot, TickInputs
 
 
 class Recorder(Protocol):

@@ -2,7 +2,7 @@
 
 A kernel takes and returns floats, `typing.NamedTuple`s of floats and float64 arrays, calls only other kernels
 (imported by name), `math.sqrt` and `abs`, and uses only + - * / and comparisons. It stays an ordinary function
-here; `simconsole.compiling` makes the compiled twin, so importing a core never loads numba.
+here; `simconsole.values.host.jit` makes the compiled twin, so importing a core never loads numba.
 """
 
 from collections.abc import Callable, Iterable, Mapping

@@ -5,7 +5,7 @@ Words are short enough for a glance (facts: at most seven per alert) and never d
 
 from typing import Final
 
-from simconsole.signals import Commander, LinkState, Mode, Notice, Reason, Validity
+from simconsole.values.signals import Commander, LinkState, Mode, Notice, Reason, Validity
 
 _MODES: Final[dict[float, str]] = {
     Mode.PARKED: "PARKED",

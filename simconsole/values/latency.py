@@ -11,8 +11,8 @@ from typing import Final
 
 import numpy as np
 
-from simconsole.signals import NEVER_TICKS, DeviceSample
-from simconsole.units import NS_PER_S
+from simconsole.values.signals import NEVER_TICKS, DeviceSample
+from simconsole.values.units import NS_PER_S
 
 _BINS_PER_DECADE: Final = 20
 _DECADES: Final = 7  # 100 ns to 1 s

@@ -2,8 +2,8 @@
 
 from typing import Protocol
 
-from simconsole.rows import Snapshot
-from simconsole.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE, DeviceSample, EventInput, RemoteCommand
+from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE, DeviceSample, EventInput, RemoteCommand
+from simconsole.values.state_vector import Snapshot
 
 
 class DeviceSource(Protocol):

@@ -8,8 +8,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from simconsole.kernels import Row
-from simconsole.signals import (
+from simconsole.values.kernels import Row
+from simconsole.values.signals import (
     NO_COMMAND,
     ArbiterMemory,
     Arbitration,
@@ -26,7 +26,7 @@ from simconsole.signals import (
     WheelMemory,
     WheelTorque,
 )
-from simconsole.units import tick_time_ns
+from simconsole.values.units import tick_time_ns
 
 SAMPLE_WIDTH: Final = len(DeviceSample._fields)
 REMOTE_WIDTH: Final = len(RemoteCommand._fields)

@@ -5,13 +5,14 @@ Method: subtract the nearest multiple of a quarter turn (Cody and Waite, Softwar
 1980: pi/2 in three parts, the first two with 33 bits so that the products are exact), then the Taylor series, long
 enough that its remainder stays below half a unit in the last place of 1. Every function is exactly odd or even.
 
-Bounds, tested against 60-digit values (tests/test_trigonometry.py): sin and cos 2.5e-16 absolute for abs(x) <= 1e4 and
-1e-15 for abs(x) <= 1e6; atan and atan2 3 units in the last place, everywhere. NaN in gives NaN out, nothing raises.
+Bounds, tested against 60-digit values (tests/values/test_trigonometry.py): sin and cos 2.5e-16 absolute for
+abs(x) <= 1e4 and 1e-15 for abs(x) <= 1e6; atan and atan2 3 units in the last place, everywhere. NaN in gives NaN out,
+nothing raises.
 """
 
 from typing import Final, NamedTuple
 
-from simconsole.kernels import kernel
+from simconsole.values.kernels import kernel
 
 PI: Final = 3.141592653589793
 TWO_PI: Final = 6.283185307179586

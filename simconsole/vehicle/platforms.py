@@ -1,15 +1,15 @@
 """Vehicles by the platform name of their profile. A platform's modules load when one is built."""
 
 from simconsole.profiles.vehicle import BallProfile, VehicleProfile
-from simconsole.vehicle.platform import Ground, Platform, Pose
+from simconsole.values.platform import Ground, Platform, Pose
 
 
 def build(profile: VehicleProfile, pose: Pose, ground: Ground) -> Platform:
     """Return the vehicle of `profile`, standing at `pose` (m, rad, of base_link in map) on `ground`."""
     if isinstance(profile, BallProfile):
-        from simconsole.vehicle.ball.assembly import build_ball
+        from simconsole.vehicle.ball.ball_platform import build_ball
 
         return build_ball(profile, pose, ground)
-    from simconsole.vehicle.car.assembly import build_car
+    from simconsole.vehicle.car.car_platform import build_car
 
     return build_car(profile, pose, ground)

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simconsole.profiles.world import Primitive, WorldProfile
-from simconsole.units import MPS_PER_KMH
-from simconsole.vehicle.platform import Pose
+from simconsole.values.platform import Pose
+from simconsole.values.units import MPS_PER_KMH
 from simconsole.world.geometry import Piece, travel
 
 Array = NDArray[np.float64]

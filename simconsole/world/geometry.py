@@ -5,7 +5,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from simconsole.vehicle.platform import Pose
+from simconsole.values.platform import Pose
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 _GAUSS: Final = tuple(zip(_NODES.tolist(), _WEIGHTS.tolist(), strict=True))

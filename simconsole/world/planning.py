@@ -6,11 +6,11 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from simconsole.errors import ProfileError
 from simconsole.profiles.course_plan import CoursePlan, Curve, PlannedCrossing, PlannedRoundabout, Straight
 from simconsole.profiles.world import Crossing, Intersection, Primitive, Roundabout, WorldProfile
-from simconsole.units import RAD_PER_DEG
-from simconsole.vehicle.platform import Pose
+from simconsole.values.errors import ProfileError
+from simconsole.values.platform import Pose
+from simconsole.values.units import RAD_PER_DEG
 from simconsole.world.geometry import Piece, centre, travel, travel_all
 
 ORIGIN: Final = Pose(0.0, 0.0, 0.0)

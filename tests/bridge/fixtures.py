@@ -7,14 +7,23 @@ from typing import Any
 import numpy as np
 import pytest
 
-from simconsole.bridge.console import ConsoleBridge
+from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.messages import Registry
-from simconsole.bridge.protocol import Outcome
-from simconsole.bridge.server import serve
-from simconsole.bridge.session import Session
+from simconsole.bridge.protocol.client_session import Session
+from simconsole.bridge.protocol.server_protocol import Outcome
+from simconsole.bridge.transport.server import serve
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.rows import ARBITRATION_AT, COMMAND_AT, EVENTS_AT, PLATFORM_AT, ROS_AT, SAMPLE_AT, VEHICLE_AT, Snapshot
-from simconsole.signals import Arbitration, DeviceSample, EventInput, RemoteCommand, VehicleCommand, VehicleState
+from simconsole.values.signals import Arbitration, DeviceSample, EventInput, RemoteCommand, VehicleCommand, VehicleState
+from simconsole.values.state_vector import (
+    ARBITRATION_AT,
+    COMMAND_AT,
+    EVENTS_AT,
+    PLATFORM_AT,
+    ROS_AT,
+    SAMPLE_AT,
+    VEHICLE_AT,
+    Snapshot,
+)
 
 STAGES: dict[type[Any], int] = {
     DeviceSample: SAMPLE_AT,

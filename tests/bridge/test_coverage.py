@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+from tests.paths import ROOT
+
 ROOM = ROOT / "simconsole" / "bridge"
 TESTS = ROOT / "tests" / "bridge"
 WITHOUT_CODE = ("_text.py", "__init__.py")

@@ -5,21 +5,21 @@ import queue
 import re
 import threading
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
-from simconsole.bridge.commands import REQUESTS, CommandIntake
-from simconsole.bridge.console import ConsoleBridge
-from simconsole.bridge.inputs import BridgeInputs
+from simconsole.bridge.console.command_decoder import REQUESTS, CommandIntake
+from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.console.input_slots import BridgeInputs
+from simconsole.bridge.console.topics import ONCE, Outputs
 from simconsole.bridge.messages import standard_registry
-from simconsole.bridge.operations import OPERATIONS
-from simconsole.bridge.topics import ONCE, Outputs
-from simconsole.profile_files import parse
+from simconsole.bridge.protocol.operations import OPERATIONS
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.profiles.files.loader import parse
 from simconsole.profiles.session import Outputs as OutputsSection
-from simconsole.signals import RemoteKind
+from simconsole.values.signals import RemoteKind
+from tests.paths import ROOT
 
-PAGE = (Path(__file__).parents[2] / "docs" / "rosbridge.md").read_text()
+PAGE = (ROOT / "docs" / "rosbridge.md").read_text()
 
 
 def rows(heading: str) -> list[list[str]]:

@@ -7,11 +7,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from simconsole.canbus.bus.worker import load_codec
 from simconsole.canbus.codec import Codec
-from simconsole.canbus.station import load_codec
 from simconsole.profiles.can import CanProfile
-from simconsole.rows import ARBITRATION_AT, COMMAND_AT, DRIVER_AT, PLATFORM_AT, VEHICLE_AT, Snapshot
-from simconsole.signals import Arbitration, DriverInput, Mode, Reason, Validity, VehicleCommand, VehicleState
+from simconsole.values.signals import Arbitration, DriverInput, Mode, Reason, Validity, VehicleCommand, VehicleState
+from simconsole.values.state_vector import ARBITRATION_AT, COMMAND_AT, DRIVER_AT, PLATFORM_AT, VEHICLE_AT, Snapshot
 
 _channels = itertools.count()
 

@@ -8,9 +8,9 @@ import pytest
 from simconsole.canbus.codec import COMMAND, CONSOLE, ECU, Codec
 from simconsole.canbus.messages import REQUESTS
 from simconsole.canbus.protection import Check
-from simconsole.errors import CanError
-from simconsole.profile_files import read_text
-from simconsole.signals import Event, GateLimit, Mode, Reason, Validity
+from simconsole.profiles.files.loader import read_text
+from simconsole.values.errors import CanError
+from simconsole.values.signals import Event, GateLimit, Mode, Reason, Validity
 
 TEXT = read_text("can", "simconsole.dbc")
 GOOD = {

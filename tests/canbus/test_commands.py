@@ -5,12 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from simconsole.assembly import assemble
+from simconsole.canbus.bus.port import open_logs, read_log
 from simconsole.canbus.messages import wheel_columns
-from simconsole.canbus.port import open_logs, read_log
-from simconsole.cli import main
-from simconsole.compiling import plain
-from simconsole.session_files import load_session, resolve
+from simconsole.cli.main import main
+from simconsole.session.resolution import load_session, resolve
+from simconsole.tick.assembly import assemble
+from simconsole.values.host.jit import plain
 
 VIRTUAL = ("--interface", "virtual", "--channel", "commands", "--json")
 

@@ -3,8 +3,8 @@ import pytest
 from simconsole.canbus.codec import COMMAND, Codec, Frame
 from simconsole.canbus.ecu import Ecu, Listener, Wish
 from simconsole.canbus.protection import Check
-from simconsole.errors import CanError
-from simconsole.signals import Mode
+from simconsole.values.errors import CanError
+from simconsole.values.signals import Mode
 
 
 def commands(ecu: Ecu, codec: Codec, count: int) -> list[dict[str, float]]:

@@ -10,8 +10,8 @@ from simconsole.canbus.messages import BUILDERS, WHEEL_COLUMNS, wheel_columns
 from simconsole.canbus.node import CanNode
 from simconsole.canbus.protection import Check, protected
 from simconsole.profiles.can import CanProfile
-from simconsole.rows import PLATFORM_AT, VEHICLE_AT, Snapshot
-from simconsole.signals import NEVER_TICKS, Event, Mode, Reason, RemoteKind
+from simconsole.values.signals import NEVER_TICKS, Event, Mode, Reason, RemoteKind
+from simconsole.values.state_vector import PLATFORM_AT, VEHICLE_AT, Snapshot
 
 Snapshots = Callable[[int], Snapshot]
 GOOD = {"REQUEST": 0.0, "ROAD_WHEEL": 0.1, "ACCEL": 1.5, "DIRECTION": 1.0, "TURN_INDICATORS": 0.0, "HAZARD_LIGHTS": 0.0}

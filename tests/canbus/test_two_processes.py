@@ -13,18 +13,18 @@ from typing import Any
 
 import pytest
 
+from simconsole.canbus.bus.bus_tools import monitor
+from simconsole.canbus.bus.multicast import LoopbackBus
+from simconsole.canbus.bus.port import CanPort, read_log
 from simconsole.canbus.codec import ECU, Codec
-from simconsole.canbus.multicast import LoopbackBus
-from simconsole.canbus.port import CanPort, read_log
-from simconsole.canbus.tools import monitor
-from simconsole.profile_files import to_text
 from simconsole.profiles.can import CanProfile
-from simconsole.recording.bundle import open_bundle
-from simconsole.rows import ARBITRATION_AT, ECU_AT, VEHICLE_AT
-from simconsole.session_files import load_session, override
-from simconsole.signals import Mode, RemoteCommand, RemoteKind
+from simconsole.profiles.files.loader import to_text
+from simconsole.recording.bundles.bundle import open_bundle
+from simconsole.session.resolution import load_session, override
+from simconsole.values.signals import Mode, RemoteCommand, RemoteKind
+from simconsole.values.state_vector import ARBITRATION_AT, ECU_AT, VEHICLE_AT
+from tests.paths import ROOT
 
-ROOT = Path(__file__).resolve().parents[2]
 DRIVE_S = 5.0
 
 

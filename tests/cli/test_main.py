@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from simconsole.cli import parser
+from simconsole.cli.main import parser
 from tests.drives.console import complaint, results, simconsole
 
 COMMANDS = {

@@ -6,10 +6,10 @@ import pytest
 
 from simconsole.control.arbitration import arbitrate
 from simconsole.control.gate import gate
-from simconsole.control.moment import Moment
-from simconsole.control.settings import ControlSettings, settings
+from simconsole.control.requests.control_settings import ControlSettings, settings
+from simconsole.control.requests.tick_context import Moment
 from simconsole.profiles.control import ControlProfile
-from simconsole.signals import (
+from simconsole.values.signals import (
     NEVER_TICKS,
     ArbiterMemory,
     Arbitration,

@@ -9,8 +9,8 @@ from typing import Final
 
 import numpy as np
 
-from simconsole.kernels import Row, kernel
-from simconsole.signals import (
+from simconsole.values.kernels import Row, kernel
+from simconsole.values.signals import (
     NEVER_TICKS,
     Button,
     DriverInput,

@@ -6,8 +6,8 @@ waits, and says which mode each tick must end in. What is present is a row of fl
 
 import math
 
-from simconsole.kernels import Row, is_finite, kernel
-from simconsole.signals import NEVER_TICKS, Arbitration, DriverInput, RemoteCommand, VehicleState
+from simconsole.values.kernels import Row, is_finite, kernel
+from simconsole.values.signals import NEVER_TICKS, Arbitration, DriverInput, RemoteCommand, VehicleState
 from tests.control.oracle_rules import (
     AGE,
     ARMED,

@@ -4,7 +4,7 @@ import math
 from typing import Final, NamedTuple
 
 from simconsole.profiles.control import ControlProfile
-from simconsole.signals import (
+from simconsole.values.signals import (
     Button,
     Commander,
     Event,

@@ -5,15 +5,15 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simconsole.compiling import compiled
 from simconsole.control.arbitration import arbitrate
-from simconsole.control.commander import ECU
 from simconsole.control.gate import gate
-from simconsole.control.moment import Moment
-from simconsole.control.settings import ControlSettings, settings
-from simconsole.kernels import Row, kernel, put, take
+from simconsole.control.requests.commander import ECU
+from simconsole.control.requests.control_settings import ControlSettings, settings
+from simconsole.control.requests.tick_context import Moment
 from simconsole.profiles.control import ControlProfile
-from simconsole.signals import (
+from simconsole.values.host.jit import compiled
+from simconsole.values.kernels import Row, kernel, put, take
+from simconsole.values.signals import (
     NEVER_TICKS,
     ArbiterMemory,
     Arbitration,

@@ -8,7 +8,7 @@ import pytest
 
 from simconsole.control.gate import limits_of
 from simconsole.profiles.control import ControlProfile
-from simconsole.signals import Event, GateLimit, Mode, Reason, RemoteKind, Validity
+from simconsole.values.signals import Event, GateLimit, Mode, Reason, RemoteKind, Validity
 
 MakeRig = Callable[..., Any]
 

@@ -6,7 +6,6 @@ from typing import Any
 
 import pytest
 
-from simconsole.control.angles import lateral_apart
 from simconsole.control.authority import (
     RemoteSide,
     Shares,
@@ -17,13 +16,14 @@ from simconsole.control.authority import (
     steered_stop,
     transmission_of,
 )
-from simconsole.control.decision import Decision
 from simconsole.control.lights import Lights
-from simconsole.control.moment import Moment
-from simconsole.control.person import Person
-from simconsole.control.remote import RemoteRequest
-from simconsole.control.settings import ControlSettings
-from simconsole.signals import Arbitration, Link, Mode, Reason, Request, VehicleCommand
+from simconsole.control.modes.decision import Decision
+from simconsole.control.requests.angles import lateral_apart
+from simconsole.control.requests.control_settings import ControlSettings
+from simconsole.control.requests.person import Person
+from simconsole.control.requests.remote import RemoteRequest
+from simconsole.control.requests.tick_context import Moment
+from simconsole.values.signals import Arbitration, Link, Mode, Reason, Request, VehicleCommand
 
 TICK_S = 0.004
 BEFORE = Arbitration(*(0.0,) * len(Arbitration._fields))._replace(

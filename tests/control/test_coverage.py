@@ -5,7 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).parents[2]
+from tests.paths import ROOT
+
 ROOM = ROOT / "simconsole" / "control"
 DRIVES = (
     *("arbitration", "commander", "pairs", "random", "reactions"),

@@ -5,8 +5,8 @@ from typing import Any
 import pytest
 
 from simconsole.control.gate import gate, limits_of
-from simconsole.control.settings import ControlSettings
-from simconsole.signals import (
+from simconsole.control.requests.control_settings import ControlSettings
+from simconsole.values.signals import (
     Arbitration,
     Event,
     GateLimit,

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from simconsole.signals import Commander, Event, GateLimit, LinkState, Mode, Reason, RemoteKind
+from simconsole.values.signals import Commander, Event, GateLimit, LinkState, Mode, Reason, RemoteKind
 from tests.control.conftest import LOCK_RAD, Rig
 from tests.samples import Measured, Sample
 

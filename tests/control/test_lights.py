@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from simconsole.control.lights import Lights, lights_of, switched
-from simconsole.signals import ArbiterMemory, Button, Event, Link, Mode
+from simconsole.values.signals import ArbiterMemory, Button, Event, Link, Mode
 from tests.control.conftest import NO_LINK, PERSON, SILENT
 
 MEMORY = ArbiterMemory(*(0.0,) * len(ArbiterMemory._fields))

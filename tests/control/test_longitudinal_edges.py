@@ -4,12 +4,12 @@ import math
 
 import pytest
 
-from simconsole.control.remote import commanded_direction, remote_request, twist_road_wheel
-from simconsole.control.settings import ControlSettings
+from simconsole.control.modes.takeover import WheelWatch, steering_taken, throttle_overrides, watch_wheel
+from simconsole.control.requests.control_settings import ControlSettings
+from simconsole.control.requests.remote import commanded_direction, remote_request, twist_road_wheel
+from simconsole.control.requests.stops import safe_stop, slow, stop_start, travel_of
 from simconsole.control.shared import time_to_crossing
-from simconsole.control.stops import safe_stop, slow, stop_start, travel_of
-from simconsole.control.takeover import WheelWatch, steering_taken, throttle_overrides, watch_wheel
-from simconsole.signals import NO_COMMAND, RemoteCommand, RemoteKind, VehicleState
+from simconsole.values.signals import NO_COMMAND, RemoteCommand, RemoteKind, VehicleState
 
 TICK_S = 0.004
 CAR = VehicleState(*(0.0,) * len(VehicleState._fields))._replace(

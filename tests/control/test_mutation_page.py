@@ -1,11 +1,11 @@
 """docs/mutation.md, written by `make mutation`: it meets the bar, and what it says of survivors is of this code."""
 
 import re
-from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
+from tests.paths import ROOT
+
 TEXT = (ROOT / "docs" / "mutation.md").read_text()
 SURVIVORS = re.findall(r"^\| `([^`]+)` \| `([^`]+)` \| `([^`]+)` \| (.+) \|$", TEXT, re.MULTILINE)
 MODULES = re.findall(r"^\| ([a-z_]+) \| (\d+) \| (\d+) \| [\d.]+ % \|$", TEXT, re.MULTILINE)

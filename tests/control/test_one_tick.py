@@ -6,9 +6,9 @@ from typing import Any
 import pytest
 
 from simconsole.control.arbitration import arbitrate, watched
-from simconsole.control.decision import takeover_stage
-from simconsole.control.moment import Moment
-from simconsole.signals import Commander, Event, Link, LinkState, Mode, Notice, Reason, RemoteKind, Validity
+from simconsole.control.modes.decision import takeover_stage
+from simconsole.control.requests.tick_context import Moment
+from simconsole.values.signals import Commander, Event, Link, LinkState, Mode, Notice, Reason, RemoteKind, Validity
 
 MakeRig = Callable[..., Any]
 STEADY = Link(7.0, 3.0, 0.0, 90.0, 1.0, 0.0, 100.0, float(LinkState.STEADY), 0.0, 0.0)

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from simconsole.control.modes import REACTIONS, REASONS, Trigger
-from simconsole.signals import Button, Event, Mode, Reason, Validity
+from simconsole.control.modes.mode_table import REACTIONS, REASONS, Trigger
+from simconsole.values.signals import Button, Event, Mode, Reason, Validity
 
 PAIRS = list(itertools.product(Mode, Trigger))
 

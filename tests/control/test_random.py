@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from simconsole.compiling import compiled, plain
 from simconsole.control.arbitration import arbitrate
 from simconsole.control.gate import gate, limits_of
-from simconsole.control.moment import Moment
-from simconsole.control.settings import settings
+from simconsole.control.requests.control_settings import settings
+from simconsole.control.requests.tick_context import Moment
 from simconsole.profiles.control import ControlProfile
-from simconsole.signals import (
+from simconsole.values.host.jit import compiled, plain
+from simconsole.values.signals import (
     NEVER_TICKS,
     ArbiterMemory,
     Arbitration,

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from simconsole.signals import Event, Mode, Reason, RemoteKind, Validity
+from simconsole.values.signals import Event, Mode, Reason, RemoteKind, Validity
 
 RATES = [50, 250, 1000]
 AUTONOMOUS = [Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED]

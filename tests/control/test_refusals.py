@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from simconsole.signals import Button, Event, Mode, Reason, Validity
+from simconsole.values.signals import Button, Event, Mode, Reason, Validity
 
 MakeRig = Callable[..., Any]
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import pytest
 
-from simconsole.signals import Event, Mode, Reason
+from simconsole.values.signals import Event, Mode, Reason
 from tests.control.conftest import PERSON, Rig
 
 BOTH_FEET = PERSON._replace(throttle=1.0, brake=1.0)

@@ -4,10 +4,10 @@ import math
 
 import pytest
 
-from simconsole.control.person import Person
-from simconsole.control.restart import GRANTED, NOT_ASKED, restart_refusal
-from simconsole.control.settings import ControlSettings
-from simconsole.signals import Button, DriverInput, Event, Mode, Reason
+from simconsole.control.modes.restart import GRANTED, NOT_ASKED, restart_refusal
+from simconsole.control.requests.control_settings import ControlSettings
+from simconsole.control.requests.person import Person
+from simconsole.values.signals import Button, DriverInput, Event, Mode, Reason
 
 DRIVER = DriverInput(*(0.0,) * len(DriverInput._fields))
 THERE = Person(1.0, 1.0, 0.0, 0.0, 0.0, 0.0)

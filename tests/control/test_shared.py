@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from simconsole.control.settings import ControlSettings, settings
+from simconsole.control.requests.control_settings import ControlSettings, settings
 from simconsole.control.shared import by_line_crossing, consent, time_to_crossing, traded
 from simconsole.profiles.control import ControlProfile
-from simconsole.signals import VehicleState
+from simconsole.values.signals import VehicleState
 
 MakeRig = Callable[..., Any]
 STANDING = VehicleState(*(0.0,) * len(VehicleState._fields))

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from simconsole.profiles.control import ControlProfile
-from simconsole.signals import Event, Mode
+from simconsole.values.signals import Event, Mode
 
 MakeRig = Callable[..., Any]
 RULES = ["fixed", "line_crossing", "traded"]

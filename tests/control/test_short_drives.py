@@ -9,7 +9,7 @@ from hypothesis import settings as effort
 from hypothesis import strategies as st
 
 from simconsole.control.gate import limits_of
-from simconsole.signals import Event, Mode, RemoteKind, Validity
+from simconsole.values.signals import Event, Mode, RemoteKind, Validity
 
 ANY = st.floats(allow_nan=True, allow_infinity=True, width=64)
 PEDAL = st.floats(0.0, 1.0)

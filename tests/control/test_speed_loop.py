@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from simconsole.signals import Event, Mode, RemoteKind
+from simconsole.values.signals import Event, Mode, RemoteKind
 
 
 def settled_speed(rig: Any, seconds: float) -> float:

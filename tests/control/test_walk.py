@@ -7,10 +7,10 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simconsole.compiling import compiled
-from simconsole.control.settings import settings
+from simconsole.control.requests.control_settings import settings
 from simconsole.profiles.control import ControlProfile
-from simconsole.signals import Arbitration, Commander, Mode, Reason
+from simconsole.values.host.jit import compiled
+from simconsole.values.signals import Arbitration, Commander, Mode, Reason
 from tests.control.nasty import DRAWS, STATE, fresh_start
 from tests.control.oracle import blank
 from tests.control.oracle_rules import COUNT, TRIGGERS, WIDTH, may_meet, rules

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from simconsole.signals import Commander, LinkState, Mode
+from simconsole.values.signals import Commander, LinkState, Mode
 from tests.control.conftest import Rig
 
 

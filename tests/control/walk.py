@@ -6,10 +6,10 @@ import numpy as np
 
 from simconsole.control.arbitration import arbitrate
 from simconsole.control.gate import gate
-from simconsole.control.moment import Moment
-from simconsole.control.settings import ControlSettings
-from simconsole.kernels import Row, is_finite, kernel, put, take
-from simconsole.signals import (
+from simconsole.control.requests.control_settings import ControlSettings
+from simconsole.control.requests.tick_context import Moment
+from simconsole.values.kernels import Row, is_finite, kernel, put, take
+from simconsole.values.signals import (
     ArbiterMemory,
     Arbitration,
     DriverInput,

@@ -4,17 +4,16 @@ import math
 
 import msgspec
 
-from simconsole.assembly import ResolvedSession, assemble
-from simconsole.compiling import compiled
-from simconsole.devices.motor import SimulatedWheelPort, WheelMotor
-from simconsole.devices.settings import settings
-from simconsole.devices.simulated_wheel import RELAXED, Arm, SimulatedWheel, step_wheel
-from simconsole.devices.uncalibrate import Intent, uncalibrate, wheel_raw
-from simconsole.pipeline import advance_row
+from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate, wheel_raw
+from simconsole.devices.force_feedback.motor import SimulatedWheelPort, WheelMotor
+from simconsole.devices.force_feedback.simulated_wheel import RELAXED, Arm, SimulatedWheel, step_wheel
 from simconsole.profiles.force_feedback import Motor
-from simconsole.rows import ARBITRATION_AT, VEHICLE_AT, Snapshot
-from simconsole.session_files import load_session, resolve
-from simconsole.signals import (
+from simconsole.session.resolution import load_session, resolve
+from simconsole.tick.advance import advance_row
+from simconsole.tick.assembly import ResolvedSession, assemble
+from simconsole.values.host.jit import compiled
+from simconsole.values.signals import (
     NO_COMMAND,
     NO_EVENTS,
     Arbitration,
@@ -25,6 +24,7 @@ from simconsole.signals import (
     RemoteKind,
     VehicleState,
 )
+from simconsole.values.state_vector import ARBITRATION_AT, VEHICLE_AT, Snapshot
 from simconsole.world.course import Course
 
 SPEED_MPS = 10.0

@@ -4,13 +4,13 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from simconsole.devices import sdl_runtime
-from simconsole.devices.calibration import CockpitSettings, settings
-from simconsole.devices.sdl import SdlSource
-from simconsole.devices.virtual_cockpit import VirtualCockpit
-from simconsole.devices.virtual_sdl import VirtualDevice, VirtualSpec
-from simconsole.profile_files import load
+from simconsole.devices.calibration.calibrator import CockpitSettings, settings
+from simconsole.devices.sources import sdl_runtime
+from simconsole.devices.sources.sdl import SdlSource
+from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
+from simconsole.devices.sources.virtual_sdl import VirtualDevice, VirtualSpec
 from simconsole.profiles.device import CockpitProfile
+from simconsole.profiles.files.loader import load
 
 TICK_HZ = 250
 

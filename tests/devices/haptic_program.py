@@ -14,19 +14,21 @@ import time
 import msgspec
 import numpy as np
 
-from simconsole.assembly import assemble
-from simconsole.compiling import plain
-from simconsole.devices import sdl_runtime
-from simconsole.devices.back_ends import open_motor
-from simconsole.devices.cockpit import NOBODY
-from simconsole.devices.kernel_limits import notes, problems, read_limits
-from simconsole.devices.motor import WheelMotor
-from simconsole.devices.sdl import Found, SdlSource, found
-from simconsole.devices.watched import Watchdog, watched
-from simconsole.profile_files import load
+from simconsole.devices.calibration.cockpit_settings import NOBODY
+from simconsole.devices.force_feedback.motor import WheelMotor
+from simconsole.devices.haptics.back_ends import open_motor
+from simconsole.devices.haptics.watched import Watchdog, watched
+from simconsole.devices.sources import sdl_runtime
+from simconsole.devices.sources.kernel_limits import notes, problems, read_limits
+from simconsole.devices.sources.sdl import Found, SdlSource, found
 from simconsole.profiles.device import CockpitProfile
+from simconsole.profiles.files.loader import load
 from simconsole.profiles.force_feedback import ForceFeedback
-from simconsole.rows import (
+from simconsole.session.resolution import load_session, resolve
+from simconsole.tick.assembly import assemble
+from simconsole.values.host.jit import plain
+from simconsole.values.signals import NO_SAMPLE, NO_TORQUE, Event, EventInput, Mode, Validity
+from simconsole.values.state_vector import (
     ARBITRATION_AT,
     DRIVER_AT,
     ECU_AT,
@@ -40,8 +42,6 @@ from simconsole.rows import (
     VEHICLE_AT,
     Snapshot,
 )
-from simconsole.session_files import load_session, resolve
-from simconsole.signals import NO_SAMPLE, NO_TORQUE, Event, EventInput, Mode, Validity
 from tests.devices.port_contract import CHECKS
 
 PAUSE_S = 0.4

@@ -9,8 +9,9 @@ from typing import Any
 
 import pytest
 
+from tests.paths import ROOT
+
 HERE = Path(__file__).parent
-ROOT = HERE.parents[1]
 SYSTEM_PYTHON = "/usr/bin/python3"
 BINDINGS = "import gi; gi.require_version('UMockdev', '1.0'); from gi.repository import UMockdev"
 

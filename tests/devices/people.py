@@ -2,9 +2,9 @@
 
 from collections.abc import Iterable
 
-from simconsole.devices.calibration import NOBODY, CockpitSettings, calibrate
-from simconsole.devices.uncalibrate import Intent, uncalibrate
-from simconsole.signals import NO_SAMPLE, DeviceSample, DriverInput
+from simconsole.devices.calibration.calibrator import NOBODY, CockpitSettings, calibrate
+from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate
+from simconsole.values.signals import NO_SAMPLE, DeviceSample, DriverInput
 
 TICK_S = 0.004
 

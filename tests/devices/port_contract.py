@@ -5,11 +5,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from simconsole.devices.motor import HapticPort, WheelMotor
-from simconsole.errors import DeviceError
+from simconsole.devices.force_feedback.motor import HapticPort, WheelMotor
 from simconsole.profiles.force_feedback import ForceFeedback
-from simconsole.rows import MOTOR_AT, PLATFORM_AT, TORQUE_AT, Snapshot
-from simconsole.signals import NO_TORQUE
+from simconsole.values.errors import DeviceError
+from simconsole.values.signals import NO_TORQUE
+from simconsole.values.state_vector import MOTOR_AT, PLATFORM_AT, TORQUE_AT, Snapshot
 
 Check = Callable[[HapticPort], None]
 

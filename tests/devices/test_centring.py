@@ -5,9 +5,9 @@ from collections.abc import Callable
 
 import pytest
 
-from simconsole.devices.simulated_wheel import FIRM, HANDS_OFF, RELAXED, STEERING, Arm
-from simconsole.rows import Snapshot
-from simconsole.signals import Event, EventInput, Mode, Notice, Reason
+from simconsole.devices.force_feedback.simulated_wheel import FIRM, HANDS_OFF, RELAXED, STEERING, Arm
+from simconsole.values.signals import Event, EventInput, Mode, Notice, Reason
+from simconsole.values.state_vector import Snapshot
 from tests.devices.closed_loop import Loop
 
 RESTART = EventInput(float(Event.RESTART))

@@ -5,9 +5,9 @@ from collections.abc import Callable
 
 import pytest
 
-from simconsole.devices.simulated_wheel import FIRM, HANDS_OFF, RELAXED, STEERING, Arm
+from simconsole.devices.force_feedback.simulated_wheel import FIRM, HANDS_OFF, RELAXED, STEERING, Arm
 from simconsole.profiles.force_feedback import Motor
-from simconsole.signals import Mode, Reason
+from simconsole.values.signals import Mode, Reason
 from tests.devices.closed_loop import MODE_AT, Loop
 
 RATIO = 15.5

@@ -3,17 +3,16 @@
 import json
 from collections.abc import Callable, Iterator
 from functools import cache
-from pathlib import Path
 
 import pytest
 
-from simconsole.devices.motor import HapticPort, NoHaptics, SimulatedWheelPort
-from simconsole.devices.simulated_wheel import SimulatedWheel
-from simconsole.devices.watched import Watchdog, WatchedPort
+from simconsole.devices.force_feedback.motor import HapticPort, NoHaptics, SimulatedWheelPort
+from simconsole.devices.force_feedback.simulated_wheel import SimulatedWheel
+from simconsole.devices.haptics.watched import Watchdog, WatchedPort
 from simconsole.profiles.force_feedback import ForceFeedback
-
 from tests.devices.mocked import start
 from tests.devices.port_contract import CHECKS
+from tests.paths import ROOT
 
 Judge = Callable[[str], str]
 """Takes the name of a check and returns what is wrong, empty where it holds."""
@@ -84,6 +83,6 @@ def test_a_motor_that_breaks_the_contract_is_found() -> None:
 
 
 def test_every_port_of_the_package_is_under_the_contract() -> None:
-    package = Path(__file__).resolve().parents[2] / "simconsole" / "devices"
+    package = ROOT / "simconsole" / "devices"
     ports = {path.stem for path in package.glob("*.py") if "A `HapticPort`." in path.read_text("utf-8")}
     assert ports == {"evdev_haptics", "haptics", "watched"}, "a new one belongs into `judge`"

@@ -5,9 +5,8 @@ from pathlib import Path
 
 import msgspec
 
-from simconsole.devices.calibrate import write_profile
+from simconsole.devices.setup.calibrate import write_profile
 from simconsole.profiles.device import CockpitProfile
-
 from tests.devices.mocked import calls, run_behind
 
 FF_CONSTANT = 0x52

@@ -8,21 +8,20 @@ import msgspec
 import pytest
 from msgspec.structs import replace
 
-from simconsole.devices.calibrate import calibrate_devices
-from simconsole.devices.commands import Pace, check_devices, list_devices
-from simconsole.devices.faults import effect
-from simconsole.devices.sdl import SdlSource
-from simconsole.devices.settings import settings
-from simconsole.devices.uncalibrate import Intent, uncalibrate
-from simconsole.devices.validity import LIVE, LOST, STALE, UNKNOWN
-from simconsole.devices.virtual_cockpit import VirtualCockpit
-from simconsole.devices.watch import Watch
-from simconsole.errors import DeviceNotFound, ProfileError
-from simconsole.profile_files import load, parse, to_text
+from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate
+from simconsole.devices.calibration.validity import LIVE, LOST, STALE, UNKNOWN
+from simconsole.devices.calibration.watch import Watch
+from simconsole.devices.setup.calibrate import calibrate_devices
+from simconsole.devices.setup.device_commands import Pace, check_devices, list_devices
+from simconsole.devices.sources.sdl import SdlSource
+from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
+from simconsole.faults.cockpit_faults import effect
 from simconsole.profiles.device import CockpitProfile, PedalAxis, RoleBinding
 from simconsole.profiles.faults import Unplug
-from simconsole.signals import NEVER_TICKS, DeviceSample, DriverInput
-
+from simconsole.profiles.files.loader import load, parse, to_text
+from simconsole.values.errors import DeviceNotFound, ProfileError
+from simconsole.values.signals import NEVER_TICKS, DeviceSample, DriverInput
 from tests.devices.conftest import TICK_HZ
 from tests.devices.people import Seat
 

@@ -6,10 +6,10 @@ from typing import Any
 import msgspec
 import pytest
 
-from simconsole.devices.settings import settings
-from simconsole.errors import ProfileError
-from simconsole.profile_files import load, parse, profiles_folder, to_text
+from simconsole.devices.calibration.calibration_settings import settings
 from simconsole.profiles.device import CockpitProfile, ScriptProfile
+from simconsole.profiles.files.loader import load, parse, profiles_folder, to_text
+from simconsole.values.errors import ProfileError
 
 COCKPITS = ["t500rs_th8rs", "t300rs_th8a", "g29", "gamepad", "keyboard"]
 

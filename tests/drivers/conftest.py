@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from simconsole.autonomy.settings import HATCHBACK, CarModel
-from simconsole.autonomy.tracker import Sighting, Tracker
-from simconsole.profile_files import load
+from simconsole.drivers.path_tracker.tracker import Sighting, Tracker
+from simconsole.drivers.path_tracker.tracker_settings import HATCHBACK, CarModel
+from simconsole.profiles.files.loader import load
 from simconsole.profiles.world import WorldProfile
 from simconsole.world.course import Course
 

@@ -2,16 +2,16 @@ from typing import get_args
 
 import pytest
 
-from simconsole.assembly import assemble
-from simconsole.compiling import compiled
-from simconsole.pipeline import advance
-from simconsole.profile_files import load
+from simconsole.drivers.scripted import ScriptedCommands
+from simconsole.profiles.files.loader import load
 from simconsole.profiles.scenario import EventName, EventStep, RemoteStep
 from simconsole.profiles.session import SessionProfile
-from simconsole.rows import TickInputs
-from simconsole.scripted import ScriptedCommands
-from simconsole.session_files import resolve
-from simconsole.signals import NEVER_TICKS, NO_SAMPLE, Event, RemoteKind
+from simconsole.session.resolution import resolve
+from simconsole.tick.advance import advance
+from simconsole.tick.assembly import assemble
+from simconsole.values.host.jit import compiled
+from simconsole.values.signals import NEVER_TICKS, NO_SAMPLE, Event, RemoteKind
+from simconsole.values.state_vector import TickInputs
 
 
 def commands(**keys: object) -> ScriptedCommands:

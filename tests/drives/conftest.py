@@ -4,11 +4,10 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from simconsole.recording.bundle import open_bundle
-from simconsole.recording.log import LogTable
-from tests.recording.conftest import rewrite_checksums, rewrite_log, rewrite_session
-
+from simconsole.recording.bundles.bundle import open_bundle
+from simconsole.recording.bundles.log import LogTable
 from tests.drives.console import results, simconsole
+from tests.recording.conftest import rewrite_checksums, rewrite_log, rewrite_session
 
 __all__ = ["rewrite_checksums", "rewrite_log", "rewrite_session"]
 

@@ -11,11 +11,10 @@ import numpy as np
 import pytest
 
 import simconsole
-from simconsole.recording.bundle import open_bundle, verify
-from simconsole.recording.log import LogTable
-from simconsole.replaying import replay_bundle
-from simconsole.signals import Mode
-
+from simconsole.recording.bundles.bundle import open_bundle, verify
+from simconsole.recording.bundles.log import LogTable
+from simconsole.recording.bundles.replay_bundle import replay_bundle
+from simconsole.values.signals import Mode
 from tests.drives.console import PATIENCE_S, Running, environment
 from tests.drives.controllers import free_port
 

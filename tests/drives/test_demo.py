@@ -5,12 +5,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from simconsole.profile_files import load
 from simconsole.profiles.device import CockpitProfile
-from simconsole.recording.bundle import open_bundle, verify
-from simconsole.signals import Button, Event, Mode, Reason, Validity
-from simconsole.units import RAD_PER_DEG
-
+from simconsole.profiles.files.loader import load
+from simconsole.recording.bundles.bundle import open_bundle, verify
+from simconsole.values.signals import Button, Event, Mode, Reason, Validity
+from simconsole.values.units import RAD_PER_DEG
 from tests.drives.conftest import Demo
 
 

@@ -8,10 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from simconsole.devices.trace import COLUMNS
-from simconsole.recording.bundle import open_bundle, verify
-from simconsole.signals import NEVER_TICKS, Mode, Validity
-
+from simconsole.devices.synthetic.trace import COLUMNS
+from simconsole.recording.bundles.bundle import open_bundle, verify
+from simconsole.values.signals import NEVER_TICKS, Mode, Validity
 from tests.drives.console import PATIENCE_S, environment, results, simconsole, words
 
 PERSON = """\

@@ -10,13 +10,12 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from simconsole.recording.bundle import open_bundle
-from simconsole.recording.log import LogTable
-from simconsole.replaying import replay_bundle
-from simconsole.session import DriveResult, drive
-from simconsole.session_files import load_session, override, resolve
-from simconsole.signals import Event, Mode, Reason
-
+from simconsole.recording.bundles.bundle import open_bundle
+from simconsole.recording.bundles.log import LogTable
+from simconsole.recording.bundles.replay_bundle import replay_bundle
+from simconsole.session.lifecycle import DriveResult, drive
+from simconsole.session.resolution import load_session, override, resolve
+from simconsole.values.signals import Event, Mode, Reason
 from tests.drives.console import Running, wait_until
 from tests.drives.controllers import Controller, command, free_port
 

@@ -5,9 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from simconsole.recording.bundle import open_bundle
-from simconsole.signals import Event, Mode
-
+from simconsole.recording.bundles.bundle import open_bundle
+from simconsole.values.signals import Event, Mode
 from tests.drives.console import Running, results, simconsole, wait_until
 
 SESSION = """schema: 1

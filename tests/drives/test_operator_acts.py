@@ -2,11 +2,11 @@
 
 import pytest
 
-from simconsole.bridge.commands import REQUESTS
-from simconsole.cli import parser
-from simconsole.profile_files import load
+from simconsole.bridge.console.command_decoder import REQUESTS
+from simconsole.cli.main import parser
 from simconsole.profiles.device import CockpitProfile
-from simconsole.signals import Button
+from simconsole.profiles.files.loader import load
+from simconsole.values.signals import Button
 
 BUTTONS = {
     "autonomous": Button.AUTONOMOUS,

@@ -7,13 +7,13 @@ from typing import Any
 
 import pytest
 
-from simconsole.commands.certificate import make, write_private
-from simconsole.errors import ProfileError
-from simconsole.inline import TOKEN_VARIABLE
-from simconsole.recording.bundle import open_bundle
-from simconsole.session import drive
-from simconsole.session_files import load_session, override, resolve
-from simconsole.signals import Mode
+from simconsole.cli.certificate import make, write_private
+from simconsole.recording.bundles.bundle import open_bundle
+from simconsole.session.lifecycle import drive
+from simconsole.session.lockstep import TOKEN_VARIABLE
+from simconsole.session.resolution import load_session, override, resolve
+from simconsole.values.errors import ProfileError
+from simconsole.values.signals import Mode
 
 TOKEN = "own-token-that-nobody-else-has"
 LIMIT_S = 20

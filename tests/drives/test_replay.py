@@ -10,14 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from simconsole.profile_files import profiles_folder
-from simconsole.recording.bundle import open_bundle, verify
+from simconsole.profiles.files.loader import profiles_folder
+from simconsole.recording.bundles.bundle import open_bundle, verify
+from simconsole.recording.bundles.replay_bundle import replay_bundle
 from simconsole.recording.replay import ReplayResult
-from simconsole.replaying import replay_bundle
-from tests.recording.conftest import change_header
-
 from tests.drives.conftest import Demo
 from tests.drives.console import complaint, results, simconsole
+from tests.recording.conftest import change_header
 
 REPLAYS = 20
 FORGED_TICK = 400
@@ -50,7 +49,8 @@ def test_twenty_replays_of_the_demo_are_equal(demo: Demo) -> None:
 
 
 def test_the_plain_functions_replay_what_compiled_code_drove(short: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from simconsole import compiling, replaying
+    from simconsole.recording.bundles import replay_bundle as replaying
+    from simconsole.values.host import jit as compiling
 
     monkeypatch.setattr(replaying, "compiled", compiling.plain)
     found = replay_bundle(short)

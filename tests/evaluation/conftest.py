@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from simconsole.profile_files import load
+from simconsole.profiles.files.loader import load
 from simconsole.profiles.world import WorldProfile
-from simconsole.rows import columns
-from simconsole.signals import Mode, Reason
+from simconsole.values.signals import Mode, Reason
+from simconsole.values.state_vector import columns
 from simconsole.world.course import Course
 
 TICK_HZ = 50

@@ -1,9 +1,9 @@
 """A scenario driven into memory: for tests that look at rows."""
 
-from simconsole import checking
-from simconsole.memory import MemoryRecorder
-from simconsole.pipeline import Console
+from simconsole.evaluation.checks import scenario_check as checking
+from simconsole.evaluation.checks.row_table import MemoryRecorder
 from simconsole.profiles.scenario import ScenarioProfile
+from simconsole.tick.advance import Console
 
 
 def drive_scenario(scenario: ScenarioProfile) -> tuple[MemoryRecorder, tuple[str, ...]]:

@@ -14,7 +14,7 @@ from tests.bridge.networks import Raw
 # Answers each line of its input with what it has counted of its first client, on the clock that it limits by.
 SERVER = """
 import asyncio, json, sys, time
-from simconsole.bridge.server import BridgeServer
+from simconsole.bridge.transport.server import BridgeServer
 from simconsole.profiles.bridge import BridgeProfile
 
 async def main():

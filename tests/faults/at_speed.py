@@ -5,20 +5,19 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from simconsole.assembly import ResolvedSession, assemble
-from simconsole.compiling import compiled
-from simconsole.devices.settings import settings
-from simconsole.devices.uncalibrate import Intent, uncalibrate
-from simconsole.drive import Cast, run
-from simconsole.memory import MemoryRecorder
-from simconsole.pacing import UnpacedPacer
-from simconsole.pipeline import Console, ConsoleState
-from simconsole.ports import CommandSource
-from simconsole.profile_files import parse
+from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate
+from simconsole.evaluation.checks.row_table import MemoryRecorder
+from simconsole.profiles.files.loader import parse
 from simconsole.profiles.session import SessionProfile
-from simconsole.rows import Snapshot
-from simconsole.session_files import override, resolve
-from simconsole.signals import (
+from simconsole.session.pacing import UnpacedPacer
+from simconsole.session.resolution import override, resolve
+from simconsole.tick.advance import Console, ConsoleState
+from simconsole.tick.assembly import ResolvedSession, assemble
+from simconsole.tick.loop import Cast, run
+from simconsole.values.host.jit import compiled
+from simconsole.values.protocols import CommandSource
+from simconsole.values.signals import (
     NO_COMMAND,
     NO_EVENTS,
     DeviceSample,
@@ -29,6 +28,7 @@ from simconsole.signals import (
     RemoteCommand,
     RemoteKind,
 )
+from simconsole.values.state_vector import Snapshot
 
 SESSION: Final = "schema: 1\nscenario: {vehicle: hatchback}\ndevices: {driver: none}\n"
 SPEED_MPS: Final = 13.0

@@ -11,9 +11,9 @@ import numpy as np
 
 from simconsole.profiles import faults as kinds
 from simconsole.profiles.faults import Fault, words
-from simconsole.rows import Snapshot
-from simconsole.signals import Mode, Reason
-from simconsole.words import mode_words, reason_words
+from simconsole.values.labels import mode_words, reason_words
+from simconsole.values.signals import Mode, Reason
+from simconsole.values.state_vector import Snapshot
 from tests.faults.course import AUTOPILOT, BY_HAND, BY_HAND_ALONE, HZ, PLACES, WATCHED, Crew, Driven, circuit
 
 SECONDS: Final = 20.0

@@ -10,7 +10,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Final, NamedTuple
 
-TESTS: Final = Path(__file__).parents[1]
+from tests.paths import ROOT
+
+TESTS: Final = ROOT / "tests"
 
 
 class Case(NamedTuple):

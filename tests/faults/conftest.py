@@ -4,9 +4,9 @@ from typing import Any
 
 import pytest
 
-from simconsole.bridge.lockstep import LockstepBridge
+from simconsole.bridge.transport.lockstep_server import LockstepBridge
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.signals import RemoteCommand
+from simconsole.values.signals import RemoteCommand
 from tests.bridge.fixtures import Served, bridge, control, join, make_snapshot, peer, serving, snapshot, transport
 
 __all__ = ["bridge", "control", "join", "peer", "serving", "snapshot", "transport"]

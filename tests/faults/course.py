@@ -8,24 +8,23 @@ from typing import Any, NamedTuple
 import msgspec
 import numpy as np
 
-from simconsole.assembly import ResolvedSession, assemble
-from simconsole.autonomy.tracker import Sighting, Tracker
-from simconsole.compiling import compiled
-from simconsole.devices.settings import settings
-from simconsole.devices.uncalibrate import Intent, uncalibrate
-from simconsole.drive import Cast, Pace, run
-from simconsole.faulting import with_faults
-from simconsole.isolation import isolated
-from simconsole.memory import MemoryRecorder
-from simconsole.pacing import UnpacedPacer
-from simconsole.pipeline import Console, ConsoleState
-from simconsole.ports import Station
-from simconsole.profile_files import parse
+from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate
+from simconsole.drivers.path_tracker.tracker import Sighting, Tracker
+from simconsole.evaluation.checks.row_table import MemoryRecorder
+from simconsole.faults.schedule import with_faults
 from simconsole.profiles.faults import Fault
+from simconsole.profiles.files.loader import parse
 from simconsole.profiles.session import SessionProfile
-from simconsole.rows import Snapshot
-from simconsole.session_files import resolve
-from simconsole.signals import (
+from simconsole.session.pacing import UnpacedPacer
+from simconsole.session.resolution import resolve
+from simconsole.tick.advance import Console, ConsoleState
+from simconsole.tick.assembly import ResolvedSession, assemble
+from simconsole.tick.isolation import isolated
+from simconsole.tick.loop import Cast, Pace, run
+from simconsole.values.host.jit import compiled
+from simconsole.values.protocols import Station
+from simconsole.values.signals import (
     NO_COMMAND,
     NO_EVENTS,
     DeviceSample,
@@ -36,6 +35,7 @@ from simconsole.signals import (
     RemoteCommand,
     RemoteKind,
 )
+from simconsole.values.state_vector import Snapshot
 from simconsole.world.course import Course
 
 HZ = 250

@@ -1,12 +1,12 @@
 """What the tests of the fault catalogue saw, from the reports of a run to docs/faults.md and the terminal."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from pathlib import Path
 from typing import Final, NamedTuple
 
 from tests.faults.catalogue import CATALOGUE, tested
+from tests.paths import ROOT
 
-PAGE: Final = Path(__file__).parents[2] / "docs" / "faults.md"
+PAGE: Final = ROOT / "docs" / "faults.md"
 HEAD: Final = "| id | fault | promised | tested in | measured |\n|---|---|---|---|---|\n"
 BREAK: Final = "<br>"
 AT_LENGTH: Final = 12

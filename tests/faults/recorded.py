@@ -3,9 +3,9 @@
 import json
 from pathlib import Path
 
-from simconsole.assembly import ResolvedSession
 from simconsole.profiles.session import SessionProfile
-from simconsole.session_files import load_session, override, resolve
+from simconsole.session.resolution import load_session, override, resolve
+from simconsole.tick.assembly import ResolvedSession
 
 SECONDS = 2.0
 HZ = 250

@@ -10,11 +10,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from simconsole.control.settings import ControlSettings
-from simconsole.pipeline import CONTROL_AT
+from simconsole.control.requests.control_settings import ControlSettings
 from simconsole.profiles.faults import Silent
-from simconsole.rows import Snapshot
-from simconsole.signals import Mode
+from simconsole.tick.advance import CONTROL_AT
+from simconsole.values.signals import Mode
+from simconsole.values.state_vector import Snapshot
 from tests.faults.course import CAR_M, HZ, LANE_M, PERIOD_TICKS, PLACES, Circuit, InlineTracker
 
 SECONDS = 14.0

@@ -17,27 +17,28 @@ import msgspec
 import numpy as np
 import pytest
 
-from simconsole.assembly import assemble
+from simconsole.canbus.bus.port import CanPort
+from simconsole.canbus.bus.worker import InlineCan, OnBus, load_codec
 from simconsole.canbus.codec import COMMAND, Codec, Frame
 from simconsole.canbus.node import CanNode
-from simconsole.canbus.port import CanPort
 from simconsole.canbus.protection import Check, protected
-from simconsole.canbus.station import InlineCan, OnBus, load_codec
-from simconsole.compiling import plain
-from simconsole.drive import Cast, run
-from simconsole.errors import CanError
 from simconsole.hud.draw import Text
 from simconsole.hud.layout import layout
 from simconsole.hud.screen import Screen
 from simconsole.hud.view import HudView
-from simconsole.kernels import Row
-from simconsole.pacing import UnpacedPacer
-from simconsole.ports import NobodyCommands, NobodySeated
 from simconsole.profiles.can import CanProfile
-from simconsole.rows import ARBITRATION_AT, ECU_AT, Snapshot
-from simconsole.session_files import load_session, override, resolve
-from simconsole.signals import Arbitration, Mode, Reason, RemoteCommand
-from simconsole.station_programs import CanWatch
+from simconsole.session.pacing import UnpacedPacer
+from simconsole.session.resolution import load_session, override, resolve
+from simconsole.session.worker_programs import CanWatch
+from simconsole.tick.assembly import assemble
+from simconsole.tick.loop import Cast, run
+from simconsole.values.errors import CanError
+from simconsole.values.host.jit import plain
+from simconsole.values.kernels import Row
+from simconsole.values.protocols import NobodyCommands, NobodySeated
+from simconsole.values.signals import Arbitration, Mode, Reason, RemoteCommand
+from simconsole.values.state_vector import ARBITRATION_AT, ECU_AT, Snapshot
+from tests.paths import ROOT
 
 TICK_HZ = 250
 STALE_TICKS = 50  # 200 ms
@@ -383,7 +384,7 @@ def test_c05_no_frame_off_the_whitelist_can_leave(profile: CanProfile, codec: Co
 
 @pytest.mark.fault("C05")
 def test_c05_only_one_line_of_the_package_sends(codec: Codec) -> None:
-    package = Path(__file__).resolve().parents[2] / "simconsole"
+    package = ROOT / "simconsole"
     importers = [path.name for path in package.rglob("*.py") if "import can\n" in path.read_text()]
     assert importers == ["port.py"]
     assert (package / "canbus" / "port.py").read_text().count(".send(") == 1

@@ -6,13 +6,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from simconsole.pacing import CATCH_UP_TICKS, Pacer
-from simconsole.recording.bundle import open_bundle
-from simconsole.rows import Snapshot
-from simconsole.signals import Event, Mode, Reason
+from simconsole.recording.bundles.bundle import open_bundle
+from simconsole.session.pacing import CATCH_UP_TICKS, Pacer
+from simconsole.values.signals import Event, Mode, Reason
+from simconsole.values.state_vector import Snapshot
 from tests.drives.console import results, simconsole
 from tests.faults.course import BY_HAND, HZ, PLACES, circuit
 from tests.faults.test_whole_drives import PERSON
+from tests.paths import ROOT
 
 JUMPING = '''
 """Python runs this before anything else: whoever reads the wall clock finds it an hour ahead, then an hour back."""
@@ -58,7 +59,7 @@ def test_p05_wall_clock_that_jumps_by_an_hour_changes_not_one_bit(tmp_path: Path
     (tmp_path / "session.yaml").write_text(SESSION)
     (tmp_path / "person.yaml").write_text(PERSON)
     jumps = tmp_path / "jumps"
-    root = str(Path(__file__).parents[2])
+    root = str(ROOT)
     digests = []
     for name, changes in (
         ("steady", {}),

@@ -5,10 +5,8 @@ from collections.abc import Sequence
 
 import pytest
 
-from simconsole.devices.faults import FaultyDevices, drawn
-from simconsole.devices.settings import settings
-from simconsole.errors import ProfileError
-from simconsole.profile_files import load
+from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.faults.cockpit_faults import FaultyDevices, drawn
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.faults import (
     Burst,
@@ -22,7 +20,9 @@ from simconsole.profiles.faults import (
     TwoGears,
     Unplug,
 )
-from simconsole.signals import NEVER_TICKS, DeviceSample
+from simconsole.profiles.files.loader import load
+from simconsole.values.errors import ProfileError
+from simconsole.values.signals import NEVER_TICKS, DeviceSample
 
 TICK_HZ = 250
 

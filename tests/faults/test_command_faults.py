@@ -4,10 +4,10 @@ import math
 
 import pytest
 
-from simconsole.commanding_faults import FaultyCommands
+from simconsole.faults.command_faults import FaultyCommands
 from simconsole.profiles import faults as kinds
 from simconsole.profiles.faults import Fault
-from simconsole.signals import NO_COMMAND, Event, EventInput, RemoteCommand
+from simconsole.values.signals import NO_COMMAND, Event, EventInput, RemoteCommand
 
 HZ = 250
 

@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from simconsole.evaluation.metrics.drive_metrics import metrics
+from simconsole.evaluation.metrics.table import drive_of
 from simconsole.profiles.faults import Unplug, words
-from simconsole.report.metrics import metrics
-from simconsole.report.table import drive_of
-from simconsole.signals import Mode, Reason
-from simconsole.words import mode_words, reason_words
+from simconsole.values.labels import mode_words, reason_words
+from simconsole.values.signals import Mode, Reason
 from tests.faults import cases
 from tests.faults.cases import CASES, Case
 from tests.faults.course import BY_HAND_ALONE, CAR_M, HZ, LANE_M, PLACES, WATCHED, circuit

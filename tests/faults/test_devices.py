@@ -14,19 +14,19 @@ import pytest
 from msgspec.structs import replace
 from numpy.typing import NDArray
 
-from simconsole.devices.sdl import SdlSource
-from simconsole.devices.trace import COLUMNS, read_rows, row_text
-from simconsole.devices.virtual_cockpit import VirtualCockpit
-from simconsole.errors import ProfileError
+from simconsole.devices.sources.sdl import SdlSource
+from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
+from simconsole.devices.synthetic.trace import COLUMNS, read_rows, row_text
 from simconsole.hud.banner import ALERT_WORDS, alert_of
 from simconsole.hud.view import HudMemory, HudSettings, view
-from simconsole.profile_files import load, parse
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.faults import AxisName, Fault, Freeze, Invalid, Stuck, TwoGears, Unplug
+from simconsole.profiles.files.loader import load, parse
 from simconsole.profiles.scenario import ScenarioProfile
-from simconsole.rows import Snapshot
-from simconsole.signals import NO_SAMPLE, GateLimit, Mode, Reason, Validity
-from tests.in_memory import drive_scenario
+from simconsole.values.errors import ProfileError
+from simconsole.values.signals import NO_SAMPLE, GateLimit, Mode, Reason, Validity
+from simconsole.values.state_vector import Snapshot
+from tests.evaluation.in_memory import drive_scenario
 from tests.samples import Measured
 
 TICK_HZ: Final = 250

@@ -11,8 +11,8 @@ from typing import Annotated, Any
 import msgspec
 import pytest
 
-from simconsole import profile_files
-from simconsole.errors import ProfileError
+from simconsole.profiles.files import loader as profile_files
+from simconsole.values.errors import ProfileError
 
 OUTSIDE = "friction: 0.7\n"
 

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from simconsole.devices.simulated_wheel import HANDS_OFF, RELAXED
-from simconsole.rows import TORQUE_AT, VEHICLE_AT
-from simconsole.signals import Event, EventInput, Mode, VehicleState
+from simconsole.devices.force_feedback.simulated_wheel import HANDS_OFF, RELAXED
+from simconsole.values.signals import Event, EventInput, Mode, VehicleState
+from simconsole.values.state_vector import TORQUE_AT, VEHICLE_AT
 from tests.devices.closed_loop import Loop
 from tests.devices.mocked import calls, start
 from tests.samples import Measured

@@ -17,11 +17,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from simconsole.bridge.client import BridgeClient
-from simconsole.errors import OtherDriveError
-from simconsole.lifetimes import DRIVE_VARIABLE
-from simconsole.recording.bundle import open_bundle, verify
-from simconsole.signals import Event, Mode
+from simconsole.bridge.client.bridge_client import BridgeClient
+from simconsole.processes.lifetimes import DRIVE_VARIABLE
+from simconsole.recording.bundles.bundle import open_bundle, verify
+from simconsole.values.errors import OtherDriveError
+from simconsole.values.signals import Event, Mode
 from tests.drives.console import Running, environment, simconsole, wait_until, words
 from tests.drives.controllers import free_port
 from tests.faults.lives import Life, holders, living, pause, standard_input, takes_signals, wait_for_port, write_session
@@ -29,7 +29,7 @@ from tests.samples import Measured, Sample
 
 PROGRAM = "--course"
 """Stands in the arguments of the autopilot only."""
-HELD = (PROGRAM, "simconsole.stations", "simconsole.scene.export")
+HELD = (PROGRAM, "simconsole.processes.supervisor", "simconsole.scene.viewer.export")
 """Stand in the arguments of those that end with their parent, each one's."""
 
 

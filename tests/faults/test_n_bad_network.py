@@ -12,9 +12,9 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from simconsole.bridge.console import ConsoleBridge
+from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.signals import EventInput, Mode, Reason, RemoteCommand
+from simconsole.values.signals import EventInput, Mode, Reason, RemoteCommand
 from tests.bridge.fixtures import Peer, make_snapshot
 from tests.faults.at_speed import LEFT_WITHIN_S, SPEED_MPS, STALE_S, ready
 from tests.samples import Measured, Sample

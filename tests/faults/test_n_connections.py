@@ -14,11 +14,11 @@ from typing import Any
 import pytest
 from websockets.asyncio.client import ClientConnection, connect
 
-from simconsole.bridge.client import BridgeClient
-from simconsole.bridge.server import BridgeServer
-from simconsole.bridge.wire import is_unacknowledged
+from simconsole.bridge.client.bridge_client import BridgeClient
+from simconsole.bridge.transport.server import BridgeServer
+from simconsole.bridge.transport.wire import is_unacknowledged
 from simconsole.profiles.bridge import BridgeLimits, BridgeProfile
-from simconsole.signals import Event
+from simconsole.values.signals import Event
 from tests.bridge.networks import CLOSE, Raw, far_end, go_deaf, lose
 from tests.samples import Measured
 

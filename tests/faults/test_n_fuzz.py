@@ -14,9 +14,9 @@ import cbor2
 import orjson
 import pytest
 
-from simconsole.bridge.access import Access, Role
-from simconsole.bridge.console import ConsoleBridge
-from simconsole.bridge.documents import Binary
+from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.protocol.access import Access, Role
+from simconsole.bridge.protocol.documents import Binary
 from simconsole.profiles.bridge import BridgeProfile
 from tests.samples import Measured, Sample
 

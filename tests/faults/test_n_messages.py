@@ -10,9 +10,9 @@ from typing import Any
 import cbor2
 import pytest
 
-from simconsole.bridge.console import ConsoleBridge
-from simconsole.bridge.documents import Binary
-from simconsole.bridge.fragments import MAX_OPEN, TIMEOUT_NS
+from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.protocol.documents import Binary
+from simconsole.bridge.protocol.fragments import MAX_OPEN, TIMEOUT_NS
 from simconsole.profiles.bridge import BridgeLimits, BridgeProfile
 from tests.bridge.fixtures import Peer
 from tests.samples import Measured, Sample

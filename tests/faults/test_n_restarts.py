@@ -15,11 +15,11 @@ from typing import Any
 
 import pytest
 
-from simconsole.bridge.backoff import CAP_S, JITTER
-from simconsole.bridge.client import BridgeClient
+from simconsole.bridge.client.bridge_client import BridgeClient
 from simconsole.bridge.messages import standard_registry
+from simconsole.bridge.protocol.backoff import CAP_S, JITTER
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.signals import Mode
+from simconsole.values.signals import Mode
 from tests.bridge.fixtures import Served
 from tests.drives.console import Running
 from tests.samples import Measured, Sample
@@ -103,7 +103,7 @@ COME_AND_GO = """
 import asyncio, gc, json, os, sys
 from pathlib import Path
 from websockets.asyncio.client import connect
-from simconsole.bridge.server import BridgeServer
+from simconsole.bridge.transport.server import BridgeServer
 from simconsole.profiles.bridge import BridgeProfile
 
 WISHES = [json.dumps(wish) for wish in (

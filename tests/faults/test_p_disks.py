@@ -7,18 +7,17 @@ from pathlib import Path
 
 import pytest
 
-from simconsole.commands.driven import finish
-from simconsole.errors import RecordingError
-from simconsole.recording.bundle import open_bundle, verify
-from simconsole.replaying import replay_bundle
-from simconsole.rows import Snapshot
-from simconsole.session import drive
-from simconsole.signals import Event
+from simconsole.cli.driven import finish
+from simconsole.recording.bundles.bundle import open_bundle, verify
+from simconsole.recording.bundles.replay_bundle import replay_bundle
+from simconsole.session.lifecycle import drive
+from simconsole.values.errors import RecordingError
+from simconsole.values.signals import Event
+from simconsole.values.state_vector import Snapshot
 from tests.drives.console import results, simconsole
-from tests.samples import Measured, Sample
-
 from tests.faults.disks import DISKS, SIZE_BYTES, Disk, memory
 from tests.faults.recorded import TICKS, session, unfinish
+from tests.samples import Measured, Sample
 
 
 class Watcher:
@@ -122,7 +121,7 @@ def test_p01_a_disk_that_only_fails_to_sync_raises_the_same_alarm(
     def broken(fd: int) -> None:
         raise OSError(errno.EIO, "Input/output error")
 
-    monkeypatch.setattr("simconsole.recording.log._synchronise", broken)
+    monkeypatch.setattr("simconsole.recording.bundles.log._synchronise", broken)
     deadline_s, told = time.monotonic() + 60.0, []
 
     def watch(snapshot: Snapshot) -> bool:

@@ -15,13 +15,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from simconsole.bridge.client import BridgeClient
-from simconsole.recording.bundle import verify
+from simconsole.bridge.client.bridge_client import BridgeClient
+from simconsole.recording.bundles.bundle import verify
 from tests.drives.console import Running, results, wait_until
 from tests.faults.test_n_restarts import free_port
 from tests.faults.test_whole_drives import PERSON
 from tests.samples import Measured, Sample
-from tests.stations.test_realtime import TICK_HZ, drive
+from tests.session.test_paced import TICK_HZ, drive
 
 MIB = 1 << 20
 GARBAGE_TICKS = 4000
@@ -31,7 +31,7 @@ GARBAGE_TICKS = 4000
 LITTERED = """
 import gc, json, sys, time
 from pathlib import Path
-from simconsole.pacing import realtime_hints
+from simconsole.session.pacing import realtime_hints
 from tests.faults.course import BY_HAND, circuit
 
 ticks, garbage_bytes = int(sys.argv[1]), int(sys.argv[2])

@@ -13,23 +13,22 @@ from pathlib import Path
 
 import pytest
 
-from simconsole.errors import RecordingError
-from simconsole.recording import log
-from simconsole.recording.bundle import open_bundle, verify
+from simconsole.recording.bundles import log
+from simconsole.recording.bundles.bundle import open_bundle, verify
+from simconsole.recording.bundles.log import SYNC_INTERVAL_S, LogReader
+from simconsole.recording.bundles.replay_bundle import replay_bundle
 from simconsole.recording.framing import Scan, frame_size
-from simconsole.recording.log import SYNC_INTERVAL_S, LogReader
-from simconsole.replaying import replay_bundle
-from simconsole.rows import Snapshot
-from simconsole.session import drive
+from simconsole.session.lifecycle import drive
+from simconsole.values.errors import RecordingError
+from simconsole.values.state_vector import Snapshot
 from tests.drives.console import results, simconsole
-from tests.samples import Measured, Sample
-
 from tests.faults.recorded import HZ, session, unfinish
+from tests.samples import Measured, Sample
 
 KILLED = """
 import mmap, os, sys, time
 from pathlib import Path
-from simconsole.session import drive
+from simconsole.session.lifecycle import drive
 from tests.faults.recorded import session
 folder = Path(sys.argv[1])
 resolved = session(Path(sys.argv[2]), 3600.0)

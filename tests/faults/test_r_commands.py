@@ -12,12 +12,12 @@ from typing import Any
 import cbor2
 import pytest
 
-from simconsole.bridge.access import Access, Role
-from simconsole.bridge.console import ConsoleBridge
-from simconsole.bridge.documents import Binary
-from simconsole.bridge.inputs import aged
+from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.console.input_slots import aged
+from simconsole.bridge.protocol.access import Access, Role
+from simconsole.bridge.protocol.documents import Binary
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.signals import NEVER_TICKS, Event, RemoteCommand
+from simconsole.values.signals import NEVER_TICKS, Event, RemoteCommand
 from tests.samples import Measured
 
 CONTROL = "/control/command/control_cmd"

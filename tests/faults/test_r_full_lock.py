@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from simconsole.signals import NO_EVENTS, EventInput, Mode, Reason, RemoteCommand
+from simconsole.values.signals import NO_EVENTS, EventInput, Mode, Reason, RemoteCommand
 from tests.faults.at_speed import LEFT_WITHIN_S, ready, said
 from tests.samples import Measured, Sample
 

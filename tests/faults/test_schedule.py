@@ -6,27 +6,27 @@ from typing import Any, Final, NamedTuple, get_args
 import numpy as np
 import pytest
 
-from simconsole.devices.record import TraceWriter
-from simconsole.devices.script import ScriptSource
-from simconsole.devices.settings import settings
-from simconsole.devices.trace import TraceHeader
-from simconsole.errors import ProfileError
-from simconsole.faulting import SERVES, FaultClock
-from simconsole.profile_files import load, parse, to_text
+from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.sources.trace_recorder import TraceWriter
+from simconsole.devices.synthetic.script import ScriptSource
+from simconsole.devices.synthetic.trace import TraceHeader
+from simconsole.evaluation.metrics.fault_metrics import fault_spans
+from simconsole.evaluation.metrics.table import drive_of
+from simconsole.faults.schedule import SERVES, FaultClock
 from simconsole.profiles.device import CockpitProfile, ScriptProfile
 from simconsole.profiles.faults import Fault, Onset, Place, Stuck, words
+from simconsole.profiles.files.loader import load, parse, to_text
 from simconsole.profiles.person import PersonPlan
 from simconsole.profiles.scenario import ScenarioProfile
 from simconsole.profiles.session import Devices, ModeSection, Outputs, SessionProfile
-from simconsole.recording.bundle import open_bundle
-from simconsole.replaying import replay_bundle
-from simconsole.report.faults import fault_spans
-from simconsole.report.table import drive_of
-from simconsole.rows import Snapshot, columns
-from simconsole.session import drive
-from simconsole.session_files import resolve
-from simconsole.signals import Event, Mode
-from tests.in_memory import drive_scenario
+from simconsole.recording.bundles.bundle import open_bundle
+from simconsole.recording.bundles.replay_bundle import replay_bundle
+from simconsole.session.lifecycle import drive
+from simconsole.session.resolution import resolve
+from simconsole.values.errors import ProfileError
+from simconsole.values.signals import Event, Mode
+from simconsole.values.state_vector import Snapshot, columns
+from tests.evaluation.in_memory import drive_scenario
 
 TICK_HZ: Final = 100
 ALL_KINDS = """\

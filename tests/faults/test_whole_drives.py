@@ -13,15 +13,15 @@ import numpy as np
 import pytest
 from websockets.sync.client import ClientConnection
 
-from simconsole.pipeline import advance_row
-from simconsole.recording.bundle import open_bundle
-from simconsole.recording.log import LogTable
-from simconsole.replaying import state_at
-from simconsole.rows import INPUT_WIDTH
-from simconsole.session import drive
-from simconsole.session_files import load_session, override, resolve
-from simconsole.signals import Event, Mode, Reason
-from simconsole.words import reason_words
+from simconsole.recording.bundles.bundle import open_bundle
+from simconsole.recording.bundles.log import LogTable
+from simconsole.recording.bundles.replay_bundle import state_at
+from simconsole.session.lifecycle import drive
+from simconsole.session.resolution import load_session, override, resolve
+from simconsole.tick.advance import advance_row
+from simconsole.values.labels import reason_words
+from simconsole.values.signals import Event, Mode, Reason
+from simconsole.values.state_vector import INPUT_WIDTH
 from tests.bridge.networks import go_deaf
 from tests.drives.console import results, simconsole
 from tests.drives.controllers import Controller, command, free_port

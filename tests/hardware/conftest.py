@@ -5,11 +5,11 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from simconsole.devices.calibration import settings
-from simconsole.devices.sdl import SdlSource
-from simconsole.profile_files import load
+from simconsole.devices.calibration.calibrator import settings
+from simconsole.devices.sources.sdl import SdlSource
 from simconsole.profiles.device import CockpitProfile
-from simconsole.signals import DeviceSample, DriverInput
+from simconsole.profiles.files.loader import load
+from simconsole.values.signals import DeviceSample, DriverInput
 from tests.devices.people import Seat
 
 HZ = 250

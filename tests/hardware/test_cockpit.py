@@ -11,10 +11,10 @@ from itertools import pairwise
 
 import pytest
 
-from simconsole.devices.back_ends import open_motor
-from simconsole.devices.feel import feel_devices
+from simconsole.devices.haptics.back_ends import open_motor
+from simconsole.devices.setup.force_feedback_setup import feel_devices
 from simconsole.profiles.device import CockpitProfile
-from simconsole.signals import NEVER_TICKS
+from simconsole.values.signals import NEVER_TICKS
 from tests.hardware.conftest import HZ, Bench
 
 Ask = Callable[[str], str]
@@ -22,9 +22,9 @@ PEDALS = ("throttle", "brake", "clutch")
 PUSH = """
 import sys, time
 from simconsole.devices import sdl_runtime
-from simconsole.devices.back_ends import open_motor
-from simconsole.devices.sdl import SdlSource
-from simconsole.profile_files import load
+from simconsole.devices.haptics.back_ends import open_motor
+from simconsole.devices.sources.sdl import SdlSource
+from simconsole.profiles.files.loader import load
 from simconsole.profiles.device import CockpitProfile
 cockpit = load("devices", sys.argv[1], CockpitProfile)
 source = SdlSource(cockpit)

@@ -6,8 +6,8 @@ from simconsole.hud.draw import PALETTE, Colour, DrawItem, Text
 from simconsole.hud.layout import layout
 from simconsole.hud.screen import Screen
 from simconsole.hud.view import HudView
-from simconsole.signals import Mode
-from simconsole.words import mode_words
+from simconsole.values.labels import mode_words
+from simconsole.values.signals import Mode
 
 SCREENS = {
     "4:3": Screen(1400, 1050, 1.6, 2.2),

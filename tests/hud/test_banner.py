@@ -5,8 +5,8 @@ import pytest
 from simconsole.hud.draw import ACTIVE, CAUTION, DANGER, TEXT, Colour, Text, bounds
 from simconsole.hud.layout import layout, places
 from simconsole.hud.view import HudView
-from simconsole.signals import Mode
-from simconsole.words import mode_words
+from simconsole.values.labels import mode_words
+from simconsole.values.signals import Mode
 from tests.hud.pictures import SCREEN, SCREENS, asked, by_role, colours, in_mode, said, shape_of
 
 

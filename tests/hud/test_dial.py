@@ -4,7 +4,7 @@ import pytest
 
 from simconsole.hud.draw import WARNING_LINE, Polygon, bounds
 from simconsole.hud.layout import layout, places
-from simconsole.signals import Mode
+from simconsole.values.signals import Mode
 from tests.hud.pictures import SCREEN, by_role, colours, in_mode
 
 

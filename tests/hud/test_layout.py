@@ -4,12 +4,12 @@ from itertools import combinations
 
 import pytest
 
-from simconsole.errors import ProfileError
 from simconsole.hud.draw import DANGER, TEXT, WARNING_LINE, Box, Rect, bounds, luminance
 from simconsole.hud.layout import check_screen, layout, places, sample_views
 from simconsole.hud.screen import Screen
 from simconsole.hud.view import HudView
-from simconsole.signals import Mode
+from simconsole.values.errors import ProfileError
+from simconsole.values.signals import Mode
 from tests.hud.pictures import SCREEN, SCREENS, asked, by_role, in_mode, texts
 
 every_screen = pytest.mark.parametrize("screen", SCREENS.values(), ids=SCREENS)
@@ -114,7 +114,8 @@ def test_layout_is_pure() -> None:
 
 def test_the_core_loads_no_graphics_library() -> None:
     program = (
-        "import sys; import simconsole.hud.layout, simconsole.hud.view, simconsole.words, simconsole.keys; "
+        "import sys; import simconsole.hud.layout, simconsole.hud.view; "
+        "import simconsole.values.labels, simconsole.values.key_codes; "
         "sys.exit(any(m in sys.modules for m in ('pygame', 'rerun', 'numba', 'matplotlib')))"
     )
     assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0

@@ -7,10 +7,10 @@ import pytest
 from simconsole.hud.view import HudMemory, HudSettings, settings_of, shown_speed, view
 from simconsole.profiles.control import ControlProfile
 from simconsole.profiles.view import HudProfile
-from simconsole.rows import PLATFORM_AT, Snapshot, columns
-from simconsole.signals import NEVER_TICKS, GateLimit, Mode, Reason
-from simconsole.units import MPS_PER_KMH
-from simconsole.vehicle.platform import Pose
+from simconsole.values.platform import Pose
+from simconsole.values.signals import NEVER_TICKS, GateLimit, Mode, Reason
+from simconsole.values.state_vector import PLATFORM_AT, Snapshot, columns
+from simconsole.values.units import MPS_PER_KMH
 
 TICK_HZ = 250
 COLUMNS = columns(Pose)

@@ -13,8 +13,9 @@ from typing import Any
 
 from websockets.sync.client import ClientConnection, connect
 
+from tests.paths import ROOT
+
 HERE = Path(__file__).parent
-ROOT = HERE.parents[1]
 CACHE = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "simconsole-tests"
 """What was fetched once from a package index."""
 PATIENCE_S = 20.0

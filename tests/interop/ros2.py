@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.interop.programs import ROOT, environment
+from tests.interop.programs import environment
+from tests.paths import ROOT
 
 PYTHONS = [folder / ".venv-ros2/bin/python" for folder in (ROOT, Path(sys.prefix).parent)]
 PYTHON = str(next((path for path in PYTHONS if path.exists()), PYTHONS[0]))

@@ -27,7 +27,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
 from simconsole.bridge.messages import Registry, standard_registry
-from simconsole.bridge.server import BridgeServer
+from simconsole.bridge.transport.server import BridgeServer
 from simconsole.profiles.bridge import BridgeProfile
 
 VERSION = "2.1.0"

@@ -7,10 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from simconsole.cli import main
-from tests.interop.programs import HERE, ROOT, Client, client, console, program
+from simconsole.cli.main import main
+from tests.interop.programs import HERE, Client, client, console, program
 from tests.interop.ros2 import PYTHON, domain, needs_ros2
 from tests.interop.sessions import lockstep_session
+from tests.paths import ROOT
 
 pytestmark = needs_ros2
 

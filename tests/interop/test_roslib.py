@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from mcap.reader import make_reader
 
-from simconsole.cli import main
+from simconsole.cli.main import main
 from tests.interop.programs import CACHE, HERE, environment, free_port, program, wait_for_port
 from tests.interop.sessions import lockstep_session
 

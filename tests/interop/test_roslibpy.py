@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from simconsole.bridge.lockstep import LockstepBridge
-from simconsole.bridge.server import serve
+from simconsole.bridge.transport.lockstep_server import LockstepBridge
+from simconsole.bridge.transport.server import serve
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.rows import PLATFORM_AT, VEHICLE_AT, Snapshot
-from simconsole.signals import RemoteCommand, RemoteKind
+from simconsole.values.signals import RemoteCommand, RemoteKind
+from simconsole.values.state_vector import PLATFORM_AT, VEHICLE_AT, Snapshot
 
 PROGRAM = Path(__file__).with_name("roslibpy_program.py")
 ANSWERS = 20

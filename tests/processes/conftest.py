@@ -39,7 +39,7 @@ def crash(folder, arguments, stop):
 
 def follow(folder, arguments, stop):
     """Read a ring until told to end; write how far and how whole."""
-    from simconsole.shared_memory import Ring
+    from simconsole.processes.shared_memory import Ring
     ring = Ring.open(folder / "snapshots")
     beat(folder, arguments, lambda: True)
     while not stop():
@@ -91,5 +91,5 @@ def run_base(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder of this test's own in place of /dev/shm."""
     base = tmp_path / "shm"
     base.mkdir()
-    monkeypatch.setattr("simconsole.shared_memory._base", lambda: base)
+    monkeypatch.setattr("simconsole.processes.shared_memory._base", lambda: base)
     return base

@@ -12,10 +12,10 @@ from pathlib import Path
 
 import pytest
 
-from simconsole import lifetimes
-from simconsole.lifetimes import ORPHAN_S, close_pipe, end, end_with_parent, handled, spawn
-from simconsole.shared_memory import temporary_folder
-from simconsole.stations import WARDEN_S
+from simconsole.processes import lifetimes
+from simconsole.processes.lifetimes import ORPHAN_S, close_pipe, end, end_with_parent, handled, spawn
+from simconsole.processes.shared_memory import temporary_folder
+from simconsole.processes.supervisor import WARDEN_S
 from tests.drives.console import wait_until
 from tests.faults.lives import holders, marked, standard_input
 
@@ -23,7 +23,7 @@ FOREVER_S = 60.0
 CHILD = """
 import sys, time
 from pathlib import Path
-from simconsole.lifetimes import follow_parent, read_told
+from simconsole.processes.lifetimes import follow_parent, read_told
 line = read_told()
 parent = follow_parent(None if sys.argv[2] == "None" else float(sys.argv[2]), 0.0 if sys.argv[3] == "soon" else 3600.0)
 Path(sys.argv[1]).write_bytes(line)
@@ -121,7 +121,7 @@ POOL = """
 import os, time
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
-from simconsole.lifetimes import end_with_parent
+from simconsole.processes.lifetimes import end_with_parent
 if __name__ == "__main__":
     with ProcessPoolExecutor(2, get_context("spawn"), end_with_parent) as pool:
         list(pool.map(os.getpid().__add__, [0, 0]))
@@ -152,8 +152,8 @@ def test_only_what_multiprocessing_started_has_such_a_parent() -> None:
 HELD = """
 import os, signal, sys
 from pathlib import Path
-from simconsole.lifetimes import Interrupt, handled, interrupted, undone
-from simconsole.shared_memory import temporary_folder
+from simconsole.processes.lifetimes import Interrupt, handled, interrupted, undone
+from simconsole.processes.shared_memory import temporary_folder
 def broken(): raise RuntimeError
 with handled(interrupted), temporary_folder() as folder, undone(broken):
     (folder / "file").write_text("half made")
@@ -204,7 +204,7 @@ def test_an_ignored_hang_up_stays_ignored() -> None:
 IN_C_CODE = """
 import hashlib, sys
 from pathlib import Path
-from simconsole.lifetimes import SIGNALS, Interrupt, act_promptly, handle, interrupted
+from simconsole.processes.lifetimes import SIGNALS, Interrupt, act_promptly, handle, interrupted
 act_promptly()
 handle(interrupted, SIGNALS)
 def work(name):

@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from simconsole import shared_memory
-from simconsole.errors import StationError
-from simconsole.shared_memory import EventCounters, Ring, make_run_folder, remove_run_folder, sweep
-from simconsole.signals import Event
+from simconsole.processes import shared_memory
+from simconsole.processes.shared_memory import EventCounters, Ring, make_run_folder, remove_run_folder, sweep
+from simconsole.values.errors import StationError
+from simconsole.values.signals import Event
 
 Wait = Callable[[Callable[[], object]], None]
 
@@ -21,7 +21,7 @@ HAMMER = """
 import sys
 import numpy as np
 from pathlib import Path
-from simconsole.shared_memory import Ring
+from simconsole.processes.shared_memory import Ring
 ring = Ring.open(Path(sys.argv[1]), writable=True)
 while True:
     number = ring.newest + 1

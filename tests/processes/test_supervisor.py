@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from simconsole.errors import StationError
-from simconsole.rows import Snapshot
-from simconsole.shared_memory import Ring, make_run_folder
-from simconsole.stations import StationSpec, Supervisor
+from simconsole.processes.shared_memory import Ring, make_run_folder
+from simconsole.processes.supervisor import StationSpec, Supervisor
+from simconsole.values.errors import StationError
+from simconsole.values.state_vector import Snapshot
 
 Wait = Callable[[Callable[[], object]], None]
 IsRunning = Callable[[int], bool]
@@ -25,7 +25,7 @@ import json, sys, time
 from pathlib import Path
 import numpy as np
 from simconsole import shared_memory
-from simconsole.stations import StationSpec, Supervisor
+from simconsole.processes.supervisor import StationSpec, Supervisor
 base, specs = Path(sys.argv[1]), json.loads(sys.argv[2])
 shared_memory._base = lambda: base
 folder = shared_memory.make_run_folder()

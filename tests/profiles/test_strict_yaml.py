@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from simconsole.errors import ProfileError
-from simconsole.profile_text import MAX_DEPTH, Plain, parse, to_text
+from simconsole.profiles.strict_yaml import MAX_DEPTH, Plain, parse, to_text
+from simconsole.values.errors import ProfileError
 
 scalars = st.none() | st.booleans() | st.integers(-(2**63) + 1, 2**63 - 1) | st.text(st.characters(codec="utf-8"))
 finite = st.floats(allow_nan=False, allow_infinity=False)

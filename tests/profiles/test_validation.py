@@ -6,9 +6,9 @@ from typing import Annotated, Literal
 import msgspec
 import pytest
 
-from simconsole.errors import ProfileError
-from simconsole.profile_errors import convert
 from simconsole.profiles.device import CockpitProfile
+from simconsole.profiles.validation import convert
+from simconsole.values.errors import ProfileError
 
 
 class Side(Enum):

@@ -8,8 +8,8 @@ from zlib import crc32
 import numpy as np
 import pytest
 
+from simconsole.recording.bundles.log import LogReader
 from simconsole.recording.framing import MAGIC, START_OF_CHAIN, LogHeader, encode_header, seal
-from simconsole.recording.log import LogReader
 
 COLUMNS = ("sample.brake_axis", "sample.throttle_axis", "driver.brake", "vehicle.vx_mps")
 

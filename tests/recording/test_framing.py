@@ -7,7 +7,6 @@ import msgspec
 import numpy as np
 import pytest
 
-from simconsole.errors import RecordingError
 from simconsole.recording.framing import (
     MAGIC,
     SCHEMA,
@@ -20,6 +19,7 @@ from simconsole.recording.framing import (
     frame_size,
     seal,
 )
+from simconsole.values.errors import RecordingError
 
 
 def scan(content: bytes) -> tuple[list[Record], Scan]:

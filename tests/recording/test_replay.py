@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from simconsole.errors import RecordingError
+from simconsole.recording.bundles.log import LogReader
 from simconsole.recording.framing import LogHeader, Record
-from simconsole.recording.log import LogReader
 from simconsole.recording.replay import first_unequal, replay
+from simconsole.values.errors import RecordingError
 
 Advance = Callable[[int, np.ndarray, np.ndarray], np.ndarray]
 

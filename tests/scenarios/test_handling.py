@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from simconsole.checking import check_scenario
-from simconsole.errors import ProfileError
-from simconsole.profile_files import profiles_folder
+from simconsole.evaluation.checks.scenario_check import check_scenario
+from simconsole.profiles.files.loader import profiles_folder
+from simconsole.values.errors import ProfileError
 from tests.drives.console import results, simconsole
 
 FOLDER = profiles_folder() / "scenarios" / "handling"

@@ -6,8 +6,8 @@ from xml.etree import ElementTree
 
 import pytest
 
-from simconsole import profile_files
-from simconsole.checking import check_scenario
+from simconsole.evaluation.checks.scenario_check import check_scenario
+from simconsole.profiles.files import loader as profile_files
 from tests.drives.console import complaint, results, simconsole
 
 SHIPPED = sorted(path.stem for path in (profile_files.profiles_folder() / "scenarios").glob("*.yaml"))

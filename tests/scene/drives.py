@@ -4,11 +4,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from simconsole.profiles.view import SceneProfile
-from simconsole.rows import columns
 from simconsole.scene.entities import Dimensions
-from simconsole.scene.job import Job
-from simconsole.signals import Event, Mode, Reason
-from simconsole.vehicle.platform import Pose
+from simconsole.scene.viewer.job import Job
+from simconsole.values.platform import Pose
+from simconsole.values.signals import Event, Mode, Reason
+from simconsole.values.state_vector import columns
 from simconsole.world.drawing import Drawing
 from simconsole.world.sheet import Light
 

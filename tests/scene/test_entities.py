@@ -18,7 +18,7 @@ from simconsole.scene.entities import (
     raised,
     world_shapes,
 )
-from simconsole.signals import Mode
+from simconsole.values.signals import Mode
 from simconsole.world.drawing import Drawing
 from simconsole.world.sheet import Light
 
@@ -130,7 +130,8 @@ def test_every_mode_has_a_colour_of_its_own() -> None:
 
 def test_the_core_loads_no_rerun() -> None:
     program = (
-        "import sys; import simconsole.scene.entities, simconsole.scene.timeline, simconsole.scene.export, "
-        "simconsole.scene.follow; sys.exit(any(m in sys.modules for m in ('rerun', 'pygame', 'numba', 'matplotlib')))"
+        "import sys; import simconsole.scene.entities, simconsole.scene.timeline, simconsole.scene.viewer.export, "
+        "simconsole.scene.viewer.follow; "
+        "sys.exit(any(m in sys.modules for m in ('rerun', 'pygame', 'numba', 'matplotlib')))"
     )
     assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0

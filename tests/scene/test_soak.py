@@ -7,18 +7,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from simconsole.scene.job import save_job
+from simconsole.scene.viewer.job import save_job
 from tests.samples import Measured, Sample
-
 from tests.scene.drives import job
 
 # Every call of the ring is a second of the drive: as many pieces an hour as in a seated one.
 FEEDER = """
 import os, sys
 from pathlib import Path
-from simconsole.rows import Snapshot
+from simconsole.values.state_vector import Snapshot
 from simconsole.scene import follow
-from simconsole.scene.job import load_job
+from simconsole.scene.viewer.job import load_job
 
 follow.POLL_S = 0.0
 job, seconds, tick, second = load_job(Path(sys.argv[1])), 60 * int(sys.argv[3]), 0, 0

@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 
 from simconsole.scene.timeline import NEEDED, PLOTS, Entry, Memory, Piece, lane_words, piece, quaternions
-from simconsole.signals import Event, Mode
-
+from simconsole.values.signals import Event, Mode
 from tests.scene.drives import CHANGES, COLUMNS, TICK_HZ, rows
 
 COUNT = 3000

@@ -1,9 +1,9 @@
 import pytest
 
-from simconsole.casting import check_commander
-from simconsole.errors import ProfileError
 from simconsole.profiles.session import SessionProfile
-from simconsole.session_files import load_session, override
+from simconsole.session.opening import check_commander
+from simconsole.session.resolution import load_session, override
+from simconsole.values.errors import ProfileError
 
 
 @pytest.fixture

@@ -4,11 +4,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from simconsole.inline import TOKEN_VARIABLE, LockstepLink, start_autopilot
-from simconsole.lifetimes import DRIVE_VARIABLE, close_pipe, end
+from simconsole.processes.lifetimes import DRIVE_VARIABLE, close_pipe, end
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.rows import Snapshot
-from simconsole.signals import NO_COMMAND, Event, EventInput, RemoteCommand
+from simconsole.session.lockstep import TOKEN_VARIABLE, LockstepLink, start_autopilot
+from simconsole.values.signals import NO_COMMAND, Event, EventInput, RemoteCommand
+from simconsole.values.state_vector import Snapshot
 
 PERIOD_TICKS = 5
 
@@ -126,7 +126,7 @@ def test_a_token_goes_by_the_environment_and_a_server_on_all_addresses_is_reache
     def spawn(words: list[str], environment: dict[str, str]) -> None:
         started.append((words, environment))
 
-    monkeypatch.setattr("simconsole.inline.spawn", spawn)
+    monkeypatch.setattr("simconsole.session.lockstep.spawn", spawn)
     monkeypatch.delenv(TOKEN_VARIABLE, raising=False)
     named = BridgeProfile(certificate="b.pem", namespace="/ego", rename={"/odom": "/here"})
     start_autopilot("wss://0.0.0.0:9", "urban", named, "nonce", "secret")

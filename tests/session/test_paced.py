@@ -13,14 +13,14 @@ import msgspec
 import numpy as np
 import pytest
 
-from simconsole.recording.bundle import open_bundle, verify
-from simconsole.recording.log import LogTable
-from simconsole.replaying import replay_bundle
-from simconsole.rows import Snapshot
-from simconsole.shared_memory import Ring
-from simconsole.signals import Event, Mode, Reason
-from simconsole.station_programs import SNAPSHOTS, snapshot_of
-from simconsole.stations import STATUS, StationStatus
+from simconsole.processes.shared_memory import Ring
+from simconsole.processes.supervisor import STATUS, StationStatus
+from simconsole.recording.bundles.bundle import open_bundle, verify
+from simconsole.recording.bundles.log import LogTable
+from simconsole.recording.bundles.replay_bundle import replay_bundle
+from simconsole.session.worker_programs import SNAPSHOTS, snapshot_of
+from simconsole.values.signals import Event, Mode, Reason
+from simconsole.values.state_vector import Snapshot
 from tests.drives.console import Running, results, wait_until
 from tests.faults.lives import holders, standard_input
 from tests.samples import Measured

@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from simconsole.pacing import CATCH_UP_TICKS, Pacer, UnpacedPacer, realtime_hints
-from simconsole.signals import Event
+from simconsole.session.pacing import CATCH_UP_TICKS, Pacer, UnpacedPacer, realtime_hints
+from simconsole.values.signals import Event
 
 PERIOD_NS = 4_000_000  # 250 Hz
 
@@ -155,7 +155,7 @@ def test_without_pacing_a_tick_is_always_due() -> None:
 
 HINTS = """
 import gc, json, os, resource, sys
-from simconsole.pacing import CATCH_UP_TICKS, Pacer, UnpacedPacer, realtime_hints
+from simconsole.session.pacing import CATCH_UP_TICKS, Pacer, UnpacedPacer, realtime_hints
 if sys.argv[1] == "unprivileged":
     resource.setrlimit(resource.RLIMIT_RTPRIO, (0, 0))
     resource.setrlimit(resource.RLIMIT_MEMLOCK, (0, 0))

@@ -2,12 +2,12 @@ from pathlib import Path
 
 import pytest
 
-from simconsole import profile_files
-from simconsole.errors import ProfileError
-from simconsole.profile_files import names, profiles_folder
+from simconsole.profiles.files import loader as profile_files
+from simconsole.profiles.files.loader import names, profiles_folder
 from simconsole.profiles.session import SessionProfile
 from simconsole.profiles.vehicle import CarProfile
-from simconsole.session_files import load_scenario, load_session, override, resolve
+from simconsole.session.resolution import load_scenario, load_session, override, resolve
+from simconsole.values.errors import ProfileError
 
 
 def write(path: Path, text: str) -> str:

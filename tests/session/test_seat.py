@@ -5,12 +5,12 @@ from contextlib import ExitStack
 import msgspec
 import pytest
 
-from simconsole.assembly import ResolvedSession, assemble
-from simconsole.compiling import plain
-from simconsole.devices.motor import MotorisedSource, WheelMotor
-from simconsole.devices.virtual_cockpit import VirtualCockpit
-from simconsole.seating import open_seating
-from simconsole.session_files import load_session, resolve
+from simconsole.devices.force_feedback.motor import MotorisedSource, WheelMotor
+from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
+from simconsole.session.resolution import load_session, resolve
+from simconsole.session.seat import open_seating
+from simconsole.tick.assembly import ResolvedSession, assemble
+from simconsole.values.host.jit import plain
 
 
 def session(driver: str) -> ResolvedSession:

@@ -7,25 +7,25 @@ from typing import NoReturn
 import numpy as np
 import pytest
 
-from simconsole.assembly import assemble
-from simconsole.compiling import compiled
-from simconsole.devices.script import ScriptSource
-from simconsole.devices.settings import settings
-from simconsole.drive import Cast, come_to_rest, run
-from simconsole.isolation import isolated
-from simconsole.kernels import Row
-from simconsole.memory import MemoryRecorder
-from simconsole.pacing import UnpacedPacer
-from simconsole.pipeline import ConsoleState
-from simconsole.profile_files import parse
+from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.synthetic.script import ScriptSource
+from simconsole.evaluation.checks.row_table import MemoryRecorder
 from simconsole.profiles.device import ScriptProfile
+from simconsole.profiles.files.loader import parse
 from simconsole.profiles.session import SessionProfile
-from simconsole.recording.bundle import verify
-from simconsole.recording.log import LogWriter
-from simconsole.rows import Snapshot
-from simconsole.session import drive
-from simconsole.session_files import override, resolve
-from simconsole.signals import NO_COMMAND, NO_SAMPLE, Event, EventInput, Mode, Reason, RemoteCommand
+from simconsole.recording.bundles.bundle import verify
+from simconsole.recording.bundles.log import LogWriter
+from simconsole.session.lifecycle import drive
+from simconsole.session.pacing import UnpacedPacer
+from simconsole.session.resolution import override, resolve
+from simconsole.tick.advance import ConsoleState
+from simconsole.tick.assembly import assemble
+from simconsole.tick.isolation import isolated
+from simconsole.tick.loop import Cast, come_to_rest, run
+from simconsole.values.host.jit import compiled
+from simconsole.values.kernels import Row
+from simconsole.values.signals import NO_COMMAND, NO_SAMPLE, Event, EventInput, Mode, Reason, RemoteCommand
+from simconsole.values.state_vector import Snapshot
 
 
 class Broken:

@@ -6,21 +6,20 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from simconsole.assembly import assemble
-from simconsole.compiling import compiled
-from simconsole.devices.script import ScriptSource
-from simconsole.devices.settings import settings
-from simconsole.drive import Cast, run
-from simconsole.memory import MemoryRecorder
-from simconsole.pacing import UnpacedPacer
-from simconsole.pipeline import Console, advance_row
-from simconsole.ports import NobodySeated
-from simconsole.profile_files import parse
+from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.synthetic.script import ScriptSource
+from simconsole.evaluation.checks.row_table import MemoryRecorder
 from simconsole.profiles.device import ScriptProfile
+from simconsole.profiles.files.loader import parse
 from simconsole.profiles.session import SessionProfile
-from simconsole.rows import INPUT_WIDTH, Snapshot
-from simconsole.session_files import resolve
-from simconsole.signals import (
+from simconsole.session.pacing import UnpacedPacer
+from simconsole.session.resolution import resolve
+from simconsole.tick.advance import Console, advance_row
+from simconsole.tick.assembly import assemble
+from simconsole.tick.loop import Cast, run
+from simconsole.values.host.jit import compiled
+from simconsole.values.protocols import NobodySeated
+from simconsole.values.signals import (
     NO_COMMAND,
     DeviceSample,
     Event,
@@ -31,6 +30,7 @@ from simconsole.signals import (
     RemoteCommand,
     RemoteKind,
 )
+from simconsole.values.state_vector import INPUT_WIDTH, Snapshot
 
 HZ = 250
 SESSION = "schema: 1\nscenario: {vehicle: hatchback}\ndevices: {driver: none}\n"

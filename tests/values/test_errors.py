@@ -3,7 +3,7 @@
 import inspect
 import re
 
-from simconsole import errors
+from simconsole.values import errors
 
 
 def test_docstring_draws_exactly_the_tree() -> None:

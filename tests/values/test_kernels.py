@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from simconsole.compiling import compiled
-from simconsole.kernels import approach, clip, is_finite, is_kernel, put, take
+from simconsole.values.host.jit import compiled
+from simconsole.values.kernels import approach, clip, is_finite, is_kernel, put, take
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
 bounded = st.floats(-1e6, 1e6)

@@ -1,5 +1,5 @@
-from simconsole.signals import Mode, Notice, Reason, Validity
-from simconsole.words import gear_words, indicator_words, mode_words, notice_words, reason_words, validity_words
+from simconsole.values.labels import gear_words, indicator_words, mode_words, notice_words, reason_words, validity_words
+from simconsole.values.signals import Mode, Notice, Reason, Validity
 
 
 def test_every_mode_reason_and_validity_has_words_of_its_own() -> None:

@@ -7,21 +7,21 @@ from typing import Any
 import numpy as np
 import pytest
 
-from simconsole.assembly import assemble
-from simconsole.compiling import plain
-from simconsole.drive import Cast, run
-from simconsole.inline import LockstepLink
-from simconsole.ledger import Histogram, Hop, Ledger
-from simconsole.pacing import UnpacedPacer
-from simconsole.pipeline import Console, ConsoleState
-from simconsole.ports import NobodyCommands, NobodySeated
+from simconsole.processes.shared_memory import Record, Ring
 from simconsole.profiles.session import Devices, ModeSection, Scenario, SessionProfile
-from simconsole.realtime import RingStation, station_latencies
-from simconsole.rows import PLATFORM_AT, TORQUE_AT, Snapshot
-from simconsole.session_files import resolve
-from simconsole.shared_memory import Record, Ring
-from simconsole.signals import NO_SAMPLE, DeviceSample, EventInput, RemoteCommand
-from simconsole.station_programs import LATENCY, NewestOnce, Receipts
+from simconsole.session.lockstep import LockstepLink
+from simconsole.session.paced import RingStation, station_latencies
+from simconsole.session.pacing import UnpacedPacer
+from simconsole.session.resolution import resolve
+from simconsole.session.worker_programs import LATENCY, NewestOnce, Receipts
+from simconsole.tick.advance import Console, ConsoleState
+from simconsole.tick.assembly import assemble
+from simconsole.tick.loop import Cast, run
+from simconsole.values.host.jit import plain
+from simconsole.values.latency import Histogram, Hop, Ledger
+from simconsole.values.protocols import NobodyCommands, NobodySeated
+from simconsole.values.signals import NO_SAMPLE, DeviceSample, EventInput, RemoteCommand
+from simconsole.values.state_vector import PLATFORM_AT, TORQUE_AT, Snapshot
 
 TICKS = 40
 USUAL_NS = {
@@ -208,7 +208,7 @@ def test_stations_that_said_nothing_have_no_pages(tmp_path: Path) -> None:
 
 
 def test_the_ring_tells_a_station_when_it_was_published(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("simconsole.realtime.time.monotonic_ns", lambda: 987_654_321)
+    monkeypatch.setattr("simconsole.session.paced.time.monotonic_ns", lambda: 987_654_321)
     ring = Ring.create(tmp_path / "ring", 3, 4)
     RingStation(ring).publish(Snapshot(7, 250, np.array([1.0, 2.0, 3.0])))
     seen: list[Record] = []

@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from simconsole import rows
-from simconsole.rows import INPUT_WIDTH, PLATFORM_AT, STAGES, Snapshot, columns
+from simconsole.values import state_vector as rows
+from simconsole.values.state_vector import INPUT_WIDTH, PLATFORM_AT, STAGES, Snapshot, columns
 
 
 class PlatformState(NamedTuple):

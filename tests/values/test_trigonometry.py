@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from simconsole import trigonometry as trig
-from simconsole.compiling import compiled
+from simconsole.values import trigonometry as trig
+from simconsole.values.host.jit import compiled
 from tests.samples import Sample
 
 DIGITS = 60

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from simconsole import units
+from simconsole.values import units
 
 
 @pytest.mark.parametrize(

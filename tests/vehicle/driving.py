@@ -5,14 +5,14 @@ from typing import Any
 
 import numpy as np
 
-from simconsole.compiling import compiled
-from simconsole.kernels import Row, put
-from simconsole.profile_files import load
+from simconsole.profiles.files.loader import load
 from simconsole.profiles.vehicle import VehicleProfile
-from simconsole.rows import COMMAND_AT, PLATFORM_AT, TORQUE_AT, VEHICLE_AT
-from simconsole.signals import VehicleCommand, VehicleState
-from simconsole.vehicle.platform import Ground, Platform, Pose
-from simconsole.vehicle.registry import build
+from simconsole.values.host.jit import compiled
+from simconsole.values.kernels import Row, put
+from simconsole.values.platform import Ground, Platform, Pose
+from simconsole.values.signals import VehicleCommand, VehicleState
+from simconsole.values.state_vector import COMMAND_AT, PLATFORM_AT, TORQUE_AT, VEHICLE_AT
+from simconsole.vehicle.platforms import build
 
 IDLE = VehicleCommand(*(0.0,) * len(VehicleCommand._fields))
 LEVEL = Ground(friction=1.0, slope_x=0.0, slope_y=0.0)

@@ -17,17 +17,16 @@ import msgspec
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from simconsole.compiling import compiled
-from simconsole.fleet import Fleet
-from simconsole.profile_files import load, profiles_folder
+from simconsole.profiles.files.loader import load, profiles_folder
 from simconsole.profiles.tyre import TirTyre, parse_tir
 from simconsole.profiles.vehicle import CarProfile
-from simconsole.rows import COMMAND_AT, COMMAND_WIDTH, PLATFORM_AT, VEHICLE_AT, VEHICLE_WIDTH
-from simconsole.signals import VehicleCommand
+from simconsole.values.host.jit import compiled
+from simconsole.values.platform import Ground, Patch, Platform
+from simconsole.values.signals import VehicleCommand
+from simconsole.values.state_vector import COMMAND_AT, COMMAND_WIDTH, PLATFORM_AT, VEHICLE_AT, VEHICLE_WIDTH
+from simconsole.vehicle.batch.fleet import Fleet
 from simconsole.vehicle.car.state import CarState
-from simconsole.vehicle.platform import Ground, Patch, Platform
-from simconsole.vehicle.registry import build
-
+from simconsole.vehicle.platforms import build
 from tests.vehicle.driving import LEVEL, ORIGIN, platform
 
 CARS: Final = 1024

@@ -11,13 +11,12 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from simconsole.compiling import compiled
-from simconsole.kernels import put
-from simconsole.rows import COMMAND_AT, PLATFORM_AT
+from simconsole.values.host.jit import compiled
+from simconsole.values.kernels import put
+from simconsole.values.platform import Ground
+from simconsole.values.state_vector import COMMAND_AT, PLATFORM_AT
+from simconsole.vehicle.car.car_step import step
 from simconsole.vehicle.car.state import CarState
-from simconsole.vehicle.car.step import step
-from simconsole.vehicle.platform import Ground
-
 from tests.vehicle.driving import IDLE, platform
 
 GROUNDS: Final = 100

@@ -2,14 +2,13 @@
 
 import msgspec
 
-from simconsole.kernels import put
-from simconsole.profile_files import load
+from simconsole.profiles.files.loader import load
 from simconsole.profiles.vehicle import CarProfile
-from simconsole.rows import PLATFORM_AT, VEHICLE_AT
+from simconsole.values.kernels import put
+from simconsole.values.platform import Ground
+from simconsole.values.state_vector import PLATFORM_AT, VEHICLE_AT
 from simconsole.vehicle.car.state import CarState
-from simconsole.vehicle.platform import Ground
-from simconsole.vehicle.registry import build
-
+from simconsole.vehicle.platforms import build
 from tests.vehicle.driving import LEVEL, ORIGIN, Drive
 
 RADIUS_M = 0.306

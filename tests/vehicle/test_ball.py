@@ -6,9 +6,8 @@ import random
 import numpy as np
 import pytest
 
-from simconsole.compiling import compiled, plain
-from simconsole.vehicle.platform import Ground, Pose
-
+from simconsole.values.host.jit import compiled, plain
+from simconsole.values.platform import Ground, Pose
 from tests.vehicle.driving import IDLE, LEVEL, TICK_S, Drive, platform
 
 SEED = 11

@@ -4,9 +4,8 @@ import random
 
 import pytest
 
-from simconsole.units import KMH_PER_MPS
-from simconsole.vehicle.platform import Ground
-
+from simconsole.values.platform import Ground
+from simconsole.values.units import KMH_PER_MPS
 from tests.vehicle.driving import TICK_S, Drive, platform
 
 SEED = 41

@@ -6,19 +6,18 @@ from typing import Any
 import msgspec
 import pytest
 
-from simconsole.kernels import put
-from simconsole.profile_files import load
+from simconsole.profiles.files.loader import load
 from simconsole.profiles.vehicle import CarProfile
-from simconsole.rows import PLATFORM_AT
-from simconsole.units import KMH_PER_MPS, STANDARD_GRAVITY_MPS2
-from simconsole.vehicle.car.assembly import car_parameters
+from simconsole.values.kernels import put
+from simconsole.values.platform import Ground, Patch
+from simconsole.values.state_vector import PLATFORM_AT
+from simconsole.values.units import KMH_PER_MPS, STANDARD_GRAVITY_MPS2
+from simconsole.vehicle.car.car_platform import car_parameters
 from simconsole.vehicle.car.state import CarState, Wheel
 from simconsole.vehicle.car.steering import hand_wheel_torque
 from simconsole.vehicle.car.suspension import wheel_load
 from simconsole.vehicle.car.tyre import Tyre, tyre
-from simconsole.vehicle.platform import Ground, Patch
-from simconsole.vehicle.registry import build
-
+from simconsole.vehicle.platforms import build
 from tests.vehicle.driving import LEVEL, ORIGIN, TICK_S, Drive
 
 HATCHBACK = load("vehicles", "hatchback", CarProfile)

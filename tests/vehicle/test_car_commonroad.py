@@ -8,18 +8,17 @@ import msgspec
 import numpy as np
 import pytest
 
-from simconsole.compiling import compiled
-from simconsole.kernels import put
-from simconsole.profile_files import load
+from simconsole.profiles.files.loader import load
 from simconsole.profiles.vehicle import CarProfile
-from simconsole.rows import COMMAND_AT, PLATFORM_AT
+from simconsole.values.host.jit import compiled
+from simconsole.values.kernels import put
+from simconsole.values.platform import Platform
+from simconsole.values.state_vector import COMMAND_AT, PLATFORM_AT
+from simconsole.vehicle.car.car_step import load_parameters
 from simconsole.vehicle.car.parameters import CarParameters
 from simconsole.vehicle.car.state import CAR_WIDTH, CarState
-from simconsole.vehicle.car.step import load_parameters
-from simconsole.vehicle.platform import Platform
-from simconsole.vehicle.registry import build
+from simconsole.vehicle.platforms import build
 from tests.samples import Sample
-
 from tests.vehicle.commonroad import BMW, DURATION_S, SAMPLE_S, Input, Path, drive_multi_body, drive_single_track
 from tests.vehicle.driving import LEVEL, ORIGIN
 

@@ -5,9 +5,8 @@ from itertools import pairwise
 
 import pytest
 
-from simconsole.units import KMH_PER_MPS, STANDARD_GRAVITY_MPS2
-from simconsole.vehicle.platform import Ground, Pose
-
+from simconsole.values.platform import Ground, Pose
+from simconsole.values.units import KMH_PER_MPS, STANDARD_GRAVITY_MPS2
 from tests.vehicle.driving import LEVEL, TICK_S, Drive, platform
 
 

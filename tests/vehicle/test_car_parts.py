@@ -4,11 +4,11 @@ import math
 
 import pytest
 
-from simconsole.profile_files import load
+from simconsole.profiles.files.loader import load
 from simconsole.profiles.vehicle import CarProfile
-from simconsole.signals import Request
-from simconsole.units import RADPS_PER_RPM
-from simconsole.vehicle.car.assembly import car_parameters
+from simconsole.values.signals import Request
+from simconsole.values.units import RADPS_PER_RPM
+from simconsole.vehicle.car.car_platform import car_parameters
 from simconsole.vehicle.car.engine import engine_drive, engine_friction, full_torque
 from simconsole.vehicle.car.gearbox import bite, gear_ratio, work_gearbox
 from simconsole.vehicle.car.powertrain import Capacity, Inertia, Shafts, braked, solve_shafts
@@ -16,7 +16,6 @@ from simconsole.vehicle.car.state import AID_WIDTH, CAR_WIDTH, Car, CarState, Ge
 from simconsole.vehicle.car.steering import aligning_moment, hand_wheel_torque, heading, steer
 from simconsole.vehicle.car.suspension import wheel_load
 from simconsole.vehicle.car.tyre import Tyre, tyre
-
 from tests.vehicle.driving import LEVEL
 
 CAR = car_parameters(load("vehicles", "hatchback", CarProfile), LEVEL)

@@ -4,8 +4,7 @@ import math
 
 import pytest
 
-from simconsole.vehicle.platform import Ground
-
+from simconsole.values.platform import Ground
 from tests.vehicle.driving import TICK_S, Drive, platform
 from tests.vehicle.rolling import rolling
 

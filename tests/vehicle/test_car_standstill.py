@@ -4,11 +4,10 @@ import math
 
 import pytest
 
-from simconsole.kernels import put
-from simconsole.rows import PLATFORM_AT
-from simconsole.vehicle.platform import Ground, Pose
+from simconsole.values.kernels import put
+from simconsole.values.platform import Ground, Pose
+from simconsole.values.state_vector import PLATFORM_AT
 from tests.samples import Sample
-
 from tests.vehicle.driving import Drive, platform
 from tests.vehicle.random_states import random_cars, settle, speeds_mps
 from tests.vehicle.rolling import rolling

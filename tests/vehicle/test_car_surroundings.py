@@ -4,18 +4,17 @@ import math
 
 import pytest
 
-from simconsole.assembly import ground_of
-from simconsole.kernels import put
-from simconsole.profile_files import load
+from simconsole.profiles.files.loader import load
 from simconsole.profiles.session import Environment, FrictionPatch
 from simconsole.profiles.vehicle import CarProfile
-from simconsole.rows import PLATFORM_AT
-from simconsole.signals import GearFault
-from simconsole.units import KMH_PER_MPS
+from simconsole.tick.assembly import ground_of
+from simconsole.values.kernels import put
+from simconsole.values.platform import MOST_PATCHES, Ground, Patch, Pose
+from simconsole.values.signals import GearFault
+from simconsole.values.state_vector import PLATFORM_AT
+from simconsole.values.units import KMH_PER_MPS
 from simconsole.vehicle.car.state import CarState
-from simconsole.vehicle.platform import MOST_PATCHES, Ground, Patch, Pose
-from simconsole.vehicle.registry import build
-
+from simconsole.vehicle.platforms import build
 from tests.vehicle.driving import ORIGIN, TICK_S, Drive, platform
 from tests.vehicle.rolling import rolling
 

@@ -14,13 +14,12 @@ import numba
 import numpy as np
 import pytest
 
-from simconsole.compiling import _twin, compiled
-from simconsole.kernels import Row, put
-from simconsole.rows import COMMAND_AT, PLATFORM_AT, VEHICLE_AT
-from simconsole.signals import VehicleCommand
+from simconsole.values.host.jit import _twin, compiled
+from simconsole.values.kernels import Row, put
+from simconsole.values.platform import Ground, Platform
+from simconsole.values.signals import VehicleCommand
+from simconsole.values.state_vector import COMMAND_AT, PLATFORM_AT, VEHICLE_AT
 from simconsole.vehicle.car.state import CarState
-from simconsole.vehicle.platform import Ground, Platform
-
 from tests.vehicle.driving import IDLE, Drive, platform
 
 SEED = 16

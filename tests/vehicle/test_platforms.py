@@ -5,12 +5,11 @@ import sys
 
 import pytest
 
-from simconsole.errors import ProfileError
-from simconsole.profile_files import load, names, parse, profiles_folder
+from simconsole.profiles.files.loader import load, names, parse, profiles_folder
 from simconsole.profiles.vehicle import BallProfile, CarProfile, VehicleProfile
-from simconsole.vehicle.platform import Pose
-from simconsole.vehicle.registry import build
-
+from simconsole.values.errors import ProfileError
+from simconsole.values.platform import Pose
+from simconsole.vehicle.platforms import build
 from tests.vehicle.driving import LEVEL, Drive, platform
 
 
@@ -63,9 +62,10 @@ def test_contradictions_are_refused_by_file_and_key(written: str, instead: str, 
 
 def test_building_loads_no_numba() -> None:
     code = (
-        "import sys; from simconsole.profile_files import load; from simconsole.profiles.vehicle import CarProfile; "
-        "from simconsole.vehicle.registry import build; from simconsole.vehicle.platform import Ground, Pose; "
+        "import sys; from simconsole.profiles.files.loader import load; "
+        "from simconsole.profiles.vehicle import CarProfile; "
+        "from simconsole.vehicle.platforms import build; from simconsole.values.platform import Ground, Pose; "
         "build(load('vehicles', 'hatchback', CarProfile), Pose(0.0, 0.0, 0.0), Ground(1.0, 0.0, 0.0)); "
-        "sys.exit('numba' in sys.modules or 'simconsole.vehicle.ball.step' in sys.modules)"
+        "sys.exit('numba' in sys.modules or 'simconsole.vehicle.ball.ball_step' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from simconsole.units import KMH_PER_MPS
-
+from simconsole.values.units import KMH_PER_MPS
+from tests.paths import ROOT
 from tests.vehicle.driving import Drive, platform
 
-FOLDER = Path(__file__).resolve().parents[2] / "profiles" / "vehicles"
+FOLDER = ROOT / "profiles" / "vehicles"
 NUMBER = re.compile(r"[:\[]\s*-?\d")
 
 

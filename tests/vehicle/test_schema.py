@@ -9,10 +9,9 @@ from typing import Any
 
 import pytest
 
-from simconsole import profile_text
-from simconsole.profile_files import MAX_DATA_BYTES, names, read_text
-
-ROOT = Path(__file__).resolve().parents[2]
+from simconsole.profiles import strict_yaml as profile_text
+from simconsole.profiles.files.loader import MAX_DATA_BYTES, names, read_text
+from tests.paths import ROOT
 
 
 def test_the_published_schema_is_the_present_one(tmp_path: Path) -> None:

@@ -10,24 +10,23 @@ import msgspec
 import numpy as np
 import pytest
 
-from simconsole.compiling import compiled, digest, plain
-from simconsole.errors import ProfileError
-from simconsole.fleet import Fleet
-from simconsole.kernels import put, rebound
-from simconsole.profile_files import load, profiles_folder
+from simconsole.profiles.files.loader import load, profiles_folder
+from simconsole.profiles.files.vehicle_files import load_vehicle
 from simconsole.profiles.tyre import NEEDED, ONE, ZERO, parse_tir
 from simconsole.profiles.vehicle import CarProfile
-from simconsole.rows import PLATFORM_AT
-from simconsole.vehicle.car.assembly import car_parameters
+from simconsole.values.errors import ProfileError
+from simconsole.values.host.jit import compiled, digest, plain
+from simconsole.values.kernels import put, rebound
+from simconsole.values.platform import Ground, Platform
+from simconsole.values.state_vector import PLATFORM_AT
+from simconsole.vehicle.batch.fleet import Fleet
+from simconsole.vehicle.car.car_platform import car_parameters
+from simconsole.vehicle.car.car_step import step
 from simconsole.vehicle.car.pac2002 import Pac2002, Slip, coefficients, exp, pac2002
 from simconsole.vehicle.car.state import CarState
-from simconsole.vehicle.car.step import step
 from simconsole.vehicle.car.tir_tyre import COEFFICIENTS, step_on, tir_tyre
-from simconsole.vehicle.platform import Ground, Platform
-from simconsole.vehicle.registry import build
-from simconsole.vehicle_files import load_vehicle
+from simconsole.vehicle.platforms import build
 from tests.samples import Sample
-
 from tests.vehicle.driving import IDLE, LEVEL, ORIGIN, SUBSTEPS, Drive
 
 FOLDER = profiles_folder() / "vehicles"

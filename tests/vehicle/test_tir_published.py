@@ -10,11 +10,10 @@ import numpy as np
 import pytest
 import vehiclemodels.utils.tire_model as commonroad
 
-from simconsole.errors import ProfileError
 from simconsole.profiles.tyre import COMBINED, parse_tir
+from simconsole.values.errors import ProfileError
 from simconsole.vehicle.car.pac2002 import Slip, coefficients, elliptic, pac2002, steady
 from tests.samples import Sample
-
 from tests.vehicle.commonroad import BMW
 
 TEXT = (Path(__file__).parent / "adams_205_60r15.tir").read_text()

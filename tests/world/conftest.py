@@ -1,6 +1,6 @@
 import pytest
 
-from simconsole.profile_files import load
+from simconsole.profiles.files.loader import load
 from simconsole.profiles.world import WorldProfile
 from simconsole.world.course import Course
 

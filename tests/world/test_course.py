@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from simconsole.profiles.world import WorldProfile
-from simconsole.vehicle.platform import Pose
+from simconsole.values.platform import Pose
 from simconsole.world.course import CELL_M, Course
 from simconsole.world.geometry import Piece, travel
 

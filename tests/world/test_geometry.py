@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from simconsole.vehicle.platform import Pose
+from simconsole.values.platform import Pose
 from simconsole.world.geometry import Piece, centre, travel, travel_all
 
 

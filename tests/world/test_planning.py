@@ -3,8 +3,8 @@ from typing import Any
 import msgspec
 import pytest
 
-from simconsole.errors import ProfileError
 from simconsole.profiles.course_plan import CoursePlan
+from simconsole.values.errors import ProfileError
 from simconsole.world.geometry import Piece, travel
 from simconsole.world.planning import ORIGIN, solve
 

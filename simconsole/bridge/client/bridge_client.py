@@ -19,8 +19,10 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import Any, Final, Literal, Self
 
-from simconsole.bridge.backoff import CAP_S, FIRST_S, Backoff, Liveness
-from simconsole.bridge.client_protocol import (
+from simconsole.bridge.client.link import ABNORMAL, Link
+from simconsole.bridge.messages import Registry
+from simconsole.bridge.protocol.backoff import CAP_S, FIRST_S, Backoff, Liveness
+from simconsole.bridge.protocol.client_protocol import (
     Answer,
     Callback,
     ClientProtocol,
@@ -29,17 +31,15 @@ from simconsole.bridge.client_protocol import (
     Handler,
     Received,
 )
-from simconsole.bridge.link import ABNORMAL, Link
-from simconsole.bridge.messages import Registry
-from simconsole.bridge.operations import Status
-from simconsole.errors import BridgeError, OtherDriveError
+from simconsole.bridge.protocol.operations import Status
+from simconsole.values.errors import BridgeError, OtherDriveError
 
 State = Literal["connecting", "connected"]
 GOOD_BYES: Final = (1000, 1001)
 """WebSocket close codes of a server that ends in order."""
 _RETRY_S: Final = 0.05
 
-_logger = logging.getLogger("simconsole.bridge.client")
+_logger = logging.getLogger("simconsole.bridge.client.bridge_client")
 
 
 class BridgeClient:

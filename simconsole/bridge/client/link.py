@@ -13,17 +13,17 @@ from websockets.frames import Frame
 from websockets.protocol import SEND_EOF, State
 from websockets.uri import parse_uri
 
-from simconsole.bridge.documents import Binary
-from simconsole.bridge.frames import CLOSE, MessageAssembler
-from simconsole.bridge.handshake import DRIVE_HEADER
-from simconsole.bridge.wire import RECEIVE_BYTES
-from simconsole.errors import BridgeError, OtherDriveError
+from simconsole.bridge.protocol.documents import Binary
+from simconsole.bridge.protocol.frames import CLOSE, MessageAssembler
+from simconsole.bridge.protocol.handshake import DRIVE_HEADER
+from simconsole.bridge.transport.wire import RECEIVE_BYTES
+from simconsole.values.errors import BridgeError, OtherDriveError
 
 MAX_MESSAGE_BYTES: Final = 16_777_216
 ABNORMAL: Final = 1006
 """WebSocket's close code of a connection that ended without one."""
 
-_logger = logging.getLogger("simconsole.bridge.client")
+_logger = logging.getLogger("simconsole.bridge.client.bridge_client")
 
 
 class Link:

@@ -6,15 +6,15 @@ is not newer than the last one's. A stamp of 0 is no stamp: such messages are ta
 
 from typing import Any, Final, NamedTuple
 
-from simconsole.bridge.board import Accept
-from simconsole.bridge.inputs import BridgeInputs
-from simconsole.bridge.topics import BASE_FRAME, MAP_FRAME
-from simconsole.errors import RemoteProtocolError
-from simconsole.kernels import is_finite
+from simconsole.bridge.console.input_slots import BridgeInputs
+from simconsole.bridge.console.topics import BASE_FRAME, MAP_FRAME
+from simconsole.bridge.protocol.topic_registry import Accept
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.signals import NO_COMMAND, Event, RemoteKind
-from simconsole.trigonometry import atan2
-from simconsole.units import NS_PER_S
+from simconsole.values.errors import RemoteProtocolError
+from simconsole.values.kernels import is_finite
+from simconsole.values.signals import NO_COMMAND, Event, RemoteKind
+from simconsole.values.trigonometry import atan2
+from simconsole.values.units import NS_PER_S
 
 CONTROL: Final = "/control/command/control_cmd"
 GEAR: Final = "/control/command/gear_cmd"

@@ -2,9 +2,9 @@
 
 from typing import Any, Final
 
-from simconsole.bridge.protocol import Router
-from simconsole.bridge.session import Session
-from simconsole.words import LINK_COMMANDER, LINK_CONNECTING, LINK_LOST, LINK_NOBODY, LINK_RETRYING
+from simconsole.bridge.protocol.client_session import Session
+from simconsole.bridge.protocol.server_protocol import Router
+from simconsole.values.labels import LINK_COMMANDER, LINK_CONNECTING, LINK_LOST, LINK_NOBODY, LINK_RETRYING
 
 _UPSTREAM: Final = {"connecting": LINK_CONNECTING, "lost": LINK_RETRYING}
 
@@ -24,7 +24,7 @@ def counted(router: Router, now_ns: int) -> dict[str, Any]:
 
 
 def standing(router: Router, now_ns: int) -> str:
-    """Return how the link stands, in the word that driver and operator read (`simconsole.words`)."""
+    """Return how the link stands, in the word that driver and operator read (`simconsole.values.labels`)."""
     if router.upstream in _UPSTREAM:
         return _UPSTREAM[router.upstream]
     if router.lease.holder(now_ns) is not None:

@@ -3,20 +3,20 @@
 from collections.abc import Callable
 from typing import Any
 
-from simconsole.bridge.access import Role
-from simconsole.bridge.commands import CommandIntake
-from simconsole.bridge.counters import counted, summed
-from simconsole.bridge.inputs import BridgeInputs, OnCommand, OnEvents
+from simconsole.bridge.console.command_decoder import CommandIntake
+from simconsole.bridge.console.counters import counted, summed
+from simconsole.bridge.console.input_slots import BridgeInputs, OnCommand, OnEvents
+from simconsole.bridge.console.operator_acts import OPERATE, OPERATE_TYPE, Act, OnAct, Operator
+from simconsole.bridge.console.topics import GLOBAL_TOPICS, ODOMETRY, ONCE, Moment, Outputs, is_due
 from simconsole.bridge.messages import Registry, standard_registry
-from simconsole.bridge.operate import OPERATE, OPERATE_TYPE, Act, OnAct, Operator
-from simconsole.bridge.protocol import Outcome, Router
-from simconsole.bridge.rosapi import RosApi
-from simconsole.bridge.session import Session
-from simconsole.bridge.topics import GLOBAL_TOPICS, ODOMETRY, ONCE, Moment, Outputs, is_due
-from simconsole.errors import ProfileError
+from simconsole.bridge.protocol.access import Role
+from simconsole.bridge.protocol.client_session import Session
+from simconsole.bridge.protocol.rosapi import RosApi
+from simconsole.bridge.protocol.server_protocol import Outcome, Router
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.rows import Snapshot
-from simconsole.signals import Event
+from simconsole.values.errors import ProfileError
+from simconsole.values.signals import Event
+from simconsole.values.state_vector import Snapshot
 
 
 class _Output:

@@ -2,8 +2,8 @@
 
 from collections.abc import Callable
 
-from simconsole.signals import NEVER_TICKS, NO_COMMAND, EventInput, RemoteCommand
-from simconsole.units import NS_PER_S
+from simconsole.values.signals import NEVER_TICKS, NO_COMMAND, EventInput, RemoteCommand
+from simconsole.values.units import NS_PER_S
 
 OnCommand = Callable[[RemoteCommand, int | None], None]
 """Takes the command, its age 0, and when it was received in ns (None before the first)."""

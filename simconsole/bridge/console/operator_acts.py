@@ -8,8 +8,8 @@ from typing import Any, Final
 
 from msgspec import Struct
 
-from simconsole.bridge.commands import REQUESTS
-from simconsole.errors import BridgeError
+from simconsole.bridge.console.command_decoder import REQUESTS
+from simconsole.values.errors import BridgeError
 
 OPERATE: Final = "/console/operate"
 OPERATE_TYPE: Final = "simconsole_msgs/Operate"

@@ -12,14 +12,14 @@ import cbor2
 import msgspec
 import orjson
 
-from simconsole.bridge.access import Role
-from simconsole.bridge.console import ConsoleBridge
-from simconsole.bridge.documents import Binary
+from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.messages import Definition
 from simconsole.bridge.messages.cdr import deserialize, serialize
 from simconsole.bridge.messages.spelled import is_same_layout
-from simconsole.bridge.session import Session
-from simconsole.errors import BridgeError
+from simconsole.bridge.protocol.access import Role
+from simconsole.bridge.protocol.client_session import Session
+from simconsole.bridge.protocol.documents import Binary
+from simconsole.values.errors import BridgeError
 
 Describe = Callable[[str], tuple[Definition, ...] | None]
 """Tells the messages that a type of the graph is made of, None where it is not installed."""

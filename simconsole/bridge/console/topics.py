@@ -9,11 +9,11 @@ from typing import Any, Final, NamedTuple
 
 from simconsole.bridge.messages import Registry
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.rows import Snapshot
-from simconsole.signals import NEVER_TICKS, Link, Mode, RemoteCommand
-from simconsole.trigonometry import cos, sin
-from simconsole.units import NS_PER_S
-from simconsole.words import commander_words, link_words, mode_words, notice_words, reason_words
+from simconsole.values.labels import commander_words, link_words, mode_words, notice_words, reason_words
+from simconsole.values.signals import NEVER_TICKS, Link, Mode, RemoteCommand
+from simconsole.values.state_vector import Snapshot
+from simconsole.values.trigonometry import cos, sin
+from simconsole.values.units import NS_PER_S
 
 CLOCK: Final = "/clock"
 TF: Final = "/tf"

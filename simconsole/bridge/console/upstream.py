@@ -8,14 +8,14 @@ from collections.abc import Callable
 
 import orjson
 
-from simconsole.bridge.access import Role
-from simconsole.bridge.console import ConsoleBridge
-from simconsole.bridge.documents import read
-from simconsole.bridge.operations import Publish, Status, read_operation
-from simconsole.bridge.protocol import Outcome
-from simconsole.bridge.session import Session
-from simconsole.errors import BridgeError
+from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.protocol.access import Role
+from simconsole.bridge.protocol.client_session import Session
+from simconsole.bridge.protocol.documents import read
+from simconsole.bridge.protocol.operations import Publish, Status, read_operation
+from simconsole.bridge.protocol.server_protocol import Outcome
 from simconsole.profiles.bridge import UpstreamProfile
+from simconsole.values.errors import BridgeError
 
 
 class Upstream:

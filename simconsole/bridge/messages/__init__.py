@@ -14,7 +14,7 @@ from simconsole.bridge.messages import (
     vision_text,
 )
 from simconsole.bridge.messages.definition import Definition, FieldType, full_name, parse, parse_all
-from simconsole.bridge.messages.registry import Registry, is_stamped
+from simconsole.bridge.messages.message_registry import Registry, is_stamped
 from simconsole.bridge.messages.rosapi_text import SERVICES as ROSAPI_SERVICES
 from simconsole.bridge.messages.rosapi_text import TYPE_DEF
 from simconsole.bridge.messages.service_text import ACTIONS, SERVICES

@@ -4,10 +4,10 @@ import struct
 from typing import TYPE_CHECKING, Any, Final
 
 from simconsole.bridge.messages.definition import STRINGS, FieldType
-from simconsole.errors import RemoteProtocolError
+from simconsole.values.errors import RemoteProtocolError
 
 if TYPE_CHECKING:
-    from simconsole.bridge.messages.registry import Registry
+    from simconsole.bridge.messages.message_registry import Registry
 
 _HEADER: Final = b"\x00\x01\x00\x00"
 _ORDERS: Final = {b"\x00\x00": ">", b"\x00\x01": "<"}

@@ -7,10 +7,10 @@ depth or width costs no more than the definition allows.
 from typing import TYPE_CHECKING, Any, Final
 
 from simconsole.bridge.messages.definition import DURATION, FLOATS, HEADER, TIME, Field
-from simconsole.units import NS_PER_S
+from simconsole.values.units import NS_PER_S
 
 if TYPE_CHECKING:
-    from simconsole.bridge.messages.registry import Registry
+    from simconsole.bridge.messages.message_registry import Registry
 
 _NAN: Final = float("nan")
 _ROS1_TIME: Final = {"secs": "sec", "nsecs": "nanosec"}

@@ -9,7 +9,7 @@ from typing import Any, Final, Literal, NamedTuple
 
 import orjson
 
-from simconsole.errors import BridgeError
+from simconsole.values.errors import BridgeError
 
 Primitive = Literal["bool", "integer", "float", "string", "bytes"]
 

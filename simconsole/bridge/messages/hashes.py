@@ -11,7 +11,7 @@ from simconsole.bridge.messages.definition import DURATION, HEADER, TIME, Defini
 from simconsole.bridge.messages.writing import ROS1_HEADER
 
 if TYPE_CHECKING:
-    from simconsole.bridge.messages.registry import Registry
+    from simconsole.bridge.messages.message_registry import Registry
 
 _ROS1_TIMES: Final = {TIME: "time", DURATION: "duration"}
 # type_description_interfaces/FieldType; `char` of a .msg is uint8 in IDL.

@@ -22,7 +22,7 @@ from simconsole.bridge.messages.definition import (
     parse,
     parse_all,
 )
-from simconsole.errors import BridgeError, RemoteProtocolError
+from simconsole.values.errors import BridgeError, RemoteProtocolError
 
 INT64_MAX = 2**63 - 1
 _PARTS = re.compile(r"^---[ \t]*$", re.MULTILINE)

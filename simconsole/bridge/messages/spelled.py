@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Final, Literal
 
 from simconsole.bridge.messages.definition import OCTETS, Definition, Field, FieldType, full_name
-from simconsole.errors import BridgeError
+from simconsole.values.errors import BridgeError
 
 _WORDS: Final = {"boolean": "bool", "octet": "byte", "float": "float32", "double": "float64"}
 _SPELLED: Final = re.compile(

@@ -9,8 +9,8 @@ from collections.abc import Callable, Mapping
 from enum import IntEnum
 from typing import Final
 
-from simconsole.bridge.operations import Auth
-from simconsole.errors import ProfileError, RemoteProtocolError
+from simconsole.bridge.protocol.operations import Auth
+from simconsole.values.errors import ProfileError, RemoteProtocolError
 
 MIN_TOKEN: Final = 16
 

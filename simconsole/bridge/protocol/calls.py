@@ -11,11 +11,12 @@ import cbor2
 import msgspec
 import orjson
 
-from simconsole.bridge.access import Role
-from simconsole.bridge.documents import Binary
-from simconsole.bridge.forms import Dialect, png, spell
 from simconsole.bridge.messages import Registry
-from simconsole.bridge.operations import (
+from simconsole.bridge.protocol.access import Role
+from simconsole.bridge.protocol.client_session import Session, resolve_topic
+from simconsole.bridge.protocol.documents import Binary
+from simconsole.bridge.protocol.forms import Dialect, png, spell
+from simconsole.bridge.protocol.operations import (
     ActionFeedback,
     ActionResult,
     AdvertiseAction,
@@ -30,10 +31,9 @@ from simconsole.bridge.operations import (
     UnadvertiseAction,
     UnadvertiseService,
 )
-from simconsole.bridge.session import Session, resolve_topic
-from simconsole.errors import BridgeError, RemoteProtocolError
 from simconsole.profiles.bridge import BridgeLimits
-from simconsole.units import NS_PER_S
+from simconsole.values.errors import BridgeError, RemoteProtocolError
+from simconsole.values.units import NS_PER_S
 
 ABORTED: Final = 6
 """action_msgs/GoalStatus."""

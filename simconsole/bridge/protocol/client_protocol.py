@@ -11,11 +11,11 @@ from typing import Any, Final, NamedTuple
 import msgspec
 import orjson
 
-from simconsole.bridge.documents import read
-from simconsole.bridge.forms import Dialect, spell
-from simconsole.bridge.fragments import Assembler
 from simconsole.bridge.messages import Registry, standard_registry
-from simconsole.bridge.operations import (
+from simconsole.bridge.protocol.documents import read
+from simconsole.bridge.protocol.forms import Dialect, spell
+from simconsole.bridge.protocol.fragments import Assembler
+from simconsole.bridge.protocol.operations import (
     ActionFeedback,
     ActionResult,
     CallService,
@@ -29,7 +29,7 @@ from simconsole.bridge.operations import (
     read_operation,
     write_publish,
 )
-from simconsole.errors import BridgeError, LocalProtocolError, RemoteProtocolError
+from simconsole.values.errors import BridgeError, LocalProtocolError, RemoteProtocolError
 
 MAX_STATUS: Final = 100
 MAX_WHOLE: Final = 16_777_216

@@ -4,14 +4,14 @@ import re
 from collections.abc import Callable
 from typing import Final, NamedTuple
 
-from simconsole.bridge.access import Role
-from simconsole.bridge.forms import Dialect
-from simconsole.bridge.fragments import Assembler
-from simconsole.bridge.meter import Meter
-from simconsole.bridge.operations import DEFAULT_LEVEL, SEVERITY, Id, write_status
-from simconsole.bridge.outgoing import Outgoing, Outlet
-from simconsole.errors import RemoteProtocolError
-from simconsole.units import NS_PER_S
+from simconsole.bridge.protocol.access import Role
+from simconsole.bridge.protocol.forms import Dialect
+from simconsole.bridge.protocol.fragments import Assembler
+from simconsole.bridge.protocol.meter import Meter
+from simconsole.bridge.protocol.operations import DEFAULT_LEVEL, SEVERITY, Id, write_status
+from simconsole.bridge.protocol.subscription_queue import Outgoing, Outlet
+from simconsole.values.errors import RemoteProtocolError
+from simconsole.values.units import NS_PER_S
 
 MAX_NAME: Final = 256
 _NAME: Final = re.compile(r"/?[A-Za-z_][A-Za-z0-9_]*(?:/[A-Za-z_][A-Za-z0-9_]*)*")

@@ -9,7 +9,7 @@ from typing import Any, Final, NamedTuple, NoReturn
 import cbor2
 import orjson
 
-from simconsole.errors import RemoteProtocolError
+from simconsole.values.errors import RemoteProtocolError
 
 LENIENT_BYTES: Final = 65_536
 MAX_DEPTH: Final = 32

@@ -13,12 +13,12 @@ import cbor2
 import msgspec
 import orjson
 
-from simconsole.bridge.documents import Binary
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.messages.cdr import serialize
 from simconsole.bridge.messages.definition import DURATION, HEADER, TIME, FieldType
-from simconsole.bridge.operations import Compression
-from simconsole.units import NS_PER_S
+from simconsole.bridge.protocol.documents import Binary
+from simconsole.bridge.protocol.operations import Compression
+from simconsole.values.units import NS_PER_S
 
 Dialect = Literal["ros1", "ros2"]
 

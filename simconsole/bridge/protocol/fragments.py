@@ -6,9 +6,9 @@ from typing import Final
 
 import orjson
 
-from simconsole.bridge.operations import Fragment, Id
-from simconsole.errors import RemoteProtocolError
-from simconsole.units import NS_PER_S
+from simconsole.bridge.protocol.operations import Fragment, Id
+from simconsole.values.errors import RemoteProtocolError
+from simconsole.values.units import NS_PER_S
 
 MAX_OPEN: Final = 8
 TIMEOUT_NS: Final = 5 * NS_PER_S

@@ -2,9 +2,9 @@
 
 from typing import Final
 
-from simconsole.bridge.documents import Binary
-from simconsole.errors import FrameError
-from simconsole.units import NS_PER_S
+from simconsole.bridge.protocol.documents import Binary
+from simconsole.values.errors import FrameError
+from simconsole.values.units import NS_PER_S
 
 CONTINUATION: Final = 0
 TEXT: Final = 1

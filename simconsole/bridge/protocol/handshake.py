@@ -11,10 +11,10 @@ from http import HTTPStatus
 from typing import Final, NamedTuple
 from urllib.parse import parse_qs, urlsplit
 
-from simconsole.bridge.access import Access, Role
-from simconsole.bridge.forms import Dialect
-from simconsole.errors import ProfileError, RemoteProtocolError
+from simconsole.bridge.protocol.access import Access, Role
+from simconsole.bridge.protocol.forms import Dialect
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.values.errors import ProfileError, RemoteProtocolError
 
 _LOCAL: Final = ("localhost", "127.0.0.1", "[::1]")
 _LOCAL_PAGE: Final = re.compile(r"https?://(?:localhost|127\.0\.0\.1|\[::1\])(?::\d{1,5})?")

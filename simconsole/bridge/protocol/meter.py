@@ -1,6 +1,6 @@
 """How many commands a client may send: a rate that holds over a second, with no clock of its own."""
 
-from simconsole.units import NS_PER_S
+from simconsole.values.units import NS_PER_S
 
 
 class Meter:

@@ -9,8 +9,8 @@ import msgspec
 import orjson
 from msgspec import Meta, Struct
 
-from simconsole.errors import RemoteProtocolError
-from simconsole.units import NS_PER_S
+from simconsole.values.errors import RemoteProtocolError
+from simconsole.values.units import NS_PER_S
 
 Id = str | int | None
 Level = Literal["none", "error", "warning", "info"]

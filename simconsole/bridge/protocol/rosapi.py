@@ -8,15 +8,15 @@ from typing import Any, Final
 
 import orjson
 
-from simconsole.bridge.access import Role
-from simconsole.bridge.board import Topic
-from simconsole.bridge.forms import Dialect
 from simconsole.bridge.messages.definition import FieldType
 from simconsole.bridge.messages.writing import full_text
-from simconsole.bridge.protocol import Router
-from simconsole.bridge.session import resolve_topic
-from simconsole.errors import BridgeError, RemoteProtocolError
-from simconsole.units import NS_PER_S
+from simconsole.bridge.protocol.access import Role
+from simconsole.bridge.protocol.client_session import resolve_topic
+from simconsole.bridge.protocol.forms import Dialect
+from simconsole.bridge.protocol.server_protocol import Router
+from simconsole.bridge.protocol.topic_registry import Topic
+from simconsole.values.errors import BridgeError, RemoteProtocolError
+from simconsole.values.units import NS_PER_S
 
 NODE: Final = "/simconsole"
 MAX_PARAMETERS: Final = 256

@@ -7,16 +7,16 @@ nothing a client sends raises: it is answered with a status and counted.
 from collections.abc import Callable
 from typing import Any, Literal, NamedTuple
 
-from simconsole.bridge.access import OPEN, Role
-from simconsole.bridge.board import RELAY_DEPTH, Accept, Board, Command, Topic
-from simconsole.bridge.calls import Calls
-from simconsole.bridge.documents import Binary, Document, has_duplicate_keys, read
-from simconsole.bridge.forms import Dialect
-from simconsole.bridge.fragments import Assembler
-from simconsole.bridge.lease import Lease
 from simconsole.bridge.messages import Registry, is_stamped
-from simconsole.bridge.meter import Meter
-from simconsole.bridge.operations import (
+from simconsole.bridge.protocol.access import OPEN, Role
+from simconsole.bridge.protocol.calls import Calls
+from simconsole.bridge.protocol.client_session import Counts, Session, resolve_topic
+from simconsole.bridge.protocol.documents import Binary, Document, has_duplicate_keys, read
+from simconsole.bridge.protocol.forms import Dialect
+from simconsole.bridge.protocol.fragments import Assembler
+from simconsole.bridge.protocol.lease import Lease
+from simconsole.bridge.protocol.meter import Meter
+from simconsole.bridge.protocol.operations import (
     Advertise,
     Auth,
     CallOperation,
@@ -32,11 +32,11 @@ from simconsole.bridge.operations import (
     id_of,
     read_operation,
 )
-from simconsole.bridge.session import Counts, Session, resolve_topic
-from simconsole.errors import BridgeError, RemoteProtocolError
-from simconsole.kernels import is_finite
+from simconsole.bridge.protocol.topic_registry import RELAY_DEPTH, Accept, Board, Command, Topic
 from simconsole.profiles.bridge import BridgeLimits
-from simconsole.units import NS_PER_S
+from simconsole.values.errors import BridgeError, RemoteProtocolError
+from simconsole.values.kernels import is_finite
+from simconsole.values.units import NS_PER_S
 
 
 class Outcome(NamedTuple):

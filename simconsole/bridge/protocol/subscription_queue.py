@@ -7,11 +7,11 @@ from collections import deque
 from collections.abc import Iterator
 from typing import Final, NamedTuple
 
-from simconsole.bridge.documents import Binary
-from simconsole.bridge.forms import PLAIN, Form
-from simconsole.bridge.fragments import split
-from simconsole.bridge.operations import Id
-from simconsole.units import NS_PER_S
+from simconsole.bridge.protocol.documents import Binary
+from simconsole.bridge.protocol.forms import PLAIN, Form
+from simconsole.bridge.protocol.fragments import split
+from simconsole.bridge.protocol.operations import Id
+from simconsole.values.units import NS_PER_S
 
 MAX_REPLIES: Final = 256
 NS_PER_MS: Final = NS_PER_S // 1000

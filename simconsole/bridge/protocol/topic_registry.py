@@ -3,13 +3,13 @@
 from collections.abc import Callable
 from typing import Any, Final, NamedTuple
 
-from simconsole.bridge.forms import Encoder, Form
 from simconsole.bridge.messages import Registry
-from simconsole.bridge.operations import NO_QOS, Advertise, Publish, Qos, Subscribe, publish_head
-from simconsole.bridge.outgoing import Outlet
-from simconsole.bridge.session import Session
-from simconsole.errors import LocalProtocolError, RemoteProtocolError
+from simconsole.bridge.protocol.client_session import Session
+from simconsole.bridge.protocol.forms import Encoder, Form
+from simconsole.bridge.protocol.operations import NO_QOS, Advertise, Publish, Qos, Subscribe, publish_head
+from simconsole.bridge.protocol.subscription_queue import Outlet
 from simconsole.profiles.bridge import BridgeLimits
+from simconsole.values.errors import LocalProtocolError, RemoteProtocolError
 
 RELAY_DEPTH: Final = 100
 """Messages kept of a topic between clients for a slow subscriber that did not say how many it wants."""

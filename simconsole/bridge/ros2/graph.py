@@ -7,11 +7,11 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Any, Final, NamedTuple
 
-from simconsole.bridge.relay import ANYONE, Demand, GraphView, Offer, Order
-from simconsole.bridge.ros2_calls import GraphCalls
-from simconsole.bridge.ros2_types import load
-from simconsole.errors import BridgeError
+from simconsole.bridge.console.relay import ANYONE, Demand, GraphView, Offer, Order
+from simconsole.bridge.ros2.message_types import load
+from simconsole.bridge.ros2.service_calls import GraphCalls
 from simconsole.profiles.bridge import Ros2Profile
+from simconsole.values.errors import BridgeError
 
 LOOK_S: Final = 0.1
 """How often the graph is looked at: what comes or goes there is seen this much later."""

@@ -10,13 +10,13 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any, Final
 
-from simconsole.bridge.access import Role
-from simconsole.bridge.console import ConsoleBridge
-from simconsole.bridge.relay import Relay
-from simconsole.bridge.ros2_graph import NOT_INSTALLED, Graph, Heard
-from simconsole.bridge.ros2_types import describe
-from simconsole.errors import BridgeError, ProfileError
+from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.console.relay import Relay
+from simconsole.bridge.protocol.access import Role
+from simconsole.bridge.ros2.graph import NOT_INSTALLED, Graph, Heard
+from simconsole.bridge.ros2.message_types import describe
 from simconsole.profiles.bridge import BridgeProfile, Ros2Profile
+from simconsole.values.errors import BridgeError, ProfileError
 
 MAX_HEARD: Final = 1000
 """Messages that wait for the bridge's thread; of more, the oldest are dropped."""
@@ -24,7 +24,7 @@ LOGGED: Final = 10
 LOGGED_EVERY: Final = 1000
 """Remarks of a node that are logged, the first ones and then now and again: a flood must not fill the disk."""
 
-_logger = logging.getLogger("simconsole.bridge.ros2")
+_logger = logging.getLogger("simconsole.bridge.ros2.node")
 
 
 class Ros2Link:

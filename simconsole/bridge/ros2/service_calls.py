@@ -9,13 +9,13 @@ import logging
 from collections.abc import Callable
 from typing import Any, Final
 
-from simconsole.bridge.relay import ABORTED, CANCELED, SUCCEEDED, Order
-from simconsole.bridge.ros2_types import load
+from simconsole.bridge.console.relay import ABORTED, CANCELED, SUCCEEDED, Order
+from simconsole.bridge.ros2.message_types import load
 
 MAX_LOOKS: Final = 300
 """How often a service or action that is known but not found is looked for."""
 
-_logger: Final = logging.getLogger("simconsole.bridge.ros2")
+_logger: Final = logging.getLogger("simconsole.bridge.ros2.node")
 
 
 class GraphCalls:

@@ -12,9 +12,9 @@ from typing import Any, Final, NamedTuple
 
 import orjson
 
-from simconsole.bridge.bench_peers import Peer, connect
-from simconsole.bridge.bench_servers import Served, serving
-from simconsole.errors import BridgeError
+from simconsole.bridge.tools.bench_peers import Peer, connect
+from simconsole.bridge.tools.bench_servers import Served, serving
+from simconsole.values.errors import BridgeError
 
 UNDER_WAY: Final = 20
 RATE_HZ: Final = 100

@@ -13,9 +13,9 @@ from typing import Any, Final, NamedTuple
 import orjson
 from websockets.asyncio.client import connect
 
-from simconsole.errors import BridgeError
-from simconsole.lifetimes import attached
-from simconsole.signals import RemoteCommand
+from simconsole.processes.lifetimes import attached
+from simconsole.values.errors import BridgeError
+from simconsole.values.signals import RemoteCommand
 
 MESSAGES: Final = 1000
 MESSAGE_BYTES: Final = 20_000
@@ -111,7 +111,7 @@ def _resident_mb(process: int) -> float:
 
 
 def _serve(pipe: Connection) -> None:
-    from simconsole.bridge.server import serve
+    from simconsole.bridge.transport.server import serve
     from simconsole.profiles.bridge import BridgeProfile
 
     ages_ms: list[float] = []

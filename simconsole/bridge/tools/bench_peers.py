@@ -13,8 +13,8 @@ from websockets.asyncio.client import connect as connect_websockets
 from websockets.exceptions import WebSocketException
 from websockets.frames import Frame
 
-from simconsole.bridge.frames import CLOSE
-from simconsole.errors import BridgeError
+from simconsole.bridge.protocol.frames import CLOSE
+from simconsole.values.errors import BridgeError
 
 
 class Peer(Protocol):

@@ -16,8 +16,8 @@ import orjson
 from websockets.asyncio.server import ServerConnection
 from websockets.asyncio.server import serve as serve_websockets
 
-from simconsole.errors import BridgeError
-from simconsole.lifetimes import attached
+from simconsole.processes.lifetimes import attached
+from simconsole.values.errors import BridgeError
 
 _START_S: Final = 30.0
 _TICKS_PER_S: Final = 100.0
@@ -78,7 +78,7 @@ def serving() -> Iterator[list[Served]]:
 
 
 def _serve_ours(pipe: Connection, transport: Literal["websockets", "picows"] = "websockets") -> None:
-    from simconsole.bridge.server import serve
+    from simconsole.bridge.transport.server import serve
     from simconsole.profiles.bridge import BridgeProfile
 
     profile = BridgeProfile(port=0, transport=transport)

@@ -12,7 +12,7 @@ from typing import Any, Final, NamedTuple
 from websockets.exceptions import WebSocketException
 from websockets.sync.client import ClientConnection, connect
 
-from simconsole.errors import BridgeError
+from simconsole.values.errors import BridgeError
 
 _NUMBERS: Final = itertools.count(1)
 _PATIENCE_S: Final = 2.0

@@ -11,21 +11,21 @@ from websockets.http11 import Request
 from websockets.protocol import SEND_EOF, State
 from websockets.server import ServerProtocol
 
-from simconsole.bridge.access import Access
-from simconsole.bridge.backoff import Liveness
-from simconsole.bridge.documents import Binary
-from simconsole.bridge.frames import CLOSE, MessageAssembler
-from simconsole.bridge.handshake import Admission, Refusal, admit
-from simconsole.bridge.session import Session
-from simconsole.bridge.wire import CLOSE_S, RECEIVE_BYTES, is_unacknowledged, opening_of
-from simconsole.errors import FrameError
+from simconsole.bridge.protocol.access import Access
+from simconsole.bridge.protocol.backoff import Liveness
+from simconsole.bridge.protocol.client_session import Session
+from simconsole.bridge.protocol.documents import Binary
+from simconsole.bridge.protocol.frames import CLOSE, MessageAssembler
+from simconsole.bridge.protocol.handshake import Admission, Refusal, admit
+from simconsole.bridge.transport.wire import CLOSE_S, RECEIVE_BYTES, is_unacknowledged, opening_of
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.values.errors import FrameError
 
 UNSENT_BYTES: Final = 262_144
 """Bytes taken out of a session's bounded queues beyond what the system's socket buffer holds."""
 _LATER: Final = (BlockingIOError, InterruptedError, ssl.SSLWantReadError, ssl.SSLWantWriteError)
 
-_logger = logging.getLogger("simconsole.bridge.lockstep")
+_logger = logging.getLogger("simconsole.bridge.transport.lockstep_server")
 
 
 class Owner(Protocol):

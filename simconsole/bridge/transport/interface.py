@@ -4,9 +4,9 @@ import importlib.util
 from collections.abc import Awaitable, Callable, Sequence
 from typing import Protocol
 
-from simconsole.bridge.handshake import Admission, Opening, Refusal
-from simconsole.errors import ProfileError
+from simconsole.bridge.protocol.handshake import Admission, Opening, Refusal
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.values.errors import ProfileError
 
 
 class Transport(Protocol):
@@ -74,11 +74,11 @@ def load_transport(profile: BridgeProfile) -> OpenDoor:
         ProfileError: that library is not installed.
     """
     if profile.transport == "websockets":
-        from simconsole.bridge import websockets_transport
+        from simconsole.bridge.transport import websockets_transport
 
         return websockets_transport.open_door
     if importlib.util.find_spec("picows") is None:
         raise ProfileError("outputs.bridge.transport: picows is not installed: pip install 'simconsole[picows]'")
-    from simconsole.bridge import picows_transport
+    from simconsole.bridge.transport import picows_transport
 
     return picows_transport.open_door

@@ -16,30 +16,30 @@ from typing import TYPE_CHECKING, Any, Final, Self
 
 import msgspec
 
-from simconsole.bridge import wire
-from simconsole.bridge.access import Access
-from simconsole.bridge.connection import Connection
-from simconsole.bridge.console import ConsoleBridge
-from simconsole.bridge.handshake import Admission
-from simconsole.bridge.message_files import load_registry
+from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.console.topics import ODOMETRY
 from simconsole.bridge.messages import Registry
-from simconsole.bridge.record import open_recorder
-from simconsole.bridge.session import Session
-from simconsole.bridge.topics import ODOMETRY
-from simconsole.bridge.wire import RECEIVE_BYTES, address_url, listen, load_access, load_tls, log_outcome
-from simconsole.errors import ProfileError
+from simconsole.bridge.protocol.access import Access
+from simconsole.bridge.protocol.client_session import Session
+from simconsole.bridge.protocol.handshake import Admission
+from simconsole.bridge.transport import wire
+from simconsole.bridge.transport.connection import Connection
+from simconsole.bridge.transport.message_files import load_registry
+from simconsole.bridge.transport.topic_recorder import open_recorder
+from simconsole.bridge.transport.wire import RECEIVE_BYTES, address_url, listen, load_access, load_tls, log_outcome
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.rows import Snapshot
-from simconsole.signals import EventInput, RemoteCommand
+from simconsole.values.errors import ProfileError
+from simconsole.values.signals import EventInput, RemoteCommand
+from simconsole.values.state_vector import Snapshot
 
 if TYPE_CHECKING:
-    from simconsole.bridge.ros2 import Ros2Link
+    from simconsole.bridge.ros2.node import Ros2Link
 
 _ANSWERS: Final = 4.0
 """Commands a controller may send for each odometry, at least: it must never be too fast to be answered to."""
 _GOOD_BYE_S: Final = 0.5
 _LOOK_S: Final = 0.25
-_logger = logging.getLogger("simconsole.bridge.lockstep")
+_logger = logging.getLogger("simconsole.bridge.transport.lockstep_server")
 
 
 class LockstepBridge:
@@ -248,7 +248,7 @@ class LockstepBridge:
             self._recorder.look(self._now_ns)
 
     def _join_ros2(self) -> None:
-        from simconsole.bridge.ros2 import Ros2Link
+        from simconsole.bridge.ros2.node import Ros2Link
 
         # rclpy's thread rings, so that a wait for sockets ends for the graph too; one byte that waits is enough.
         rung, ring = socket.socketpair()

@@ -4,8 +4,8 @@ from pathlib import Path
 from typing import Final
 
 from simconsole.bridge.messages import Registry, standard_registry
-from simconsole.errors import BridgeError, ProfileError
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.values.errors import BridgeError, ProfileError
 
 MAX_FILES: Final = 1000
 MAX_BYTES: Final = 65_536

@@ -22,9 +22,8 @@ from picows import (
     ws_create_server,
 )
 
-from simconsole.bridge import wire
-from simconsole.bridge.backoff import Liveness
-from simconsole.bridge.frames import (
+from simconsole.bridge.protocol.backoff import Liveness
+from simconsole.bridge.protocol.frames import (
     CLOSE,
     PING,
     PROTOCOL_ERROR,
@@ -32,11 +31,12 @@ from simconsole.bridge.frames import (
     check_close,
     frame_head,
 )
-from simconsole.bridge.handshake import DRIVE_HEADER, Admission, Opening, Refusal
-from simconsole.bridge.transport import Client, House
-from simconsole.errors import FrameError
+from simconsole.bridge.protocol.handshake import DRIVE_HEADER, Admission, Opening, Refusal
+from simconsole.bridge.transport import wire
+from simconsole.bridge.transport.interface import Client, House
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.units import NS_PER_S
+from simconsole.values.errors import FrameError
+from simconsole.values.units import NS_PER_S
 
 _VERSION: Final = "13"
 

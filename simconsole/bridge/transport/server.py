@@ -11,23 +11,23 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from simconsole.bridge.console import ConsoleBridge
-from simconsole.bridge.counters import standing
-from simconsole.bridge.handshake import Admission, Opening, Refusal, admit
-from simconsole.bridge.inputs import OnCommand, OnEvents
-from simconsole.bridge.message_files import load_registry
+from simconsole.bridge.console.counters import standing
+from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.console.input_slots import OnCommand, OnEvents
+from simconsole.bridge.console.operator_acts import OnAct
 from simconsole.bridge.messages import Registry
-from simconsole.bridge.operate import OnAct
-from simconsole.bridge.record import TopicRecorder, open_recorder
-from simconsole.bridge.transport import Client, Door, Transport, load_transport
-from simconsole.bridge.uplink import Uplink
-from simconsole.bridge.wire import CLOSE_S, address_url, listen, load_access, load_tls, log_outcome
+from simconsole.bridge.protocol.handshake import Admission, Opening, Refusal, admit
+from simconsole.bridge.transport.interface import Client, Door, Transport, load_transport
+from simconsole.bridge.transport.message_files import load_registry
+from simconsole.bridge.transport.topic_recorder import TopicRecorder, open_recorder
+from simconsole.bridge.transport.uplink import Uplink
+from simconsole.bridge.transport.wire import CLOSE_S, address_url, listen, load_access, load_tls, log_outcome
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.rows import Snapshot
-from simconsole.units import NS_PER_S
+from simconsole.values.state_vector import Snapshot
+from simconsole.values.units import NS_PER_S
 
 if TYPE_CHECKING:
-    from simconsole.bridge.ros2 import Ros2Link
+    from simconsole.bridge.ros2.node import Ros2Link
 
 _WATCH_S: Final = 0.25
 _POLL_S: Final = 0.001
@@ -40,7 +40,7 @@ reader works while we do; with many in longer pieces, for then somebody works in
 _QUIET: Final = ("done", "command")
 """What becomes of most messages, and is not logged."""
 
-_logger = logging.getLogger("simconsole.bridge.server")
+_logger = logging.getLogger("simconsole.bridge.transport.server")
 
 
 class _Client:
@@ -174,7 +174,7 @@ class BridgeServer:
         return len(self._clients)
 
     def standing(self) -> str:
-        """Return how the link stands, in one word of `simconsole.words`."""
+        """Return how the link stands, in one word of `simconsole.values.labels`."""
         return standing(self.console.router, self.clock_ns())
 
     async def start(self) -> None:
@@ -251,7 +251,7 @@ class BridgeServer:
             _logger.info("%s is gone", client.session.peer)
 
     def _join_ros2(self, loop: asyncio.AbstractEventLoop) -> None:
-        from simconsole.bridge.ros2 import Ros2Link
+        from simconsole.bridge.ros2.node import Ros2Link
 
         def wake() -> None:
             if not self._ros2_woken:

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any, Final
 import cbor2
 import msgspec
 
-from simconsole.bridge.access import Role
-from simconsole.bridge.console import ConsoleBridge
-from simconsole.bridge.documents import Binary
+from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.messages.writing import full_text
-from simconsole.errors import BridgeError
+from simconsole.bridge.protocol.access import Role
+from simconsole.bridge.protocol.documents import Binary
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.units import NS_PER_S
+from simconsole.values.errors import BridgeError
+from simconsole.values.units import NS_PER_S
 
 if TYPE_CHECKING:
     pass
@@ -26,7 +26,7 @@ NAME: Final = "topics.mcap"
 MAX_FILES: Final = 100
 _QUEUE: Final = 1000
 
-_logger = logging.getLogger("simconsole.bridge.record")
+_logger = logging.getLogger("simconsole.bridge.transport.topic_recorder")
 
 
 class TopicRecorder:

@@ -13,18 +13,18 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import InvalidURI, WebSocketException
 from websockets.uri import parse_uri
 
-from simconsole.bridge.backoff import DEAD_AFTER_S, PING_AFTER_S, Backoff
-from simconsole.bridge.console import ConsoleBridge
-from simconsole.bridge.documents import Binary
-from simconsole.bridge.upstream import Upstream
-from simconsole.bridge.wire import log_outcome
-from simconsole.errors import ProfileError
+from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.console.upstream import Upstream
+from simconsole.bridge.protocol.backoff import DEAD_AFTER_S, PING_AFTER_S, Backoff
+from simconsole.bridge.protocol.documents import Binary
+from simconsole.bridge.transport.wire import log_outcome
 from simconsole.profiles.bridge import UpstreamProfile
-from simconsole.units import NS_PER_S
+from simconsole.values.errors import ProfileError
+from simconsole.values.units import NS_PER_S
 
 _ATTEMPT_S: Final = 2.0
 _MAX_MESSAGE_BYTES: Final = 16_777_216
-_logger = logging.getLogger("simconsole.bridge.uplink")
+_logger = logging.getLogger("simconsole.bridge.transport.uplink")
 
 
 class Uplink:

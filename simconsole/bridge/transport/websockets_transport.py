@@ -12,14 +12,14 @@ from websockets.frames import Frame
 from websockets.http11 import Request, Response
 from websockets.protocol import State
 
-from simconsole.bridge import wire
-from simconsole.bridge.backoff import Liveness
-from simconsole.bridge.frames import CLOSE, MessageAssembler, frame_head
-from simconsole.bridge.handshake import Admission, Refusal
-from simconsole.bridge.transport import Client, House
-from simconsole.errors import FrameError
+from simconsole.bridge.protocol.backoff import Liveness
+from simconsole.bridge.protocol.frames import CLOSE, MessageAssembler, frame_head
+from simconsole.bridge.protocol.handshake import Admission, Refusal
+from simconsole.bridge.transport import wire
+from simconsole.bridge.transport.interface import Client, House
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.units import NS_PER_S
+from simconsole.values.errors import FrameError
+from simconsole.values.units import NS_PER_S
 
 
 class Connection(ServerConnection):

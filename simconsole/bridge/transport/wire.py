@@ -7,12 +7,12 @@ import struct
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from simconsole.bridge.access import OPEN, Access, Role, read_tokens
-from simconsole.bridge.handshake import DRIVE_HEADER, Opening, check_exposure
-from simconsole.bridge.protocol import Outcome
-from simconsole.bridge.session import Session
-from simconsole.errors import BridgeError, ProfileError
+from simconsole.bridge.protocol.access import OPEN, Access, Role, read_tokens
+from simconsole.bridge.protocol.client_session import Session
+from simconsole.bridge.protocol.handshake import DRIVE_HEADER, Opening, check_exposure
+from simconsole.bridge.protocol.server_protocol import Outcome
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.values.errors import BridgeError, ProfileError
 
 if TYPE_CHECKING:
     from websockets.http11 import Request
@@ -29,7 +29,7 @@ _LAST_ACKNOWLEDGED_AT: Final = 56
 _LOGGED_REFUSALS: Final = 10
 _LOGGED_EVERY: Final = 1000
 
-logger: Final = logging.getLogger("simconsole.bridge.server")
+logger: Final = logging.getLogger("simconsole.bridge.transport.server")
 
 
 def is_unacknowledged(sock: socket.socket, patience_ms: int = 1000) -> bool:

@@ -5,11 +5,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Final
 
+from simconsole.canbus.bus.port import CanPort, read_log
 from simconsole.canbus.codec import COMMAND, Codec, Frame
 from simconsole.canbus.ecu import Ecu, Listener, Wish
-from simconsole.canbus.port import CanPort, read_log
-from simconsole.errors import CanError
 from simconsole.profiles.can import CanProfile
+from simconsole.values.errors import CanError
 
 _NOBODY: Final[frozenset[int]] = frozenset()
 _LINE_S: Final = 1.0

@@ -12,11 +12,11 @@ import zlib
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, cast
 
+from simconsole.canbus.bus.multicast import LoopbackBus
 from simconsole.canbus.codec import Frame
-from simconsole.canbus.multicast import LoopbackBus
 from simconsole.canbus.recovery import BUS_OFF, Recovery, Seldom, error_words
-from simconsole.errors import CanError
 from simconsole.profiles.can import CanProfile
+from simconsole.values.errors import CanError
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -31,7 +31,7 @@ _FULL: Final = (11, 105)  # EAGAIN, ENOBUFS: the send queue is full, which is no
 _UNDERWAY_MAX: Final = 256
 """Frames looked at in one call at most: a flood of others' frames ends a call, not the caller's cycle."""
 
-_logger = logging.getLogger("simconsole.canbus.port")
+_logger = logging.getLogger("simconsole.canbus.bus.port")
 
 Opener = Callable[[CanProfile, frozenset[int]], "can.BusABC"]
 """Opens a bus that passes on these ids (where its back end can filter)."""

@@ -5,14 +5,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Final
 
+from simconsole.canbus.bus.port import LOG_FILES, CanPort
 from simconsole.canbus.codec import Codec
 from simconsole.canbus.node import CanNode
-from simconsole.canbus.port import LOG_FILES, CanPort
 from simconsole.canbus.schedule import Phase
-from simconsole.profile_files import read_text
 from simconsole.profiles.can import CanProfile
-from simconsole.rows import Snapshot
-from simconsole.signals import Event, EventInput, RemoteCommand
+from simconsole.profiles.files.loader import read_text
+from simconsole.values.signals import Event, EventInput, RemoteCommand
+from simconsole.values.state_vector import Snapshot
 
 DBC: Final = "simconsole.dbc"
 _CYCLE_S: Final = 0.001

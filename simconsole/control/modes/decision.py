@@ -2,13 +2,9 @@
 
 from typing import Final, NamedTuple
 
-from simconsole.control.commander import Controllers
-from simconsole.control.engage import GRANTED, engage_refusal
-from simconsole.control.modes import outcome, reason_of
-from simconsole.control.moment import Moment
-from simconsole.control.person import Person
-from simconsole.control.settings import ControlSettings
-from simconsole.control.triggers import (
+from simconsole.control.modes.engage import GRANTED, engage_refusal
+from simconsole.control.modes.mode_table import outcome, reason_of
+from simconsole.control.modes.triggers import (
     Asked,
     asked_of,
     asked_triggers,
@@ -18,8 +14,12 @@ from simconsole.control.triggers import (
     refusal_of,
     reset_refusal,
 )
-from simconsole.kernels import kernel
-from simconsole.signals import Mode, Reason
+from simconsole.control.requests.commander import Controllers
+from simconsole.control.requests.control_settings import ControlSettings
+from simconsole.control.requests.person import Person
+from simconsole.control.requests.tick_context import Moment
+from simconsole.values.kernels import kernel
+from simconsole.values.signals import Mode, Reason
 
 _SHARED: Final = float(Mode.SHARED)
 _AUTONOMOUS: Final = float(Mode.AUTONOMOUS)

@@ -1,11 +1,12 @@
-"""Draw the mode table: `python -m simconsole.control.modes_doc > docs/modes.md`. A test holds the two equal."""
+"""Draw the mode table: `python -m simconsole.control.modes.document > docs/modes.md`. A test holds the two equal."""
 
-from simconsole.control.modes import MEANING, REACTIONS, REASONS, Trigger
-from simconsole.signals import Mode
+from simconsole.control.modes.mode_table import MEANING, REACTIONS, REASONS, Trigger
+from simconsole.values.signals import Mode
 
 _INTRODUCTION = """# Who drives: the modes
 
-Generated from `simconsole/control/modes.py` by `python -m simconsole.control.modes_doc > docs/modes.md`.
+Generated from `simconsole/control/modes/mode_table.py` by
+`python -m simconsole.control.modes.document > docs/modes.md`.
 
 A mode changes by this table and by nothing else. Triggers stand in the order of their strength.
 
@@ -21,7 +22,7 @@ refused with its reason in the same tick and never kept (`REFUSED_OVERRULED` whe
 it); `PERSON_READY` and `STANDSTILL` are no asks: they are looked at again in the next tick.
 
 `STOPPED` and `EMERGENCY_STOP` latch: only an act of a person or an operator leaves them. Autonomy is only ever entered
-by such an act, and only if every engage condition of `simconsole/control/engage.py` holds.
+by such an act, and only if every engage condition of `simconsole/control/modes/engage.py` holds.
 """
 
 _AUTHORITY = """## When triggers count

@@ -2,10 +2,10 @@
 
 from typing import Final
 
-from simconsole.control.person import Person
-from simconsole.control.settings import ControlSettings
-from simconsole.kernels import kernel
-from simconsole.signals import Link, Mode, Reason, RemoteCommand, RemoteKind, VehicleState
+from simconsole.control.requests.control_settings import ControlSettings
+from simconsole.control.requests.person import Person
+from simconsole.values.kernels import kernel
+from simconsole.values.signals import Link, Mode, Reason, RemoteCommand, RemoteKind, VehicleState
 
 _PARKED: Final = float(Mode.PARKED)
 _MANUAL: Final = float(Mode.MANUAL)

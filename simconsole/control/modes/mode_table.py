@@ -11,8 +11,8 @@ and STOPPED latch: only an act of a person or an operator leaves them, and auton
 from enum import IntEnum
 from typing import Final, NamedTuple
 
-from simconsole.kernels import kernel
-from simconsole.signals import Mode, Reason
+from simconsole.values.kernels import kernel
+from simconsole.values.signals import Mode, Reason
 
 
 class Trigger(IntEnum):

@@ -9,12 +9,12 @@ the devices stay armed. The tick goes on counting, and what was driven before st
 
 from typing import Final, NamedTuple
 
-from simconsole.control.moment import Moment
-from simconsole.control.person import Person, mask
-from simconsole.control.settings import ControlSettings
-from simconsole.control.stops import slow
-from simconsole.kernels import kernel
-from simconsole.signals import Button, DriverInput, Event, Mode, Notice, Reason
+from simconsole.control.requests.control_settings import ControlSettings
+from simconsole.control.requests.person import Person, mask
+from simconsole.control.requests.stops import slow
+from simconsole.control.requests.tick_context import Moment
+from simconsole.values.kernels import kernel
+from simconsole.values.signals import Button, DriverInput, Event, Mode, Notice, Reason
 
 NOT_ASKED: Final = -1.0
 GRANTED: Final = 0.0

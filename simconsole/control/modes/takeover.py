@@ -8,9 +8,9 @@ that lasts two ticks longer always is.
 
 from typing import Final, NamedTuple
 
-from simconsole.control.settings import ControlSettings
-from simconsole.kernels import kernel
-from simconsole.signals import Mode
+from simconsole.control.requests.control_settings import ControlSettings
+from simconsole.values.kernels import kernel
+from simconsole.values.signals import Mode
 
 _UNREFERENCED: Final = -1.0
 _AUTONOMOUS: Final = float(Mode.AUTONOMOUS)

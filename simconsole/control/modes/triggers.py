@@ -2,12 +2,12 @@
 
 from typing import Final, NamedTuple
 
-from simconsole.control.engage import GRANTED
-from simconsole.control.modes import Trigger, reacts
-from simconsole.control.person import Person, mask
-from simconsole.control.settings import ControlSettings
-from simconsole.kernels import kernel
-from simconsole.signals import Button, DriverInput, Event, Link, Mode, Reason
+from simconsole.control.modes.engage import GRANTED
+from simconsole.control.modes.mode_table import Trigger, reacts
+from simconsole.control.requests.control_settings import ControlSettings
+from simconsole.control.requests.person import Person, mask
+from simconsole.values.kernels import kernel
+from simconsole.values.signals import Button, DriverInput, Event, Link, Mode, Reason
 
 _PARKED: Final = float(Mode.PARKED)
 _MANUAL: Final = float(Mode.MANUAL)

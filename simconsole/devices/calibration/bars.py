@@ -2,8 +2,8 @@
 
 from typing import Final
 
-from simconsole.signals import Button, DriverInput, Validity
-from simconsole.units import DEG_PER_RAD
+from simconsole.values.signals import Button, DriverInput, Validity
+from simconsole.values.units import DEG_PER_RAD
 
 WIDTH: Final = 30
 _WORDS: Final = {float(state): state.name.lower() for state in Validity}

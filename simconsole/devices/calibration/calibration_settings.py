@@ -3,10 +3,10 @@
 import math
 from typing import Final
 
-from simconsole.devices.cockpit import CockpitSettings
-from simconsole.devices.lever import HAT_DOWN, HAT_LEFT, HAT_RIGHT, HAT_SHIFT, HAT_UP, SHIFTER_SHIFT
+from simconsole.devices.calibration.cockpit_settings import CockpitSettings
+from simconsole.devices.calibration.lever import HAT_DOWN, HAT_LEFT, HAT_RIGHT, HAT_SHIFT, HAT_UP, SHIFTER_SHIFT
 from simconsole.profiles.device import ButtonBinding, Buttons, CockpitProfile, PedalAxis
-from simconsole.units import RAD_PER_DEG
+from simconsole.values.units import RAD_PER_DEG
 
 GEARS: Final = 7
 HATS: Final = {"left": HAT_LEFT, "right": HAT_RIGHT, "up": HAT_UP, "down": HAT_DOWN}

@@ -6,12 +6,20 @@ seen at rest (else unknown), and only then scaled.
 
 from typing import NamedTuple
 
-from simconsole.devices.cockpit import NOBODY, CockpitSettings
-from simconsole.devices.lever import HANDBRAKE, TWO_GEARS, hat_mask, held_roles, lever_gear, shown_gear, stepped_gear
-from simconsole.devices.settings import settings
-from simconsole.devices.validity import LOST, axis_good, heard, mask_good, next_validity, trusted
-from simconsole.kernels import clip, is_finite, kernel
-from simconsole.signals import NO_SAMPLE, DeviceSample, DriverInput
+from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.calibration.cockpit_settings import NOBODY, CockpitSettings
+from simconsole.devices.calibration.lever import (
+    HANDBRAKE,
+    TWO_GEARS,
+    hat_mask,
+    held_roles,
+    lever_gear,
+    shown_gear,
+    stepped_gear,
+)
+from simconsole.devices.calibration.validity import LOST, axis_good, heard, mask_good, next_validity, trusted
+from simconsole.values.kernels import clip, is_finite, kernel
+from simconsole.values.signals import NO_SAMPLE, DeviceSample, DriverInput
 
 __all__ = ["NOBODY", "NO_SAMPLE", "CockpitSettings", "calibrate", "settings"]
 

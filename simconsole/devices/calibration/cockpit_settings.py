@@ -2,7 +2,7 @@
 
 from typing import Final, NamedTuple
 
-from simconsole.signals import DriverInput
+from simconsole.values.signals import DriverInput
 
 
 class CockpitSettings(NamedTuple):

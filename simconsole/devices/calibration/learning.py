@@ -7,8 +7,8 @@ import math
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
-from simconsole.errors import DeviceError
 from simconsole.profiles.device import MIN_TRAVEL_RAW, PedalAxis, WheelAxis
+from simconsole.values.errors import DeviceError
 
 DeviceKey = tuple[int, int]
 """USB vendor and product id."""

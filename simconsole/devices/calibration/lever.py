@@ -2,9 +2,9 @@
 
 from typing import Final
 
-from simconsole.devices.cockpit import CockpitSettings
-from simconsole.kernels import kernel
-from simconsole.signals import Button
+from simconsole.devices.calibration.cockpit_settings import CockpitSettings
+from simconsole.values.kernels import kernel
+from simconsole.values.signals import Button
 
 SHIFT_UP: Final = int(Button.SHIFT_UP)
 SHIFT_DOWN: Final = int(Button.SHIFT_DOWN)

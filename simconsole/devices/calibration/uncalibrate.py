@@ -2,10 +2,10 @@
 
 from typing import Final, NamedTuple
 
-from simconsole.devices.calibration import curved
-from simconsole.devices.cockpit import CockpitSettings
-from simconsole.devices.lever import HAT_DOWN, HAT_LEFT, HAT_RIGHT, HAT_SHIFT, HAT_UP, SHIFTER_SHIFT
-from simconsole.signals import DeviceSample
+from simconsole.devices.calibration.calibrator import curved
+from simconsole.devices.calibration.cockpit_settings import CockpitSettings
+from simconsole.devices.calibration.lever import HAT_DOWN, HAT_LEFT, HAT_RIGHT, HAT_SHIFT, HAT_UP, SHIFTER_SHIFT
+from simconsole.values.signals import DeviceSample
 
 WHEEL_MASK: Final = (1 << SHIFTER_SHIFT) - 1
 GEAR_1_AT: Final = CockpitSettings._fields.index("gear_1_mask")

@@ -2,8 +2,8 @@
 
 from typing import Final
 
-from simconsole.kernels import is_finite, kernel
-from simconsole.signals import NEVER_TICKS, Validity
+from simconsole.values.kernels import is_finite, kernel
+from simconsole.values.signals import NEVER_TICKS, Validity
 
 UNKNOWN: Final = float(Validity.UNKNOWN)
 ARMED: Final = float(Validity.ARMED)

@@ -2,13 +2,13 @@
 
 from typing import Any, Final
 
-from simconsole.devices.calibration import calibrate, travel
-from simconsole.devices.cockpit import NOBODY, CockpitSettings
-from simconsole.devices.settings import settings
-from simconsole.devices.validity import LOST, STALE, trusted
+from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.calibration.calibrator import calibrate, travel
+from simconsole.devices.calibration.cockpit_settings import NOBODY, CockpitSettings
+from simconsole.devices.calibration.validity import LOST, STALE, trusted
 from simconsole.profiles.device import CockpitProfile, PedalAxis
-from simconsole.signals import NO_SAMPLE, Button, DeviceSample, DriverInput
-from simconsole.units import DEG_PER_RAD
+from simconsole.values.signals import NO_SAMPLE, Button, DeviceSample, DriverInput
+from simconsole.values.units import DEG_PER_RAD
 
 PEDALS: Final = ("throttle", "brake", "clutch", "handbrake")
 MOVED: Final = 0.9

@@ -8,7 +8,7 @@ from typing import Any, Final, Literal, TypeVar
 
 import msgspec
 
-from simconsole.devices.learning import (
+from simconsole.devices.calibration.learning import (
     BUTTONS,
     HATS,
     AxisAt,
@@ -20,7 +20,6 @@ from simconsole.devices.learning import (
     moved_axis,
     pressed_button,
 )
-from simconsole.errors import DeviceError
 from simconsole.profiles.device import (
     ButtonBinding,
     Buttons,
@@ -32,6 +31,7 @@ from simconsole.profiles.device import (
     Shifter,
     WheelAxis,
 )
+from simconsole.values.errors import DeviceError
 
 Ask = Callable[[str, str], str]
 """Puts a question about a step (`throttle`, `gear 3`, ...) and returns what was typed: nothing means go on."""

@@ -6,9 +6,9 @@ the reason, and the estimate follows (a tracking filter of three states: angle, 
 
 from typing import Final, NamedTuple
 
-from simconsole.devices.force_settings import ForceSettings
-from simconsole.devices.rim import Rim, turn
-from simconsole.kernels import clip, kernel
+from simconsole.devices.force_feedback.force_settings import ForceSettings
+from simconsole.devices.force_feedback.rim import Rim, turn
+from simconsole.values.kernels import clip, kernel
 
 HUMAN_LIMIT_NM: Final = 30.0
 """More than two arms do; keeps the estimate finite whatever the wheel reports."""

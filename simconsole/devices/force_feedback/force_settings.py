@@ -4,7 +4,7 @@ import math
 from typing import Final, NamedTuple
 
 from simconsole.profiles.device import CockpitProfile
-from simconsole.units import MPS_PER_KMH, RAD_PER_DEG
+from simconsole.values.units import MPS_PER_KMH, RAD_PER_DEG
 
 OBSERVER_RADPS: Final = 50.0
 """Bandwidth of the torque estimate: settles in about 3 / 50 s, well above what arms do (5 Hz)."""

@@ -8,10 +8,10 @@ forward) and what is quicker for the correction (feedback).
 
 from typing import Final, NamedTuple
 
-from simconsole.devices.force_settings import ForceSettings
-from simconsole.devices.rim import Rim
-from simconsole.kernels import clip, kernel
-from simconsole.signals import Mode
+from simconsole.devices.force_feedback.force_settings import ForceSettings
+from simconsole.devices.force_feedback.rim import Rim
+from simconsole.values.kernels import clip, kernel
+from simconsole.values.signals import Mode
 
 _SHARED: Final = float(Mode.SHARED)
 

@@ -7,12 +7,12 @@ Pure: time comes in with the clock, the device is a `HapticPort`. The effect las
 from collections.abc import Callable
 from typing import Final, NamedTuple, Protocol
 
-from simconsole.devices.simulated_wheel import SimulatedWheel
-from simconsole.errors import DeviceError
-from simconsole.ledger import Hop
+from simconsole.devices.force_feedback.simulated_wheel import SimulatedWheel
 from simconsole.profiles.force_feedback import ForceFeedback
-from simconsole.rows import Snapshot
-from simconsole.signals import DeviceSample
+from simconsole.values.errors import DeviceError
+from simconsole.values.latency import Hop
+from simconsole.values.signals import DeviceSample
+from simconsole.values.state_vector import Snapshot
 
 EFFECT_S: Final = 0.2
 REARM_S: Final = 0.05

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from simconsole.kernels import approach, kernel
+from simconsole.values.kernels import approach, kernel
 
 
 class Rim(NamedTuple):

@@ -7,10 +7,10 @@ from collections import deque
 from collections.abc import Callable
 from typing import Final, NamedTuple
 
-from simconsole.devices.rim import Rim, turn
-from simconsole.kernels import clip, kernel
+from simconsole.devices.force_feedback.rim import Rim, turn
 from simconsole.profiles.force_feedback import ForceFeedback
-from simconsole.units import RAD_PER_DEG
+from simconsole.values.kernels import clip, kernel
+from simconsole.values.units import RAD_PER_DEG
 
 STEP_S: Final = 0.001
 LAG_S: Final = 0.002

@@ -6,14 +6,23 @@ which nobody is driven, the loop has stood still, or any part is not a number.
 
 from typing import Final, NamedTuple
 
-from simconsole.devices.estimator import Felt, at_rest, observe
-from simconsole.devices.force_settings import ForceSettings
-from simconsole.devices.guidance import Wanted, guidance, wanted
-from simconsole.devices.rim import Rim, turn
-from simconsole.devices.validity import trusted
-from simconsole.kernels import approach, clip, is_finite, kernel
-from simconsole.signals import Arbitration, DriverInput, Event, Mode, Notice, VehicleState, WheelMemory, WheelTorque
-from simconsole.trigonometry import sin
+from simconsole.devices.calibration.validity import trusted
+from simconsole.devices.force_feedback.estimator import Felt, at_rest, observe
+from simconsole.devices.force_feedback.force_settings import ForceSettings
+from simconsole.devices.force_feedback.guidance import Wanted, guidance, wanted
+from simconsole.devices.force_feedback.rim import Rim, turn
+from simconsole.values.kernels import approach, clip, is_finite, kernel
+from simconsole.values.signals import (
+    Arbitration,
+    DriverInput,
+    Event,
+    Mode,
+    Notice,
+    VehicleState,
+    WheelMemory,
+    WheelTorque,
+)
+from simconsole.values.trigonometry import sin
 
 _MANUAL: Final = float(Mode.MANUAL)
 _SHARED: Final = float(Mode.SHARED)

@@ -2,13 +2,13 @@
 
 import os
 
-from simconsole.devices.driver_files import Restoring, settings
-from simconsole.devices.evdev_haptics import open_evdev
-from simconsole.devices.event_nodes import effect_slots, open_node, stop_effects
-from simconsole.devices.haptics import open_haptics
-from simconsole.devices.motor import HapticPort
-from simconsole.errors import DeviceError
+from simconsole.devices.force_feedback.motor import HapticPort
+from simconsole.devices.haptics.driver_files import Restoring, settings
+from simconsole.devices.haptics.evdev_haptics import open_evdev
+from simconsole.devices.haptics.sdl_haptics import open_haptics
+from simconsole.devices.sources.event_nodes import effect_slots, open_node, stop_effects
 from simconsole.profiles.force_feedback import ForceFeedback
+from simconsole.values.errors import DeviceError
 
 
 def open_motor(instance_id: int, identity: tuple[int, int], force: ForceFeedback) -> HapticPort:

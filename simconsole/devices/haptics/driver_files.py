@@ -7,7 +7,7 @@ optional: where a file is missing or forbidden, what the profile says is left be
 from pathlib import Path
 from typing import Final
 
-from simconsole.devices.motor import Capability, HapticPort
+from simconsole.devices.force_feedback.motor import Capability, HapticPort
 
 CLASS: Final = Path("/sys/class/input")
 NAMES: Final = ("gain", "autocenter")

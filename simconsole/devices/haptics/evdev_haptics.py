@@ -8,10 +8,10 @@ import os
 import struct
 from typing import Final
 
-from simconsole.devices.event_nodes import EV_FF, EVENT, READ, WRITE, open_node, request
-from simconsole.devices.motor import EFFECT_S, Capability, HapticPort, NoHaptics
-from simconsole.errors import DeviceError
+from simconsole.devices.force_feedback.motor import EFFECT_S, Capability, HapticPort, NoHaptics
+from simconsole.devices.sources.event_nodes import EV_FF, EVENT, READ, WRITE, open_node, request
 from simconsole.profiles.force_feedback import ForceFeedback
+from simconsole.values.errors import DeviceError
 
 _CONSTANT: Final = 0x52
 _DAMPER: Final = 0x55

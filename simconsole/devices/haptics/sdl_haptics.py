@@ -9,11 +9,11 @@ import ctypes
 from functools import cache
 from typing import Any, Final
 
-from simconsole.devices import sdl_runtime
-from simconsole.devices.motor import EFFECT_S, Capability, HapticPort, NoHaptics
-from simconsole.devices.virtual_sdl import mapped_sdl
-from simconsole.errors import DeviceError
+from simconsole.devices.force_feedback.motor import EFFECT_S, Capability, HapticPort, NoHaptics
+from simconsole.devices.sources import sdl_runtime
+from simconsole.devices.sources.virtual_sdl import mapped_sdl
 from simconsole.profiles.force_feedback import ForceFeedback
+from simconsole.values.errors import DeviceError
 
 _INIT_HAPTIC: Final = 0x1000
 _CONSTANT: Final = 1 << 0

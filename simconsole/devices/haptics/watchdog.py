@@ -5,8 +5,8 @@ milliseconds without one while force is on, or the end of the console, and the w
 only its owner may change an effect, but any process may stop it (`input_ff_event`, drivers/input/ff-core.c). Effects of
 200 ms are the second line, where there is no watchdog or it is late.
 
-Run as `python -m simconsole.devices.watchdog`, told what to watch by a line of JSON on standard input, whose end is the
-end of the console. Loads neither numpy nor anything else that is large.
+Run as `python -m simconsole.devices.haptics.watchdog`, told what to watch by a line of JSON on standard input, whose
+end is the end of the console. Loads neither numpy nor anything else that is large.
 """
 
 import json
@@ -19,9 +19,9 @@ import time
 from pathlib import Path
 from typing import Final
 
-from simconsole.devices.event_nodes import effect_slots, open_node, stop_effects
-from simconsole.errors import DeviceError
-from simconsole.lifetimes import read_told
+from simconsole.devices.sources.event_nodes import effect_slots, open_node, stop_effects
+from simconsole.processes.lifetimes import read_told
+from simconsole.values.errors import DeviceError
 
 POLL_S: Final = 0.02
 STALL_S: Final = 0.1

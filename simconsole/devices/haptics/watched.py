@@ -9,11 +9,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Final
 
-from simconsole.devices.motor import EFFECT_S, Capability, HapticPort
-from simconsole.devices.watchdog import BEATS, FORCE, MEMORY_BYTES
-from simconsole.errors import DeviceError
-from simconsole.lifetimes import end, spawn
-from simconsole.shared_memory import PREFIX
+from simconsole.devices.force_feedback.motor import EFFECT_S, Capability, HapticPort
+from simconsole.devices.haptics.watchdog import BEATS, FORCE, MEMORY_BYTES
+from simconsole.processes.lifetimes import end, spawn
+from simconsole.processes.shared_memory import PREFIX
+from simconsole.values.errors import DeviceError
 
 END_S: Final = 2.0
 
@@ -66,7 +66,7 @@ class Watchdog:
     def _start(self, identity: tuple[int, int]) -> None:
         told = {"memory": str(self._path), "vendor_id": identity[0], "product_id": identity[1]}
         # Its group is its own, so that what stops or ends the console's group leaves the watchdog to act.
-        self._process = spawn(["-m", "simconsole.devices.watchdog"], told=json.dumps(told).encode() + b"\n")
+        self._process = spawn(["-m", "simconsole.devices.haptics.watchdog"], told=json.dumps(told).encode() + b"\n")
 
 
 class WatchedPort:

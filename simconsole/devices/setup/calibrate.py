@@ -9,17 +9,17 @@ from typing import Any, Final
 import msgspec
 import yaml
 
-from simconsole.devices.commands import Pace, Say, answer, realtime
-from simconsole.devices.learning import Moment, hold
-from simconsole.devices.raw_sdl import RawDevices
-from simconsole.devices.settings import settings
-from simconsole.devices.uncalibrate import Intent, uncalibrate
-from simconsole.devices.virtual_cockpit import VirtualCockpit
-from simconsole.devices.wizard import Entry, Wizard
-from simconsole.errors import DeviceError
+from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.calibration.learning import Moment, hold
+from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate
+from simconsole.devices.calibration.wizard import Entry, Wizard
+from simconsole.devices.setup.device_commands import Pace, Say, answer, realtime
+from simconsole.devices.sources.raw_sdl import RawDevices
+from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.profiles.device import CockpitProfile
-from simconsole.signals import Button
-from simconsole.units import RAD_PER_DEG
+from simconsole.values.errors import DeviceError
+from simconsole.values.signals import Button
+from simconsole.values.units import RAD_PER_DEG
 
 LOOK_S: Final = 0.3
 LOOK_HZ: Final = 200

@@ -6,20 +6,20 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any, Final, Self
 
-from simconsole.devices import kernel_limits, sdl_runtime
-from simconsole.devices.bars import lines
-from simconsole.devices.kernel_limits import KernelLimits, wheel_limits
-from simconsole.devices.record import TraceWriter
-from simconsole.devices.script import ScriptSource
-from simconsole.devices.sdl import SdlSource, found
-from simconsole.devices.settings import settings
-from simconsole.devices.trace import TraceHeader
-from simconsole.devices.virtual_cockpit import VirtualCockpit
-from simconsole.devices.watch import Watch
-from simconsole.errors import DeviceError
+from simconsole.devices.calibration.bars import lines
+from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.calibration.watch import Watch
+from simconsole.devices.sources import kernel_limits, sdl_runtime
+from simconsole.devices.sources.kernel_limits import KernelLimits, wheel_limits
+from simconsole.devices.sources.sdl import SdlSource, found
+from simconsole.devices.sources.trace_recorder import TraceWriter
+from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
+from simconsole.devices.synthetic.script import ScriptSource
+from simconsole.devices.synthetic.trace import TraceHeader
 from simconsole.profiles.device import Buttons, CockpitProfile, ScriptPoint, ScriptProfile
-from simconsole.signals import DeviceSample
-from simconsole.units import RAD_PER_DEG
+from simconsole.values.errors import DeviceError
+from simconsole.values.signals import DeviceSample
+from simconsole.values.units import RAD_PER_DEG
 
 Say = Callable[[str], None]
 Pace = Callable[[int], None]

@@ -7,21 +7,21 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from simconsole.devices.back_ends import open_motor
-from simconsole.devices.commands import Pace, Say, answer, realtime
-from simconsole.devices.motor import HapticPort, SimulatedWheelPort, WheelMotor
-from simconsole.devices.sdl import SdlSource
-from simconsole.devices.settings import settings
-from simconsole.devices.simulated_wheel import HANDS_OFF, SimulatedWheel
-from simconsole.devices.uncalibrate import Intent, uncalibrate
-from simconsole.devices.virtual_cockpit import VirtualCockpit
-from simconsole.devices.watched import open_watchdog, watched
-from simconsole.errors import DeviceError
+from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate
+from simconsole.devices.force_feedback.motor import HapticPort, SimulatedWheelPort, WheelMotor
+from simconsole.devices.force_feedback.simulated_wheel import HANDS_OFF, SimulatedWheel
+from simconsole.devices.haptics.back_ends import open_motor
+from simconsole.devices.haptics.watched import open_watchdog, watched
+from simconsole.devices.setup.device_commands import Pace, Say, answer, realtime
+from simconsole.devices.sources.sdl import SdlSource
+from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.force_feedback import ForceFeedback
-from simconsole.rows import MOTOR_AT, PLATFORM_AT, TORQUE_AT, Snapshot
-from simconsole.signals import NO_TORQUE
-from simconsole.units import DEG_PER_RAD
+from simconsole.values.errors import DeviceError
+from simconsole.values.signals import NO_TORQUE
+from simconsole.values.state_vector import MOTOR_AT, PLATFORM_AT, TORQUE_AT, Snapshot
+from simconsole.values.units import DEG_PER_RAD
 
 TURNED_DEG: Final = 3.0
 """A wheel that turned this far under a steady force shows by itself which way it pulled."""

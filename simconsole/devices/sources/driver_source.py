@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
-from simconsole.devices.keyboard import KeyboardSource, Keys
-from simconsole.devices.script import ScriptSource
-from simconsole.devices.settings import settings
-from simconsole.errors import ProfileError
-from simconsole.ports import DeviceSource
-from simconsole.profile_files import find, load
+from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.synthetic.keyboard import KeyboardSource, Keys
+from simconsole.devices.synthetic.script import ScriptSource
 from simconsole.profiles.device import CockpitProfile, ScriptProfile
+from simconsole.profiles.files.loader import find, load
+from simconsole.values.errors import ProfileError
+from simconsole.values.protocols import DeviceSource
 
 DRIVERS = "sdl, trace:FILE, script:FILE or keyboard"
 
@@ -28,11 +28,11 @@ def open_source(driver: str, cockpit: CockpitProfile, *, tick_hz: int, keys: Key
     """
     kind, _, name = driver.partition(":")
     if kind == "sdl" and not name:
-        from simconsole.devices.sdl import SdlSource
+        from simconsole.devices.sources.sdl import SdlSource
 
         return SdlSource(cockpit)
     if kind == "trace" and name:
-        from simconsole.devices.record import TraceSource
+        from simconsole.devices.sources.trace_recorder import TraceSource
 
         return TraceSource(Path(name), tick_hz=tick_hz)
     if kind == "script" and name:

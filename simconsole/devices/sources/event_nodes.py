@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
-from simconsole.errors import DeviceError
+from simconsole.values.errors import DeviceError
 
 NODES: Final = Path("/dev/input")
 EV_FF: Final = 0x15

@@ -9,9 +9,9 @@ import struct
 from pathlib import Path
 from typing import Final, NamedTuple
 
-from simconsole.devices.event_nodes import READ, find_node, request
-from simconsole.errors import DeviceError
+from simconsole.devices.sources.event_nodes import READ, find_node, request
 from simconsole.profiles.device import CockpitProfile
+from simconsole.values.errors import DeviceError
 
 SYSFS: Final = Path("/sys/class/input")
 RANGE_TOLERANCE_DEG: Final = 1.0

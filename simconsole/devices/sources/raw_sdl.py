@@ -2,11 +2,11 @@
 
 from typing import Self
 
-from simconsole.devices import sdl_runtime
-from simconsole.devices.learning import BUTTONS, DeviceKey, Reading
-from simconsole.devices.lever import hat_mask
-from simconsole.devices.sdl import Found, found
-from simconsole.errors import DeviceError
+from simconsole.devices.calibration.learning import BUTTONS, DeviceKey, Reading
+from simconsole.devices.calibration.lever import hat_mask
+from simconsole.devices.sources import sdl_runtime
+from simconsole.devices.sources.sdl import Found, found
+from simconsole.values.errors import DeviceError
 
 
 class RawDevices:

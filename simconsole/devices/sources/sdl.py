@@ -7,11 +7,11 @@ that rest at 1.0 reads as half throttle and half brake.
 
 from typing import Any, Final, NamedTuple
 
-from simconsole.devices import sdl_runtime
-from simconsole.devices.calibration import travel
-from simconsole.errors import DeviceError, DeviceModeError, DeviceNotFound
+from simconsole.devices.calibration.calibrator import travel
+from simconsole.devices.sources import sdl_runtime
 from simconsole.profiles.device import CockpitProfile, OtherDevice, RoleBinding, RoleName
-from simconsole.signals import NEVER_TICKS, DeviceSample
+from simconsole.values.errors import DeviceError, DeviceModeError, DeviceNotFound
+from simconsole.values.signals import NEVER_TICKS, DeviceSample
 
 INVERTED_SHARE: Final = 0.95
 """An accelerator beyond this at the start: nobody sits down on it, the profile has its ends swapped.

@@ -3,7 +3,7 @@
 import os
 from typing import Any, Final
 
-from simconsole.errors import DeviceError
+from simconsole.values.errors import DeviceError
 
 _ENVIRONMENT: Final = {
     "SDL_VIDEODRIVER": "dummy",  # this process shows no window; the driver's view has its own process

@@ -5,7 +5,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO
 
-from simconsole.devices.trace import (
+from simconsole.devices.synthetic.trace import (
     MAX_LINE,
     TraceHeader,
     TracePlayer,
@@ -14,8 +14,8 @@ from simconsole.devices.trace import (
     read_rows,
     row_text,
 )
-from simconsole.errors import DeviceError, ProfileError
-from simconsole.signals import DeviceSample
+from simconsole.values.errors import DeviceError, ProfileError
+from simconsole.values.signals import DeviceSample
 
 
 class TraceWriter:

@@ -1,9 +1,9 @@
 """A profile's cockpit made of virtual devices: written in raw terms, read back by pygame as any other."""
 
-from simconsole.devices.virtual_sdl import VirtualDevice, VirtualSpec, specs
-from simconsole.errors import DeviceError
+from simconsole.devices.sources.virtual_sdl import VirtualDevice, VirtualSpec, specs
 from simconsole.profiles.device import CockpitProfile, RoleName
-from simconsole.signals import DeviceSample
+from simconsole.values.errors import DeviceError
+from simconsole.values.signals import DeviceSample
 
 
 class VirtualCockpit:

@@ -10,9 +10,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
-from simconsole.devices import sdl_runtime
-from simconsole.errors import DeviceError
+from simconsole.devices.sources import sdl_runtime
 from simconsole.profiles.device import CockpitProfile, PedalAxis
+from simconsole.values.errors import DeviceError
 
 _WHEEL_TYPE: Final = 2
 _UNKNOWN_TYPE: Final = 0

@@ -6,11 +6,11 @@ The keys come from the window's process with an age; when it falls silent this s
 from collections.abc import Callable
 from typing import Final
 
-from simconsole.devices.cockpit import CockpitSettings
-from simconsole.devices.uncalibrate import Intent, uncalibrate
-from simconsole.keys import Key
-from simconsole.signals import Button, DeviceSample
-from simconsole.units import RAD_PER_DEG
+from simconsole.devices.calibration.cockpit_settings import CockpitSettings
+from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate
+from simconsole.values.key_codes import Key
+from simconsole.values.signals import Button, DeviceSample
+from simconsole.values.units import RAD_PER_DEG
 
 Keys = Callable[[], tuple[int, int]]
 """Returns (mask of `Key` held now, its age in whole ticks)."""

@@ -2,12 +2,12 @@
 
 from typing import Final
 
-from simconsole.devices.cockpit import CockpitSettings
-from simconsole.devices.uncalibrate import Intent, uncalibrate
-from simconsole.errors import ProfileError
+from simconsole.devices.calibration.cockpit_settings import CockpitSettings
+from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate
 from simconsole.profiles.device import ScriptProfile
-from simconsole.signals import Button, DeviceSample
-from simconsole.units import RAD_PER_DEG
+from simconsole.values.errors import ProfileError
+from simconsole.values.signals import Button, DeviceSample
+from simconsole.values.units import RAD_PER_DEG
 
 PRESS_S: Final = 0.2
 """How long a scripted finger holds a button."""

@@ -14,10 +14,10 @@ import re
 from collections.abc import Callable, Iterable, Iterator
 from typing import Final, NamedTuple
 
-from simconsole.devices.validity import axis_good, mask_good
-from simconsole.errors import ProfileError
-from simconsole.kernels import is_finite
-from simconsole.signals import NO_SAMPLE, DeviceSample
+from simconsole.devices.calibration.validity import axis_good, mask_good
+from simconsole.values.errors import ProfileError
+from simconsole.values.kernels import is_finite
+from simconsole.values.signals import NO_SAMPLE, DeviceSample
 
 SCHEMA: Final = 1
 COLUMNS: Final = ("tick", *DeviceSample._fields)

@@ -9,13 +9,13 @@ import time
 from collections.abc import Callable, Mapping
 from typing import Any, Final
 
-from simconsole.autonomy.tally import Tally
-from simconsole.autonomy.tracker import Sighting, Steering, Tracker
-from simconsole.bridge.client import BridgeClient
-from simconsole.errors import BridgeError, OtherDriveError
-from simconsole.profile_files import MAX_DATA_BYTES, load
+from simconsole.bridge.client.bridge_client import BridgeClient
+from simconsole.drivers.path_tracker.tally import Tally
+from simconsole.drivers.path_tracker.tracker import Sighting, Steering, Tracker
+from simconsole.profiles.files.loader import MAX_DATA_BYTES, load
 from simconsole.profiles.world import WorldProfile
-from simconsole.signals import Mode
+from simconsole.values.errors import BridgeError, OtherDriveError
+from simconsole.values.signals import Mode
 from simconsole.world.course import Course
 
 ODOMETRY: Final = "/odom"

@@ -6,7 +6,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simconsole.kernels import clip
+from simconsole.values.kernels import clip
 
 Array = NDArray[np.float64]
 

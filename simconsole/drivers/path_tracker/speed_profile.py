@@ -5,7 +5,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simconsole.autonomy.settings import Comfort
+from simconsole.drivers.path_tracker.tracker_settings import Comfort
 from simconsole.world.course import Course
 
 Array = NDArray[np.float64]

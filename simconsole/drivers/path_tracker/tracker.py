@@ -13,11 +13,20 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simconsole.autonomy.approach import ON_PATH, approach_from
-from simconsole.autonomy.riccati import Gains, design, discretised
-from simconsole.autonomy.settings import COMFORT, HATCHBACK, TIMING, WEIGHTS, CarModel, Comfort, Timing, Weights
-from simconsole.autonomy.speed_profile import plan_speed
-from simconsole.kernels import approach, clip
+from simconsole.drivers.path_tracker.approach import ON_PATH, approach_from
+from simconsole.drivers.path_tracker.riccati import Gains, design, discretised
+from simconsole.drivers.path_tracker.speed_profile import plan_speed
+from simconsole.drivers.path_tracker.tracker_settings import (
+    COMFORT,
+    HATCHBACK,
+    TIMING,
+    WEIGHTS,
+    CarModel,
+    Comfort,
+    Timing,
+    Weights,
+)
+from simconsole.values.kernels import approach, clip
 from simconsole.world.course import Course
 
 Array = NDArray[np.float64]

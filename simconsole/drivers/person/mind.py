@@ -5,7 +5,8 @@ from collections.abc import Callable
 from enum import Enum, auto
 from typing import Final, NamedTuple
 
-from simconsole.devices.person_skills import (
+from simconsole.devices.calibration.uncalibrate import Intent
+from simconsole.drivers.person.skills import (
     Line,
     View,
     clutch_through_bite,
@@ -13,10 +14,9 @@ from simconsole.devices.person_skills import (
     launch_throttle,
     steer_along,
 )
-from simconsole.devices.uncalibrate import Intent
 from simconsole.profiles.person import PersonPlan, When
-from simconsole.signals import Button, Mode
-from simconsole.units import MPS_PER_KMH, RAD_PER_DEG, RADPS_PER_RPM
+from simconsole.values.signals import Button, Mode
+from simconsole.values.units import MPS_PER_KMH, RAD_PER_DEG, RADPS_PER_RPM
 
 PRESS_S: Final = 0.2
 PRESS_AGAIN_S: Final = 1.5

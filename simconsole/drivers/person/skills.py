@@ -4,8 +4,8 @@ import math
 from typing import Final, NamedTuple
 
 from simconsole.profiles.person import Habits
-from simconsole.rows import Snapshot
-from simconsole.units import RADPS_PER_RPM, RPM_PER_RADPS
+from simconsole.values.state_vector import Snapshot
+from simconsole.values.units import RADPS_PER_RPM, RPM_PER_RADPS
 
 SPEED_GAIN_PER_MPS: Final = 0.3
 SPEED_INTEGRAL_PER_M: Final = 0.05

@@ -1,13 +1,13 @@
 """The simulated person in the seat: works virtual devices by what the last tick showed, never past the joystick."""
 
-from simconsole.devices.cockpit import CockpitSettings
-from simconsole.devices.person_mind import Person
-from simconsole.devices.person_skills import look
-from simconsole.devices.simulated_wheel import RELAXED, STEERING, SimulatedWheel
-from simconsole.devices.uncalibrate import Intent, uncalibrate
-from simconsole.devices.virtual_cockpit import VirtualCockpit
+from simconsole.devices.calibration.cockpit_settings import CockpitSettings
+from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate
+from simconsole.devices.force_feedback.simulated_wheel import RELAXED, STEERING, SimulatedWheel
+from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
+from simconsole.drivers.person.mind import Person
+from simconsole.drivers.person.skills import look
 from simconsole.profiles.person import PersonPlan
-from simconsole.rows import Snapshot
+from simconsole.values.state_vector import Snapshot
 
 
 class SimulatedPerson:

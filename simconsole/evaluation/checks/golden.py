@@ -9,8 +9,8 @@ import csv
 from collections.abc import Iterable, Iterator
 from typing import Final, NamedTuple
 
-from simconsole.errors import ProfileError
-from simconsole.kernels import Row
+from simconsole.values.errors import ProfileError
+from simconsole.values.kernels import Row
 
 SCHEMA: Final = 1
 Sample = tuple[int, tuple[float, ...]]

@@ -5,24 +5,24 @@ from typing import NamedTuple
 
 from msgspec.structs import replace
 
-from simconsole.assembly import ResolvedSession, assemble
-from simconsole.compiling import compiled
-from simconsole.devices.script import ScriptSource
-from simconsole.devices.settings import settings
-from simconsole.drive import Cast, run
-from simconsole.errors import ProfileError
-from simconsole.handling.attempt import Attempt, Result
-from simconsole.handling.library import drive_manoeuvre
-from simconsole.handling.seat import PilotSeat
-from simconsole.memory import MemoryRecorder
-from simconsole.pacing import UnpacedPacer
-from simconsole.pipeline import Console
-from simconsole.ports import NobodyCommands
+from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.synthetic.script import ScriptSource
+from simconsole.evaluation.checks.row_table import MemoryRecorder
+from simconsole.evaluation.manoeuvres.attempt import Attempt, Result
+from simconsole.evaluation.manoeuvres.library import drive_manoeuvre
+from simconsole.evaluation.manoeuvres.manoeuvre_seat import PilotSeat
+from simconsole.evaluation.metrics.table import drive_of
 from simconsole.profiles.manoeuvre import Limit, Manoeuvre
 from simconsole.profiles.scenario import ScenarioProfile
 from simconsole.recording.framing import START_OF_CHAIN
-from simconsole.report.table import drive_of
-from simconsole.session_files import resolve
+from simconsole.session.pacing import UnpacedPacer
+from simconsole.session.resolution import resolve
+from simconsole.tick.advance import Console
+from simconsole.tick.assembly import ResolvedSession, assemble
+from simconsole.tick.loop import Cast, run
+from simconsole.values.errors import ProfileError
+from simconsole.values.host.jit import compiled
+from simconsole.values.protocols import NobodyCommands
 
 
 class Driven(NamedTuple):

@@ -4,9 +4,9 @@ from typing import Final
 
 import numpy as np
 
-from simconsole.kernels import Row
 from simconsole.recording.framing import START_OF_CHAIN, chain
-from simconsole.rows import Snapshot
+from simconsole.values.kernels import Row
+from simconsole.values.state_vector import Snapshot
 
 FIRST_TICKS: Final = 4096
 """Room is taken for so many at first, and twice as much whenever it is full."""

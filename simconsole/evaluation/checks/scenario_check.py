@@ -9,28 +9,28 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, NamedTuple, Self, TextIO, TypeVar
 
-from simconsole import golden
-from simconsole.assembly import assemble
-from simconsole.compiling import compiled
-from simconsole.devices.script import ScriptSource
-from simconsole.devices.settings import settings
-from simconsole.drive import Cast, Recorder, run
-from simconsole.errors import ProfileError
-from simconsole.faulting import with_faults
-from simconsole.files import replaced
-from simconsole.handling.attempt import Result
-from simconsole.isolation import isolated
-from simconsole.kernels import Row
-from simconsole.manoeuvring import drive, judge_limit
-from simconsole.pacing import UnpacedPacer
-from simconsole.pipeline import Console
-from simconsole.ports import DeviceSource, NobodySeated
+from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.synthetic.script import ScriptSource
+from simconsole.drivers.scripted import ScriptedCommands
+from simconsole.evaluation.checks import golden
+from simconsole.evaluation.checks.manoeuvre_check import drive, judge_limit
+from simconsole.evaluation.manoeuvres.attempt import Result
+from simconsole.faults.schedule import with_faults
 from simconsole.profiles.manoeuvre import Limit, Manoeuvre
 from simconsole.profiles.scenario import Check, ScenarioProfile
 from simconsole.recording.framing import START_OF_CHAIN, chain
-from simconsole.rows import Snapshot
-from simconsole.scripted import ScriptedCommands
-from simconsole.session_files import load_scenario, resolve
+from simconsole.session.pacing import UnpacedPacer
+from simconsole.session.resolution import load_scenario, resolve
+from simconsole.tick.advance import Console
+from simconsole.tick.assembly import assemble
+from simconsole.tick.isolation import isolated
+from simconsole.tick.loop import Cast, Recorder, run
+from simconsole.values.errors import ProfileError
+from simconsole.values.host.files import replaced
+from simconsole.values.host.jit import compiled
+from simconsole.values.kernels import Row
+from simconsole.values.protocols import DeviceSource, NobodySeated
+from simconsole.values.state_vector import Snapshot
 
 R = TypeVar("R", bound=Recorder)
 

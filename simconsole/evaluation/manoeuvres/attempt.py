@@ -5,9 +5,9 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from simconsole.devices.uncalibrate import Intent
-from simconsole.report.table import Array, Drive
-from simconsole.rows import Snapshot
+from simconsole.devices.calibration.uncalibrate import Intent
+from simconsole.evaluation.metrics.table import Array, Drive
+from simconsole.values.state_vector import Snapshot
 
 Pilot: TypeAlias = Callable[[Snapshot], Intent | None]
 """Looks at the last tick and says what hands and feet do now; None ends the drive."""

@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from simconsole.devices.uncalibrate import Intent
-from simconsole.handling.attempt import Attempt, Driving, Line, Panel, Result, part, traces, undriven
-from simconsole.handling.pilot import RunUp, Steps, keep_line
+from simconsole.devices.calibration.uncalibrate import Intent
+from simconsole.drivers.manoeuvre_pilot import RunUp, Steps, keep_line
+from simconsole.evaluation.manoeuvres.attempt import Attempt, Driving, Line, Panel, Result, part, traces, undriven
+from simconsole.evaluation.metrics.table import Array, Drive
 from simconsole.profiles.manoeuvre import CoastDown, StraightBraking
-from simconsole.report.table import Array, Drive
-from simconsole.rows import Snapshot
-from simconsole.units import DEG_PER_RAD, KMH_PER_MPS, MPS_PER_KMH
-from simconsole.vehicle.platform import Platform
+from simconsole.values.platform import Platform
+from simconsole.values.state_vector import Snapshot
+from simconsole.values.units import DEG_PER_RAD, KMH_PER_MPS, MPS_PER_KMH
 
 STOPPED_MPS = 0.05
 WHEELS = ("fl", "fr", "rl", "rr")

@@ -9,14 +9,14 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from simconsole.devices.uncalibrate import Intent
-from simconsole.handling.attempt import Attempt, Driving, Line, Panel, Result, part, traces, undriven
-from simconsole.handling.pilot import HoldSpeed, RunUp
+from simconsole.devices.calibration.uncalibrate import Intent
+from simconsole.drivers.manoeuvre_pilot import HoldSpeed, RunUp
+from simconsole.evaluation.manoeuvres.attempt import Attempt, Driving, Line, Panel, Result, part, traces, undriven
+from simconsole.evaluation.metrics.table import Array, Drive
 from simconsole.profiles.manoeuvre import DoubleLaneChange
-from simconsole.report.table import Array, Drive
-from simconsole.rows import Snapshot
-from simconsole.units import DEG_PER_RAD, KMH_PER_MPS, MPS_PER_KMH
-from simconsole.vehicle.platform import Platform
+from simconsole.values.platform import Platform
+from simconsole.values.state_vector import Snapshot
+from simconsole.values.units import DEG_PER_RAD, KMH_PER_MPS, MPS_PER_KMH
 
 APPROACH_M: Final = 20.0
 """From the end of the run-up to the first cones."""

@@ -1,11 +1,11 @@
 """The manoeuvres by the kind of their description."""
 
-from simconsole.handling.attempt import Driving
-from simconsole.handling.braking import coast_down, straight_braking
-from simconsole.handling.lane_change import lane_change
-from simconsole.handling.observed import observed
-from simconsole.handling.sine_with_dwell import sine_with_dwell
-from simconsole.handling.steering import steady_circle, step_steer
+from simconsole.evaluation.manoeuvres.attempt import Driving
+from simconsole.evaluation.manoeuvres.braking import coast_down, straight_braking
+from simconsole.evaluation.manoeuvres.lane_change import lane_change
+from simconsole.evaluation.manoeuvres.observed import observed
+from simconsole.evaluation.manoeuvres.sine_with_dwell import sine_with_dwell
+from simconsole.evaluation.manoeuvres.steering import steady_circle, step_steer
 from simconsole.profiles.manoeuvre import (
     CoastDown,
     DoubleLaneChange,
@@ -16,7 +16,7 @@ from simconsole.profiles.manoeuvre import (
     StepSteer,
     StraightBraking,
 )
-from simconsole.vehicle.platform import Platform
+from simconsole.values.platform import Platform
 
 
 def drive_manoeuvre(spec: Manoeuvre, car: Platform, duration_s: float) -> Driving:

@@ -1,10 +1,10 @@
 """The test driver in the seat: a pilot's hands and feet as the axes of the cockpit."""
 
-from simconsole.devices.cockpit import CockpitSettings
-from simconsole.devices.uncalibrate import Intent, uncalibrate
-from simconsole.handling.attempt import Pilot
-from simconsole.rows import Snapshot
-from simconsole.signals import DeviceSample
+from simconsole.devices.calibration.cockpit_settings import CockpitSettings
+from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate
+from simconsole.evaluation.manoeuvres.attempt import Pilot
+from simconsole.values.signals import DeviceSample
+from simconsole.values.state_vector import Snapshot
 
 
 class PilotSeat:

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from simconsole.handling.attempt import Attempt, Driving, Result, part, traces
+from simconsole.evaluation.manoeuvres.attempt import Attempt, Driving, Result, part, traces
 from simconsole.profiles.manoeuvre import Observed
-from simconsole.units import DEG_PER_RAD, KMH_PER_MPS, RPM_PER_RADPS
-from simconsole.vehicle.platform import Platform
+from simconsole.values.platform import Platform
+from simconsole.values.units import DEG_PER_RAD, KMH_PER_MPS, RPM_PER_RADPS
 
 
 def observed(spec: Observed, car: Platform, duration_s: float) -> Driving:

@@ -6,14 +6,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from simconsole.devices.uncalibrate import Intent
-from simconsole.handling.attempt import Attempt, Driving, Result, part, traces, undriven
-from simconsole.handling.pilot import RunUp, Steps
+from simconsole.devices.calibration.uncalibrate import Intent
+from simconsole.drivers.manoeuvre_pilot import RunUp, Steps
+from simconsole.evaluation.manoeuvres.attempt import Attempt, Driving, Result, part, traces, undriven
+from simconsole.evaluation.metrics.table import Array, Drive
 from simconsole.profiles.manoeuvre import SineWithDwell
-from simconsole.report.table import Array, Drive
-from simconsole.rows import Snapshot
-from simconsole.units import DEG_PER_RAD, RAD_PER_DEG, STANDARD_GRAVITY_MPS2
-from simconsole.vehicle.platform import Platform
+from simconsole.values.platform import Platform
+from simconsole.values.state_vector import Snapshot
+from simconsole.values.units import DEG_PER_RAD, RAD_PER_DEG, STANDARD_GRAVITY_MPS2
 
 SLOW_DEGPS = 13.5
 A_MPS2 = 0.3 * STANDARD_GRAVITY_MPS2

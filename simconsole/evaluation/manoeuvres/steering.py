@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from simconsole.devices.uncalibrate import Intent
-from simconsole.handling.attempt import Attempt, Driving, Line, Panel, Result, part, traces, undriven
-from simconsole.handling.pilot import HoldSpeed, RunUp
+from simconsole.devices.calibration.uncalibrate import Intent
+from simconsole.drivers.manoeuvre_pilot import HoldSpeed, RunUp
+from simconsole.evaluation.manoeuvres.attempt import Attempt, Driving, Line, Panel, Result, part, traces, undriven
+from simconsole.evaluation.metrics.table import Array, Drive
 from simconsole.profiles.manoeuvre import SteadyCircle, StepSteer
-from simconsole.report.table import Array, Drive
-from simconsole.rows import Snapshot
-from simconsole.units import DEG_PER_RAD, MPS_PER_KMH, RAD_PER_DEG
-from simconsole.vehicle.platform import Platform
+from simconsole.values.platform import Platform
+from simconsole.values.state_vector import Snapshot
+from simconsole.values.units import DEG_PER_RAD, MPS_PER_KMH, RAD_PER_DEG
 
 LONGEST_STEER_S = 25.0
 SMOOTHED_S = 0.5

@@ -6,12 +6,12 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from simconsole.report.faults import plain_spans
-from simconsole.report.table import Array, Drive
-from simconsole.report.takeovers import takeovers
-from simconsole.signals import Mode
-from simconsole.units import KMH_PER_MPS
-from simconsole.words import mode_words, reason_words
+from simconsole.evaluation.metrics.fault_metrics import plain_spans
+from simconsole.evaluation.metrics.table import Array, Drive
+from simconsole.evaluation.metrics.takeovers import takeovers
+from simconsole.values.labels import mode_words, reason_words
+from simconsole.values.signals import Mode
+from simconsole.values.units import KMH_PER_MPS
 from simconsole.world.course import Course
 
 REFUSED_FROM: Final = 20

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from simconsole.report.table import Drive
+from simconsole.evaluation.metrics.table import Drive
 
 
 class FaultSpan(NamedTuple):

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from simconsole.errors import RecordingError
+from simconsole.values.errors import RecordingError
 
 Array = NDArray[np.float64]
 

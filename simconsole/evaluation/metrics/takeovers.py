@@ -5,10 +5,10 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simconsole.report.table import Array, Drive
-from simconsole.signals import Mode
-from simconsole.units import RAD_PER_DEG
-from simconsole.words import reason_words
+from simconsole.evaluation.metrics.table import Array, Drive
+from simconsole.values.labels import reason_words
+from simconsole.values.signals import Mode
+from simconsole.values.units import RAD_PER_DEG
 
 FIRST_STEER_RAD: Final = 2.0 * RAD_PER_DEG
 """More than this is a reaction (Gold, Damboeck, Lorenz, Bengler 2013); less happens to resting hands."""

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from simconsole.report.table import Array
+from simconsole.evaluation.metrics.table import Array
 
 
 def thinned(values: Array, most: int) -> NDArray[np.int64]:

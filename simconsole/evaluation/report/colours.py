@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from simconsole.signals import Mode
+from simconsole.values.signals import Mode
 
 THEORY: Final = "#c7cbd1"
 PERSON: Final = "#b3541e"

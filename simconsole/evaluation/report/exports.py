@@ -4,33 +4,21 @@ import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
-import numpy as np
-from numpy.typing import NDArray
-
-from simconsole.assembly import ResolvedSession, assemble
-from simconsole.compiling import plain
-from simconsole.kernels import Row
-from simconsole.lifetimes import remove_half_made, undone
+from simconsole.processes.lifetimes import remove_half_made, undone
 from simconsole.profiles.faults import words
-from simconsole.profiles.view import SceneProfile
-from simconsole.recording.bundle import add_export, open_bundle
-from simconsole.recording.log import LogTable
-from simconsole.replaying import recorded_session
+from simconsole.recording.bundles.bundle import add_export, open_bundle
+from simconsole.recording.bundles.log import LogTable
+from simconsole.recording.bundles.replay_bundle import recorded_session
+from simconsole.session.scene_job import LIVE_SCENE, scene_job
+from simconsole.tick.assembly import ResolvedSession
 from simconsole.world.course import Course
-
-if TYPE_CHECKING:
-    from simconsole.scene.job import Job
-
-Ticks = NDArray[np.int64]
 
 REPORT: Final = "report.html"
 SCENE: Final = "scene.rrd"
 STATION_LOGS: Final = ("can.blf", "can.log", "topics.mcap")
 """What stations recorded beside the log."""
-LIVE_SCENE: Final = "scene.live.rrd"
-"""What a paced drive's scene station records; the whole scene, made from the log, takes its place."""
 
 
 def write_exports(folder: Path, report: bool = True, scene: bool = True) -> dict[str, Any]:
@@ -95,9 +83,9 @@ def _course(resolved: ResolvedSession) -> Course | None:
 def _report(
     folder: Path, resolved: ResolvedSession, table: LogTable, summary: dict[str, Any], page: bool
 ) -> dict[str, Any]:
-    from simconsole.report.metrics import metrics
-    from simconsole.report.page import write_report as write_page
-    from simconsole.report.table import drive_of
+    from simconsole.evaluation.metrics.drive_metrics import metrics
+    from simconsole.evaluation.metrics.table import drive_of
+    from simconsole.evaluation.report.page import write_report as write_page
 
     course, title = _course(resolved), resolved.session.title or folder.name
     first_tick = int(table.ticks[0]) if len(table.ticks) else 1
@@ -129,20 +117,8 @@ def _facts(resolved: ResolvedSession, summary: dict[str, Any]) -> dict[str, obje
     }
 
 
-def scene_job(resolved: ResolvedSession, rows: Row, ticks: Ticks, columns: tuple[str, ...], tick_hz: int) -> "Job":
-    """Return what a scene process is given: rows (none for a live one), course and car."""
-    from simconsole.scene.entities import Dimensions
-    from simconsole.scene.job import Job
-    from simconsole.world.drawing import draw
-
-    platform, course = assemble(resolved, plain)[0].platform, _course(resolved)
-    dimensions = Dimensions(platform.length_m, platform.width_m, platform.height_m, platform.rear_overhang_m)
-    drawing = None if course is None else draw(course)
-    return Job(rows, ticks, columns, tick_hz, dimensions, drawing, resolved.session.outputs.scene or SceneProfile())
-
-
 def _scene(folder: Path, resolved: ResolvedSession, table: LogTable) -> None:
-    from simconsole.scene.export import export_apart
+    from simconsole.scene.viewer.export import export_apart
 
     export_apart(scene_job(resolved, table.rows, table.ticks, table.columns, table.tick_hz), folder / SCENE)
     (folder / LIVE_SCENE).unlink(missing_ok=True)

@@ -5,12 +5,12 @@ from typing import Any, Final
 
 import numpy as np
 
-from simconsole.report.colours import END, LIMIT, MODES, NOTE, PERSON, REMOTE, START, THEORY
-from simconsole.report.metrics import JUMP_M, ModeChange, Track
-from simconsole.report.table import Drive
-from simconsole.report.thinning import path_thinned
-from simconsole.signals import Mode
-from simconsole.words import mode_words
+from simconsole.evaluation.metrics.drive_metrics import JUMP_M, ModeChange, Track
+from simconsole.evaluation.metrics.table import Drive
+from simconsole.evaluation.metrics.thinning import path_thinned
+from simconsole.evaluation.report.colours import END, LIMIT, MODES, NOTE, PERSON, REMOTE, START, THEORY
+from simconsole.values.labels import mode_words
+from simconsole.values.signals import Mode
 from simconsole.world.course import Course
 
 _STEP_M: Final = 1.0

@@ -2,8 +2,8 @@
 
 from typing import Any, Final
 
-from simconsole.handling.attempt import Panel
-from simconsole.report.colours import END, LIMIT, NOTE, PERSON, REMOTE, START
+from simconsole.evaluation.manoeuvres.attempt import Panel
+from simconsole.evaluation.report.colours import END, LIMIT, NOTE, PERSON, REMOTE, START
 
 _COLOURS: Final = (REMOTE, PERSON, START, END, NOTE)
 _ROW: Final = 2

@@ -5,13 +5,13 @@ from typing import Any, Final
 
 import numpy as np
 
-from simconsole.report.colours import BAND, END, LIMIT, MODES, NOTE, PERSON, REMOTE
-from simconsole.report.metrics import ModeChange, Track, metrics
-from simconsole.report.table import Array, Drive
-from simconsole.report.thinning import thinned
-from simconsole.signals import Mode
-from simconsole.units import DEG_PER_RAD, KMH_PER_MPS
-from simconsole.words import mode_words
+from simconsole.evaluation.metrics.drive_metrics import ModeChange, Track, metrics
+from simconsole.evaluation.metrics.table import Array, Drive
+from simconsole.evaluation.metrics.thinning import thinned
+from simconsole.evaluation.report.colours import BAND, END, LIMIT, MODES, NOTE, PERSON, REMOTE
+from simconsole.values.labels import mode_words
+from simconsole.values.signals import Mode
+from simconsole.values.units import DEG_PER_RAD, KMH_PER_MPS
 from simconsole.world.course import Course
 
 _POINTS: Final = 1600

@@ -3,12 +3,12 @@
 import io
 from typing import Any, Final
 
-from simconsole.handling.attempt import Panel
-from simconsole.report.figure_map import draw_map
-from simconsole.report.figure_panels import draw_panels
-from simconsole.report.figure_traces import draw_traces
-from simconsole.report.metrics import ModeChange, Track
-from simconsole.report.table import Drive
+from simconsole.evaluation.manoeuvres.attempt import Panel
+from simconsole.evaluation.metrics.drive_metrics import ModeChange, Track
+from simconsole.evaluation.metrics.table import Drive
+from simconsole.evaluation.report.figure_map import draw_map
+from simconsole.evaluation.report.figure_panels import draw_panels
+from simconsole.evaluation.report.figure_traces import draw_traces
 from simconsole.world.course import Course
 
 STYLE: Final[dict[str, Any]] = {

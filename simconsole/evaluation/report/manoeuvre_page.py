@@ -5,12 +5,12 @@ from html import escape
 from pathlib import Path
 from typing import Final, NamedTuple
 
-from simconsole.errors import RecordingError
-from simconsole.files import write_atomically
-from simconsole.handling.attempt import Result
+from simconsole.evaluation.manoeuvres.attempt import Result
+from simconsole.evaluation.report.figures import panels_svg
+from simconsole.evaluation.report.page import STYLE
 from simconsole.profiles.manoeuvre import Limit
-from simconsole.report.figures import panels_svg
-from simconsole.report.page import STYLE
+from simconsole.values.errors import RecordingError
+from simconsole.values.host.files import write_atomically
 
 _GOOD: Final = "inside its limits"
 _BAD: Final = "NOT inside its limits"

@@ -7,11 +7,11 @@ from typing import Any, Final
 
 from numpy.typing import ArrayLike
 
-from simconsole.errors import RecordingError
-from simconsole.files import write_atomically
-from simconsole.report.figures import map_svg, traces_svg
-from simconsole.report.metrics import metrics, mode_changes, track
-from simconsole.report.table import drive_of
+from simconsole.evaluation.metrics.drive_metrics import metrics, mode_changes, track
+from simconsole.evaluation.metrics.table import drive_of
+from simconsole.evaluation.report.figures import map_svg, traces_svg
+from simconsole.values.errors import RecordingError
+from simconsole.values.host.files import write_atomically
 from simconsole.world.course import Course
 
 STYLE: Final = """

@@ -9,15 +9,15 @@ import time
 from collections.abc import Callable
 from typing import Final, NamedTuple
 
-from simconsole.errors import StationError
 from simconsole.hud.draw import DrawItem
 from simconsole.hud.layout import check_screen, layout, sample_views
-from simconsole.hud.raster import Painter
 from simconsole.hud.screen import Screen, screen_of
 from simconsole.hud.view import HudMemory, HudSettings, HudView, view
-from simconsole.keys import Key
+from simconsole.hud.window.raster import Painter
 from simconsole.profiles.view import HudProfile
-from simconsole.rows import Snapshot
+from simconsole.values.errors import StationError
+from simconsole.values.key_codes import Key
+from simconsole.values.state_vector import Snapshot
 
 KEYS: Final[dict[str, Key]] = {
     "K_LEFT": Key.STEER_LEFT,

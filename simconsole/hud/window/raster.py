@@ -20,7 +20,7 @@ from simconsole.hud.layout import layout
 from simconsole.hud.screen import Screen, screen_of
 from simconsole.hud.view import HudMemory, HudSettings, HudView, view
 from simconsole.profiles.view import HudProfile
-from simconsole.rows import Snapshot
+from simconsole.values.state_vector import Snapshot
 
 if TYPE_CHECKING:
     import pygame

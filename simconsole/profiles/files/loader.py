@@ -10,9 +10,10 @@ from functools import cache
 from pathlib import Path
 from typing import Final, TypeVar
 
-from simconsole import profile_errors, profile_text
-from simconsole.errors import ProfileError
-from simconsole.profile_text import Plain, to_text
+from simconsole.profiles import strict_yaml as profile_text
+from simconsole.profiles import validation as profile_errors
+from simconsole.profiles.strict_yaml import Plain, to_text
+from simconsole.values.errors import ProfileError
 
 __all__ = [
     "MAX_BYTES",
@@ -46,7 +47,7 @@ def profiles_folder() -> Path:
     Raises:
         ProfileError: neither is there, so the installation is damaged.
     """
-    package = Path(__file__).resolve().parent
+    package = Path(__file__).resolve().parents[2]
     for folder in (package / "_profiles", package.parent / "profiles"):
         if folder.is_dir():
             return folder

@@ -2,7 +2,7 @@
 
 import msgspec
 
-from simconsole.profile_files import find, load, read_beside
+from simconsole.profiles.files.loader import find, load, read_beside
 from simconsole.profiles.tyre import parse_tir
 from simconsole.profiles.vehicle import CarProfile, VehicleProfile
 

@@ -15,11 +15,8 @@ from typing import Any, Final
 
 import msgspec
 
-from simconsole.errors import RecordingError
-from simconsole.files import draft_of, give_back, reserve, sync_folder, write_atomically
-from simconsole.recording.framing import START_OF_CHAIN, Break, LogHeader, chain, frame_size
-from simconsole.recording.log import LAST_TICKS, LogReader, LogWriter
-from simconsole.recording.manifest import (
+from simconsole.recording.bundles.log import LAST_TICKS, LogReader, LogWriter
+from simconsole.recording.bundles.manifest import (
     MANIFEST,
     ROOM_BYTES,
     FileEntry,
@@ -31,7 +28,10 @@ from simconsole.recording.manifest import (
     size_problem,
     write_manifest,
 )
-from simconsole.signals import Event
+from simconsole.recording.framing import START_OF_CHAIN, Break, LogHeader, chain, frame_size
+from simconsole.values.errors import RecordingError
+from simconsole.values.host.files import draft_of, give_back, reserve, sync_folder, write_atomically
+from simconsole.values.signals import Event
 
 LOG: Final = "drive.log"
 SESSION_FILE: Final = "session.json"

@@ -17,9 +17,6 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simconsole.errors import RecordingError
-from simconsole.files import replaced
-from simconsole.kernels import Row
 from simconsole.recording.framing import (
     START_OF_CHAIN,
     Break,
@@ -30,6 +27,9 @@ from simconsole.recording.framing import (
     frame_size,
     seal,
 )
+from simconsole.values.errors import RecordingError
+from simconsole.values.host.files import replaced
+from simconsole.values.kernels import Row
 
 SYNC_INTERVAL_S: Final = 1.0
 """Longest time whose ticks a power cut may take."""

@@ -6,8 +6,8 @@ from typing import Any, Final
 
 import msgspec
 
-from simconsole.errors import RecordingError
-from simconsole.files import write_atomically
+from simconsole.values.errors import RecordingError
+from simconsole.values.host.files import write_atomically
 
 SCHEMA: Final = 1
 MANIFEST: Final = "manifest.json"

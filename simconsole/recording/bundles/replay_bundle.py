@@ -5,14 +5,15 @@ from pathlib import Path
 
 import numpy as np
 
-from simconsole import __version__, compiling
-from simconsole.assembly import ResolvedSession, assemble
-from simconsole.compiling import compiled
-from simconsole.errors import RecordingError
-from simconsole.pipeline import Console, ConsoleState, advance_row, decide
-from simconsole.profile_files import parse
-from simconsole.recording.bundle import SESSION_FILE, Bundle, open_bundle, session_problem
+from simconsole import __version__
+from simconsole.profiles.files.loader import parse
+from simconsole.recording.bundles.bundle import SESSION_FILE, Bundle, open_bundle, session_problem
 from simconsole.recording.replay import ReplayResult, replay
+from simconsole.tick.advance import Console, ConsoleState, advance_row, decide
+from simconsole.tick.assembly import ResolvedSession, assemble
+from simconsole.values.errors import RecordingError
+from simconsole.values.host import jit as compiling
+from simconsole.values.host.jit import compiled
 
 
 def recorded_session(bundle: Bundle) -> ResolvedSession:

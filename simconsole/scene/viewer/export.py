@@ -1,4 +1,4 @@
-"""A whole drive to scene.rrd, in a process of its own: `python -m simconsole.scene.export JOB.npz SCENE.rrd`.
+"""A whole drive to scene.rrd, in a process of its own: `python -m simconsole.scene.viewer.export JOB.npz SCENE.rrd`.
 
 With `--attached` before them, as the console starts it, it ends with whoever holds its standard input.
 """
@@ -8,13 +8,13 @@ import sys
 from pathlib import Path
 from typing import Final
 
-from simconsole.errors import SimConsoleError, StationError
-from simconsole.files import replaced
-from simconsole.lifetimes import ATTACHED, end, follow_parent, spawn, undone
+from simconsole.processes.lifetimes import ATTACHED, end, follow_parent, spawn, undone
+from simconsole.processes.shared_memory import temporary_folder
 from simconsole.scene.entities import world_shapes
-from simconsole.scene.job import Job, load_job, save_job
 from simconsole.scene.timeline import Memory, piece
-from simconsole.shared_memory import temporary_folder
+from simconsole.scene.viewer.job import Job, load_job, save_job
+from simconsole.values.errors import SimConsoleError, StationError
+from simconsole.values.host.files import replaced
 
 PIECE_S: Final = 60.0
 """Length of the pieces a drive is written in: bounds the memory, not the speed."""
@@ -26,7 +26,7 @@ def export(job: Job, path: Path) -> None:
     Raises:
         StationError: the file cannot be written whole.
     """
-    from simconsole.scene.rerun_view import RerunView
+    from simconsole.scene.viewer.rerun_view import RerunView
 
     world = None if job.drawing is None else world_shapes(job.drawing)
     with replaced(path) as draft, undone(lambda: draft.unlink(missing_ok=True)):
@@ -51,7 +51,7 @@ def export_apart(job: Job, path: Path, deadline_s: float = 60.0) -> None:
     with temporary_folder() as folder, (folder / "said").open("w+b") as said:
         job_path = folder / "job.npz"
         save_job(job_path, job)
-        words = ["-m", "simconsole.scene.export", ATTACHED, str(job_path), str(path)]
+        words = ["-m", "simconsole.scene.viewer.export", ATTACHED, str(job_path), str(path)]
         try:
             process = spawn(words, stderr=said.fileno())
         except OSError as error:
@@ -75,7 +75,7 @@ def main(arguments: list[str]) -> int:
         follow_parent(None)
         arguments = arguments[1:]
     if len(arguments) != 2:
-        print("usage: python -m simconsole.scene.export JOB.npz SCENE.rrd", file=sys.stderr)
+        print("usage: python -m simconsole.scene.viewer.export JOB.npz SCENE.rrd", file=sys.stderr)
         return 2
     try:
         export(load_job(Path(arguments[0])), Path(arguments[1]))

@@ -11,10 +11,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from simconsole.rows import Snapshot
 from simconsole.scene.entities import world_shapes
-from simconsole.scene.job import Job
 from simconsole.scene.timeline import Lane, Memory, piece
+from simconsole.scene.viewer.job import Job
+from simconsole.values.state_vector import Snapshot
 
 POLL_S = 0.01
 LINK_LANE = "lanes/link"
@@ -42,7 +42,7 @@ def follow(ports: Ports, job: Job, path: Path) -> None:
         StationError: the file cannot be written.
     """
     os.environ.setdefault("RUST_LOG", QUIET)
-    from simconsole.scene.rerun_view import RerunView
+    from simconsole.scene.viewer.rerun_view import RerunView
 
     world = None if job.drawing is None else world_shapes(job.drawing)
     view = RerunView(path, job.profile, job.dimensions, world, index=False)

@@ -7,10 +7,10 @@ from zipfile import BadZipFile
 import msgspec
 import numpy as np
 
-from simconsole.errors import StationError
 from simconsole.profiles.view import SceneProfile
 from simconsole.scene.entities import Array, Dimensions
 from simconsole.scene.timeline import NEEDED, Ticks
+from simconsole.values.errors import StationError
 from simconsole.world.drawing import Drawing
 from simconsole.world.sheet import Light
 

@@ -8,9 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from simconsole.errors import StationError
 from simconsole.profiles.view import SceneProfile
-from simconsole.scene.blueprint import MAP, TIMELINE, blueprint
 from simconsole.scene.entities import (
     ASPHALT,
     BODY,
@@ -33,7 +31,9 @@ from simconsole.scene.entities import (
     raised,
 )
 from simconsole.scene.timeline import PLOTS, TAKEOVER_WORDS, Entry, Lane, Piece, Strip, Ticks
-from simconsole.words import mode_words
+from simconsole.scene.viewer.blueprint import MAP, TIMELINE, blueprint
+from simconsole.values.errors import StationError
+from simconsole.values.labels import mode_words
 
 APPLICATION: Final = "simconsole"
 DRIVEN_PX: Final = 2.0

@@ -20,7 +20,7 @@ from typing import Any, Final, TypeVar
 
 import numpy as np
 
-from simconsole.kernels import forget, is_kernel, take
+from simconsole.values.kernels import forget, is_kernel, take
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -99,20 +99,43 @@ def _stamp(value: object, user: Callable[..., Any]) -> str:
 
 
 @cache
+def compiled_for_each(step: Callable[..., Any]) -> Callable[..., None]:
+    """Return the compiled loop that runs a kernel on every row of its tables, on all cores.
+
+    Args:
+        step: a kernel of (row before, row after, parameters, an int), as a platform's `step`.
+
+    Returns: a function of (rows before, rows after, parameters, an int), the tables float64 [vehicles, columns].
+    """
+    namespace = {"step": _inner(step), "prange": _numba().prange, "len": len}
+    twin = types.FunctionType(_for_each.__code__, namespace, "for_each")
+    return _cached(twin, digest(step) + "-each", parallel=True)  # type: ignore[no-any-return]
+
+
+def _for_each(before: Any, after: Any, parameters: Any, count: int) -> None:
+    for index in prange(len(after)):  # type: ignore[name-defined]  # noqa: F821  # both names: compiled_for_each
+        step(before[index], after[index], parameters[index], count)  # type: ignore[name-defined]  # noqa: F821
+
+
+@cache
 def _entry(function: Callable[..., Any]) -> Any:
-    """Return the dispatcher that Python calls: cached. The kernels inside it are in its code, not cached again.
+    """Return the dispatcher that Python calls. The kernels inside it are in its code, not cached again."""
+    return _cached(_twin(function), digest(function))
+
+
+def _cached(twin: types.FunctionType, name: str, **options: bool) -> Any:
+    """Return a dispatcher whose machine code is kept in the cache folder of this name.
 
     numba keys its cache by path, content and line of the source file too; the empty file in the folder takes its place,
     so that the digest alone decides, and an installation finds what a checkout compiled.
     """
-    twin = _twin(function)
     numba = _numba()
-    folder = _own_folder(digest(function))
+    folder = _own_folder(name)
     source = folder / "kernel.py"
     source.touch()
     twin.__code__ = twin.__code__.replace(co_filename=str(source), co_firstlineno=1)
     numba.config.CACHE_DIR = str(folder)
-    return numba.njit(cache=True, fastmath=False, error_model="numpy")(twin)
+    return numba.njit(cache=True, fastmath=False, error_model="numpy", **options)(twin)
 
 
 @cache

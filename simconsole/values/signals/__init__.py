@@ -5,7 +5,7 @@ the rear axle on the ground, in `map`. Every field is a float64, so that one row
 the same classes serve the compiled functions. Enumerations are stored as their number.
 """
 
-from simconsole.signals.codes import (
+from simconsole.values.signals.codes import (
     Button,
     Commander,
     Event,
@@ -18,7 +18,7 @@ from simconsole.signals.codes import (
     RemoteKind,
     Validity,
 )
-from simconsole.signals.inputs import (
+from simconsole.values.signals.inputs import (
     NEVER_TICKS,
     NO_COMMAND,
     NO_EVENTS,
@@ -27,7 +27,7 @@ from simconsole.signals.inputs import (
     EventInput,
     RemoteCommand,
 )
-from simconsole.signals.stages import (
+from simconsole.values.signals.stages import (
     NO_TORQUE,
     ArbiterMemory,
     Arbitration,

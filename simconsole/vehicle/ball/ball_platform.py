@@ -5,10 +5,10 @@ import math
 import numpy as np
 
 from simconsole.profiles.vehicle import BallProfile
-from simconsole.trigonometry import wrap_angle
-from simconsole.units import RAD_PER_DEG, STANDARD_GRAVITY_MPS2
-from simconsole.vehicle.ball.step import BALL_WIDTH, BallParameters, BallState, step, vehicle_state
-from simconsole.vehicle.platform import Ground, Platform, Pose
+from simconsole.values.platform import Ground, Platform, Pose
+from simconsole.values.trigonometry import wrap_angle
+from simconsole.values.units import RAD_PER_DEG, STANDARD_GRAVITY_MPS2
+from simconsole.vehicle.ball.ball_step import BALL_WIDTH, BallParameters, BallState, step, vehicle_state
 
 ROLLING_SHARE = 5.0 / 7.0
 """Acceleration of a solid sphere rolling down a slope, as a share of a sliding body's (inertia 2/5 m r2)."""

@@ -8,10 +8,10 @@ spin, so a slope moves it with 5/7 of gravity.
 from math import sqrt
 from typing import Final, NamedTuple
 
-from simconsole.kernels import Row, approach, clip, is_finite, kernel, put, take
-from simconsole.rows import COMMAND_AT, COMMAND_WIDTH, PLATFORM_AT, VEHICLE_AT
-from simconsole.signals import VehicleCommand, VehicleState
-from simconsole.trigonometry import atan2, cos, sin, wrap_angle
+from simconsole.values.kernels import Row, approach, clip, is_finite, kernel, put, take
+from simconsole.values.signals import VehicleCommand, VehicleState
+from simconsole.values.state_vector import COMMAND_AT, COMMAND_WIDTH, PLATFORM_AT, VEHICLE_AT
+from simconsole.values.trigonometry import atan2, cos, sin, wrap_angle
 
 STEP_S: Final = 0.001
 ROLLING_MPS: Final = 0.05

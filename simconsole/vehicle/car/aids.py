@@ -5,8 +5,8 @@ They know the true speed over ground, as a car's estimator wants to: no wheel-sp
 
 from typing import Final, NamedTuple
 
-from simconsole.kernels import approach, clip, kernel
-from simconsole.signals import Request
+from simconsole.values.kernels import approach, clip, kernel
+from simconsole.values.signals import Request
 from simconsole.vehicle.car.axles import Axles, Contact
 from simconsole.vehicle.car.parameters import AidParameters, CarParameters
 from simconsole.vehicle.car.state import AidState, Car

@@ -2,7 +2,7 @@
 
 from typing import Final, NamedTuple
 
-from simconsole.kernels import kernel
+from simconsole.values.kernels import kernel
 from simconsole.vehicle.car.parameters import AxleParameters, CarParameters, SteeringParameters
 from simconsole.vehicle.car.state import BodyState, Car, Wheel
 from simconsole.vehicle.car.steering import Heading, aligning_moment

@@ -3,8 +3,8 @@
 from math import sqrt
 from typing import NamedTuple
 
-from simconsole.kernels import clip, kernel
-from simconsole.trigonometry import direction, wrap_angle
+from simconsole.values.kernels import clip, kernel
+from simconsole.values.trigonometry import direction, wrap_angle
 from simconsole.vehicle.car.axles import Axles, Contact
 from simconsole.vehicle.car.parameters import AxleParameters, CarParameters
 from simconsole.vehicle.car.state import BodyState, Car, Wheel

@@ -6,8 +6,6 @@ from typing import Final
 
 import numpy as np
 
-from simconsole.errors import ProfileError
-from simconsole.kernels import Row, put
 from simconsole.profiles.vehicle import (
     AidsProfile,
     AutomaticProfile,
@@ -16,9 +14,13 @@ from simconsole.profiles.vehicle import (
     EngineProfile,
     GearboxProfile,
 )
-from simconsole.rows import PLATFORM_AT
-from simconsole.trigonometry import wrap_angle
-from simconsole.units import MPS_PER_KMH, RAD_PER_DEG, RADPS_PER_RPM, STANDARD_GRAVITY_MPS2
+from simconsole.values.errors import ProfileError
+from simconsole.values.kernels import Row, put
+from simconsole.values.platform import MOST_PATCHES, Ground, Platform, Pose
+from simconsole.values.state_vector import PLATFORM_AT
+from simconsole.values.trigonometry import wrap_angle
+from simconsole.values.units import MPS_PER_KMH, RAD_PER_DEG, RADPS_PER_RPM, STANDARD_GRAVITY_MPS2
+from simconsole.vehicle.car.car_step import STEP_S, load_car, step
 from simconsole.vehicle.car.outputs import vehicle_state
 from simconsole.vehicle.car.parameters import (
     NO_PATCH,
@@ -32,8 +34,6 @@ from simconsole.vehicle.car.parameters import (
     SteeringParameters,
 )
 from simconsole.vehicle.car.state import CAR_WIDTH, CarState
-from simconsole.vehicle.car.step import STEP_S, load_car, step
-from simconsole.vehicle.platform import MOST_PATCHES, Ground, Platform, Pose
 
 AIR_KGPM3: Final = 1.225
 """Density of air, ISO 2533 standard atmosphere at sea level."""

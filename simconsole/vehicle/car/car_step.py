@@ -2,10 +2,10 @@
 
 from typing import Final
 
-from simconsole.kernels import Row, clip, forget, is_finite, kernel, put, take
-from simconsole.rows import COMMAND_AT, COMMAND_WIDTH, PLATFORM_AT, VEHICLE_AT
-from simconsole.signals import Request, VehicleCommand
-from simconsole.trigonometry import nearest
+from simconsole.values.kernels import Row, clip, forget, is_finite, kernel, put, take
+from simconsole.values.signals import Request, VehicleCommand
+from simconsole.values.state_vector import COMMAND_AT, COMMAND_WIDTH, PLATFORM_AT, VEHICLE_AT
+from simconsole.values.trigonometry import nearest
 from simconsole.vehicle.car.axles import Contact, Grips, push
 from simconsole.vehicle.car.body import move
 from simconsole.vehicle.car.driveline import turn

@@ -2,8 +2,8 @@
 
 from typing import Final, NamedTuple
 
-from simconsole.kernels import clip, kernel
-from simconsole.signals import Request
+from simconsole.values.kernels import clip, kernel
+from simconsole.values.signals import Request
 from simconsole.vehicle.car.aids import Brakes, brake_torques, hill_hold, stability, traction
 from simconsole.vehicle.car.axles import Axles, Contact
 from simconsole.vehicle.car.engine import EngineDrive, engine_drive

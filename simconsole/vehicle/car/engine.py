@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from simconsole.kernels import clip, kernel
+from simconsole.values.kernels import clip, kernel
 from simconsole.vehicle.car.parameters import EngineParameters
 
 

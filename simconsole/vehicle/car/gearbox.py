@@ -8,8 +8,8 @@ lever where the gearbox is while the clutch is closed.
 
 from typing import Final
 
-from simconsole.kernels import approach, clip, kernel
-from simconsole.signals import GearFault, Request
+from simconsole.values.kernels import approach, clip, kernel
+from simconsole.values.signals import GearFault, Request
 from simconsole.vehicle.car.parameters import GearParameters
 from simconsole.vehicle.car.state import Gearbox
 

@@ -1,7 +1,7 @@
 """What the wheels stand on: patches of map with a friction of their own. Looked up once a tick: 8 cm at 20 m/s."""
 
-from simconsole.kernels import kernel
-from simconsole.trigonometry import direction
+from simconsole.values.kernels import kernel
+from simconsole.values.trigonometry import direction
 from simconsole.vehicle.car.axles import Grips
 from simconsole.vehicle.car.parameters import CarParameters, PatchParameters
 from simconsole.vehicle.car.state import Car

@@ -3,9 +3,9 @@
 from math import sqrt
 from typing import Final, NamedTuple
 
-from simconsole.kernels import clip, kernel
-from simconsole.signals import VehicleState
-from simconsole.trigonometry import atan, direction
+from simconsole.values.kernels import clip, kernel
+from simconsole.values.signals import VehicleState
+from simconsole.values.trigonometry import atan, direction
 from simconsole.vehicle.car.axles import along_speed, side_speed
 from simconsole.vehicle.car.engine import above_idle, engine_friction, full_torque
 from simconsole.vehicle.car.gearbox import bite, gear_ratio

@@ -13,9 +13,9 @@ from collections.abc import Callable
 from math import sqrt
 from typing import Final, NamedTuple
 
-from simconsole.kernels import clip, kernel
 from simconsole.profiles.tyre import NEEDED, ONE, ZERO
-from simconsole.trigonometry import HALF_PI, atan, cos, sin
+from simconsole.values.kernels import clip, kernel
+from simconsole.values.trigonometry import HALF_PI, atan, cos, sin
 
 LEAST_LOAD_N: Final = 1.0
 _TWO_OVER_PI: Final = 1.0 / HALF_PI

@@ -9,7 +9,7 @@ stand with no creep. Left and right are always treated alike, so that mirrored d
 
 from typing import Final, NamedTuple
 
-from simconsole.kernels import approach, clip, kernel
+from simconsole.values.kernels import approach, clip, kernel
 
 MOST_SWEEPS: Final = 4.0
 

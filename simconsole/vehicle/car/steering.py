@@ -3,8 +3,8 @@
 from math import sqrt
 from typing import NamedTuple
 
-from simconsole.kernels import approach, clip, kernel
-from simconsole.trigonometry import direction
+from simconsole.values.kernels import approach, clip, kernel
+from simconsole.values.trigonometry import direction
 from simconsole.vehicle.car.parameters import SteeringParameters
 from simconsole.vehicle.car.state import SteeringState
 

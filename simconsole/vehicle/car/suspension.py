@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from simconsole.kernels import kernel
+from simconsole.values.kernels import kernel
 from simconsole.vehicle.car.parameters import AxleParameters
 from simconsole.vehicle.car.state import BodyState, Wheel
 

@@ -8,9 +8,10 @@ from functools import cache
 from math import sqrt
 from typing import Any, Final, NamedTuple
 
-from simconsole.kernels import clip, kernel, rebound
 from simconsole.profiles.tyre import NEEDED, ONE, ZERO
+from simconsole.values.kernels import clip, kernel, rebound
 from simconsole.vehicle.car.axles import rim_moment
+from simconsole.vehicle.car.car_step import step
 from simconsole.vehicle.car.pac2002 import (
     LEAST_LOAD_N,
     Pac2002,
@@ -24,7 +25,6 @@ from simconsole.vehicle.car.pac2002 import (
 )
 from simconsole.vehicle.car.parameters import AxleParameters, SteeringParameters
 from simconsole.vehicle.car.steering import ROLLING_MPS
-from simconsole.vehicle.car.step import step
 from simconsole.vehicle.car.tyre import PEAK_DEMAND, tyre
 
 COEFFICIENTS: Final = Pac2002(*(1.0,) * len(NEEDED + ZERO + ONE))

@@ -11,7 +11,7 @@ beyond that slides along, at every speed, locked wheels included.
 from math import sqrt
 from typing import NamedTuple
 
-from simconsole.kernels import clip, kernel
+from simconsole.values.kernels import clip, kernel
 from simconsole.vehicle.car.parameters import AxleParameters
 
 PEAK_DEMAND = 2.0

@@ -1,4 +1,4 @@
-"""Write a world from its plan: `python -m simconsole.world.generate PLAN.yaml WORLD.yaml` (shell)."""
+"""Write a world from its plan: `python -m simconsole.world.tools.generate PLAN.yaml WORLD.yaml` (shell)."""
 
 import json
 import sys
@@ -7,10 +7,10 @@ from pathlib import Path
 
 import msgspec
 
-from simconsole.errors import ProfileError, SimConsoleError
-from simconsole.profile_files import load
 from simconsole.profiles.course_plan import CoursePlan
+from simconsole.profiles.files.loader import load
 from simconsole.profiles.world import WorldProfile, WorldSection
+from simconsole.values.errors import ProfileError, SimConsoleError
 from simconsole.world.planning import PLACES_M, PLACES_RAD, solve
 
 
@@ -34,7 +34,7 @@ def to_text(world: WorldProfile, plan_name: str) -> str:
 
 
 def _lines(world: WorldProfile, plan_name: str) -> Iterator[str]:
-    yield f"# Generated from {plan_name} by simconsole.world.generate; edit the plan instead."
+    yield f"# Generated from {plan_name} by simconsole.world.tools.generate; edit the plan instead."
     for key in WorldProfile.__struct_fields__:
         value = getattr(world, key)
         if not isinstance(value, tuple):
@@ -61,7 +61,7 @@ def _value(key: str, value: object) -> str:
 def main(arguments: Sequence[str]) -> int:
     """Run the command; return its exit code."""
     if len(arguments) != 2:
-        print("usage: python -m simconsole.world.generate PLAN.yaml WORLD.yaml", file=sys.stderr)
+        print("usage: python -m simconsole.world.tools.generate PLAN.yaml WORLD.yaml", file=sys.stderr)
         return 2
     try:
         world = generate(*arguments)

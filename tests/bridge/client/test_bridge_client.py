@@ -8,9 +8,9 @@ import pytest
 from websockets.sync.server import Server, ServerConnection
 from websockets.sync.server import serve as serve_websockets
 
-from simconsole.bridge.client import BridgeClient
-from simconsole.bridge.client_protocol import Goal
-from simconsole.errors import BridgeError, LocalProtocolError
+from simconsole.bridge.client.bridge_client import BridgeClient
+from simconsole.bridge.protocol.client_protocol import Goal
+from simconsole.values.errors import BridgeError, LocalProtocolError
 
 
 @pytest.fixture

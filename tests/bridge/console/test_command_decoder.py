@@ -4,11 +4,11 @@ from typing import Any
 
 import pytest
 
-from simconsole.bridge.commands import CommandIntake
-from simconsole.bridge.console import ConsoleBridge
-from simconsole.errors import RemoteProtocolError
+from simconsole.bridge.console.command_decoder import CommandIntake
+from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.profiles.bridge import BridgeProfile, CommandLimits
-from simconsole.signals import Event, RemoteCommand, RemoteKind
+from simconsole.values.errors import RemoteProtocolError
+from simconsole.values.signals import Event, RemoteCommand, RemoteKind
 
 CONTROL = "/control/command/control_cmd"
 

@@ -1,8 +1,8 @@
 from collections.abc import Callable
 from typing import Any
 
-from simconsole.bridge.console import ConsoleBridge
-from simconsole.bridge.counters import standing, summed
+from simconsole.bridge.console.counters import standing, summed
+from simconsole.bridge.console.endpoint import ConsoleBridge
 
 CONTROL = "/control/command/control_cmd"
 

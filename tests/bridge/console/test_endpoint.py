@@ -3,10 +3,10 @@ from typing import Any
 
 import pytest
 
-from simconsole.bridge.console import ConsoleBridge
-from simconsole.errors import ProfileError
+from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.signals import Event
+from simconsole.values.errors import ProfileError
+from simconsole.values.signals import Event
 
 MS = 1_000_000
 CONTROL = "/control/command/control_cmd"

@@ -1,5 +1,5 @@
-from simconsole.bridge.inputs import BridgeInputs, aged
-from simconsole.signals import NEVER_TICKS, NO_COMMAND, Event, RemoteCommand, RemoteKind
+from simconsole.bridge.console.input_slots import BridgeInputs, aged
+from simconsole.values.signals import NEVER_TICKS, NO_COMMAND, Event, RemoteCommand, RemoteKind
 
 COMMAND = NO_COMMAND._replace(kind=float(RemoteKind.SPEED), speed_mps=3.0, direction=0.0)
 

@@ -5,12 +5,12 @@ from typing import Any
 
 import pytest
 
-from simconsole.bridge.access import Role
-from simconsole.bridge.commands import REQUESTS
-from simconsole.bridge.console import ConsoleBridge
-from simconsole.bridge.operate import ACTS_MAX, Act, told
-from simconsole.rows import Snapshot
-from simconsole.signals import Event
+from simconsole.bridge.console.command_decoder import REQUESTS
+from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.console.operator_acts import ACTS_MAX, Act, told
+from simconsole.bridge.protocol.access import Role
+from simconsole.values.signals import Event
+from simconsole.values.state_vector import Snapshot
 from tests.bridge.fixtures import Peer
 
 

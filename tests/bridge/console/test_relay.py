@@ -5,13 +5,13 @@ from typing import Any
 
 import pytest
 
-from simconsole.bridge.access import Role
-from simconsole.bridge.console import ConsoleBridge
+from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.console.relay import ABORTED, CANCELED, MAX_NODES, SUCCEEDED, GraphView, Offer, Order, Relay
 from simconsole.bridge.messages import Definition, standard_registry
 from simconsole.bridge.messages.cdr import deserialize, serialize
 from simconsole.bridge.messages.spelled import definition_of
-from simconsole.bridge.relay import ABORTED, CANCELED, MAX_NODES, SUCCEEDED, GraphView, Offer, Order, Relay
-from simconsole.signals import Event, RemoteKind
+from simconsole.bridge.protocol.access import Role
+from simconsole.values.signals import Event, RemoteKind
 
 NOTHING = GraphView({}, frozenset(), {}, {}, frozenset())
 GRIP = (definition_of("demo/msg/Grip", {"force": "double"}),)

@@ -4,8 +4,8 @@ from typing import Any
 
 import pytest
 
-from simconsole.bridge.topics import ONCE, is_due, quaternion
-from simconsole.signals import NEVER_TICKS, Event, Mode, Reason
+from simconsole.bridge.console.topics import ONCE, is_due, quaternion
+from simconsole.values.signals import NEVER_TICKS, Event, Mode, Reason
 
 TYPES = {
     "/clock": "rosgraph_msgs/Clock",

@@ -4,10 +4,10 @@ from typing import Any
 
 import pytest
 
-from simconsole.bridge.console import ConsoleBridge
-from simconsole.bridge.upstream import Upstream
+from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.console.upstream import Upstream
 from simconsole.profiles.bridge import BridgeProfile, UpstreamProfile
-from simconsole.signals import Event
+from simconsole.values.signals import Event
 
 CONTROL = "/control/command/control_cmd"
 

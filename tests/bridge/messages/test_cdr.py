@@ -4,7 +4,7 @@ import pytest
 
 from simconsole.bridge.messages import standard_registry
 from simconsole.bridge.messages.cdr import deserialize, serialize
-from simconsole.errors import RemoteProtocolError
+from simconsole.values.errors import RemoteProtocolError
 
 HEADER = b"\x00\x01\x00\x00"
 

@@ -1,7 +1,7 @@
 import pytest
 
 from simconsole.bridge.messages import Registry, standard_registry
-from simconsole.errors import RemoteProtocolError
+from simconsole.values.errors import RemoteProtocolError
 
 
 @pytest.fixture

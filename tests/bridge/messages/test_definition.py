@@ -1,7 +1,7 @@
 import pytest
 
 from simconsole.bridge.messages.definition import full_name, parse, parse_all
-from simconsole.errors import BridgeError
+from simconsole.values.errors import BridgeError
 
 
 def test_fields_keep_order_type_and_default() -> None:

@@ -5,7 +5,7 @@ import msgspec
 import pytest
 
 from simconsole.bridge.messages import Registry, is_stamped, standard_registry
-from simconsole.errors import BridgeError, RemoteProtocolError
+from simconsole.values.errors import BridgeError, RemoteProtocolError
 
 
 @pytest.fixture

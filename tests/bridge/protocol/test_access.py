@@ -4,10 +4,10 @@ from typing import Any
 
 import pytest
 
-from simconsole.bridge.access import OPEN, Access, Role, read_tokens
-from simconsole.bridge.console import ConsoleBridge
-from simconsole.bridge.operations import Auth
-from simconsole.errors import ProfileError, RemoteProtocolError
+from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.protocol.access import OPEN, Access, Role, read_tokens
+from simconsole.bridge.protocol.operations import Auth
+from simconsole.values.errors import ProfileError, RemoteProtocolError
 
 TOKENS = {"v" * 16: Role.VIEW, "p" * 16: Role.PUBLISH, "ü" * 16: Role.CONTROL}
 CHATTER = {"topic": "/chatter", "type": "std_msgs/String"}

@@ -1,6 +1,6 @@
 import pytest
 
-from simconsole.bridge.backoff import CAP_S, Backoff, Liveness
+from simconsole.bridge.protocol.backoff import CAP_S, Backoff, Liveness
 
 
 def test_pauses_double_up_to_the_cap_and_begin_again() -> None:

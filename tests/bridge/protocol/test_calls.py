@@ -6,11 +6,11 @@ from typing import Any
 
 import pytest
 
-from simconsole.bridge.access import Role
-from simconsole.bridge.console import ConsoleBridge
-from simconsole.bridge.documents import Binary
-from simconsole.errors import RemoteProtocolError
+from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.protocol.access import Role
+from simconsole.bridge.protocol.documents import Binary
 from simconsole.profiles.bridge import BridgeLimits, BridgeProfile
+from simconsole.values.errors import RemoteProtocolError
 from tests.bridge.reading import read_any
 
 ADD = {"service": "/add", "type": "example_interfaces/AddTwoInts"}

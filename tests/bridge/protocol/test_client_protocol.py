@@ -4,8 +4,8 @@ from typing import Any
 
 import pytest
 
-from simconsole.bridge.client_protocol import MAX_STATUS, ClientProtocol, Goal
-from simconsole.errors import BridgeError, LocalProtocolError
+from simconsole.bridge.protocol.client_protocol import MAX_STATUS, ClientProtocol, Goal
+from simconsole.values.errors import BridgeError, LocalProtocolError
 
 
 def publish(topic: str, msg: Any) -> bytes:

@@ -2,9 +2,9 @@ import json
 
 import pytest
 
-from simconsole.bridge.outgoing import Outlet
-from simconsole.bridge.session import Session, resolve_topic
-from simconsole.errors import RemoteProtocolError
+from simconsole.bridge.protocol.client_session import Session, resolve_topic
+from simconsole.bridge.protocol.subscription_queue import Outlet
+from simconsole.values.errors import RemoteProtocolError
 
 
 def session(woken: list[int] | None = None) -> Session:

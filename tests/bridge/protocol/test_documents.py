@@ -4,8 +4,8 @@ import struct
 import cbor2
 import pytest
 
-from simconsole.bridge.documents import LENIENT_BYTES, TYPED_ARRAYS, Binary, has_duplicate_keys, read
-from simconsole.errors import RemoteProtocolError
+from simconsole.bridge.protocol.documents import LENIENT_BYTES, TYPED_ARRAYS, Binary, has_duplicate_keys, read
+from simconsole.values.errors import RemoteProtocolError
 
 
 def test_object_is_read() -> None:

@@ -6,9 +6,9 @@ from typing import Any
 import cbor2
 import pytest
 
-from simconsole.bridge.documents import Binary
-from simconsole.bridge.forms import PLAIN, Encoder, Form, png, spell
 from simconsole.bridge.messages import standard_registry
+from simconsole.bridge.protocol.documents import Binary
+from simconsole.bridge.protocol.forms import PLAIN, Encoder, Form, png, spell
 from tests.bridge.reading import unpacked
 
 HEAD = b'{"op":"publish","topic":"/a","msg":'

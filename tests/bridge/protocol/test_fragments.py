@@ -3,9 +3,9 @@ import random
 
 import pytest
 
-from simconsole.bridge.fragments import MAX_OPEN, TIMEOUT_NS, Assembler, split
-from simconsole.bridge.operations import Fragment
-from simconsole.errors import RemoteProtocolError
+from simconsole.bridge.protocol.fragments import MAX_OPEN, TIMEOUT_NS, Assembler, split
+from simconsole.bridge.protocol.operations import Fragment
+from simconsole.values.errors import RemoteProtocolError
 
 
 def pieces(text: str, size: int, identifier: str = "a") -> list[Fragment]:

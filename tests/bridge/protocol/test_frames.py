@@ -1,8 +1,8 @@
 import pytest
 from websockets.frames import Frame, Opcode
 
-from simconsole.bridge.documents import Binary
-from simconsole.bridge.frames import (
+from simconsole.bridge.protocol.documents import Binary
+from simconsole.bridge.protocol.frames import (
     ASSEMBLY_NS,
     BINARY,
     CLOSE,
@@ -13,7 +13,7 @@ from simconsole.bridge.frames import (
     check_close,
     frame_head,
 )
-from simconsole.errors import FrameError
+from simconsole.values.errors import FrameError
 
 
 def test_opcodes_are_those_of_the_rfc() -> None:

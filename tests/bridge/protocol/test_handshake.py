@@ -2,8 +2,8 @@ from typing import Any
 
 import pytest
 
-from simconsole.bridge.access import Access, Role
-from simconsole.bridge.handshake import (
+from simconsole.bridge.protocol.access import Access, Role
+from simconsole.bridge.protocol.handshake import (
     Admission,
     Opening,
     Refusal,
@@ -14,8 +14,8 @@ from simconsole.bridge.handshake import (
     is_origin_allowed,
     role_at,
 )
-from simconsole.errors import ProfileError, RemoteProtocolError
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.values.errors import ProfileError, RemoteProtocolError
 
 
 @pytest.mark.parametrize("origin", [None, "http://localhost:8080", "https://127.0.0.1", "http://[::1]:1"])

@@ -1,4 +1,4 @@
-from simconsole.bridge.lease import Lease
+from simconsole.bridge.protocol.lease import Lease
 
 
 def test_first_valid_command_starts_the_lease() -> None:

@@ -1,4 +1,4 @@
-from simconsole.bridge.meter import Meter
+from simconsole.bridge.protocol.meter import Meter
 
 MS = 1_000_000
 

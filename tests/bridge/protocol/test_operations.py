@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from simconsole.bridge.messages import standard_registry
-from simconsole.bridge.operations import (
+from simconsole.bridge.protocol.operations import (
     Advertise,
     Publish,
     Qos,
@@ -18,7 +18,7 @@ from simconsole.bridge.operations import (
     write_publish,
     write_status,
 )
-from simconsole.errors import RemoteProtocolError
+from simconsole.values.errors import RemoteProtocolError
 
 
 @pytest.mark.parametrize(

@@ -3,11 +3,11 @@ from typing import Any
 
 import pytest
 
-from simconsole.bridge.access import Access, Role
-from simconsole.bridge.console import ConsoleBridge
+from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.messages import parse, parse_all
 from simconsole.bridge.messages.rosapi_text import SERVICES
-from simconsole.bridge.rosapi import MAX_PARAMETER, MAX_PARAMETERS
+from simconsole.bridge.protocol.access import Access, Role
+from simconsole.bridge.protocol.rosapi import MAX_PARAMETER, MAX_PARAMETERS
 
 CHATTER = {"topic": "/chatter", "type": "std_msgs/String"}
 ADD = {"service": "/add", "type": "example_interfaces/srv/AddTwoInts"}

@@ -6,12 +6,12 @@ from typing import Any
 import cbor2
 import pytest
 
-from simconsole.bridge.console import ConsoleBridge
-from simconsole.bridge.documents import Binary
+from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.messages import standard_registry
-from simconsole.bridge.protocol import Router
-from simconsole.errors import LocalProtocolError, RemoteProtocolError
+from simconsole.bridge.protocol.documents import Binary
+from simconsole.bridge.protocol.server_protocol import Router
 from simconsole.profiles.bridge import BridgeLimits
+from simconsole.values.errors import LocalProtocolError, RemoteProtocolError
 
 MS = 1_000_000
 CHATTER = {"topic": "/chatter", "type": "std_msgs/String"}

@@ -2,8 +2,8 @@ import random
 
 import pytest
 
-from simconsole.bridge.forms import Form
-from simconsole.bridge.outgoing import MAX_REPLIES, Outgoing, Outlet
+from simconsole.bridge.protocol.forms import Form
+from simconsole.bridge.protocol.subscription_queue import MAX_REPLIES, Outgoing, Outlet
 
 
 def outlet(depth: int, throttle_ms: float = 0.0) -> Outlet:

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from simconsole.bridge.console import ConsoleBridge
+from simconsole.bridge.console.endpoint import ConsoleBridge
 
 S = 10**9
 CHATTER = {"topic": "/chatter", "type": "std_msgs/String"}

@@ -4,13 +4,13 @@ import importlib.util
 
 import pytest
 
-from simconsole.bridge import ros2
-from simconsole.bridge.access import Role
-from simconsole.bridge.console import ConsoleBridge
-from simconsole.bridge.ros2 import Ros2Link, check, role_of_graph
-from simconsole.bridge.ros2_types import describe, load
-from simconsole.errors import BridgeError, ProfileError
+from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.protocol.access import Role
+from simconsole.bridge.ros2 import node as ros2
+from simconsole.bridge.ros2.message_types import describe, load
+from simconsole.bridge.ros2.node import Ros2Link, check, role_of_graph
 from simconsole.profiles.bridge import BridgeProfile, Ros2Profile
+from simconsole.values.errors import BridgeError, ProfileError
 
 
 @pytest.mark.parametrize(

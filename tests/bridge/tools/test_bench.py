@@ -7,21 +7,21 @@ import orjson
 import pytest
 from websockets.asyncio.server import ServerConnection, serve
 
-from simconsole.bridge.bench import UNDER_WAY, Case, bench
-from simconsole.errors import BridgeError
+from simconsole.bridge.tools.bench import UNDER_WAY, Case, bench
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.values.errors import BridgeError
 from tests.bridge.fixtures import Served
 
 
 @pytest.fixture(params=["websockets", "picows"])
 def clients(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """The benchmark's own clients by either library."""
-    monkeypatch.setattr("simconsole.bridge.bench_peers.library", lambda: request.param)
+    monkeypatch.setattr("simconsole.bridge.tools.bench_peers.library", lambda: request.param)
 
 
 @pytest.mark.usefixtures("clients")
 def test_all_servers_are_measured_in_all_cases(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("simconsole.bridge.bench._SILENCE_S", 0.1)
+    monkeypatch.setattr("simconsole.bridge.tools.bench._SILENCE_S", 0.1)
     other = Served(BridgeProfile(port=0))
     try:
         found = bench(rounds=1, seconds=0.05, url=other.url)
@@ -96,7 +96,7 @@ def test_a_server_with_short_queues_is_measured_with_fewer_under_way(short_queue
 
 
 def test_a_server_that_passes_nothing_on_is_left(short_queues: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("simconsole.bridge.bench._TRIES", 2)
-    monkeypatch.setattr("simconsole.bridge.bench._text", lambda *_: b'{"op": "nothing"}')
+    monkeypatch.setattr("simconsole.bridge.tools.bench._TRIES", 2)
+    monkeypatch.setattr("simconsole.bridge.tools.bench._text", lambda *_: b'{"op": "nothing"}')
     with pytest.raises(BridgeError, match="loses messages"):
         bench(rounds=1, seconds=0.01, url=short_queues)

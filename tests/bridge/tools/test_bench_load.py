@@ -1,6 +1,6 @@
 from collections.abc import Callable
 
-from simconsole.bridge.bench_load import load
+from simconsole.bridge.tools.bench_load import load
 
 
 def test_bad_clients_are_measured(record_property: Callable[[str, object], None]) -> None:

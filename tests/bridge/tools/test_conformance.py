@@ -11,8 +11,8 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.server import ServerConnection
 from websockets.sync.server import serve as serve_websockets
 
-from simconsole.bridge.conformance import ROWS, check
-from simconsole.errors import BridgeError
+from simconsole.bridge.tools.conformance import ROWS, check
+from simconsole.values.errors import BridgeError
 
 
 def test_our_server_deviates_nowhere(serving: Callable[..., Any], snapshot: Callable[..., Any]) -> None:
@@ -37,8 +37,8 @@ def quirky(peer: ServerConnection) -> None:
 
 
 def test_deviations_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("simconsole.bridge.conformance._PATIENCE_S", 0.05)
-    monkeypatch.setattr("simconsole.bridge.conformance._QUIET_S", 0.05)
+    monkeypatch.setattr("simconsole.bridge.tools.conformance._PATIENCE_S", 0.05)
+    monkeypatch.setattr("simconsole.bridge.tools.conformance._QUIET_S", 0.05)
     with serve_websockets(quirky, "127.0.0.1", 0) as server:
         thread = threading.Thread(target=server.serve_forever)
         thread.start()

@@ -12,14 +12,14 @@ from typing import Any, Protocol
 import pytest
 from websockets.asyncio.client import ClientConnection, connect
 
-from simconsole.bridge.access import Role
-from simconsole.bridge.documents import Binary
-from simconsole.bridge.handshake import Admission, Opening, Refusal
-from simconsole.bridge.server import BridgeServer
-from simconsole.bridge.transport import Client, Transport, load_transport
-from simconsole.bridge.wire import listen
-from simconsole.errors import ProfileError
+from simconsole.bridge.protocol.access import Role
+from simconsole.bridge.protocol.documents import Binary
+from simconsole.bridge.protocol.handshake import Admission, Opening, Refusal
+from simconsole.bridge.transport.interface import Client, Transport, load_transport
+from simconsole.bridge.transport.server import BridgeServer
+from simconsole.bridge.transport.wire import listen
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.values.errors import ProfileError
 
 PROFILE = BridgeProfile(port=0)
 ADMISSION = Admission(Role.CONTROL, "ros2")

@@ -10,11 +10,11 @@ import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
-from simconsole.bridge.client import BridgeClient
-from simconsole.bridge.lockstep import LockstepBridge
-from simconsole.errors import BridgeError
+from simconsole.bridge.client.bridge_client import BridgeClient
+from simconsole.bridge.transport.lockstep_server import LockstepBridge
 from simconsole.profiles.bridge import BridgeLimits, BridgeProfile
-from simconsole.signals import NEVER_TICKS, Event, RemoteCommand, RemoteKind
+from simconsole.values.errors import BridgeError
+from simconsole.values.signals import NEVER_TICKS, Event, RemoteCommand, RemoteKind
 
 CONTROL = "/control/command/control_cmd"
 TYPE = "autoware_control_msgs/Control"
@@ -149,7 +149,10 @@ def test_nobody_answers(lockstep: LockstepBridge, snapshot: Callable[..., Any]) 
 def test_commander_that_vanishes_ends_the_wait_at_once_and_is_an_event(
     lockstep: LockstepBridge, snapshot: Callable[..., Any], caplog: pytest.LogCaptureFixture
 ) -> None:
-    with caplog.at_level(logging.INFO, "simconsole.bridge.lockstep"), BridgeClient(lockstep.url) as watcher:
+    with (
+        caplog.at_level(logging.INFO, "simconsole.bridge.transport.lockstep_server"),
+        BridgeClient(lockstep.url) as watcher,
+    ):
         with served(lockstep, snapshot):
             watcher.connect()
         with beside(answering(lockstep.url, 1, steer)):
@@ -270,7 +273,7 @@ def test_what_is_no_websocket_is_dropped(lockstep: LockstepBridge, snapshot: Cal
 def test_who_does_not_finish_the_handshake_is_swept_out_by_the_next(
     lockstep: LockstepBridge, snapshot: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("simconsole.bridge.wire.HANDSHAKE_S", 0.0)
+    monkeypatch.setattr("simconsole.bridge.transport.wire.HANDSHAKE_S", 0.0)
     with served(lockstep, snapshot), socket.create_connection(("127.0.0.1", lockstep.port), timeout=10.0) as idle:
         idle.sendall(b"GET / HT")
         with connect(lockstep.url) as peer:

@@ -2,9 +2,9 @@ from pathlib import Path
 
 import pytest
 
-from simconsole.bridge.message_files import MAX_BYTES, MAX_FILES, load_registry
-from simconsole.errors import ProfileError
+from simconsole.bridge.transport.message_files import MAX_BYTES, MAX_FILES, load_registry
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.values.errors import ProfileError
 
 
 def write(folder: Path, name: str, text: str | bytes) -> Path:

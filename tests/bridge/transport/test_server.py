@@ -13,11 +13,11 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Origin
 
-from simconsole.bridge.client import BridgeClient
-from simconsole.bridge.server import BridgeServer
-from simconsole.errors import BridgeError
+from simconsole.bridge.client.bridge_client import BridgeClient
+from simconsole.bridge.transport.server import BridgeServer
 from simconsole.profiles.bridge import BridgeLimits, BridgeProfile
-from simconsole.signals import Event, RemoteKind
+from simconsole.values.errors import BridgeError
+from simconsole.values.signals import Event, RemoteKind
 
 CONTROL = "/control/command/control_cmd"
 
@@ -85,7 +85,7 @@ def test_vanished_commander_is_an_event_and_logged(
     serving: Callable[..., Any], control: Callable[..., Any], caplog: pytest.LogCaptureFixture, rude: bool
 ) -> None:
     server = serving(lease_ms=10_000.0)
-    with caplog.at_level(logging.INFO, "simconsole.bridge.server"):
+    with caplog.at_level(logging.INFO, "simconsole.bridge.transport.server"):
         with connect(server.url) as peer:
             send(peer, op="publish", topic=CONTROL, msg=control())
             server.command()

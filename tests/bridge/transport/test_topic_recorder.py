@@ -10,13 +10,13 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from websockets.sync.client import connect
 
-from simconsole.bridge import record
-from simconsole.bridge.console import ConsoleBridge
-from simconsole.bridge.lockstep import LockstepBridge
+from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.messages.cdr import deserialize
-from simconsole.bridge.record import TopicRecorder, open_recorder
-from simconsole.errors import BridgeError
+from simconsole.bridge.transport import topic_recorder as record
+from simconsole.bridge.transport.lockstep_server import LockstepBridge
+from simconsole.bridge.transport.topic_recorder import TopicRecorder, open_recorder
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.values.errors import BridgeError
 
 GRIP = {"force": [1.5, 2.5], "state": 2, "name": "left"}
 

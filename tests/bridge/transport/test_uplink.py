@@ -11,12 +11,12 @@ import pytest
 from websockets.asyncio.server import ServerConnection
 from websockets.asyncio.server import serve as serve_websockets
 
-from simconsole.bridge.backoff import Backoff
-from simconsole.bridge.lockstep import LockstepBridge
-from simconsole.bridge.server import BridgeServer
-from simconsole.bridge.uplink import Uplink
-from simconsole.errors import ProfileError
+from simconsole.bridge.protocol.backoff import Backoff
+from simconsole.bridge.transport.lockstep_server import LockstepBridge
+from simconsole.bridge.transport.server import BridgeServer
+from simconsole.bridge.transport.uplink import Uplink
 from simconsole.profiles.bridge import BridgeProfile, UpstreamProfile
+from simconsole.values.errors import ProfileError
 
 CONTROL = "/control/command/control_cmd"
 

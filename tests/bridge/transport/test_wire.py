@@ -3,15 +3,15 @@ import socket
 
 import pytest
 
-from simconsole.bridge.protocol import Outcome
-from simconsole.bridge.session import Session
-from simconsole.bridge.wire import (
+from simconsole.bridge.protocol.client_session import Session
+from simconsole.bridge.protocol.server_protocol import Outcome
+from simconsole.bridge.transport.wire import (
     address_url,
     is_unacknowledged,
     listen,
     log_outcome,
 )
-from simconsole.errors import BridgeError
+from simconsole.values.errors import BridgeError
 from tests.bridge.networks import go_deaf
 
 

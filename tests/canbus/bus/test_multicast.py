@@ -8,8 +8,8 @@ import can
 import pytest
 from can.interfaces.udp_multicast import utils
 
-from simconsole.canbus import multicast
-from simconsole.canbus.multicast import LoopbackBus, drop_from
+from simconsole.canbus.bus import multicast
+from simconsole.canbus.bus.multicast import LoopbackBus, drop_from
 
 GROUP = "239.74.163.9"
 

@@ -11,12 +11,12 @@ from typing import Any, get_args
 import can
 import pytest
 
+from simconsole.canbus.bus.port import CanPort, open_bus, read_log
 from simconsole.canbus.codec import ECU, Codec, Frame
-from simconsole.canbus.port import CanPort, open_bus, read_log
-from simconsole.errors import CanError
 from simconsole.profiles.can import CanProfile, Interface
+from simconsole.values.errors import CanError
+from tests.paths import ROOT
 
-ROOT = Path(__file__).resolve().parents[2]
 DATA = bytes(range(8))
 
 
@@ -195,8 +195,8 @@ def test_only_the_port_imports_python_can() -> None:
             names += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
             if any(name.split(".")[0] == "can" for name in names):
                 found.add(path.relative_to(ROOT).as_posix())
-    assert found == {"simconsole/canbus/port.py"}
-    tree = ast.parse((ROOT / "simconsole/canbus/port.py").read_text())
+    assert found == {"simconsole/canbus/bus/port.py"}
+    tree = ast.parse((ROOT / "simconsole/canbus/bus/port.py").read_text())
     sends = [node for node in ast.walk(tree) if isinstance(node, ast.Attribute) and node.attr == "send"]
     assert len(sends) == 1
 

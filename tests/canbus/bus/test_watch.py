@@ -3,7 +3,7 @@
 import os
 from pathlib import Path
 
-from simconsole.station_programs import CanWatch, LinkWatch
+from simconsole.session.worker_programs import CanWatch, LinkWatch
 
 
 def test_bus_is_up_only_while_its_station_says_so(tmp_path: Path) -> None:

@@ -8,14 +8,14 @@ from typing import Any
 
 import pytest
 
+from simconsole.canbus.bus.port import CanPort
+from simconsole.canbus.bus.worker import InlineCan, OnBus, log_paths, put_on_bus, serve
 from simconsole.canbus.codec import Codec
 from simconsole.canbus.ecu import Ecu, Wish
-from simconsole.canbus.port import CanPort
 from simconsole.canbus.protection import Check
-from simconsole.canbus.station import InlineCan, OnBus, log_paths, put_on_bus, serve
 from simconsole.profiles.can import CanProfile
-from simconsole.rows import Snapshot
-from simconsole.signals import NEVER_TICKS, Event, RemoteCommand
+from simconsole.values.signals import NEVER_TICKS, Event, RemoteCommand
+from simconsole.values.state_vector import Snapshot
 
 Snapshots = Callable[[int], Snapshot]
 
@@ -141,7 +141,7 @@ def test_station_tells_at_once_when_the_bus_goes_off(
     try:
         station.snapshots.append(snapshot(0))
         until(lambda: len(station.statuses) == 1)
-        monkeypatch.setattr("simconsole.canbus.station._STATUS_S", 1e6)  # never again by its turn
+        monkeypatch.setattr("simconsole.canbus.bus.worker._STATUS_S", 1e6)  # never again by its turn
         on_bus.port._down("a test")
         until(lambda: len(station.statuses) == 2)
     finally:

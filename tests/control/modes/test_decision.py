@@ -6,11 +6,11 @@ from typing import Any
 import pytest
 
 from simconsole.control.arbitration import arbitrate
-from simconsole.control.commander import look
-from simconsole.control.decision import decide
-from simconsole.control.moment import Moment
-from simconsole.control.person import Person
-from simconsole.signals import Commander, Event, Link, LinkState, Mode, Reason, RemoteKind
+from simconsole.control.modes.decision import decide
+from simconsole.control.requests.commander import look
+from simconsole.control.requests.person import Person
+from simconsole.control.requests.tick_context import Moment
+from simconsole.values.signals import Commander, Event, Link, LinkState, Mode, Reason, RemoteKind
 
 THERE = Person(1.0, 1.0, 0.0, 0.0, 0.0, 0.0)
 STEADY = Link(7.0, 0.0, 0.0, 900.0, 1.0, 0.0, 100.0, float(LinkState.STEADY), 0.0, 0.0)

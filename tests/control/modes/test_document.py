@@ -1,13 +1,13 @@
 import runpy
-from pathlib import Path
 
 import pytest
 
-from simconsole.control.modes import REACTIONS, Trigger
-from simconsole.control.modes_doc import text
-from simconsole.signals import Mode
+from simconsole.control.modes.document import text
+from simconsole.control.modes.mode_table import REACTIONS, Trigger
+from simconsole.values.signals import Mode
+from tests.paths import ROOT
 
-PAGE = Path(__file__).parents[2] / "docs" / "modes.md"
+PAGE = ROOT / "docs" / "modes.md"
 
 
 def test_the_committed_page_is_the_generated_one() -> None:
@@ -32,5 +32,5 @@ def test_every_trigger_is_explained() -> None:
 
 def test_the_command_prints_the_page(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.warns(RuntimeWarning, match="found in sys.modules"):
-        runpy.run_module("simconsole.control.modes_doc", run_name="__main__")
+        runpy.run_module("simconsole.control.modes.document", run_name="__main__")
     assert capsys.readouterr().out == text()

@@ -2,10 +2,10 @@ import math
 
 import pytest
 
-from simconsole.control.engage import engage_refusal
-from simconsole.control.person import Person
-from simconsole.control.settings import ControlSettings
-from simconsole.signals import Link, LinkState, Mode, Reason, RemoteCommand, RemoteKind, VehicleState
+from simconsole.control.modes.engage import engage_refusal
+from simconsole.control.requests.control_settings import ControlSettings
+from simconsole.control.requests.person import Person
+from simconsole.values.signals import Link, LinkState, Mode, Reason, RemoteCommand, RemoteKind, VehicleState
 
 PERSON = Person(1.0, 1.0, 0.0, 0.0, 0.0, 0.0)
 LINK = Link(10.0, 0.0, 0.0, 1000.0, 1.0, 0.0, 125.0, float(LinkState.STEADY), 0.0, 0.0)

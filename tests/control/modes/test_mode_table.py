@@ -4,9 +4,19 @@ import itertools
 
 import pytest
 
-from simconsole.control.modes import MEANING, MODES, REACTIONS, REASONS, TRIGGERS, Trigger, outcome, reacts, takes
-from simconsole.control.modes import reason_of as reason
-from simconsole.signals import Mode
+from simconsole.control.modes.mode_table import (
+    MEANING,
+    MODES,
+    REACTIONS,
+    REASONS,
+    TRIGGERS,
+    Trigger,
+    outcome,
+    reacts,
+    takes,
+)
+from simconsole.control.modes.mode_table import reason_of as reason
+from simconsole.values.signals import Mode
 
 PAIRS = list(itertools.product(Mode, Trigger))
 ACTS = {Trigger.MANUAL_ASKED, Trigger.RESET, Trigger.AUTONOMOUS_ASKED, Trigger.SHARED_ASKED, Trigger.EMERGENCY}

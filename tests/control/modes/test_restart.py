@@ -5,10 +5,10 @@ from typing import Any
 
 import pytest
 
-from simconsole.control.person import person_of
-from simconsole.control.restart import GRANTED, NOT_ASKED, restart_refusal
-from simconsole.control.settings import ControlSettings
-from simconsole.signals import Button, DriverInput, Event, Mode, Notice, Reason
+from simconsole.control.modes.restart import GRANTED, NOT_ASKED, restart_refusal
+from simconsole.control.requests.control_settings import ControlSettings
+from simconsole.control.requests.person import person_of
+from simconsole.values.signals import Button, DriverInput, Event, Mode, Notice, Reason
 from tests.control.conftest import NOBODY, PERSON
 
 RESTART = int(Event.RESTART)

@@ -4,10 +4,10 @@ from typing import Any
 
 import pytest
 
-from simconsole.control.settings import ControlSettings, settings
-from simconsole.control.takeover import WheelWatch, steering_taken, throttle_held, throttle_overrides, watch_wheel
+from simconsole.control.modes.takeover import WheelWatch, steering_taken, throttle_held, throttle_overrides, watch_wheel
+from simconsole.control.requests.control_settings import ControlSettings, settings
 from simconsole.profiles.control import ControlProfile
-from simconsole.signals import Event, Mode, Notice
+from simconsole.values.signals import Event, Mode, Notice
 
 RATES = [50, 100, 125, 200, 250, 500, 1000]
 START = WheelWatch(0.0, 0.0)

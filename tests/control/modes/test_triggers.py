@@ -5,11 +5,9 @@ import math
 
 import pytest
 
-from simconsole.control.engage import GRANTED
-from simconsole.control.modes import REACTIONS, Trigger
-from simconsole.control.person import Person
-from simconsole.control.settings import ControlSettings
-from simconsole.control.triggers import (
+from simconsole.control.modes.engage import GRANTED
+from simconsole.control.modes.mode_table import REACTIONS, Trigger
+from simconsole.control.modes.triggers import (
     Asked,
     asked_of,
     asked_triggers,
@@ -20,7 +18,9 @@ from simconsole.control.triggers import (
     refusal_of,
     reset_refusal,
 )
-from simconsole.signals import Button, DriverInput, Event, Link, Mode, Reason
+from simconsole.control.requests.control_settings import ControlSettings
+from simconsole.control.requests.person import Person
+from simconsole.values.signals import Button, DriverInput, Event, Link, Mode, Reason
 
 NOBODY = DriverInput(*(0.0,) * len(DriverInput._fields))
 NOTHING = Asked(*(0.0,) * len(Asked._fields))

@@ -8,14 +8,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from simconsole.compiling import compiled
-from simconsole.devices.calibration import NOBODY, CockpitSettings, calibrate, curved, pressed_share, settings
-from simconsole.devices.uncalibrate import Intent, pedal_raw, uncalibrate, wheel_raw
-from simconsole.devices.validity import ARMED, LIVE, LOST, STALE, UNKNOWN
-from simconsole.profile_files import load
+from simconsole.devices.calibration.calibrator import (
+    NOBODY,
+    CockpitSettings,
+    calibrate,
+    curved,
+    pressed_share,
+    settings,
+)
+from simconsole.devices.calibration.uncalibrate import Intent, pedal_raw, uncalibrate, wheel_raw
+from simconsole.devices.calibration.validity import ARMED, LIVE, LOST, STALE, UNKNOWN
 from simconsole.profiles.device import MIN_TRAVEL_RAW, ButtonBinding, CockpitProfile
-from simconsole.signals import NEVER_TICKS, NO_SAMPLE, Button, DeviceSample
-
+from simconsole.profiles.files.loader import load
+from simconsole.values.host.jit import compiled
+from simconsole.values.signals import NEVER_TICKS, NO_SAMPLE, Button, DeviceSample
 from tests.devices.people import TICK_S, Seat
 
 PROFILE = load("devices", "t500rs_th8rs", CockpitProfile)

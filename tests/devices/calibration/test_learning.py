@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from simconsole.devices.calibration import pressed_share
-from simconsole.devices.learning import (
+from simconsole.devices.calibration.calibrator import pressed_share
+from simconsole.devices.calibration.learning import (
     AxisAt,
     ButtonAt,
     Held,
@@ -19,8 +19,8 @@ from simconsole.devices.learning import (
     moved_axis,
     pressed_button,
 )
-from simconsole.errors import DeviceError
 from simconsole.profiles.device import MIN_TRAVEL_RAW
+from simconsole.values.errors import DeviceError
 
 A, B = (1, 2), (3, 4)
 

@@ -2,11 +2,10 @@
 
 import pytest
 
-from simconsole.devices.calibration import CockpitSettings
-from simconsole.devices.uncalibrate import Intent
-from simconsole.devices.validity import LIVE, UNKNOWN
-from simconsole.signals import NEVER_TICKS, Button
-
+from simconsole.devices.calibration.calibrator import CockpitSettings
+from simconsole.devices.calibration.uncalibrate import Intent
+from simconsole.devices.calibration.validity import LIVE, UNKNOWN
+from simconsole.values.signals import NEVER_TICKS, Button
 from tests.devices.people import Seat
 
 DWELL = 25

@@ -4,8 +4,18 @@ import math
 
 import pytest
 
-from simconsole.devices.validity import ARMED, LIVE, LOST, STALE, UNKNOWN, axis_good, mask_good, next_validity, trusted
-from simconsole.signals import NEVER_TICKS
+from simconsole.devices.calibration.validity import (
+    ARMED,
+    LIVE,
+    LOST,
+    STALE,
+    UNKNOWN,
+    axis_good,
+    mask_good,
+    next_validity,
+    trusted,
+)
+from simconsole.values.signals import NEVER_TICKS
 
 LIMIT = 25.0
 

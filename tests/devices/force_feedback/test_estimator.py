@@ -4,12 +4,12 @@ import random
 
 import pytest
 
-from simconsole.compiling import compiled
-from simconsole.devices.estimator import HUMAN_LIMIT_NM, Felt, at_rest, observe
-from simconsole.devices.force_settings import ForceSettings, force_settings
-from simconsole.devices.rim import Rim, turn
-from simconsole.profile_files import load
+from simconsole.devices.force_feedback.estimator import HUMAN_LIMIT_NM, Felt, at_rest, observe
+from simconsole.devices.force_feedback.force_settings import ForceSettings, force_settings
+from simconsole.devices.force_feedback.rim import Rim, turn
 from simconsole.profiles.device import CockpitProfile
+from simconsole.profiles.files.loader import load
+from simconsole.values.host.jit import compiled
 
 
 def settings(tick_hz: int) -> ForceSettings:

@@ -9,16 +9,16 @@ from hypothesis import given
 from hypothesis import settings as settings_of_test
 from hypothesis import strategies as st
 
-from simconsole.compiling import compiled
-from simconsole.devices.force_settings import ForceSettings, force_settings
-from simconsole.devices.guidance import Wanted, guidance, wanted
-from simconsole.devices.rim import Rim
-from simconsole.devices.simulated_wheel import FIRM, HANDS_OFF, RELAXED, Arm
-from simconsole.profile_files import load
+from simconsole.devices.force_feedback.force_settings import ForceSettings, force_settings
+from simconsole.devices.force_feedback.guidance import Wanted, guidance, wanted
+from simconsole.devices.force_feedback.rim import Rim
+from simconsole.devices.force_feedback.simulated_wheel import FIRM, HANDS_OFF, RELAXED, Arm
 from simconsole.profiles.device import CockpitProfile
+from simconsole.profiles.files.loader import load
 from simconsole.profiles.force_feedback import Guidance
-from simconsole.rows import Snapshot
-from simconsole.signals import Event, EventInput, Mode
+from simconsole.values.host.jit import compiled
+from simconsole.values.signals import Event, EventInput, Mode
+from simconsole.values.state_vector import Snapshot
 from tests.devices.closed_loop import Loop
 
 RATIO = 15.5

@@ -6,7 +6,7 @@ What every port must do stands in test_every_motor.py.
 import numpy as np
 import pytest
 
-from simconsole.devices.motor import (
+from simconsole.devices.force_feedback.motor import (
     EFFECT_S,
     Capability,
     HapticPort,
@@ -15,11 +15,11 @@ from simconsole.devices.motor import (
     SimulatedWheelPort,
     WheelMotor,
 )
-from simconsole.devices.simulated_wheel import HANDS_OFF, SimulatedWheel
-from simconsole.errors import DeviceError
+from simconsole.devices.force_feedback.simulated_wheel import HANDS_OFF, SimulatedWheel
 from simconsole.profiles.force_feedback import ForceFeedback
-from simconsole.rows import MOTOR_AT, PLATFORM_AT, TORQUE_AT, Snapshot
-from simconsole.signals import NO_SAMPLE, NO_TORQUE, DeviceSample
+from simconsole.values.errors import DeviceError
+from simconsole.values.signals import NO_SAMPLE, NO_TORQUE, DeviceSample
+from simconsole.values.state_vector import MOTOR_AT, PLATFORM_AT, TORQUE_AT, Snapshot
 
 FORCE = ForceFeedback(max_torque_nm=4.0)
 HZ = 250

@@ -5,8 +5,7 @@ import random
 
 import pytest
 
-from simconsole.compiling import compiled
-from simconsole.devices.simulated_wheel import (
+from simconsole.devices.force_feedback.simulated_wheel import (
     FIRM,
     HANDS_OFF,
     RELAXED,
@@ -18,6 +17,7 @@ from simconsole.devices.simulated_wheel import (
     step_wheel,
 )
 from simconsole.profiles.force_feedback import ForceFeedback, Motor
+from simconsole.values.host.jit import compiled
 
 FORCE = ForceFeedback(max_torque_nm=4.0, motor=Motor(delay_s=0.012))
 HZ = 250

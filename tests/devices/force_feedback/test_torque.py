@@ -7,11 +7,10 @@ from typing import Any
 
 import pytest
 
-from simconsole.compiling import compiled
-from simconsole.devices.force_settings import NO_FORCE, ForceSettings, force_settings
-from simconsole.devices.guidance import Wanted
-from simconsole.devices.rim import Rim, turn
-from simconsole.devices.torque import (
+from simconsole.devices.force_feedback.force_settings import NO_FORCE, ForceSettings, force_settings
+from simconsole.devices.force_feedback.guidance import Wanted
+from simconsole.devices.force_feedback.rim import Rim, turn
+from simconsole.devices.force_feedback.torque import (
     CENTRING_LEAD_RAD,
     CENTRING_RADPS,
     Parts,
@@ -21,9 +20,10 @@ from simconsole.devices.torque import (
     soft_clip,
     wheel_torque,
 )
-from simconsole.profile_files import load
 from simconsole.profiles.device import CockpitProfile
-from simconsole.signals import (
+from simconsole.profiles.files.loader import load
+from simconsole.values.host.jit import compiled
+from simconsole.values.signals import (
     Arbitration,
     DriverInput,
     Event,

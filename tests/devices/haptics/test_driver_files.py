@@ -4,13 +4,12 @@ from pathlib import Path
 
 import pytest
 
-from simconsole.devices import back_ends, driver_files
-from simconsole.devices.driver_files import Restoring, driver_folder, settings
-from simconsole.devices.motor import SimulatedWheelPort
-from simconsole.devices.simulated_wheel import SimulatedWheel
-from simconsole.errors import DeviceError
+from simconsole.devices.force_feedback.motor import SimulatedWheelPort
+from simconsole.devices.force_feedback.simulated_wheel import SimulatedWheel
+from simconsole.devices.haptics import back_ends, driver_files
+from simconsole.devices.haptics.driver_files import Restoring, driver_folder, settings
 from simconsole.profiles.force_feedback import ForceFeedback
-
+from simconsole.values.errors import DeviceError
 from tests.devices.port_contract import closes_twice_and_then_has_no_force, takes_every_level_in_any_order
 
 WHEEL, OTHER = (0x044F, 0xB65E), (0x044F, 0xB660)

@@ -8,16 +8,17 @@ from typing import Any
 
 import pytest
 
-from simconsole.devices import back_ends, event_nodes
-from simconsole.devices.evdev_haptics import open_evdev
-from simconsole.devices.haptics import _Condition, _Constant, _Effect, open_haptics
-from simconsole.devices.motor import Capability, NoHaptics
-from simconsole.devices.sdl import SdlSource
-from simconsole.devices.settings import settings
-from simconsole.devices.virtual_cockpit import VirtualCockpit
+from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.force_feedback.motor import Capability, NoHaptics
+from simconsole.devices.haptics import back_ends
+from simconsole.devices.haptics.evdev_haptics import open_evdev
+from simconsole.devices.haptics.sdl_haptics import _Condition, _Constant, _Effect, open_haptics
+from simconsole.devices.sources import event_nodes
+from simconsole.devices.sources.sdl import SdlSource
+from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.force_feedback import ForceFeedback
-from simconsole.signals import Button, DeviceSample
+from simconsole.values.signals import Button, DeviceSample
 from tests.devices.mocked import calls, start
 from tests.devices.people import Seat
 
@@ -164,7 +165,7 @@ def test_joystick_without_a_motor_says_so_and_works(plugged: VirtualCockpit, sou
 
 
 def test_joystick_that_is_not_there_has_no_motor(sdl: None) -> None:
-    from simconsole.devices import sdl_runtime
+    from simconsole.devices.sources import sdl_runtime
 
     sdl_runtime.acquire()
     try:

@@ -11,13 +11,13 @@ from pathlib import Path
 
 import pytest
 
-from simconsole.devices import watched as parent
-from simconsole.devices.motor import NoHaptics, SimulatedWheelPort
-from simconsole.devices.simulated_wheel import SimulatedWheel
-from simconsole.devices.watchdog import BEATS, FORCE, STALL_S, Stall
-from simconsole.devices.watched import Watchdog, WatchedPort, open_watchdog, watched
-from simconsole.errors import DeviceError
+from simconsole.devices.force_feedback.motor import NoHaptics, SimulatedWheelPort
+from simconsole.devices.force_feedback.simulated_wheel import SimulatedWheel
+from simconsole.devices.haptics import watched as parent
+from simconsole.devices.haptics.watchdog import BEATS, FORCE, STALL_S, Stall
+from simconsole.devices.haptics.watched import Watchdog, WatchedPort, open_watchdog, watched
 from simconsole.profiles.force_feedback import ForceFeedback
+from simconsole.values.errors import DeviceError
 
 NOBODY = (0xFFFF, 0xFFFF)
 
@@ -91,7 +91,7 @@ def test_process_comes_and_goes_with_its_console() -> None:
 
 def test_killed_console_leaves_neither_process_nor_memory() -> None:
     code = (
-        "import os, signal, sys\nfrom simconsole.devices.watched import Watchdog\n"
+        "import os, signal, sys\nfrom simconsole.devices.haptics.watched import Watchdog\n"
         "w = Watchdog((65535, 65535))\nw.beat(True)\nprint(w.process_id, w._path, flush=True)\nsys.stdin.read(1)\n"
         "os.kill(os.getpid(), signal.SIGKILL)"
     )
@@ -109,8 +109,8 @@ def test_killed_console_leaves_neither_process_nor_memory() -> None:
 
 
 def test_watchdog_loads_nothing_large() -> None:
-    large = "{'numpy', 'msgspec', 'pygame', 'simconsole.signals'}"
-    code = f"import sys, simconsole.devices.watchdog; print({large} & set(sys.modules))"
+    large = "{'numpy', 'msgspec', 'pygame', 'simconsole.values.signals'}"
+    code = f"import sys, simconsole.devices.haptics.watchdog; print({large} & set(sys.modules))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "set()"
 

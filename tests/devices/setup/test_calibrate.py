@@ -10,13 +10,12 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from simconsole.devices.calibrate import calibrate_devices
-from simconsole.devices.commands import Pace
-from simconsole.errors import DeviceError
-from simconsole.profile_files import load
+from simconsole.devices.setup.calibrate import calibrate_devices
+from simconsole.devices.setup.device_commands import Pace
 from simconsole.profiles.device import Buttons, CockpitProfile
-
-ROOT = Path(__file__).resolve().parents[2]
+from simconsole.profiles.files.loader import load
+from simconsole.values.errors import DeviceError
+from tests.paths import ROOT
 
 
 def at_once(tick_hz: int) -> Pace:

@@ -4,14 +4,13 @@ from pathlib import Path
 
 import pytest
 
-from simconsole.devices.cockpit import CockpitSettings
-from simconsole.devices.commands import check_devices, list_devices, realtime, record_devices
-from simconsole.devices.record import TraceSource
-from simconsole.devices.uncalibrate import Intent
-from simconsole.devices.watch import Watch
-from simconsole.errors import DeviceNotFound
+from simconsole.devices.calibration.cockpit_settings import CockpitSettings
+from simconsole.devices.calibration.uncalibrate import Intent
+from simconsole.devices.calibration.watch import Watch
+from simconsole.devices.setup.device_commands import check_devices, list_devices, realtime, record_devices
+from simconsole.devices.sources.trace_recorder import TraceSource
 from simconsole.profiles.device import CockpitProfile
-
+from simconsole.values.errors import DeviceNotFound
 from tests.devices.people import Seat
 
 pytestmark = pytest.mark.usefixtures("sdl")

@@ -3,12 +3,12 @@
 import msgspec
 import pytest
 
-from simconsole.devices.commands import Pace
-from simconsole.devices.feel import FORCES, feel_devices
-from simconsole.devices.motor import SimulatedWheelPort
-from simconsole.errors import DeviceError
-from simconsole.profile_files import load
+from simconsole.devices.force_feedback.motor import SimulatedWheelPort
+from simconsole.devices.setup.device_commands import Pace
+from simconsole.devices.setup.force_feedback_setup import FORCES, feel_devices
 from simconsole.profiles.device import CockpitProfile
+from simconsole.profiles.files.loader import load
+from simconsole.values.errors import DeviceError
 
 pytestmark = pytest.mark.usefixtures("sdl")
 

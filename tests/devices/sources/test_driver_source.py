@@ -8,26 +8,26 @@ from pathlib import Path
 
 import pytest
 
-from simconsole.devices import sdl_runtime
-from simconsole.devices.calibration import CockpitSettings, settings
-from simconsole.devices.faults import FaultyDevices
-from simconsole.devices.motor import MotorisedSource, SimulatedWheelPort, WheelMotor
-from simconsole.devices.record import TraceWriter
-from simconsole.devices.sdl import SdlSource
-from simconsole.devices.simulated_wheel import SimulatedWheel
-from simconsole.devices.source import open_source
-from simconsole.devices.trace import TraceHeader
-from simconsole.devices.uncalibrate import Intent, uncalibrate
-from simconsole.devices.validity import LIVE, axis_good, mask_good
-from simconsole.errors import DeviceNotFound, ProfileError
-from simconsole.keys import Key
-from simconsole.ports import DeviceSource
-from simconsole.profile_files import load
+from simconsole.devices.calibration.calibrator import CockpitSettings, settings
+from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate
+from simconsole.devices.calibration.validity import LIVE, axis_good, mask_good
+from simconsole.devices.force_feedback.motor import MotorisedSource, SimulatedWheelPort, WheelMotor
+from simconsole.devices.force_feedback.simulated_wheel import SimulatedWheel
+from simconsole.devices.sources import sdl_runtime
+from simconsole.devices.sources.driver_source import open_source
+from simconsole.devices.sources.sdl import SdlSource
+from simconsole.devices.sources.trace_recorder import TraceWriter
+from simconsole.devices.synthetic.trace import TraceHeader
+from simconsole.faults.cockpit_faults import FaultyDevices
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.faults import Stuck
+from simconsole.profiles.files.loader import load
 from simconsole.profiles.force_feedback import ForceFeedback
-
+from simconsole.values.errors import DeviceNotFound, ProfileError
+from simconsole.values.key_codes import Key
+from simconsole.values.protocols import DeviceSource
 from tests.devices.people import Seat
+from tests.paths import ROOT
 
 HZ = 250
 SCRIPT = "points:\n- {time_s: 0, throttle: 0}\n- {time_s: 0.4, throttle: 0}\n- {time_s: 0.5, throttle: 0.8, gear: 1}\n"
@@ -90,7 +90,7 @@ def opened(
 
 @pytest.fixture
 def plugged_once(sdl: None, t500: CockpitProfile) -> object:
-    from simconsole.devices.virtual_cockpit import VirtualCockpit
+    from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 
     cockpit = VirtualCockpit(t500)
     yield cockpit
@@ -167,12 +167,12 @@ def test_a_script_loads_no_pygame(tmp_path: Path) -> None:
     path.write_text(SCRIPT)
     program = (
         "import sys\n"
-        "from simconsole.devices.source import open_source\n"
-        "from simconsole.profile_files import load\n"
+        "from simconsole.devices.sources.driver_source import open_source\n"
+        "from simconsole.profiles.files.loader import load\n"
         "from simconsole.profiles.device import CockpitProfile\n"
         f"open_source('script:{path}', load('devices', 't500rs_th8rs', CockpitProfile), tick_hz=250).poll(1)\n"
         "print(sorted({'pygame', 'numba'} & set(sys.modules)))\n"
     )
-    root = Path(__file__).parents[2]
+    root = ROOT
     done = subprocess.run([sys.executable, "-c", program], cwd=root, capture_output=True, text=True, check=True)
     assert done.stdout == "[]\n"

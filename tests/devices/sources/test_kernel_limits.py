@@ -5,10 +5,16 @@ from pathlib import Path
 
 import pytest
 
-from simconsole.devices import event_nodes, kernel_limits
-from simconsole.devices.kernel_limits import AxisLimits, KernelLimits, notes, problems, read_limits, steering_range_deg
+from simconsole.devices.sources import event_nodes, kernel_limits
+from simconsole.devices.sources.kernel_limits import (
+    AxisLimits,
+    KernelLimits,
+    notes,
+    problems,
+    read_limits,
+    steering_range_deg,
+)
 from simconsole.profiles.device import CockpitProfile
-
 from tests.devices.mocked import start
 
 

@@ -7,19 +7,18 @@ from typing import Any
 import pytest
 from msgspec.structs import replace
 
-from simconsole.devices import sdl as sdl_module
-from simconsole.devices import sdl_runtime
-from simconsole.devices.calibration import CockpitSettings, settings, travel
-from simconsole.devices.sdl import SdlSource, identity
-from simconsole.devices.uncalibrate import Intent, uncalibrate
-from simconsole.devices.validity import LIVE, LOST, UNKNOWN
-from simconsole.devices.virtual_cockpit import VirtualCockpit
-from simconsole.devices.virtual_sdl import VirtualDevice, VirtualSpec, specs
-from simconsole.errors import DeviceError, DeviceModeError, DeviceNotFound
-from simconsole.profile_files import load
+from simconsole.devices.calibration.calibrator import CockpitSettings, settings, travel
+from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate
+from simconsole.devices.calibration.validity import LIVE, LOST, UNKNOWN
+from simconsole.devices.sources import sdl as sdl_module
+from simconsole.devices.sources import sdl_runtime
+from simconsole.devices.sources.sdl import SdlSource, identity
+from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
+from simconsole.devices.sources.virtual_sdl import VirtualDevice, VirtualSpec, specs
 from simconsole.profiles.device import CockpitProfile
-from simconsole.signals import NEVER_TICKS, Button, DriverInput
-
+from simconsole.profiles.files.loader import load
+from simconsole.values.errors import DeviceError, DeviceModeError, DeviceNotFound
+from simconsole.values.signals import NEVER_TICKS, Button, DriverInput
 from tests.devices.people import Seat
 
 Plug = Callable[[VirtualSpec], VirtualDevice]

@@ -4,12 +4,12 @@ from collections.abc import Callable
 
 import pytest
 
-from simconsole.devices import sdl_runtime
-from simconsole.devices.sdl import found
-from simconsole.devices.virtual_cockpit import VirtualCockpit
-from simconsole.devices.virtual_sdl import VirtualDevice, VirtualSpec, specs
-from simconsole.errors import DeviceError
+from simconsole.devices.sources import sdl_runtime
+from simconsole.devices.sources.sdl import found
+from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
+from simconsole.devices.sources.virtual_sdl import VirtualDevice, VirtualSpec, specs
 from simconsole.profiles.device import CockpitProfile
+from simconsole.values.errors import DeviceError
 
 Plug = Callable[[VirtualSpec], VirtualDevice]
 PAD = VirtualSpec("Pad", 0x1234, 0x5678, 2, 3, 1)

@@ -4,12 +4,11 @@ import math
 
 import pytest
 
-from simconsole.devices.calibration import CockpitSettings
-from simconsole.devices.keyboard import STEER_MAX_RAD, KeyboardSource
-from simconsole.devices.validity import STALE
-from simconsole.keys import Key
-from simconsole.signals import Button, DriverInput
-
+from simconsole.devices.calibration.calibrator import CockpitSettings
+from simconsole.devices.calibration.validity import STALE
+from simconsole.devices.synthetic.keyboard import STEER_MAX_RAD, KeyboardSource
+from simconsole.values.key_codes import Key
+from simconsole.values.signals import Button, DriverInput
 from tests.devices.people import Seat
 
 

@@ -5,12 +5,11 @@ from typing import Any
 
 import pytest
 
-from simconsole.devices.calibration import CockpitSettings
-from simconsole.devices.script import ScriptSource
-from simconsole.errors import ProfileError
+from simconsole.devices.calibration.calibrator import CockpitSettings
+from simconsole.devices.synthetic.script import ScriptSource
 from simconsole.profiles.device import ScriptPoint, ScriptProfile
-from simconsole.signals import Button, DriverInput
-
+from simconsole.values.errors import ProfileError
+from simconsole.values.signals import Button, DriverInput
 from tests.devices.people import Seat
 
 HZ = 250

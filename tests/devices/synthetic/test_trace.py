@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from simconsole.devices.record import TraceSource, TraceWriter
-from simconsole.devices.trace import COLUMNS, TraceHeader, row_text
-from simconsole.errors import DeviceError, ProfileError
-from simconsole.signals import NEVER_TICKS, DeviceSample
+from simconsole.devices.sources.trace_recorder import TraceSource, TraceWriter
+from simconsole.devices.synthetic.trace import COLUMNS, TraceHeader, row_text
+from simconsole.values.errors import DeviceError, ProfileError
+from simconsole.values.signals import NEVER_TICKS, DeviceSample
 
 HEADER = TraceHeader(250, "test")
 REST = DeviceSample(0.0, 1.0, 1.0, 1.0, *(0.0,) * 9)

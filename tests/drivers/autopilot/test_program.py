@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 from websockets.sync.server import ServerConnection, serve
 
-from simconsole.autonomy.autopilot import run
-from simconsole.errors import BridgeError, ProfileError
-from simconsole.signals import Mode
+from simconsole.drivers.autopilot.program import run
+from simconsole.values.errors import BridgeError, ProfileError
+from simconsole.values.signals import Mode
 
 WHEELBASE_M = 2.6
 

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from simconsole.autonomy.approach import ON_PATH, approach_from
+from simconsole.drivers.path_tracker.approach import ON_PATH, approach_from
 
 
 @pytest.mark.parametrize(("offset", "heading", "speed"), [(0.5, 0.0, 10.0), (-2.0, 0.1, 14.0), (1.0, -0.2, 0.0)])

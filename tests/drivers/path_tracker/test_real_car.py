@@ -4,14 +4,14 @@ import math
 
 import numpy as np
 
-from simconsole.autonomy.tracker import Sighting, Tracker
-from simconsole.compiling import compiled
-from simconsole.profile_files import load
+from simconsole.drivers.path_tracker.tracker import Sighting, Tracker
+from simconsole.profiles.files.loader import load
 from simconsole.profiles.vehicle import VehicleProfile
-from simconsole.rows import COMMAND_AT, PLATFORM_AT, TORQUE_AT, VEHICLE_AT
-from simconsole.signals import VehicleCommand, VehicleState
-from simconsole.vehicle.platform import Ground, Pose
-from simconsole.vehicle.registry import build
+from simconsole.values.host.jit import compiled
+from simconsole.values.platform import Ground, Pose
+from simconsole.values.signals import VehicleCommand, VehicleState
+from simconsole.values.state_vector import COMMAND_AT, PLATFORM_AT, TORQUE_AT, VEHICLE_AT
+from simconsole.vehicle.platforms import build
 from simconsole.world.course import Course
 
 TICK_HZ = 250

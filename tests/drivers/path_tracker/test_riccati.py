@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from simconsole.autonomy.riccati import design, discretised, exponential, riccati
+from simconsole.drivers.path_tracker.riccati import design, discretised, exponential, riccati
 
 
 def test_exponential_of_a_rotation() -> None:

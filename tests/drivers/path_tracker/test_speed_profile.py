@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from simconsole.autonomy.settings import COMFORT
-from simconsole.autonomy.speed_profile import plan_speed
+from simconsole.drivers.path_tracker.speed_profile import plan_speed
+from simconsole.drivers.path_tracker.tracker_settings import COMFORT
 from simconsole.world.course import Course
 
 

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from simconsole.autonomy.settings import COMFORT, HATCHBACK
-from simconsole.autonomy.tracker import Sighting, Tracker
+from simconsole.drivers.path_tracker.tracker import Sighting, Tracker
+from simconsole.drivers.path_tracker.tracker_settings import COMFORT, HATCHBACK
 from simconsole.world.course import Course
 
 Drive = Callable[..., Any]

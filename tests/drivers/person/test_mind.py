@@ -4,13 +4,13 @@ import math
 
 import pytest
 
-from simconsole.devices.person_mind import Person, Phase
-from simconsole.devices.person_skills import Line, View, clutch_through_bite, hold_speed, launch_throttle, steer_along
-from simconsole.devices.uncalibrate import Intent
-from simconsole.errors import ProfileError
-from simconsole.profile_files import parse
+from simconsole.devices.calibration.uncalibrate import Intent
+from simconsole.drivers.person.mind import Person, Phase
+from simconsole.drivers.person.skills import Line, View, clutch_through_bite, hold_speed, launch_throttle, steer_along
+from simconsole.profiles.files.loader import parse
 from simconsole.profiles.person import Habits, PersonPlan, When
-from simconsole.signals import Button, Mode
+from simconsole.values.errors import ProfileError
+from simconsole.values.signals import Button, Mode
 
 HZ = 250
 STANDING = View(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 84.0, 1.0, 0.0, float(Mode.MANUAL))

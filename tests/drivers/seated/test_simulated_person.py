@@ -7,23 +7,23 @@ from typing import NamedTuple
 
 import pytest
 
-from simconsole.compiling import compiled
-from simconsole.control.settings import settings as control_settings
-from simconsole.devices.person import SimulatedPerson
-from simconsole.devices.person_mind import Phase
-from simconsole.devices.sdl import SdlSource
-from simconsole.devices.settings import settings as cockpit_settings
-from simconsole.devices.virtual_cockpit import VirtualCockpit
-from simconsole.pipeline import Console, advance, build_console, initial_state
-from simconsole.profile_files import load
+from simconsole.control.requests.control_settings import settings as control_settings
+from simconsole.devices.calibration.calibration_settings import settings as cockpit_settings
+from simconsole.devices.sources.sdl import SdlSource
+from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
+from simconsole.drivers.person.mind import Phase
+from simconsole.drivers.seated.simulated_person import SimulatedPerson
 from simconsole.profiles.control import ControlProfile
 from simconsole.profiles.device import CockpitProfile
+from simconsole.profiles.files.loader import load
 from simconsole.profiles.person import PersonPlan, When
 from simconsole.profiles.vehicle import VehicleProfile
-from simconsole.rows import Snapshot, TickInputs
-from simconsole.signals import NO_COMMAND, NO_EVENTS, Mode, Reason, RemoteCommand, RemoteKind
-from simconsole.vehicle.platform import Ground, Pose
-from simconsole.vehicle.registry import build
+from simconsole.tick.advance import Console, advance, build_console, initial_state
+from simconsole.values.host.jit import compiled
+from simconsole.values.platform import Ground, Pose
+from simconsole.values.signals import NO_COMMAND, NO_EVENTS, Mode, Reason, RemoteCommand, RemoteKind
+from simconsole.values.state_vector import Snapshot, TickInputs
+from simconsole.vehicle.platforms import build
 
 HZ = 250
 Controller = Callable[[int, Snapshot], RemoteCommand]

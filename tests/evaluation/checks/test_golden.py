@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from simconsole.errors import ProfileError
-from simconsole.golden import Comparison, Difference, Golden, Sample, head, line, step_ticks
+from simconsole.evaluation.checks.golden import Comparison, Difference, Golden, Sample, head, line, step_ticks
+from simconsole.values.errors import ProfileError
 
 COLUMNS = ("sample.wheel_axis", "vehicle.vx_mps")
 ROWS = np.arange(20.0).reshape(10, 2) / 3.0

@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from simconsole.checking import Bound, check_scenario
-from simconsole.errors import ProfileError
-from simconsole.memory import MemoryRecorder
+from simconsole.evaluation.checks.row_table import MemoryRecorder
+from simconsole.evaluation.checks.scenario_check import Bound, check_scenario
 from simconsole.profiles.scenario import Check, ScenarioProfile
 from simconsole.profiles.session import Devices, ModeSection, Scenario, SessionProfile
-from tests.in_memory import drive_scenario
+from simconsole.values.errors import ProfileError
+from tests.evaluation.in_memory import drive_scenario
 
 COLUMNS = ("a", "b")
 ROWS = np.column_stack([np.arange(1.0, 101.0), np.zeros(100)])  # one second at 100 Hz: a is the tick
@@ -92,7 +92,7 @@ checks:
 """
 PEAK = """
 import json, sys, tracemalloc
-from simconsole.checking import check_scenario
+from simconsole.evaluation.checks.scenario_check import check_scenario
 check_scenario(sys.argv[1], True)  # compiled and loaded
 peaks = []
 for path in sys.argv[1:]:

@@ -5,14 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from simconsole.handling.attempt import Attempt
-from simconsole.handling.braking import straight_braking
-from simconsole.handling.lane_change import course_of, least_room_m, path_at
-from simconsole.handling.library import drive_manoeuvre
-from simconsole.handling.observed import observed
-from simconsole.handling.sine_with_dwell import completion_s, wave
+from simconsole.evaluation.manoeuvres.attempt import Attempt
+from simconsole.evaluation.manoeuvres.braking import straight_braking
+from simconsole.evaluation.manoeuvres.lane_change import course_of, least_room_m, path_at
+from simconsole.evaluation.manoeuvres.library import drive_manoeuvre
+from simconsole.evaluation.manoeuvres.observed import observed
+from simconsole.evaluation.manoeuvres.sine_with_dwell import completion_s, wave
+from simconsole.evaluation.metrics.table import Array, Drive, drive_of
 from simconsole.profiles.manoeuvre import Observed, SineWithDwell, StraightBraking
-from simconsole.report.table import Array, Drive, drive_of
 from tests.vehicle.driving import platform
 
 HZ = 250

@@ -4,8 +4,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from simconsole.report.metrics import metrics, mode_changes, track
-from simconsole.report.table import drive_of
+from simconsole.evaluation.metrics.drive_metrics import metrics, mode_changes, track
+from simconsole.evaluation.metrics.table import drive_of
 from simconsole.world.course import Course
 
 

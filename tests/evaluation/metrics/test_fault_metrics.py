@@ -5,12 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from simconsole.report.faults import FaultSpan, fault_spans
-from simconsole.report.metrics import metrics
-from simconsole.report.page import write_report
-from simconsole.report.table import drive_of
-
-from tests.report.conftest import Known
+from simconsole.evaluation.metrics.drive_metrics import metrics
+from simconsole.evaluation.metrics.fault_metrics import FaultSpan, fault_spans
+from simconsole.evaluation.metrics.table import drive_of
+from simconsole.evaluation.report.page import write_report
+from tests.evaluation.conftest import Known
 
 
 @pytest.fixture

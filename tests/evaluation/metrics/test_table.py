@@ -3,8 +3,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from simconsole.errors import RecordingError
-from simconsole.report.table import drive_of
+from simconsole.evaluation.metrics.table import drive_of
+from simconsole.values.errors import RecordingError
 
 
 def test_columns_by_name_and_time_by_tick(known: Any) -> None:

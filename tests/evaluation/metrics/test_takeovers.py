@@ -5,12 +5,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from simconsole.report.table import Drive, drive_of
-from simconsole.report.takeovers import takeovers
-from simconsole.rows import columns
-from simconsole.signals import Mode, Reason
-
-from tests.report.conftest import Nothing
+from simconsole.evaluation.metrics.table import Drive, drive_of
+from simconsole.evaluation.metrics.takeovers import takeovers
+from simconsole.values.signals import Mode, Reason
+from simconsole.values.state_vector import columns
+from tests.evaluation.conftest import Nothing
 
 HZ = 50
 NONE: Any = np.zeros(0)

@@ -1,6 +1,6 @@
 import numpy as np
 
-from simconsole.report.thinning import path_thinned, thinned
+from simconsole.evaluation.metrics.thinning import path_thinned, thinned
 
 
 def test_extremes_and_ends_are_kept() -> None:

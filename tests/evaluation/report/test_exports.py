@@ -6,10 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from simconsole.errors import RecordingError
-from simconsole.exports import LIVE_SCENE, REPORT, SCENE, write_exports, write_report, write_scene
-from simconsole.recording.bundle import open_bundle, verify
-from simconsole.recording.manifest import MANIFEST
+from simconsole.evaluation.report.exports import REPORT, SCENE, write_exports, write_report, write_scene
+from simconsole.recording.bundles.bundle import open_bundle, verify
+from simconsole.recording.bundles.manifest import MANIFEST
+from simconsole.session.scene_job import LIVE_SCENE
+from simconsole.values.errors import RecordingError
 
 
 @pytest.fixture
@@ -64,9 +65,9 @@ def test_a_folder_that_is_no_bundle_gets_nothing(tmp_path: Path) -> None:
 SMALL = """
 import json, resource, sys
 from pathlib import Path
-from simconsole.commands.driven import finish
-from simconsole.session import drive
-from simconsole.session_files import load_session, resolve
+from simconsole.cli.driven import finish
+from simconsole.session.lifecycle import drive
+from simconsole.session.resolution import load_session, resolve
 done = drive(resolve(load_session(sys.argv[1])), Path(sys.argv[2]))
 pages = int(Path("/proc/self/statm").read_text().split()[0])
 resource.setrlimit(resource.RLIMIT_AS, (pages * resource.getpagesize(),) * 2)

@@ -4,10 +4,10 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from simconsole.report.colours import END, PERSON, REMOTE, START, THEORY
-from simconsole.report.figures import map_svg, traces_svg
-from simconsole.report.metrics import mode_changes, track
-from simconsole.report.table import drive_of
+from simconsole.evaluation.metrics.drive_metrics import mode_changes, track
+from simconsole.evaluation.metrics.table import drive_of
+from simconsole.evaluation.report.colours import END, PERSON, REMOTE, START, THEORY
+from simconsole.evaluation.report.figures import map_svg, traces_svg
 from simconsole.world.course import Course
 
 

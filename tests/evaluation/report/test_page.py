@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from simconsole.errors import RecordingError
-from simconsole.report.metrics import metrics
-from simconsole.report.page import page, write_report
-from simconsole.report.table import drive_of
+from simconsole.evaluation.metrics.drive_metrics import metrics
+from simconsole.evaluation.metrics.table import drive_of
+from simconsole.evaluation.report.page import page, write_report
+from simconsole.values.errors import RecordingError
 from simconsole.world.course import Course
 
 
@@ -75,7 +75,7 @@ def test_unwritable_file_is_one_line(tmp_path: Path, known: Any) -> None:
 
 
 def test_importing_the_report_loads_no_matplotlib() -> None:
-    code = "import simconsole.report.page, sys; raise SystemExit('matplotlib' in sys.modules)"
+    code = "import simconsole.evaluation.report.page, sys; raise SystemExit('matplotlib' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 

@@ -8,13 +8,13 @@ import numpy as np
 import pygame
 import pytest
 
-from simconsole.errors import ProfileError
-from simconsole.hud import window
 from simconsole.hud.view import HudSettings
-from simconsole.hud.window import KEYS, Freshness, Ports, Window, choose_display, run
-from simconsole.keys import Key
+from simconsole.hud.window import pygame_window as window
+from simconsole.hud.window.pygame_window import KEYS, Freshness, Ports, Window, choose_display, run
 from simconsole.profiles.view import HudProfile
-from simconsole.rows import PLATFORM_AT, Snapshot
+from simconsole.values.errors import ProfileError
+from simconsole.values.key_codes import Key
+from simconsole.values.state_vector import PLATFORM_AT, Snapshot
 
 PROFILE = HudProfile(width_px=700, height_px=525, screen_width_m=1.6, eye_distance_m=1.1, rate_hz=240)
 
@@ -128,7 +128,8 @@ DESKTOP = ("DISPLAY", "WAYLAND_DISPLAY", "XDG_RUNTIME_DIR")
 
 def test_without_a_desktop_it_draws_into_memory_and_says_nothing() -> None:
     program = (
-        "import pygame; from simconsole.hud.window import Window; from simconsole.hud.view import HudSettings; "
+        "import pygame; from simconsole.hud.window.pygame_window import Window; "
+        "from simconsole.hud.view import HudSettings; "
         "from simconsole.profiles.view import HudProfile; Window(HudProfile(), HudSettings()); "
         "assert pygame.display.get_driver() == 'dummy'"
     )

@@ -19,12 +19,12 @@ from simconsole.hud.draw import (
     text_width_px,
 )
 from simconsole.hud.layout import layout, sample_views
-from simconsole.hud.raster import Painter, render, render_png, snapshot_png
 from simconsole.hud.screen import Screen
 from simconsole.hud.view import HudView
-from simconsole.rows import PLATFORM_AT, Snapshot
-from simconsole.signals import Mode
-from simconsole.words import mode_words
+from simconsole.hud.window.raster import Painter, render, render_png, snapshot_png
+from simconsole.values.labels import mode_words
+from simconsole.values.signals import Mode
+from simconsole.values.state_vector import PLATFORM_AT, Snapshot
 
 SCREEN = Screen(1400, 1050, 1.6, 2.2)
 TRIPLE = Screen(4200, 1050, 4.8, 2.2)

@@ -6,8 +6,8 @@ from typing import Annotated
 import msgspec
 import pytest
 
-from simconsole import profile_files
-from simconsole.errors import ProfileError
+from simconsole.profiles.files import loader as profile_files
+from simconsole.values.errors import ProfileError
 
 
 class Tyre(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

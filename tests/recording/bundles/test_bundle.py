@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from simconsole.errors import RecordingError
-from simconsole.recording.bundle import LOG, BundleWriter, add_export, open_bundle, verify
+from simconsole.recording.bundles.bundle import LOG, BundleWriter, add_export, open_bundle, verify
+from simconsole.recording.bundles.manifest import read_manifest
 from simconsole.recording.framing import LogHeader
-from simconsole.recording.manifest import read_manifest
+from simconsole.values.errors import RecordingError
 
 TEXTS = {"session.yaml": "schema: 1\n", "vehicle.yaml": "mass_kg: 1500\n"}
 
@@ -179,7 +179,7 @@ def test_the_end_of_a_drive_does_not_read_the_whole_log_again(
     with BundleWriter(tmp_path / "b", header, {}) as writer:
         for tick in range(1, 3000):
             writer.log.append(tick, np.full(len(header.columns), float(tick)))
-        monkeypatch.setattr("simconsole.recording.bundle.file_entry", None)
+        monkeypatch.setattr("simconsole.recording.bundles.bundle.file_entry", None)
         manifest = writer.finish({})
     monkeypatch.undo()
     assert manifest.files[LOG].sha256 == sha256((tmp_path / "b" / LOG).read_bytes()).hexdigest()

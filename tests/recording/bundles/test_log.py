@@ -9,16 +9,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from simconsole.errors import RecordingError
+from simconsole.recording.bundles.log import LogReader, LogWriter
 from simconsole.recording.framing import LogHeader, encode_header, frame_size
-from simconsole.recording.log import LogReader, LogWriter
+from simconsole.values.errors import RecordingError
 
 FILL_THE_DISK = """
 import json, resource, sys
 import numpy as np
 from pathlib import Path
 from simconsole.recording.framing import LogHeader
-from simconsole.recording.log import LogWriter
+from simconsole.recording.bundles.log import LogWriter
 header = LogHeader(tick_hz=250, columns=("a", "b"), input_columns=1,
                    console_version="0", source_sha256="", session_sha256="")
 log = LogWriter(Path(sys.argv[1]), header)
@@ -162,7 +162,7 @@ def test_p01_a_sync_that_fails_is_flagged(tmp_path: Path, header: LogHeader, mon
     def broken(_: int) -> None:
         raise OSError(errno.EIO, "Input/output error")
 
-    monkeypatch.setattr("simconsole.recording.log._synchronise", broken)
+    monkeypatch.setattr("simconsole.recording.bundles.log._synchronise", broken)
     with LogWriter(tmp_path / "drive.log", header, sync_interval_s=0.001) as log:
         deadline = time.monotonic() + 30.0
         while log.failure is None:

@@ -7,12 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from simconsole.errors import StationError
 from simconsole.scene.entities import Dimensions
-from simconsole.scene.export import export_apart, main
-from simconsole.scene.job import Job, load_job, save_job
 from simconsole.scene.timeline import NEEDED, PLOTS
-
+from simconsole.scene.viewer.export import export_apart, main
+from simconsole.scene.viewer.job import Job, load_job, save_job
+from simconsole.values.errors import StationError
 from tests.scene.drives import COLUMNS, job
 
 WORLD = {"/world/road/surface", "/world/road/paint", "/world/road/edges", "/world/road/centre", "/world/road/ground",

@@ -2,18 +2,17 @@ import subprocess
 import sys
 from pathlib import Path
 
-from simconsole.scene.job import save_job
-
+from simconsole.scene.viewer.job import save_job
 from tests.scene.drives import job
-from tests.scene.test_export import DRIVE, WORLD, contents, rerun_rrd
+from tests.scene.viewer.test_export import DRIVE, WORLD, contents, rerun_rrd
 
 # The live drive is fed from a job's rows, 100 ticks at a time, as a ring would give them.
 FEEDER = """
 import sys
 from pathlib import Path
-from simconsole.rows import Snapshot
-from simconsole.scene.follow import Ports, follow
-from simconsole.scene.job import load_job
+from simconsole.values.state_vector import Snapshot
+from simconsole.scene.viewer.follow import Ports, follow
+from simconsole.scene.viewer.job import load_job
 
 job = load_job(Path(sys.argv[1]))
 given = 0

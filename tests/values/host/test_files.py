@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from simconsole.files import draft_of, give_back, replaced, reserve, write_atomically
+from simconsole.values.host.files import draft_of, give_back, replaced, reserve, write_atomically
 
 
 @pytest.mark.parametrize("durable", [True, False])

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from simconsole import compiling
-from simconsole.compiling import compiled, digest, plain
-from simconsole.kernels import Row, kernel, take
+from simconsole.values.host import jit as compiling
+from simconsole.values.host.jit import compiled, digest, plain
+from simconsole.values.kernels import Row, kernel, take
 
 SCALE = 2.0
 WIDTH = 3
@@ -80,8 +80,9 @@ def test_digest_follows_callees_and_constants() -> None:
 
 
 def test_digest_is_the_same_in_another_process() -> None:
-    code = "from simconsole.compiling import digest; from simconsole.trigonometry import sin; print(digest(sin))"
-    from simconsole.trigonometry import sin
+    code = "from simconsole.values.host.jit import digest; "
+    code += "from simconsole.values.trigonometry import sin; print(digest(sin))"
+    from simconsole.values.trigonometry import sin
 
     environment = {**os.environ, "PYTHONHASHSEED": "7", "PYTHONPATH": os.pathsep.join(sys.path)}
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment)
@@ -107,6 +108,6 @@ def test_unused_folders_are_removed_after_a_month(own_cache: Path) -> None:
 
 
 def test_importing_loads_no_numba() -> None:
-    code = "import sys, simconsole.compiling, simconsole.vehicle.car.step; sys.exit('numba' in sys.modules)"
+    code = "import sys, simconsole.values.host.jit, simconsole.vehicle.car.car_step; sys.exit('numba' in sys.modules)"
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     assert subprocess.run([sys.executable, "-c", code], check=False, env=environment).returncode == 0

@@ -2,11 +2,11 @@ from pathlib import Path
 
 import pytest
 
-from simconsole.profile_files import find
+from simconsole.profiles.files.loader import find
 from simconsole.profiles.world import WorldProfile
-from simconsole.vehicle.platform import Pose
-from simconsole.world.generate import main
+from simconsole.values.platform import Pose
 from simconsole.world.geometry import Piece, travel
+from simconsole.world.tools.generate import main
 
 PLAN = Path(find("worlds", "urban")).with_name("urban.plan.yaml")
 

@@ -1,0 +1,1 @@
+"""The rosbridge protocol of servers and clients, without a socket."""

@@ -1,0 +1,1 @@
+"""Bench and conformance of any rosbridge server."""

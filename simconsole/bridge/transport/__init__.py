@@ -1,0 +1,1 @@
+"""Sockets, servers and files of the bridge."""

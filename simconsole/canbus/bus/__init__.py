@@ -1,0 +1,1 @@
+"""Buses, and the worker that speaks on one."""

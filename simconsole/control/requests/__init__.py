@@ -1,0 +1,1 @@
+"""What the person and the controller ask for, checked and in common terms: the inputs of arbitration."""

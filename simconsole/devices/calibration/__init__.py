@@ -1,0 +1,1 @@
+"""From raw axes to a driver's input: pure."""

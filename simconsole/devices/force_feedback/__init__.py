@@ -1,0 +1,1 @@
+"""The torque at the rim, and the motor that is commanded: pure."""

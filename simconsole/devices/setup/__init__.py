@@ -1,0 +1,1 @@
+"""Dialogues that set a cockpit up."""

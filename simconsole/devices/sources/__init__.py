@@ -1,0 +1,1 @@
+"""Joysticks, real and virtual, through SDL."""

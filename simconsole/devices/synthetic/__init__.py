@@ -1,0 +1,1 @@
+"""Inputs without a joystick: keyboard, scripts, traces: pure."""

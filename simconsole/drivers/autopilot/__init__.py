@@ -1,0 +1,1 @@
+"""The path tracker as a ROS-side program."""

@@ -1,0 +1,1 @@
+"""What a simulated person perceives, decides and can do: pure."""

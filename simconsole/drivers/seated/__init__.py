@@ -1,0 +1,1 @@
+"""A simulated person in the seat."""

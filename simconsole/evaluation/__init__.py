@@ -1,0 +1,1 @@
+"""What a drive was worth: checks, manoeuvres, metrics, report."""

@@ -1,0 +1,1 @@
+"""Faults on a schedule, and the layers they act through."""

@@ -1,0 +1,1 @@
+"""The window that the draw lists are painted in."""

@@ -1,0 +1,1 @@
+"""Processes around the core, and the memory they share."""

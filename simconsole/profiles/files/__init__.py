@@ -1,0 +1,1 @@
+"""The only door to YAML: profiles read from files."""

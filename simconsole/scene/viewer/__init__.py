@@ -1,0 +1,1 @@
+"""rerun: the scene shown and exported."""

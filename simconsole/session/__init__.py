@@ -1,0 +1,1 @@
+"""A session: resolved, opened, driven, closed."""

@@ -1,0 +1,32 @@
+"""What a process that draws the scene is given: the job of a live one and of an exported one."""
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simconsole.profiles.view import SceneProfile
+from simconsole.tick.assembly import ResolvedSession, assemble
+from simconsole.values.host.jit import plain
+from simconsole.values.kernels import Row
+from simconsole.world.course import Course
+
+if TYPE_CHECKING:
+    from simconsole.scene.viewer.job import Job
+
+Ticks = NDArray[np.int64]
+
+LIVE_SCENE: Final = "scene.live.rrd"
+"""What a paced drive's scene station records; the whole scene, made from the log, takes its place."""
+
+
+def scene_job(resolved: ResolvedSession, rows: Row, ticks: Ticks, columns: tuple[str, ...], tick_hz: int) -> "Job":
+    """Return what a scene process is given: rows (none for a live one), course and car."""
+    from simconsole.scene.entities import Dimensions
+    from simconsole.scene.viewer.job import Job
+    from simconsole.world.drawing import draw
+
+    platform, course = assemble(resolved, plain)[0].platform, None if resolved.world is None else Course(resolved.world)
+    dimensions = Dimensions(platform.length_m, platform.width_m, platform.height_m, platform.rear_overhang_m)
+    drawing = None if course is None else draw(course)
+    return Job(rows, ticks, columns, tick_hz, dimensions, drawing, resolved.session.outputs.scene or SceneProfile())

@@ -1,0 +1,67 @@
+"""The interface behind which every vehicle stands."""
+
+from collections.abc import Callable
+from typing import Any, Final, NamedTuple
+
+from simconsole.values.kernels import Row
+from simconsole.values.signals import VehicleState
+
+
+class Pose(NamedTuple):
+    """Where base_link starts, in `map`."""
+
+    x_m: float
+    y_m: float
+    yaw_rad: float
+
+
+class Patch(NamedTuple):
+    """A rectangle of `map` with a friction of its own: a share of the ground's. Where two overlap, the later counts."""
+
+    from_x_m: float
+    to_x_m: float
+    from_y_m: float
+    to_y_m: float
+    share: float
+
+
+MOST_PATCHES: Final = 4
+
+
+class Ground(NamedTuple):
+    """The ground under the vehicle: friction coefficient and the slope of its plane along x and y of `map`.
+
+    `right_share` is the share of the friction under the vehicle's right wheels: below 1 on split friction. `patches`,
+    at most MOST_PATCHES, hold for each wheel that stands on them. The wind is where the air moves to, in `map`.
+    """
+
+    friction: float
+    slope_x: float
+    slope_y: float
+    right_share: float = 1.0
+    wind_x_mps: float = 0.0
+    wind_y_mps: float = 0.0
+    patches: tuple[Patch, ...] = ()
+
+
+class Platform(NamedTuple):
+    """One vehicle, ready to drive.
+
+    `step(previous_row, row, parameters, substeps)` is a kernel: it reads `VehicleCommand` from `row` at COMMAND_AT
+    and its own state from `previous_row` at PLATFORM_AT, advances `substeps` steps of 1 ms, and writes
+    `VehicleState` at VEHICLE_AT and its state at PLATFORM_AT of `row` (simconsole.values.state_vector).
+    """
+
+    name: str
+    state: type[Any]  # a NamedTuple of floats: the platform's own columns
+    initial_state: tuple[float, ...]
+    initial_vehicle: VehicleState
+    parameters: Row
+    step: Callable[[Row, Row, Row, int], None]
+    steering_ratio: float  # hand-wheel angle per road-wheel angle
+    max_road_wheel_rad: float
+    wheelbase_m: float  # of a ball its diameter: some length to judge its turning by
+    length_m: float
+    width_m: float
+    height_m: float
+    rear_overhang_m: float  # from base_link to the rear end

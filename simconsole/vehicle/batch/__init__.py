@@ -1,0 +1,1 @@
+"""Many vehicles at once, compiled."""
