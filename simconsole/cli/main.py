@@ -63,7 +63,7 @@ def main(arguments: list[str] | None = None) -> int:
 def _run(words: argparse.Namespace) -> int:
     module, function = words.does.split(":")
     try:
-        outcome = getattr(import_module(f"simconsole.commands.{module}"), function)(words)
+        outcome = getattr(import_module(f"simconsole.cli.{module}"), function)(words)
     except SimConsoleError as error:
         _print(f"simconsole {words.command}: {error}", sys.stderr)
         if words.json:
@@ -201,7 +201,7 @@ def _can(commands: Any) -> None:
 
 
 def _tools(commands: Any) -> None:
-    devices = _command(commands, "devices", "cockpit:devices", "the cockpit: list, check, calibrate, feel, record")
+    devices = _command(commands, "devices", "devices:devices", "the cockpit: list, check, calibrate, feel, record")
     devices.add_argument("action", choices=("list", "check", "calibrate", "feel", "record"))
     devices.add_argument("--cockpit", default="t500rs_th8rs", metavar="PROFILE", help="a name, or a .yaml file")
     devices.add_argument("--virtual", action="store_true", help="attach the cockpit's devices as virtual ones first")
