@@ -107,8 +107,9 @@ def compiled_for_each(step: Callable[..., Any]) -> Callable[..., None]:
 
     Returns: a function of (rows before, rows after, parameters, an int), the tables float64 [vehicles, columns].
     """
-    namespace = {"step": _inner(step), "prange": _numba().prange, "len": len}
+    namespace = {"__name__": __name__, "step": _inner(step), "prange": _numba().prange}
     twin = types.FunctionType(_for_each.__code__, namespace, "for_each")
+    twin.__module__ = __name__  # of which numba asks when it loads compiled code from the cache
     return _cached(twin, digest(step) + "-each", parallel=True)  # type: ignore[no-any-return]
 
 

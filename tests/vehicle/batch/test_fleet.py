@@ -1,6 +1,10 @@
 """A fleet: each vehicle bit for bit as alone, in any number, with any command, on any number of threads."""
 
+import os
 import random
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -98,3 +102,23 @@ def test_what_is_no_fleet_is_refused() -> None:
         Fleet([])
     with pytest.raises(ValueError, match=rf"shape \(3,\), must be \(2, {COMMAND_WIDTH}\)"):
         Fleet([platform(ground=LEVEL)] * 2).command(np.zeros(3))
+
+
+def test_compiled_fleet_is_found_by_another_process(tmp_path: Path) -> None:
+    """The second process loads what the first compiled, and steps to the same bits, on one thread as on two."""
+    code = (
+        "from tests.vehicle.driving import platform\n"
+        "from simconsole.vehicle.batch.fleet import Fleet\n"
+        "fleet = Fleet([platform('ball')] * 5)\n"
+        "fleet.step(3)\n"
+        "print(fleet.states.tobytes().hex(), sum(fleet._step.stats.cache_hits.values()))\n"
+    )
+    environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path), "PYTHONPATH": os.pathsep.join(sys.path)}
+    seen = []
+    for threads in ("2", "1"):
+        environment["NUMBA_NUM_THREADS"] = threads
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment)
+        seen.append(done.stdout.split())
+    (first, compiled_here), (second, found) = seen
+    assert (compiled_here, found) == ("0", "1")
+    assert first == second
