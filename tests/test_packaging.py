@@ -106,7 +106,7 @@ def normalised(name: str) -> str:
 def test_installed_package_and_its_profiles_come_from_the_wheel(installation: Installation) -> None:
     script = (
         "import json, simconsole, sys\n"
-        "from simconsole import profile_files as files\n"
+        "from simconsole.profiles.files import loader as files\n"
         "kinds = ('devices', 'vehicles', 'worlds', 'sessions', 'scenarios')\n"
         "names = {kind: files.names(kind) for kind in kinds}\n"
         "print(json.dumps([simconsole.__file__, str(files.profiles_folder()), names, sys.path]))"

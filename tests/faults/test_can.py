@@ -387,4 +387,4 @@ def test_c05_only_one_line_of_the_package_sends(codec: Codec) -> None:
     package = ROOT / "simconsole"
     importers = [path.name for path in package.rglob("*.py") if "import can\n" in path.read_text()]
     assert importers == ["port.py"]
-    assert (package / "canbus" / "port.py").read_text().count(".send(") == 1
+    assert (package / "canbus" / "bus" / "port.py").read_text().count(".send(") == 1

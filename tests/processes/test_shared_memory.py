@@ -31,7 +31,7 @@ while True:
 MAKE_AND_STAY = """
 import sys
 from pathlib import Path
-from simconsole import shared_memory
+from simconsole.processes import shared_memory
 shared_memory._base = lambda: Path(sys.argv[1])
 print(shared_memory.make_run_folder(), flush=True)
 sys.stdin.read()

@@ -24,7 +24,7 @@ CORE = """
 import json, sys, time
 from pathlib import Path
 import numpy as np
-from simconsole import shared_memory
+from simconsole.processes import shared_memory
 from simconsole.processes.supervisor import StationSpec, Supervisor
 base, specs = Path(sys.argv[1]), json.loads(sys.argv[2])
 shared_memory._base = lambda: base
@@ -292,7 +292,7 @@ def mappings_of(folder: Path) -> list[str]:
 WITHOUT_FILES = """
 import resource, sys
 from pathlib import Path
-from simconsole import stations
+from simconsole.processes import supervisor as stations
 def fail(*_):
     resource.setrlimit(resource.RLIMIT_NOFILE, (3, 3))
     Path("/dev/null").open()
