@@ -2,7 +2,7 @@
 
 The person's stalk and hazard switch keep their position through every mode, as in a car. While the controller drives,
 its indicator goes before the stalk where it sets one, and either side may put the hazard lights on. A stop that the
-console makes itself always shows them: a minimal-risk manoeuvre (facts/reliability.md 2), what follows it, and an
+console makes itself always shows them: a minimal-risk manoeuvre (UN R157, 5.5), what follows it, and an
 emergency stop.
 """
 

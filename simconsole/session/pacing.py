@@ -18,7 +18,7 @@ from simconsole.values.units import NS_PER_S
 
 CATCH_UP_TICKS: Final = 5
 STALL_NS: Final = 100_000_000
-"""A longer stall is an event that the arbiter answers with a safe stop (DESIGN 2)."""
+"""A longer stall is an event that the arbiter answers with a safe stop."""
 
 _PR_SET_TIMERSLACK: Final = 29  # linux/prctl.h
 _MCL_CURRENT: Final = 1  # sys/mman.h; not what comes later: a log of hours must not be locked
