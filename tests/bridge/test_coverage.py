@@ -12,19 +12,17 @@ from tests.paths import ROOT
 
 ROOM = ROOT / "simconsole" / "bridge"
 TESTS = ROOT / "tests" / "bridge"
-WITHOUT_CODE = ("_text.py", "__init__.py")
-"""Definitions and re-exports: tested with whatever reads them."""
+RE_EXPORTS = "__init__.py"
+"""Tested with whatever reads them."""
 
 
 def cores() -> list[str]:
-    """The modules of the bridge that the contract of pure floors names, its packages' modules one by one."""
+    """The modules of the bridge's folders that the contract of pure folders names."""
     contracts = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
     (pure,) = (contract["source_modules"] for contract in contracts if contract["type"] == "forbidden")
-    names = [name.rpartition(".")[2] for name in pure if name.startswith("simconsole.bridge.")]
-    found = []
-    for name in names:
-        package = ROOM / name
-        found += sorted(package.glob("*.py")) if package.is_dir() else [package.with_suffix(".py")]
+    folders = [name.removesuffix(".**").rpartition(".")[2] for name in pure if name.startswith("simconsole.bridge.")]
+    found = [path for folder in folders for path in sorted((ROOM / folder).rglob("*.py"))]
+    assert len(found) > 30
     return [str(path.relative_to(ROOM)) for path in found]
 
 
@@ -33,7 +31,7 @@ def file_of(core: str) -> Path:
     return TESTS / Path(core).parent / f"test_{Path(core).name}"
 
 
-@pytest.mark.parametrize("core", [core for core in cores() if not core.endswith(WITHOUT_CODE)])
+@pytest.mark.parametrize("core", [core for core in cores() if not core.endswith(RE_EXPORTS)])
 def test_core_has_its_own_test_file(core: str) -> None:
     assert file_of(core).exists()
 

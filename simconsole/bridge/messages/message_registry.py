@@ -5,6 +5,7 @@ definition's defaults. Nothing is generated before it is first asked for.
 """
 
 import re
+from pathlib import PurePath
 from typing import Annotated, Any
 
 import msgspec
@@ -65,6 +66,12 @@ class Registry:
     def add_action(self, name: str, text: str) -> None:
         """Add an action from its `.action` text. Raises as `add_all`."""
         self._add_parts(name, text, ("Goal", "Result", "Feedback"))
+
+    def add_file(self, path: PurePath, text: str) -> None:
+        """Add what a file `PACKAGE/msg/NAME.msg`, or the like for `srv` and `action`, defines. Raises as `add_all`."""
+        package, kind, file = path.parts[-3:]
+        add = {"msg": self.add, "srv": self.add_service, "action": self.add_action}[kind]
+        add(f"{package}/{file.removesuffix(f'.{kind}')}", text)
 
     def _add_parts(self, name: str, text: str, parts: tuple[str, ...]) -> None:
         texts = _PARTS.split(text)

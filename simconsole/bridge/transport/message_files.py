@@ -4,12 +4,12 @@ from pathlib import Path
 from typing import Final
 
 from simconsole.bridge.messages import Registry, standard_registry
+from simconsole.bridge.messages.standard_types import definition_files
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import BridgeError, ProfileError
 
 MAX_FILES: Final = 1000
 MAX_BYTES: Final = 65_536
-_KINDS: Final = ("msg", "srv", "action")
 
 
 def load_registry(profile: BridgeProfile) -> Registry:
@@ -22,7 +22,7 @@ def load_registry(profile: BridgeProfile) -> Registry:
     if profile.messages is None:
         return registry
     folder = Path(profile.messages)
-    files = sorted(path for kind in _KINDS for path in folder.glob(f"*/{kind}/*.{kind}"))
+    files = definition_files(folder)
     if not files:
         raise ProfileError(f"outputs.bridge.messages: {folder}: no PACKAGE/msg/NAME.msg, .srv or .action in it")
     if len(files) > MAX_FILES:
@@ -30,7 +30,7 @@ def load_registry(profile: BridgeProfile) -> Registry:
     known = set(registry.names())
     for path in files:
         try:
-            _add(registry, path)
+            registry.add_file(path, _read(path))
         except (BridgeError, UnicodeDecodeError, OSError) as error:
             raise ProfileError(f"outputs.bridge.messages: {path}: {error}") from None
     for name in set(registry.names()) - known:
@@ -41,17 +41,9 @@ def load_registry(profile: BridgeProfile) -> Registry:
     return registry
 
 
-def _add(registry: Registry, path: Path) -> None:
+def _read(path: Path) -> str:
     with path.open("rb") as file:
         data = file.read(MAX_BYTES + 1)
     if len(data) > MAX_BYTES:
         raise BridgeError(f"more than {MAX_BYTES} bytes")
-    text = data.decode()
-    name = f"{path.parent.parent.name}/{path.stem}"
-    match path.suffix:
-        case ".msg":
-            registry.add(name, text)
-        case ".srv":
-            registry.add_service(name, text)
-        case _:
-            registry.add_action(name, text)
+    return data.decode()

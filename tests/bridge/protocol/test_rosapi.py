@@ -5,7 +5,7 @@ import pytest
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.messages import parse, parse_all
-from simconsole.bridge.messages.rosapi_text import SERVICES
+from simconsole.bridge.messages.standard_types import DEFINITIONS
 from simconsole.bridge.protocol.access import Access, Role
 from simconsole.bridge.protocol.rosapi import MAX_PARAMETER, MAX_PARAMETERS
 
@@ -23,7 +23,8 @@ def ask(peer: Any, service: str, /, **args: Any) -> Any:
 
 def test_every_service_has_its_type(peer: Any) -> None:
     services = peer.bridge.router.calls.services()
-    assert sorted(services.values()) == sorted([*SERVICES, "simconsole_msgs/Operate"])
+    defined = [f"rosapi/{path.stem}" for path in (DEFINITIONS / "rosapi" / "srv").iterdir()]
+    assert sorted(services.values()) == sorted([*defined, "simconsole_msgs/Operate"])
     assert ask(peer, "services") == {"services": list(services)}
     for name, kind in services.items():
         assert ask(peer, "service_type", service=name) == {"type": kind}
