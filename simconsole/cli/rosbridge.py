@@ -20,7 +20,7 @@ def serve(words: Namespace) -> Outcome:
     from simconsole.bridge.ros2.node import check as check_ros2
     from simconsole.bridge.transport.interface import load_transport
     from simconsole.bridge.transport.message_files import load_registry
-    from simconsole.bridge.transport.wire import load_access, load_tls
+    from simconsole.bridge.transport.sockets import load_access, load_tls
     from simconsole.session.lifecycle import drive
     from simconsole.session.resolution import load_session, override, resolve
 

@@ -201,7 +201,7 @@ def _check_address(profile: BridgeProfile) -> None:
     """Listen for a moment where the bridge will: a taken port is one line now, not a station that dies and dies."""
     from simconsole.bridge.ros2.node import check
     from simconsole.bridge.transport.message_files import load_registry
-    from simconsole.bridge.transport.wire import listen
+    from simconsole.bridge.transport.sockets import listen
 
     load_registry(profile)
     check(profile)
@@ -246,7 +246,7 @@ def _own_token(session: SessionProfile) -> str | None:
     """Return what the session's own autopilot shows its bridge; None where it has to show nothing."""
     if session.outputs.bridge is None or session.features.autopilot is None:
         return None
-    from simconsole.bridge.transport.wire import control_token
+    from simconsole.bridge.transport.sockets import control_token
 
     return control_token(session.outputs.bridge)
 

@@ -51,7 +51,7 @@ def bridge(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) ->
     """
     from simconsole.bridge.console.operator_acts import Act
     from simconsole.bridge.transport.server import serve
-    from simconsole.bridge.transport.wire import address_url
+    from simconsole.bridge.transport.sockets import address_url
 
     profile = msgspec.convert(arguments["profile"], BridgeProfile)
     receipts = Receipts(folder / f"{LATENCY}.bridge.json")

@@ -8,7 +8,7 @@ from typing import Any
 
 import cbor2
 
-from simconsole.bridge.protocol.documents import Binary
+from simconsole.bridge.protocol.message_decoding import Binary
 
 
 def read_any(text: bytes) -> dict[str, Any]:

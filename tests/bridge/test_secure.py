@@ -14,7 +14,7 @@ from websockets.sync.client import connect
 from simconsole.bridge.client.bridge_client import BridgeClient
 from simconsole.bridge.transport.lockstep_server import LockstepBridge
 from simconsole.bridge.transport.server import BridgeServer
-from simconsole.bridge.transport.wire import load_tls
+from simconsole.bridge.transport.sockets import load_tls
 from simconsole.cli.certificate import make, write_private
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import BridgeError, ProfileError
@@ -54,7 +54,7 @@ def test_encrypted_and_authenticated(
 def test_n12_who_begins_no_encryption_is_ended_too(
     serving: Callable[..., Any], files: dict[str, str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("simconsole.bridge.transport.wire.HANDSHAKE_S", 0.2)
+    monkeypatch.setattr("simconsole.bridge.transport.sockets.HANDSHAKE_S", 0.2)
     server = serving(**files)
     with socket.create_connection(("127.0.0.1", server.port), 20.0) as idle:
         assert idle.recv(100) == b""

@@ -16,7 +16,7 @@ from websockets.asyncio.client import ClientConnection, connect
 
 from simconsole.bridge.client.bridge_client import BridgeClient
 from simconsole.bridge.transport.server import BridgeServer
-from simconsole.bridge.transport.wire import is_unacknowledged
+from simconsole.bridge.transport.sockets import is_unacknowledged
 from simconsole.profiles.bridge import BridgeLimits, BridgeProfile
 from simconsole.values.signals import Event
 from tests.bridge.networks import CLOSE, Raw, far_end, go_deaf, lose

@@ -86,7 +86,7 @@ def test_n10_compression_is_off(edge: Callable[..., Any], control: Callable[...,
 def test_n12_idle_handshakes_are_ended_and_harm_nobody(
     edge: Callable[..., Any], control: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("simconsole.bridge.transport.wire.HANDSHAKE_S", 0.3)
+    monkeypatch.setattr("simconsole.bridge.transport.sockets.HANDSHAKE_S", 0.3)
     server = edge()
     with unharmed(server, control), ExitStack() as stack:
         idle = [stack.enter_context(socket.create_connection(("127.0.0.1", server.port), 20.0)) for _ in range(200)]

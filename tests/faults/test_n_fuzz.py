@@ -16,7 +16,7 @@ import pytest
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.protocol.access import Access, Role
-from simconsole.bridge.protocol.documents import Binary
+from simconsole.bridge.protocol.message_decoding import Binary
 from simconsole.profiles.bridge import BridgeProfile
 from tests.samples import Measured, Sample
 

@@ -11,8 +11,8 @@ import cbor2
 import pytest
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
-from simconsole.bridge.protocol.documents import Binary
 from simconsole.bridge.protocol.fragments import MAX_OPEN, TIMEOUT_NS
+from simconsole.bridge.protocol.message_decoding import Binary
 from simconsole.profiles.bridge import BridgeLimits, BridgeProfile
 from tests.bridge.fixtures import Peer
 from tests.samples import Measured, Sample

@@ -15,7 +15,7 @@ import pytest
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.input_slots import aged
 from simconsole.bridge.protocol.access import Access, Role
-from simconsole.bridge.protocol.documents import Binary
+from simconsole.bridge.protocol.message_decoding import Binary
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.signals import NEVER_TICKS, Event, RemoteCommand
 from tests.samples import Measured

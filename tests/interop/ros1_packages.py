@@ -4,7 +4,7 @@ import subprocess
 from pathlib import Path
 
 from simconsole.bridge.messages import standard_registry
-from simconsole.bridge.messages.writing import text_of
+from simconsole.bridge.messages.definition_text import text_of
 
 PYTHON = "/usr/bin/python3"
 _GENERATOR = "/usr/lib/genpy/genmsg_py.py"

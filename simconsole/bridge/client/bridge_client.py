@@ -19,7 +19,7 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import Any, Final, Literal, Self
 
-from simconsole.bridge.client.link import ABNORMAL, Link
+from simconsole.bridge.client.client_connection import ABNORMAL, Link
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.protocol.backoff import CAP_S, FIRST_S, Backoff, Liveness
 from simconsole.bridge.protocol.client_protocol import (

@@ -15,10 +15,10 @@ import orjson
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.messages import Definition
 from simconsole.bridge.messages.cdr import deserialize, serialize
-from simconsole.bridge.messages.spelled import is_same_layout
+from simconsole.bridge.messages.rosidl_types import is_same_layout
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.client_session import Session
-from simconsole.bridge.protocol.documents import Binary
+from simconsole.bridge.protocol.message_decoding import Binary
 from simconsole.values.errors import BridgeError
 
 Describe = Callable[[str], tuple[Definition, ...] | None]

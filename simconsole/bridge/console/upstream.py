@@ -11,7 +11,7 @@ import orjson
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.client_session import Session
-from simconsole.bridge.protocol.documents import read
+from simconsole.bridge.protocol.message_decoding import read
 from simconsole.bridge.protocol.operations import Publish, Status, read_operation
 from simconsole.bridge.protocol.server_protocol import Outcome
 from simconsole.profiles.bridge import UpstreamProfile

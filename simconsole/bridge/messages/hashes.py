@@ -8,7 +8,7 @@ import json
 from typing import TYPE_CHECKING, Any, Final
 
 from simconsole.bridge.messages.definition import DURATION, HEADER, TIME, Definition, FieldType, parse
-from simconsole.bridge.messages.writing import ROS1_HEADER
+from simconsole.bridge.messages.definition_text import ROS1_HEADER
 
 if TYPE_CHECKING:
     from simconsole.bridge.messages.message_registry import Registry

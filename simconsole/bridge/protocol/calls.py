@@ -14,8 +14,8 @@ import orjson
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.client_session import Session, resolve_topic
-from simconsole.bridge.protocol.documents import Binary
-from simconsole.bridge.protocol.forms import Dialect, png, spell
+from simconsole.bridge.protocol.message_decoding import Binary
+from simconsole.bridge.protocol.message_encoding import Dialect, png, spell
 from simconsole.bridge.protocol.operations import (
     ActionFeedback,
     ActionResult,

@@ -12,9 +12,9 @@ import msgspec
 import orjson
 
 from simconsole.bridge.messages import Registry, standard_registry
-from simconsole.bridge.protocol.documents import read
-from simconsole.bridge.protocol.forms import Dialect, spell
 from simconsole.bridge.protocol.fragments import Assembler
+from simconsole.bridge.protocol.message_decoding import read
+from simconsole.bridge.protocol.message_encoding import Dialect, spell
 from simconsole.bridge.protocol.operations import (
     ActionFeedback,
     ActionResult,

@@ -5,10 +5,10 @@ from collections.abc import Callable
 from typing import Final, NamedTuple
 
 from simconsole.bridge.protocol.access import Role
-from simconsole.bridge.protocol.forms import Dialect
 from simconsole.bridge.protocol.fragments import Assembler
-from simconsole.bridge.protocol.meter import Meter
+from simconsole.bridge.protocol.message_encoding import Dialect
 from simconsole.bridge.protocol.operations import DEFAULT_LEVEL, SEVERITY, Id, write_status
+from simconsole.bridge.protocol.rate_limiter import Meter
 from simconsole.bridge.protocol.subscription_queue import Outgoing, Outlet
 from simconsole.values.errors import RemoteProtocolError
 from simconsole.values.units import NS_PER_S

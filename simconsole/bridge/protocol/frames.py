@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from simconsole.bridge.protocol.documents import Binary
+from simconsole.bridge.protocol.message_decoding import Binary
 from simconsole.values.errors import FrameError
 from simconsole.values.units import NS_PER_S
 

@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 from urllib.parse import parse_qs, urlsplit
 
 from simconsole.bridge.protocol.access import Access, Role
-from simconsole.bridge.protocol.forms import Dialect
+from simconsole.bridge.protocol.message_encoding import Dialect
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import ProfileError, RemoteProtocolError
 

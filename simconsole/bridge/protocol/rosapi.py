@@ -9,10 +9,10 @@ from typing import Any, Final
 import orjson
 
 from simconsole.bridge.messages.definition import FieldType
-from simconsole.bridge.messages.writing import full_text
+from simconsole.bridge.messages.definition_text import full_text
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.client_session import resolve_topic
-from simconsole.bridge.protocol.forms import Dialect
+from simconsole.bridge.protocol.message_encoding import Dialect
 from simconsole.bridge.protocol.server_protocol import Router
 from simconsole.bridge.protocol.topic_registry import Topic
 from simconsole.values.errors import BridgeError, RemoteProtocolError

@@ -11,11 +11,10 @@ from simconsole.bridge.messages import Registry, is_stamped
 from simconsole.bridge.protocol.access import OPEN, Role
 from simconsole.bridge.protocol.calls import Calls
 from simconsole.bridge.protocol.client_session import Counts, Session, resolve_topic
-from simconsole.bridge.protocol.documents import Binary, Document, has_duplicate_keys, read
-from simconsole.bridge.protocol.forms import Dialect
 from simconsole.bridge.protocol.fragments import Assembler
 from simconsole.bridge.protocol.lease import Lease
-from simconsole.bridge.protocol.meter import Meter
+from simconsole.bridge.protocol.message_decoding import Binary, Document, has_duplicate_keys, read
+from simconsole.bridge.protocol.message_encoding import Dialect
 from simconsole.bridge.protocol.operations import (
     Advertise,
     Auth,
@@ -32,6 +31,7 @@ from simconsole.bridge.protocol.operations import (
     id_of,
     read_operation,
 )
+from simconsole.bridge.protocol.rate_limiter import Meter
 from simconsole.bridge.protocol.topic_registry import RELAY_DEPTH, Accept, Board, Command, Topic
 from simconsole.profiles.bridge import BridgeLimits
 from simconsole.values.errors import BridgeError, RemoteProtocolError

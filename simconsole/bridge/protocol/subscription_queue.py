@@ -7,9 +7,9 @@ from collections import deque
 from collections.abc import Iterator
 from typing import Final, NamedTuple
 
-from simconsole.bridge.protocol.documents import Binary
-from simconsole.bridge.protocol.forms import PLAIN, Form
 from simconsole.bridge.protocol.fragments import split
+from simconsole.bridge.protocol.message_decoding import Binary
+from simconsole.bridge.protocol.message_encoding import PLAIN, Form
 from simconsole.bridge.protocol.operations import Id
 from simconsole.values.units import NS_PER_S
 

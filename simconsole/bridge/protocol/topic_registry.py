@@ -5,7 +5,7 @@ from typing import Any, Final, NamedTuple
 
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.protocol.client_session import Session
-from simconsole.bridge.protocol.forms import Encoder, Form
+from simconsole.bridge.protocol.message_encoding import Encoder, Form
 from simconsole.bridge.protocol.operations import NO_QOS, Advertise, Publish, Qos, Subscribe, publish_head
 from simconsole.bridge.protocol.subscription_queue import Outlet
 from simconsole.profiles.bridge import BridgeLimits

@@ -5,7 +5,7 @@ from typing import Any
 
 from simconsole.bridge.messages import Definition
 from simconsole.bridge.messages.definition import full_name
-from simconsole.bridge.messages.spelled import definition_of
+from simconsole.bridge.messages.rosidl_types import definition_of
 
 _PARTS = {"msg": ("",), "srv": ("Request", "Response"), "action": ("Goal", "Result", "Feedback")}
 

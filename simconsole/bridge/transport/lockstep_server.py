@@ -22,11 +22,11 @@ from simconsole.bridge.messages import Registry
 from simconsole.bridge.protocol.access import Access
 from simconsole.bridge.protocol.client_session import Session
 from simconsole.bridge.protocol.handshake import Admission
-from simconsole.bridge.transport import wire
-from simconsole.bridge.transport.connection import Connection
+from simconsole.bridge.transport import sockets
+from simconsole.bridge.transport.lockstep_connection import Connection
 from simconsole.bridge.transport.message_files import load_registry
+from simconsole.bridge.transport.sockets import RECEIVE_BYTES, address_url, listen, load_access, load_tls, log_outcome
 from simconsole.bridge.transport.topic_recorder import open_recorder
-from simconsole.bridge.transport.wire import RECEIVE_BYTES, address_url, listen, load_access, load_tls, log_outcome
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.signals import EventInput, RemoteCommand
@@ -289,7 +289,7 @@ class LockstepBridge:
     def _sweep(self, now_s: float) -> None:
         """Close connections that have not become, or no longer are, WebSockets after a while (N12)."""
         for connection, since_s in list(self._connections.items()):
-            if not connection.is_open and now_s - since_s > wire.HANDSHAKE_S:
+            if not connection.is_open and now_s - since_s > sockets.HANDSHAKE_S:
                 connection.close()
                 self._forget(connection)
 

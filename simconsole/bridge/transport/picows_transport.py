@@ -32,7 +32,7 @@ from simconsole.bridge.protocol.frames import (
     frame_head,
 )
 from simconsole.bridge.protocol.handshake import DRIVE_HEADER, Admission, Opening, Refusal
-from simconsole.bridge.transport import wire
+from simconsole.bridge.transport import sockets
 from simconsole.bridge.transport.interface import Client, House
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import FrameError
@@ -87,13 +87,13 @@ class Connection(WSListener):
         """Ask a quiet client for a sign of life; return why the connection has to be cut, None while it has not."""
         if not self.is_open:
             self._closing_since_ns = self._closing_since_ns or now_ns
-            return "does not close" if now_ns - self._closing_since_ns > wire.CLOSE_S * NS_PER_S else None
+            return "does not close" if now_ns - self._closing_since_ns > sockets.CLOSE_S * NS_PER_S else None
         overdue = self._assembler.overdue(now_ns)
         if overdue is not None:
             return f"sends too slowly: {overdue}"
         now_s = now_ns / NS_PER_S
         # A program that is slow to answer is not a machine that is gone, which acknowledges nothing either.
-        if self._liveness.is_dead(now_s) and wire.is_unacknowledged(self._socket()):
+        if self._liveness.is_dead(now_s) and sockets.is_unacknowledged(self._socket()):
             return f"has been gone for {self._door.profile.dead_after_s:g} s"
         if self._liveness.ping_due(now_s):
             self._link.send_ping()
@@ -195,11 +195,11 @@ class PicowsDoor:
         # The library reads all that waits in one piece, and its buffer grows to that; left to itself the system lets
         # megabytes wait. Connections inherit it.
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, self.profile.limits.message_bytes)
-        options: dict[str, Any] = {} if tls is None else {"ssl": tls, "ssl_handshake_timeout": wire.HANDSHAKE_S}
+        options: dict[str, Any] = {} if tls is None else {"ssl": tls, "ssl_handshake_timeout": sockets.HANDSHAKE_S}
         self._server = await ws_create_server(
             self._open,
             sock=listener,
-            websocket_handshake_timeout=wire.HANDSHAKE_S,
+            websocket_handshake_timeout=sockets.HANDSHAKE_S,
             enable_auto_pong=False,  # or nobody would stop who sends pings and reads no answer
             max_frame_size=self.profile.limits.message_bytes,
             logger_name=_library_logger,

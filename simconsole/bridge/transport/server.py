@@ -19,9 +19,9 @@ from simconsole.bridge.messages import Registry
 from simconsole.bridge.protocol.handshake import Admission, Opening, Refusal, admit
 from simconsole.bridge.transport.interface import Client, Door, Transport, load_transport
 from simconsole.bridge.transport.message_files import load_registry
+from simconsole.bridge.transport.sockets import CLOSE_S, address_url, listen, load_access, load_tls, log_outcome
 from simconsole.bridge.transport.topic_recorder import TopicRecorder, open_recorder
-from simconsole.bridge.transport.uplink import Uplink
-from simconsole.bridge.transport.wire import CLOSE_S, address_url, listen, load_access, load_tls, log_outcome
+from simconsole.bridge.transport.upstream_client import Uplink
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.state_vector import Snapshot
 from simconsole.values.units import NS_PER_S

@@ -12,9 +12,9 @@ import cbor2
 import msgspec
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
-from simconsole.bridge.messages.writing import full_text
+from simconsole.bridge.messages.definition_text import full_text
 from simconsole.bridge.protocol.access import Role
-from simconsole.bridge.protocol.documents import Binary
+from simconsole.bridge.protocol.message_decoding import Binary
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import BridgeError
 from simconsole.values.units import NS_PER_S

@@ -15,7 +15,7 @@ from websockets.protocol import State
 from simconsole.bridge.protocol.backoff import Liveness
 from simconsole.bridge.protocol.frames import CLOSE, MessageAssembler, frame_head
 from simconsole.bridge.protocol.handshake import Admission, Refusal
-from simconsole.bridge.transport import wire
+from simconsole.bridge.transport import sockets
 from simconsole.bridge.transport.interface import Client, House
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import FrameError
@@ -66,13 +66,13 @@ class Connection(ServerConnection):
         """Ask a quiet client for a sign of life; return why the connection has to be cut, None while it has not."""
         if not self.is_open:
             self._closing_since_ns = self._closing_since_ns or now_ns
-            return "does not close" if now_ns - self._closing_since_ns > wire.CLOSE_S * NS_PER_S else None
+            return "does not close" if now_ns - self._closing_since_ns > sockets.CLOSE_S * NS_PER_S else None
         overdue = self._assembler.overdue(now_ns)
         if overdue is not None:
             return f"sends too slowly: {overdue}"
         now_s = now_ns / NS_PER_S
         # A program that is slow to answer is not a machine that is gone, which acknowledges nothing either.
-        if self._liveness.is_dead(now_s) and wire.is_unacknowledged(self.transport.get_extra_info("socket")):
+        if self._liveness.is_dead(now_s) and sockets.is_unacknowledged(self.transport.get_extra_info("socket")):
             return f"has been gone for {self._dead_after_s:g} s"
         if self._liveness.ping_due(now_s):
             self.protocol.send_ping(b"")
@@ -137,7 +137,7 @@ async def open_door(
 
     def admit(connection: ServerConnection, request: Request) -> Response | None:
         assert isinstance(connection, Connection)
-        decision = house.admit(wire.opening_of(request))
+        decision = house.admit(sockets.opening_of(request))
         if isinstance(decision, Refusal):
             return connection.respond(decision.status, f"{decision.reason}\n")
         connection.admission = decision
@@ -155,7 +155,7 @@ async def open_door(
         finally:
             client.gone()
 
-    options: dict[str, Any] = {} if tls is None else {"ssl": tls, "ssl_handshake_timeout": wire.HANDSHAKE_S}
+    options: dict[str, Any] = {} if tls is None else {"ssl": tls, "ssl_handshake_timeout": sockets.HANDSHAKE_S}
     return await serve_websockets(
         attend,
         sock=listener,
@@ -164,9 +164,9 @@ async def open_door(
         compression=None,
         max_size=profile.limits.message_bytes,
         ping_interval=None,  # `look` asks, and cuts nobody who is merely slow
-        open_timeout=wire.HANDSHAKE_S,
-        close_timeout=wire.CLOSE_S,
+        open_timeout=sockets.HANDSHAKE_S,
+        close_timeout=sockets.CLOSE_S,
         server_header=None,
-        logger=wire.logger,
+        logger=sockets.logger,
         **options,
     )

@@ -9,7 +9,7 @@ from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.relay import ABORTED, CANCELED, MAX_NODES, SUCCEEDED, GraphView, Offer, Order, Relay
 from simconsole.bridge.messages import Definition, standard_registry
 from simconsole.bridge.messages.cdr import deserialize, serialize
-from simconsole.bridge.messages.spelled import definition_of
+from simconsole.bridge.messages.rosidl_types import definition_of
 from simconsole.bridge.protocol.access import Role
 from simconsole.values.signals import Event, RemoteKind
 

@@ -4,8 +4,8 @@ from pathlib import Path
 import pytest
 
 from simconsole.bridge.messages import Registry, standard_registry
+from simconsole.bridge.messages.definition_text import full_text, text_of
 from simconsole.bridge.messages.hashes import md5, rihs01
-from simconsole.bridge.messages.writing import full_text, text_of
 
 REGISTRY = standard_registry()
 # rosmsg md5 (ROS 1, Noetic) and the wheels' type descriptions (ROS 2, Kilted) say so; tests/interop/test_definitions.py

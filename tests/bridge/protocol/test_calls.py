@@ -8,7 +8,7 @@ import pytest
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.protocol.access import Role
-from simconsole.bridge.protocol.documents import Binary
+from simconsole.bridge.protocol.message_decoding import Binary
 from simconsole.profiles.bridge import BridgeLimits, BridgeProfile
 from simconsole.values.errors import RemoteProtocolError
 from tests.bridge.reading import read_any

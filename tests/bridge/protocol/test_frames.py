@@ -1,7 +1,6 @@
 import pytest
 from websockets.frames import Frame, Opcode
 
-from simconsole.bridge.protocol.documents import Binary
 from simconsole.bridge.protocol.frames import (
     ASSEMBLY_NS,
     BINARY,
@@ -13,6 +12,7 @@ from simconsole.bridge.protocol.frames import (
     check_close,
     frame_head,
 )
+from simconsole.bridge.protocol.message_decoding import Binary
 from simconsole.values.errors import FrameError
 
 

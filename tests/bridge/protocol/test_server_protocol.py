@@ -8,7 +8,7 @@ import pytest
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.messages import standard_registry
-from simconsole.bridge.protocol.documents import Binary
+from simconsole.bridge.protocol.message_decoding import Binary
 from simconsole.bridge.protocol.server_protocol import Router
 from simconsole.profiles.bridge import BridgeLimits
 from simconsole.values.errors import LocalProtocolError, RemoteProtocolError

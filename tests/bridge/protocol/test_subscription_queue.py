@@ -2,7 +2,7 @@ import random
 
 import pytest
 
-from simconsole.bridge.protocol.forms import Form
+from simconsole.bridge.protocol.message_encoding import Form
 from simconsole.bridge.protocol.subscription_queue import MAX_REPLIES, Outgoing, Outlet
 
 

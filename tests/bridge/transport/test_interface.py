@@ -13,11 +13,11 @@ import pytest
 from websockets.asyncio.client import ClientConnection, connect
 
 from simconsole.bridge.protocol.access import Role
-from simconsole.bridge.protocol.documents import Binary
 from simconsole.bridge.protocol.handshake import Admission, Opening, Refusal
+from simconsole.bridge.protocol.message_decoding import Binary
 from simconsole.bridge.transport.interface import Client, Transport, load_transport
 from simconsole.bridge.transport.server import BridgeServer
-from simconsole.bridge.transport.wire import listen
+from simconsole.bridge.transport.sockets import listen
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import ProfileError
 

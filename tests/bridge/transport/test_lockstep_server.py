@@ -273,7 +273,7 @@ def test_what_is_no_websocket_is_dropped(lockstep: LockstepBridge, snapshot: Cal
 def test_who_does_not_finish_the_handshake_is_swept_out_by_the_next(
     lockstep: LockstepBridge, snapshot: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("simconsole.bridge.transport.wire.HANDSHAKE_S", 0.0)
+    monkeypatch.setattr("simconsole.bridge.transport.sockets.HANDSHAKE_S", 0.0)
     with served(lockstep, snapshot), socket.create_connection(("127.0.0.1", lockstep.port), timeout=10.0) as idle:
         idle.sendall(b"GET / HT")
         with connect(lockstep.url) as peer:

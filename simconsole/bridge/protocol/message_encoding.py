@@ -16,7 +16,7 @@ import orjson
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.messages.cdr import serialize
 from simconsole.bridge.messages.definition import DURATION, HEADER, TIME, FieldType
-from simconsole.bridge.protocol.documents import Binary
+from simconsole.bridge.protocol.message_decoding import Binary
 from simconsole.bridge.protocol.operations import Compression
 from simconsole.values.units import NS_PER_S
 

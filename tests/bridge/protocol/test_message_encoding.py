@@ -7,8 +7,8 @@ import cbor2
 import pytest
 
 from simconsole.bridge.messages import standard_registry
-from simconsole.bridge.protocol.documents import Binary
-from simconsole.bridge.protocol.forms import PLAIN, Encoder, Form, png, spell
+from simconsole.bridge.protocol.message_decoding import Binary
+from simconsole.bridge.protocol.message_encoding import PLAIN, Encoder, Form, png, spell
 from tests.bridge.reading import unpacked
 
 HEAD = b'{"op":"publish","topic":"/a","msg":'

@@ -14,7 +14,7 @@ from websockets.asyncio.server import serve as serve_websockets
 from simconsole.bridge.protocol.backoff import Backoff
 from simconsole.bridge.transport.lockstep_server import LockstepBridge
 from simconsole.bridge.transport.server import BridgeServer
-from simconsole.bridge.transport.uplink import Uplink
+from simconsole.bridge.transport.upstream_client import Uplink
 from simconsole.profiles.bridge import BridgeProfile, UpstreamProfile
 from simconsole.values.errors import ProfileError
 

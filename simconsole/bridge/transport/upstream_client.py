@@ -16,15 +16,15 @@ from websockets.uri import parse_uri
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.upstream import Upstream
 from simconsole.bridge.protocol.backoff import DEAD_AFTER_S, PING_AFTER_S, Backoff
-from simconsole.bridge.protocol.documents import Binary
-from simconsole.bridge.transport.wire import log_outcome
+from simconsole.bridge.protocol.message_decoding import Binary
+from simconsole.bridge.transport.sockets import log_outcome
 from simconsole.profiles.bridge import UpstreamProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.units import NS_PER_S
 
 _ATTEMPT_S: Final = 2.0
 _MAX_MESSAGE_BYTES: Final = 16_777_216
-_logger = logging.getLogger("simconsole.bridge.transport.uplink")
+_logger = logging.getLogger("simconsole.bridge.transport.upstream_client")
 
 
 class Uplink:

@@ -1,4 +1,4 @@
-from simconsole.bridge.protocol.meter import Meter
+from simconsole.bridge.protocol.rate_limiter import Meter
 
 MS = 1_000_000
 

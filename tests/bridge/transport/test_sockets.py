@@ -5,7 +5,7 @@ import pytest
 
 from simconsole.bridge.protocol.client_session import Session
 from simconsole.bridge.protocol.server_protocol import Outcome
-from simconsole.bridge.transport.wire import (
+from simconsole.bridge.transport.sockets import (
     address_url,
     is_unacknowledged,
     listen,

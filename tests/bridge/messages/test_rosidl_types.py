@@ -2,7 +2,7 @@ import pytest
 
 from simconsole.bridge.messages import Definition, standard_registry
 from simconsole.bridge.messages.definition import FieldType
-from simconsole.bridge.messages.spelled import definition_of, field_type, is_same_layout
+from simconsole.bridge.messages.rosidl_types import definition_of, field_type, is_same_layout
 from simconsole.values.errors import BridgeError
 
 

@@ -4,7 +4,7 @@ import struct
 import cbor2
 import pytest
 
-from simconsole.bridge.protocol.documents import LENIENT_BYTES, TYPED_ARRAYS, Binary, has_duplicate_keys, read
+from simconsole.bridge.protocol.message_decoding import LENIENT_BYTES, TYPED_ARRAYS, Binary, has_duplicate_keys, read
 from simconsole.values.errors import RemoteProtocolError
 
 

@@ -2,7 +2,7 @@ import pytest
 
 from simconsole.bridge.messages import standard_registry
 from simconsole.bridge.messages.definition import HEADER, Definition, parse
-from simconsole.bridge.messages.writing import ROS1_HEADER, full_text, text_of
+from simconsole.bridge.messages.definition_text import ROS1_HEADER, full_text, text_of
 
 REGISTRY = standard_registry()
 

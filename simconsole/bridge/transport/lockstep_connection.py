@@ -14,10 +14,10 @@ from websockets.server import ServerProtocol
 from simconsole.bridge.protocol.access import Access
 from simconsole.bridge.protocol.backoff import Liveness
 from simconsole.bridge.protocol.client_session import Session
-from simconsole.bridge.protocol.documents import Binary
 from simconsole.bridge.protocol.frames import CLOSE, MessageAssembler
 from simconsole.bridge.protocol.handshake import Admission, Refusal, admit
-from simconsole.bridge.transport.wire import CLOSE_S, RECEIVE_BYTES, is_unacknowledged, opening_of
+from simconsole.bridge.protocol.message_decoding import Binary
+from simconsole.bridge.transport.sockets import CLOSE_S, RECEIVE_BYTES, is_unacknowledged, opening_of
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import FrameError
 

@@ -13,10 +13,10 @@ from websockets.frames import Frame
 from websockets.protocol import SEND_EOF, State
 from websockets.uri import parse_uri
 
-from simconsole.bridge.protocol.documents import Binary
 from simconsole.bridge.protocol.frames import CLOSE, MessageAssembler
 from simconsole.bridge.protocol.handshake import DRIVE_HEADER
-from simconsole.bridge.transport.wire import RECEIVE_BYTES
+from simconsole.bridge.protocol.message_decoding import Binary
+from simconsole.bridge.transport.sockets import RECEIVE_BYTES
 from simconsole.values.errors import BridgeError, OtherDriveError
 
 MAX_MESSAGE_BYTES: Final = 16_777_216
