@@ -8,7 +8,7 @@ from pathlib import Path
 from subprocess import Popen
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from simconsole.bridge.console.operator_acts import told
+from simconsole.bridge.console.operator_acts import summarise_acts
 from simconsole.faults.schedule import with_faults
 from simconsole.processes.lifetimes import Interrupt, end, tell_to_end, undone
 from simconsole.processes.shared_memory import make_run_folder, remove_run_folder
@@ -103,7 +103,7 @@ def open_headless(
     cast = isolated(with_faults(cast, resolved, console.tick_hz), UnpacedPacer)._replace(ledger=ledger)
 
     def summary() -> dict[str, Any]:
-        own = {**counters(), **of_can(), **told(acts())}
+        own = {**counters(), **of_can(), **summarise_acts(acts())}
         return {**pace.summary(), **own, "latency_us": ledger.summary_us()}
 
     return Opened(cast, seating.finished, summary)

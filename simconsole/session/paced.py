@@ -8,7 +8,7 @@ from typing import Any, Final
 import msgspec
 import numpy as np
 
-from simconsole.bridge.console.operator_acts import told
+from simconsole.bridge.console.operator_acts import summarise_acts
 from simconsole.processes.shared_memory import EventCounters, Ring
 from simconsole.processes.supervisor import StationSpec
 from simconsole.session.scene_job import LIVE_SCENE, scene_job
@@ -233,7 +233,7 @@ def acts_summary(folder: Path) -> dict[str, Any]:
         lines = (folder / ACTS).read_bytes().splitlines()
     except OSError:
         return {}
-    return told([msgspec.json.decode(line) for line in lines])
+    return summarise_acts([msgspec.json.decode(line) for line in lines])
 
 
 def bridge_summary(folder: Path) -> dict[str, Any]:

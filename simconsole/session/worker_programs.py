@@ -73,12 +73,12 @@ def bridge(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) ->
     def write_counts(counts: dict[str, int]) -> None:
         write_atomically(folder / COUNTS, msgspec.json.encode(counts), durable=False)
 
-    def write_standing(state: str) -> None:
+    def write_link_state(state: str) -> None:
         write_atomically(folder / LINK_STATUS, msgspec.json.encode({"state": state}), durable=False)
 
     serve(
         profile, snapshots, write_command, events.raise_events, stop,
-        on_ready=ready, on_act=keep_act, on_counts=write_counts, on_standing=write_standing,
+        on_ready=ready, on_act=keep_act, on_counts=write_counts, on_link_state=write_link_state,
         folder=Path(arguments["bundle"]), drive=arguments["drive"],
     )  # fmt: skip
 

@@ -9,7 +9,7 @@ import pytest
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.messages import Registry
-from simconsole.bridge.protocol.client_session import Session
+from simconsole.bridge.protocol.client_session import ClientSession
 from simconsole.bridge.protocol.server_protocol import Outcome
 from simconsole.bridge.transport.server import serve
 from simconsole.profiles.bridge import BridgeProfile
@@ -50,7 +50,7 @@ class Peer:
     def __init__(self, bridge: ConsoleBridge, name: str = "peer") -> None:
         self.bridge = bridge
         self.now_ns = 0
-        self.session: Session = bridge.router.connect(name)
+        self.session: ClientSession = bridge.router.connect(name)
 
     def send(self, text: bytes | str | None = None, **operation: Any) -> Outcome:
         if text is None:
@@ -129,7 +129,7 @@ class Served:
             self.events.put,
             self._stop.is_set,
             on_ready=self._port.put,
-            on_standing=self.standings.put,
+            on_link_state=self.standings.put,
             registry=registry,
         )
 

@@ -7,7 +7,7 @@ import threading
 from collections.abc import Callable
 from typing import Any
 
-from simconsole.bridge.console.command_decoder import REQUESTS, CommandIntake
+from simconsole.bridge.console.command_decoder import REQUESTS, CommandDecoder
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.input_slots import BridgeInputs
 from simconsole.bridge.console.topics import ONCE, Outputs
@@ -40,7 +40,7 @@ def test_output_table() -> None:
 
 
 def test_command_table() -> None:
-    topics = CommandIntake(BridgeInputs(), BridgeProfile()).topics()
+    topics = CommandDecoder(BridgeInputs(), BridgeProfile()).topics()
     listed = {(name, kind) for name, kind, _ in rows("What commands the console")}
     assert listed == {(f"`{row.name}`", row.type) for row in topics}
     assert all(f"`{word}`" in PAGE for word in (*REQUESTS, *OPERATIONS))

@@ -25,7 +25,7 @@ async def main():
     while await asyncio.to_thread(sys.stdin.readline):
         command, session = server.console.inputs.command, server.console.router.sessions[0]
         counts = {"taken": command.sequence, "refused": command.refused, "passed_over": session.throttled,
-                  "queued": session.outgoing.bytes, "angle": command.road_wheel_rad,
+                  "queued": session.send_queue.bytes, "angle": command.road_wheel_rad,
                   "elapsed_s": time.monotonic() - began_s}
         print(json.dumps(counts), flush=True)
     await server.close()

@@ -105,18 +105,18 @@ def test_n04_client_that_went_without_a_word_is_freed_after_three_seconds(
             if subscribed:
                 half.say(op="subscribe", topic="/odom")
             await until(lambda: server.console.inputs.command.sequence == 1.0)
-            await until(lambda: not subscribed or server.console.router.wanted("/odom"))
+            await until(lambda: not subscribed or server.console.router.has_subscribers("/odom"))
             await until(lambda: not is_unacknowledged(half.sock, 0))  # or it would go on sending
             go_deaf(half.sock)
             for step in range(1, 14):
                 now_ns = step * S // 4
                 server.publish(snapshot(step))
-                server.look()
+                server.check_clients()
                 pong = await alive.ping()
                 await pong
                 assert server.clients == 2 or now_ns >= 3 * S
             while server.clients == 2:  # until the kernel, whose clock is its own, has missed it for a second
-                server.look()
+                server.check_clients()
                 await asyncio.sleep(0.01)
             assert server.console.inputs.take(1)[1].events == 0.0  # its lease had ended long before
             await alive.close()
@@ -136,7 +136,7 @@ def test_n04_program_that_is_merely_slow_is_not_cut(control: Callable[..., Any],
             await until(lambda: server.clients == 1)
             for second in range(1, 60):
                 now_ns = second * S
-                server.look()  # it is pinged, and its kernel has that; it is busy and answers nothing
+                server.check_clients()  # it is pinged, and its kernel has that; it is busy and answers nothing
                 await asyncio.sleep(0)
                 assert server.clients == 1
             slow.say(op="publish", topic=CONTROL, msg=control())
@@ -168,7 +168,7 @@ def test_n05_stalled_subscriber_costs_the_others_nothing_and_no_memory(transport
             stalled.say(op="subscribe", topic="/big", type="std_msgs/String", queue_length=1000)
             heard: list[list[int]] = [[], [], []]
             listeners = [asyncio.create_task(listen(server, each)) for each in heard]
-            topics = server.console.router.board
+            topics = server.console.router.topic_registry
             await until(lambda: (topic := topics.find("/big")) is not None and len(topic.subscribers) == 4)
             session = server.console.router.sessions[0]
             tracemalloc.start()
@@ -178,16 +178,16 @@ def test_n05_stalled_subscriber_costs_the_others_nothing_and_no_memory(transport
                 for number in range(messages):
                     await say(talker, op="publish", topic="/big", msg={"data": f"{number} {text}"})
                     await until(lambda: all(len(each) > number + 1 for each in heard))  # noqa: B023  (ends here)
-                    most_queued = max(most_queued, session.outgoing.bytes)
+                    most_queued = max(most_queued, session.send_queue.bytes)
                 await asyncio.gather(*listeners)
                 gained = tracemalloc.get_traced_memory()[1] - before
                 tracemalloc.stop()
             assert heard == [[-1, *range(messages)]] * 3
             assert most_queued <= MIB
-            dropped = session.outgoing.dropped
+            dropped = session.send_queue.dropped
             assert dropped > messages // 2
             # What waits for it is the newest.
-            assert f'"{messages - 1} '.encode() in session.outlets["/big"].texts[-1]
+            assert f'"{messages - 1} '.encode() in session.queues["/big"].texts[-1]
             assert gained < 10 * MIB
             seen = f"others lost 0 of {messages}, memory grew by {gained / MIB:.1f} MiB, it lost {dropped}"
             measured("N05", f"stalled subscriber, {transport}", seen, "0, 10 MiB")
@@ -213,7 +213,7 @@ def test_n05_stalled_subscriber_costs_the_server_no_processor_time(
             half.say(op="subscribe", topic="/odom", queue_length=1000)
         router = server.console.router
         await until(lambda: len(router.sessions) == 3 + stalled)
-        await until(lambda: all("/odom" in session.outlets for session in router.sessions))
+        await until(lambda: all("/odom" in session.queues for session in router.sessions))
         began_s = time.process_time()
         for tick in range(5, 5 * MESSAGES + 1, 5):
             server.publish(snapshot(tick))
@@ -223,7 +223,7 @@ def test_n05_stalled_subscriber_costs_the_server_no_processor_time(
         for peer in peers:
             await peer.close()
         if half is not None:
-            assert max(session.outgoing.dropped for session in router.sessions) > 0, "it was behind"
+            assert max(session.send_queue.dropped for session in router.sessions) > 0, "it was behind"
             half.vanish()
         await until(lambda: not router.sessions)
         return spent
@@ -336,10 +336,10 @@ def test_n06_commands_over_a_bad_network_arrive_in_order_or_not_at_all(
         client.advertise(CONTROL, "autoware_control_msgs/Control")
         client.connect()
         if network == "lossy":
-            assert client._link._socket is not None
-            with far_end(client._link._socket) as far:
+            assert client._connection._socket is not None
+            with far_end(client._connection._socket) as far:
                 lose(far, 0.3)
-            lose(client._link._socket, 0.3)
+            lose(client._connection._socket, 0.3)
         answered, tick = 0, 0
         while answered < 10:
             tick += 1

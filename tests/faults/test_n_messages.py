@@ -108,7 +108,7 @@ def check_after(peer: Any, text: bytes | Binary, number: int, took_ms: list[floa
     after = peer.bridge.inputs.command
     if outcome.kind == "refused":
         assert after._replace(refused=0.0) == before._replace(refused=0.0)
-        assert peer.session.outgoing.take(peer.now_ns) is not None
+        assert peer.session.send_queue.take(peer.now_ns) is not None
     assert all(map(math.isfinite, after))
     peer.now_ns += 10**9
     assert peer.send(json.dumps(valid(number))).kind == "command"
@@ -315,7 +315,7 @@ def test_n17_same_subscription_many_times_is_one_delivery(bridge: ConsoleBridge,
     peer, talker = join(bridge), join(bridge)
     for number in range(10_000):
         peer.send(op="subscribe", topic="/t", type="std_msgs/String", id="same" if number % 2 else f"i{number}")
-    assert len(peer.session.outlets["/t"].wishes) == 256
+    assert len(peer.session.queues["/t"].subscriptions) == 256
     peer.heard()
     talker.publish("/t", {"data": "x"})
     assert [message["op"] for message in peer.heard()] == ["publish"]

@@ -205,7 +205,7 @@ def test_n03_several_clients_are_back_with_their_first_try_and_nobody_is_engaged
 
 def counted(client: BridgeClient, tries: list[int], number: int, pauses_s: list[float]) -> None:
     """Count the tries of a client from now on, and the pauses that it takes after one that failed."""
-    open_link, pause_s = client._link.open, client._backoff.pause_s
+    open_link, pause_s = client._connection.open, client._backoff.pause_s
 
     def opened() -> None:
         tries[number] += 1
@@ -215,7 +215,7 @@ def counted(client: BridgeClient, tries: list[int], number: int, pauses_s: list[
         pauses_s.append(pause_s(chance))
         return pauses_s[-1]
 
-    client._link.open, client._backoff.pause_s = opened, paused  # type: ignore[method-assign]
+    client._connection.open, client._backoff.pause_s = opened, paused  # type: ignore[method-assign]
 
 
 @pytest.mark.fault("N03")

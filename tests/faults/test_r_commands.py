@@ -13,7 +13,7 @@ import cbor2
 import pytest
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
-from simconsole.bridge.console.input_slots import aged
+from simconsole.bridge.console.input_slots import with_age
 from simconsole.bridge.protocol.access import Access, Role
 from simconsole.bridge.protocol.message_decoding import Binary
 from simconsole.profiles.bridge import BridgeProfile
@@ -58,7 +58,7 @@ def test_r02_age_of_a_commander_that_stops_is_told_tick_by_tick(peer: Any, contr
     peer.publish(CONTROL, control(0.1))
     assert [inputs.take(tick)[0].age_ticks for tick in (11, 12, 31, 60)] == [0.0, 1.0, 20.0, 49.0]
     # The same by a clock, for a core whose bridge is another process.
-    ages = [aged(command(peer), 0, ms * MS, TICK_HZ).age_ticks for ms in (0, 9, 10, 199, 210)]
+    ages = [with_age(command(peer), 0, ms * MS, TICK_HZ).age_ticks for ms in (0, 9, 10, 199, 210)]
     assert ages == [0.0, 0.0, 1.0, 19.0, 21.0]
 
 
@@ -253,7 +253,7 @@ def test_r09_flood_of_ten_thousand_a_second_for_a_minute(
     assert 60 * 500 <= command(peer).sequence <= 61 * 500
     assert command(peer).refused == 0.0
     assert 55 <= statuses <= 61
-    assert peer.session.outgoing.bytes == 0
+    assert peer.session.send_queue.bytes == 0
 
 
 @pytest.mark.fault("R09")

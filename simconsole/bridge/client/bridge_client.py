@@ -19,7 +19,7 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import Any, Final, Literal, Self
 
-from simconsole.bridge.client.client_connection import ABNORMAL, Link
+from simconsole.bridge.client.client_connection import ABNORMAL, ClientConnection
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.protocol.backoff import CAP_S, FIRST_S, Backoff, Liveness
 from simconsole.bridge.protocol.client_protocol import (
@@ -84,7 +84,7 @@ class BridgeClient:
             BridgeError: `url` is not such an address, or the certificate cannot be read.
         """
         self.protocol = ClientProtocol(registry)
-        self._link = Link(url, timeout_s, token, certificate, drive)
+        self._connection = ClientConnection(url, timeout_s, token, certificate, drive)
         self._comes_back = comes_back
         self._until_good_bye = until_good_bye
         self._on_state = on_state
@@ -112,12 +112,12 @@ class BridgeClient:
     @property
     def url(self) -> str:
         """Where this client connects."""
-        return self._link.url
+        return self._connection.url
 
     @property
     def connected(self) -> bool:
         """Whether the connection is open as far as this side knows."""
-        return self._link.is_open
+        return self._connection.is_open
 
     @property
     def registry(self) -> Registry:
@@ -130,7 +130,7 @@ class BridgeClient:
         return self.protocol.statuses
 
     def connect(self, patience_s: float = 0.0) -> None:
-        """Open the connection now and repeat everything wished for; try again for `patience_s` where it fails.
+        """Open the connection now and repeat every registration; try again for `patience_s` where it fails.
 
         Raises:
             BridgeError: nobody listens there, the server refused, or it did not answer in time.
@@ -148,17 +148,17 @@ class BridgeClient:
             time.sleep(_RETRY_S)
 
     def disconnect(self) -> None:
-        """Say good-bye and close; harmless when not connected."""
-        self._link.close()
+        """Close the connection; harmless when not connected."""
+        self._connection.close()
         self._change("connecting")
 
     def advertise(self, topic: str, type_name: str) -> None:
         """Announce that this client publishes `topic`. Errors as `ClientProtocol.advertise`."""
-        self._wish(self.protocol.advertise(topic, type_name))
+        self._register(self.protocol.advertise(topic, type_name))
 
     def unadvertise(self, topic: str) -> None:
         """Withdraw a publisher."""
-        self._wish(self.protocol.unadvertise(topic))
+        self._register(self.protocol.unadvertise(topic))
 
     def publish(self, topic: str, message: Any) -> bool:
         """Send one message, a dict or an instance of the topic's type; False when there is no connection.
@@ -181,19 +181,19 @@ class BridgeClient:
         queue_length: int = 0,
     ) -> None:
         """Ask for a topic; arguments as `ClientProtocol.subscribe`."""
-        self._wish(self.protocol.subscribe(topic, type_name, callback, throttle_rate, queue_length))
+        self._register(self.protocol.subscribe(topic, type_name, callback, throttle_rate, queue_length))
 
     def unsubscribe(self, topic: str) -> None:
         """End a subscription."""
-        self._wish(self.protocol.unsubscribe(topic))
+        self._register(self.protocol.unsubscribe(topic))
 
     def advertise_service(self, service: str, type_name: str, handler: Handler) -> None:
         """Answer the requests of a service; `handler` gets the arguments and returns the values."""
-        self._wish(self.protocol.advertise_service(service, type_name, handler))
+        self._register(self.protocol.advertise_service(service, type_name, handler))
 
     def unadvertise_service(self, service: str) -> None:
         """Answer no more."""
-        self._wish(self.protocol.unadvertise_service(service))
+        self._register(self.protocol.unadvertise_service(service))
 
     def call_service(self, service: str, args: Any, on_answer: Answer) -> bool:
         """Ask a service; `on_answer` gets (values, result), also when the connection ends first. False: not sent."""
@@ -201,11 +201,11 @@ class BridgeClient:
 
     def advertise_action(self, action: str, type_name: str, pursue: Callable[[Goal], None]) -> None:
         """Take the goals of an action; `pursue` gets each and may keep it to tell of its progress and end later."""
-        self._wish(self.protocol.advertise_action(action, type_name, pursue))
+        self._register(self.protocol.advertise_action(action, type_name, pursue))
 
     def unadvertise_action(self, action: str) -> None:
         """Take no more goals."""
-        self._wish(self.protocol.unadvertise_action(action))
+        self._register(self.protocol.unadvertise_action(action))
 
     def send_goal(
         self, action: str, type_name: str, args: Any, on_result: Answer, on_feedback: Feedback | None = None
@@ -236,9 +236,9 @@ class BridgeClient:
 
     def _open(self) -> None:
         self._received.clear()
-        self._link.open()
-        for text in self.protocol.wishes():
-            self._link.send(text)
+        self._connection.open()
+        for text in self.protocol.registrations():
+            self._connection.send(text)
         self.connections += 1
         self._backoff.reset()
         self._liveness.begin(time.monotonic())
@@ -246,10 +246,10 @@ class BridgeClient:
 
     def _connect(self) -> bool:
         """Return whether there is a connection, made now if it is time for an attempt."""
-        if self._link.is_open:
+        if self._connection.is_open:
             return True
         if self.state == "connected":
-            code = self._link.close_code or ABNORMAL
+            code = self._connection.close_code or ABNORMAL
             self._lost_or_raise(BridgeError(f"{self.url}: connection closed by the server ({code})"))
         if not self._comes_back:
             raise BridgeError(f"{self.url}: not connected")
@@ -264,9 +264,9 @@ class BridgeClient:
             return False
         return True
 
-    def _wish(self, text: bytes) -> None:
-        """Send a wish now if connected; otherwise `connect` will."""
-        if self._link.is_open:
+    def _register(self, text: bytes) -> None:
+        """Send a registration now if connected; otherwise `connect` sends it."""
+        if self._connection.is_open:
             self._send(text)
 
     def _ask(self, make: Callable[[], bytes]) -> bool:
@@ -274,14 +274,14 @@ class BridgeClient:
 
     def _send(self, text: bytes) -> bool:
         try:
-            self._link.send(text)
+            self._connection.send(text)
         except BridgeError as error:
             return self._lost_or_raise(error)
         return True
 
     def _read(self, timeout_s: float) -> None:
         try:
-            messages = self._link.read(timeout_s)
+            messages = self._connection.read(timeout_s)
         except BridgeError as error:
             self._lost_or_raise(error)
             return
@@ -289,27 +289,27 @@ class BridgeClient:
             received = self.protocol.receive(text, time.monotonic_ns())
             if received is not None:
                 self._received.append(received)
-        if self._link.is_open:
+        if self._connection.is_open:
             self._answer(messages is None)
 
     def _answer(self, is_silent: bool) -> None:
-        """Send what the messages asked for, and look whether the server still lives."""
+        """Send the replies to what was received, and check that the server is alive."""
         try:
             while self.protocol.replies:
-                self._link.send(self.protocol.replies.popleft())
+                self._connection.send(self.protocol.replies.popleft())
             now_s = time.monotonic()
-            self._liveness.heard(self._link.heard_s)
+            self._liveness.heard(self._connection.heard_s)
             if is_silent and self._liveness.is_dead(now_s):
                 raise BridgeError(f"{self.url}: the server has been silent for too long")
             if self._liveness.ping_due(now_s):
-                self._link.ping()
+                self._connection.ping()
         except BridgeError as error:
             self._lost_or_raise(error)
 
     def _lost_or_raise(self, error: BridgeError) -> bool:
         """Note the end of a connection; return False, or raise where it is not to be made again."""
         self._lost(error)
-        if self._until_good_bye and self._link.close_code in GOOD_BYES:
+        if self._until_good_bye and self._connection.close_code in GOOD_BYES:
             self._comes_back = False
         if not self._comes_back:
             raise error
@@ -317,7 +317,7 @@ class BridgeClient:
 
     def _lost(self, error: BridgeError) -> None:
         self.failure = str(error)
-        self._link.drop()
+        self._connection.abort()
         self._next_attempt_s = time.monotonic() + self._backoff.pause_s(self._chance.random())
         self._change("connecting")
 

@@ -26,7 +26,7 @@ ABNORMAL: Final = 1006
 _logger = logging.getLogger("simconsole.bridge.client.bridge_client")
 
 
-class Link:
+class ClientConnection:
     """A connection that can be opened again and again. Nothing is sent, received or noticed but within a call."""
 
     def __init__(
@@ -88,7 +88,7 @@ class Link:
                 self._socket = self._tls.wrap_socket(self._socket, server_hostname=self._uri.host)
             self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         except OSError as error:
-            self.drop()
+            self.abort()
             raise BridgeError(f"{self.url}: cannot connect: {error}") from None
         self._web = WebSocketClientProtocol(self._uri, max_size=MAX_MESSAGE_BYTES, logger=_logger)
         request = self._web.connect()
@@ -101,10 +101,10 @@ class Link:
         web = self._web
         while web.state is State.CONNECTING and web.handshake_exc is None:
             if self.read(deadline_s - time.monotonic()) is None:
-                self.drop()
+                self.abort()
                 raise BridgeError(f"{self.url}: no answer within {self._timeout_s} s")
         if web.handshake_exc is not None:
-            self.drop()
+            self.abort()
             raise self._refusal(web.handshake_exc)
 
     def _refusal(self, why: Exception) -> BridgeError:
@@ -152,7 +152,7 @@ class Link:
         except TimeoutError:
             return None
         except OSError as error:
-            self.drop()
+            self.abort()
             raise BridgeError(f"{self.url}: connection lost: {error}") from None
         if data:
             self.heard_s = time.monotonic()
@@ -169,23 +169,23 @@ class Link:
             self.close_code = web.close_rcvd.code
         self._flush()
         if web.state is State.CLOSED and web.handshake_exc is None:
-            self.drop()
+            self.abort()
             if not messages:
                 raise BridgeError(f"{self.url}: connection closed by the server ({self.close_code or ABNORMAL})")
         return messages
 
     def close(self) -> None:
-        """Say good-bye and close; harmless when not connected."""
+        """Send a close frame and close; harmless when not connected."""
         if self._web is not None and self._web.state is State.OPEN:
             try:
                 self._web.send_close(1000)
                 self._flush()
             except BridgeError:
                 pass
-        self.drop()
+        self.abort()
 
-    def drop(self) -> None:
-        """Close without a word: the other side is gone."""
+    def abort(self) -> None:
+        """Close the socket without a close frame: the other side is gone."""
         if self._socket is not None:
             self._socket.close()
         self._socket = None
@@ -204,5 +204,5 @@ class Link:
                     self._socket.settimeout(self._timeout_s)
                     self._socket.sendall(data)
             except OSError as error:
-                self.drop()
+                self.abort()
                 raise BridgeError(f"{self.url}: connection lost: {error}") from None

@@ -71,7 +71,7 @@ class CommandTopic(NamedTuple):
     leased: bool = True
 
 
-class CommandIntake:
+class CommandDecoder:
     """Checks commands and puts what they mean into the slot."""
 
     def __init__(self, inputs: BridgeInputs, profile: BridgeProfile) -> None:

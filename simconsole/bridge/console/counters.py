@@ -1,30 +1,30 @@
-"""What passed between a server and its clients, as it is published on a topic and reported at a drive's end."""
+"""Message counts and link state of a server, for the topic /console/bridge and the report at a drive's end."""
 
 from typing import Any, Final
 
-from simconsole.bridge.protocol.client_session import Session
+from simconsole.bridge.protocol.client_session import ClientSession
 from simconsole.bridge.protocol.server_protocol import Router
 from simconsole.values.labels import LINK_COMMANDER, LINK_CONNECTING, LINK_LOST, LINK_NOBODY, LINK_RETRYING
 
 _UPSTREAM: Final = {"connecting": LINK_CONNECTING, "lost": LINK_RETRYING}
 
 
-def counted(router: Router, now_ns: int) -> dict[str, Any]:
+def bridge_status(router: Router, now_ns: int) -> dict[str, Any]:
     """Return the counts of all clients, present and gone, and of each that is there, by the topic's field names."""
     holder = router.lease.holder(now_ns)
     sessions = router.sessions
     return {
         "commander": next((session.peer for session in sessions if session.number == holder), ""),
         "upstream": router.upstream,
-        "state": standing(router, now_ns),
+        "state": link_state(router, now_ns),
         "connections": router.connections,
         **router.counts()._asdict(),
         "clients": [_of(session) for session in sessions],
     }
 
 
-def standing(router: Router, now_ns: int) -> str:
-    """Return how the link stands, in the word that driver and operator read (`simconsole.values.labels`)."""
+def link_state(router: Router, now_ns: int) -> str:
+    """Return the link's state, in the word that driver and operator read (`simconsole.values.labels`)."""
     if router.upstream in _UPSTREAM:
         return _UPSTREAM[router.upstream]
     if router.lease.holder(now_ns) is not None:
@@ -35,17 +35,17 @@ def standing(router: Router, now_ns: int) -> str:
     return LINK_LOST if router.connections else LINK_NOBODY
 
 
-def summed(router: Router) -> dict[str, int]:
+def total_counts(router: Router) -> dict[str, int]:
     """Return the counts of all clients together."""
     return {"connections": router.connections, **router.counts()._asdict()}
 
 
-def _of(session: Session) -> dict[str, Any]:
+def _of(session: ClientSession) -> dict[str, Any]:
     return {
         "peer": session.peer,
         "role": session.role.name.lower(),
         **session.counts()._asdict(),
-        "waiting_bytes": session.outgoing.bytes,
-        "topics": list(session.outlets),
-        "topics_dropped": [outlet.dropped for outlet in session.outlets.values()],
+        "waiting_bytes": session.send_queue.bytes,
+        "topics": list(session.queues),
+        "topics_dropped": [queue.dropped for queue in session.queues.values()],
     }

@@ -3,14 +3,14 @@
 from collections.abc import Callable
 from typing import Any
 
-from simconsole.bridge.console.command_decoder import CommandIntake
-from simconsole.bridge.console.counters import counted, summed
+from simconsole.bridge.console.command_decoder import CommandDecoder
+from simconsole.bridge.console.counters import bridge_status, total_counts
 from simconsole.bridge.console.input_slots import BridgeInputs, OnCommand, OnEvents
 from simconsole.bridge.console.operator_acts import OPERATE, OPERATE_TYPE, Act, OnAct, Operator
-from simconsole.bridge.console.topics import GLOBAL_TOPICS, ODOMETRY, ONCE, Moment, Outputs, is_due
+from simconsole.bridge.console.topics import GLOBAL_TOPICS, ODOMETRY, ONCE, Outputs, PublishedTick, is_due
 from simconsole.bridge.messages import Registry, standard_registry
 from simconsole.bridge.protocol.access import Role
-from simconsole.bridge.protocol.client_session import Session
+from simconsole.bridge.protocol.client_session import ClientSession
 from simconsole.bridge.protocol.rosapi import RosApi
 from simconsole.bridge.protocol.server_protocol import Outcome, Router
 from simconsole.profiles.bridge import BridgeProfile
@@ -22,7 +22,7 @@ from simconsole.values.state_vector import Snapshot
 class _Output:
     """One output topic at work."""
 
-    def __init__(self, standard: str, name: str, rate_hz: float, build: Callable[[Moment], Any]) -> None:
+    def __init__(self, standard: str, name: str, rate_hz: float, build: Callable[[PublishedTick], Any]) -> None:
         self.standard = standard
         self.name = name
         self.rate_hz = rate_hz
@@ -65,11 +65,11 @@ class ConsoleBridge:
         self.acts: list[Act] = []
         self.operator = Operator(self.inputs.raise_events, on_act or self.acts.append)
         self.router.calls.add_builtin(profile.namespace + OPERATE, OPERATE_TYPE, self.operator.operate, Role.CONTROL)
-        self._intake = CommandIntake(self.inputs, profile)
-        self.router.on_new_commander = self._intake.forget_stamps
+        self._command_decoder = CommandDecoder(self.inputs, profile)
+        self.router.on_new_commander = self._command_decoder.forget_stamps
         self._now_ns = 0
-        self._out = Outputs(self.router.registry, profile, lambda: counted(self.router, self._now_ns))
-        outputs, commands = self._out.topics(), self._intake.topics()
+        self._out = Outputs(self.router.registry, profile, lambda: bridge_status(self.router, self._now_ns))
+        outputs, commands = self._out.topics(), self._command_decoder.topics()
         self.names = _names(profile, [*(topic.name for topic in outputs), *(topic.name for topic in commands)])
         _check_known("rates_hz", profile.rates_hz, [topic.name for topic in outputs])
         self._outputs = []
@@ -85,32 +85,32 @@ class ConsoleBridge:
     def publish(self, snapshot: Snapshot, now_ns: int, *, odometry: bool = False) -> None:
         """Queue every message of `snapshot` that is due and wanted; with `odometry`, that in any case."""
         self.operator.tick = snapshot.tick
-        self.router.ros_time_ns = self._intake.ros_time_ns = snapshot.t_ns
+        self.router.ros_time_ns = self._command_decoder.ros_time_ns = snapshot.t_ns
         self.router.calls.expire(now_ns)
         self._now_ns = now_ns
-        moment: Moment | None = None
+        tick: PublishedTick | None = None
         for output in self._outputs:
             due = is_due(snapshot.tick, output.last_tick, snapshot.tick_hz, output.rate_hz)
             if not due and not (odometry and output.standard == ODOMETRY):
                 continue
             output.last_tick = snapshot.tick
-            if self.router.wanted(output.name):
-                moment = moment or self._out.moment(snapshot)
-                self.router.publish(output.name, output.build(moment), now_ns)
+            if self.router.has_subscribers(output.name):
+                tick = tick or self._out.published_tick(snapshot)
+                self.router.publish(output.name, output.build(tick), now_ns)
 
     def counts(self) -> dict[str, int]:
         """Return how many messages went to and from all clients."""
-        return summed(self.router)
+        return total_counts(self.router)
 
-    def receive(self, session: Session, text: bytes, now_ns: int) -> Outcome:
+    def receive(self, session: ClientSession, text: bytes, now_ns: int) -> Outcome:
         """Apply one text of a client."""
         return self.router.receive(session, text, now_ns)
 
-    def receive_plain(self, session: Session, name: str, plain: dict[str, Any], now_ns: int) -> Outcome:
+    def receive_plain(self, session: ClientSession, name: str, plain: dict[str, Any], now_ns: int) -> Outcome:
         """Apply one message of a topic that did not come as text."""
         return self.router.receive_plain(session, name, plain, now_ns)
 
-    def disconnect(self, session: Session, now_ns: int) -> bool:
+    def disconnect(self, session: ClientSession, now_ns: int) -> bool:
         """Remove a client; if it was commanding, raise COMMANDER_LOST and return True."""
         commanded = self.router.disconnect(session, now_ns)
         if commanded:

@@ -83,7 +83,7 @@ class BridgeInputs:
             self._on_command(self.command, self.receipt_ns)
 
 
-def aged(command: RemoteCommand, receipt_ns: int | None, now_ns: int, tick_hz: int) -> RemoteCommand:
+def with_age(command: RemoteCommand, receipt_ns: int | None, now_ns: int, tick_hz: int) -> RemoteCommand:
     """Return a command with its age in whole ticks at `now_ns`, both times from one monotonic clock."""
     if receipt_ns is None:
         return command._replace(age_ticks=NEVER_TICKS)

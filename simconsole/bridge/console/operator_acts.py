@@ -74,8 +74,8 @@ def _text(args: dict[str, Any], key: str, most: int) -> str:
     return text
 
 
-def told(acts: list[dict[str, Any]]) -> dict[str, Any]:
-    """Return what a drive's summary says of its acts: all of them, and the last participant and trial named."""
+def summarise_acts(acts: list[dict[str, Any]]) -> dict[str, Any]:
+    """Return the acts for a drive's summary: all of them, and the last participant and trial named."""
     if not acts:
         return {}
     named: dict[str, Any] = {}

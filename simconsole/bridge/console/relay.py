@@ -17,7 +17,7 @@ from simconsole.bridge.messages import Definition
 from simconsole.bridge.messages.cdr import deserialize, serialize
 from simconsole.bridge.messages.rosidl_types import is_same_layout
 from simconsole.bridge.protocol.access import Role
-from simconsole.bridge.protocol.client_session import Session
+from simconsole.bridge.protocol.client_session import ClientSession
 from simconsole.bridge.protocol.message_decoding import Binary
 from simconsole.values.errors import BridgeError
 
@@ -28,10 +28,10 @@ SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
 """action_msgs/GoalStatus."""
 
 ANYONE: Final = "graph"
-"""Who published where ROS does not tell: one node for all such."""
+"""The publishing node where ROS does not name it: all unnamed publishers count as one node."""
 
 OUTPUT_DEPTH: Final = 10
-"""Messages of a topic of the console that ROS keeps for a slow node, as rclpy does without being told."""
+"""Messages of a topic of the console that ROS keeps for a slow node: rclpy's default."""
 
 MAX_NODES: Final = 64
 """Nodes told apart as commanders; further ones count as one."""
@@ -49,7 +49,7 @@ class GraphView(NamedTuple):
     nodes: frozenset[str]
 
 
-class Offer(NamedTuple):
+class GraphPublisher(NamedTuple):
     """One topic that the relay publishes in the graph."""
 
     type: str
@@ -57,23 +57,23 @@ class Offer(NamedTuple):
     depth: int
 
 
-class Demand(NamedTuple):
+class GraphEntities(NamedTuple):
     """What the relay needs to have in the graph, by name: types of topics heard, of services and actions offered."""
 
-    publishers: dict[str, Offer]
+    publishers: dict[str, GraphPublisher]
     subscriptions: dict[str, str]
     services: dict[str, str]
     actions: dict[str, str]
 
 
-class Order(NamedTuple):
+class GraphOperation(NamedTuple):
     """One thing to do in the graph; `data` is CDR, None where something failed and `text` says why.
 
     send a message; call a service or pursue a goal of the graph; cancel such a goal; reply to a call of the graph;
     tell feedback and the end of a goal of the graph; remark something about a node.
     """
 
-    does: Literal["send", "call", "goal", "cancel", "reply", "feedback", "end", "remark"]
+    kind: Literal["send", "call", "goal", "cancel", "reply", "feedback", "end", "remark"]
     name: str
     key: str = ""
     type: str = ""
@@ -86,7 +86,7 @@ class Relay:
     """Between one console's router and one graph. All methods belong to the router's thread."""
 
     def __init__(self, console: ConsoleBridge, role: Role, describe: Describe, wake: Callable[[], None]) -> None:
-        """Join with `role`; `wake` is called when `orders` has something."""
+        """Join with `role`; `wake` is called when `operations` has something."""
         self._console = console
         self._router = console.router
         self._registry = console.router.registry
@@ -95,16 +95,16 @@ class Relay:
         self._wake = wake
         self._main = self._router.connect("ros2", wake, role=role)
         self._main.set_level("warning")
-        self._nodes: dict[str, Session] = {}
+        self._nodes: dict[str, ClientSession] = {}
         self._usable: dict[str, bool] = {}
         self._missing: list[str] = []
         self._advertised: dict[str, dict[str, str]] = {"topic": {}, "service": {}, "action": {}}
         self._listening: set[str] = set()
         self._asked: dict[str, str] = {}
         """Services and actions by key that the graph waits for, with their types."""
-        self._orders: list[Order] = []
+        self._operations: list[GraphOperation] = []
 
-    def observe(self, view: GraphView, now_ns: int) -> Demand:
+    def observe(self, view: GraphView, now_ns: int) -> GraphEntities:
         """Take in what the graph has now; return what the relay needs to have in it."""
         for node in [node for node in self._nodes if node not in view.nodes and node != ANYONE]:
             self._console.disconnect(self._nodes.pop(node), now_ns)
@@ -112,18 +112,18 @@ class Relay:
             self._advertise("topic", view.topics, now_ns)
             self._advertise("service", view.services, now_ns)
             self._advertise("action", view.actions, now_ns)
-        demand = self._demand()
+        entities = self._entities()
         if self._missing:
             text = f"not relayed, because this ROS 2 has no such type: {', '.join(self._missing)}"
-            self._orders.append(Order("remark", "ros2", text=text))
+            self._operations.append(GraphOperation("remark", "ros2", text=text))
             self._missing.clear()
-        heard = {name for name, offer in demand.publishers.items() if offer.latched or name in view.listened}
+        heard = {name for name, offer in entities.publishers.items() if offer.latched or name in view.listened}
         for name in sorted(heard - self._listening):
             self._say(now_ns, op="subscribe", topic=name, compression="cbor-raw")
         for name in sorted(self._listening - heard):
             self._say(now_ns, op="unsubscribe", topic=name)
         self._listening = heard
-        return demand
+        return entities
 
     def hear(self, name: str, data: bytes, node: str, now_ns: int) -> None:
         """Take a message of the graph's `node`."""
@@ -134,25 +134,25 @@ class Relay:
         try:
             plain = deserialize(self._registry, topic.type, data)
         except BridgeError as error:
-            self._orders.append(Order("remark", node, text=f"{name}: {error}"))
+            self._operations.append(GraphOperation("remark", node, text=f"{name}: {error}"))
             return
         self._drain(now_ns)
         self._console.receive_plain(session, name, plain, now_ns)
-        echo = self._main.outlets.get(name)
+        echo = self._main.queues.get(name)
         if echo is not None:
-            # What was drained before was for the graph; what waits now has just come from it.
-            self._main.outgoing.forget(echo)
+            # What was drained before was for the graph; what waits now came from it and must not go back.
+            self._main.send_queue.forget(echo)
 
     def ask(self, key: str, service: str, data: bytes, now_ns: int) -> None:
-        """Take a call by the graph of a client's service; a `reply` with this key will be ordered."""
+        """Take a call by the graph of a client's service; a `reply` operation with this key will follow."""
         self._pass_on(key, service, "Request", data, now_ns, op="call_service", service=service)
 
     def pursue(self, key: str, action: str, data: bytes, now_ns: int) -> None:
-        """Take a goal of the graph for a client's action; an `end` with this key will be ordered."""
+        """Take a goal of the graph for a client's action; an `end` operation with this key will follow."""
         self._pass_on(key, action, "Goal", data, now_ns, op="send_action_goal", action=action, feedback=True)
 
     def cancel(self, key: str, action: str, now_ns: int) -> None:
-        """Take the graph's wish to end a goal."""
+        """Take the graph's request to cancel a goal."""
         self._say(now_ns, op="cancel_action_goal", action=action, id=key)
 
     def answered(self, key: str, service: str, data: bytes | None, why: str, now_ns: int) -> None:
@@ -176,11 +176,11 @@ class Relay:
             values=why if values is None else values,
         )  # fmt: skip
 
-    def orders(self, now_ns: int) -> list[Order]:
+    def operations(self, now_ns: int) -> list[GraphOperation]:
         """Return what is to be done in the graph, in order, each once."""
         self._drain(now_ns)
-        orders, self._orders = self._orders, []
-        return orders
+        operations, self._operations = self._operations, []
+        return operations
 
     def leave(self, now_ns: int) -> None:
         """Leave the router."""
@@ -188,7 +188,7 @@ class Relay:
             self._console.disconnect(session, now_ns)
         self._nodes.clear()
 
-    def _demand(self) -> Demand:
+    def _entities(self) -> GraphEntities:
         router, own = self._router, self._main.number
         publishers, subscriptions = {}, {}
         for name, topic in router.topics.items():
@@ -199,13 +199,13 @@ class Relay:
                     subscriptions[name] = topic.type
             elif topic.owned or topic.publishers - {own}:
                 depth = OUTPUT_DEPTH if topic.owned else topic.depth
-                publishers[name] = Offer(topic.type, topic.latch, 1 if topic.latch else depth)
+                publishers[name] = GraphPublisher(topic.type, topic.latch, 1 if topic.latch else depth)
             if not topic.owned and topic.subscribers.keys() - {own} and self._role >= Role.PUBLISH:
                 subscriptions[name] = topic.type
         calls = router.calls
         services = self._offered("srv", calls.services(), calls.providers())
         actions = self._offered("action", calls.actions(), calls.action_providers())
-        return Demand(publishers, subscriptions, services, actions)
+        return GraphEntities(publishers, subscriptions, services, actions)
 
     def _offered(self, kind: str, types: Mapping[str, str], providers: Mapping[str, int]) -> dict[str, str]:
         offered = {}
@@ -253,11 +253,11 @@ class Relay:
                 self._registry.add_definition(definition)
             elif not is_same_layout(definition, self._registry.definition(definition.name)):
                 text = f"{type_name} is not relayed: {definition.name} has other fields in this ROS 2"
-                self._orders.append(Order("remark", "ros2", text=text))
+                self._operations.append(GraphOperation("remark", "ros2", text=text))
                 return False
         return True
 
-    def _session_of(self, node: str) -> Session:
+    def _session_of(self, node: str) -> ClientSession:
         session = self._nodes.get(node)
         if session is None:
             if len(self._nodes) >= MAX_NODES:
@@ -267,7 +267,7 @@ class Relay:
         return session
 
     def _say(self, now_ns: int, **operation: Any) -> bool:
-        """Speak as a client; return whether it was accepted."""
+        """Send an operation to the router as a client; return whether it was accepted."""
         return self._router.receive(self._main, msgspec.json.encode(operation), now_ns).kind == "done"
 
     def _pass_on(self, key: str, name: str, part: str, data: bytes, now_ns: int, **operation: Any) -> None:
@@ -276,7 +276,9 @@ class Relay:
         try:
             args = deserialize(self._registry, self._registry.part(type_name, part) or "", data)
         except BridgeError as error:
-            self._finish(key, Order("end" if part == "Goal" else "reply", name, text=str(error), status=ABORTED))
+            self._finish(
+                key, GraphOperation("end" if part == "Goal" else "reply", name, text=str(error), status=ABORTED)
+            )
             return
         self._say(now_ns, id=key, args=args, **operation)
 
@@ -292,46 +294,48 @@ class Relay:
                 self._take(name, text)
 
     def _take(self, peer: str, text: bytes) -> None:
-        """Make an order of what the router says to one of the relay's sessions."""
+        """Turn what the router sends to one of the relay's sessions into a graph operation."""
         if isinstance(text, Binary):
             published = cbor2.loads(text)
-            self._orders.append(Order("send", published["topic"], data=published["msg"]["bytes"]))
+            self._operations.append(GraphOperation("send", published["topic"], data=published["msg"]["bytes"]))
             return
         said = orjson.loads(text)
         key = said.get("id")
         match said["op"]:
             case "status":
-                self._orders.append(Order("remark", peer, text=said["msg"]))
+                self._operations.append(GraphOperation("remark", peer, text=said["msg"]))
             case "call_service":
-                self._orders.append(self._request("call", "service", said, "Request"))
+                self._operations.append(self._request("call", "service", said, "Request"))
             case "send_action_goal":
-                self._orders.append(self._request("goal", "action", said, "Goal"))
+                self._operations.append(self._request("goal", "action", said, "Goal"))
             case "cancel_action_goal":
-                self._orders.append(Order("cancel", said["action"], key))
+                self._operations.append(GraphOperation("cancel", said["action"], key))
             case "action_feedback":
                 data, why = self._cdr(self._asked.get(key, ""), "Feedback", said["values"])
-                self._orders.append(Order("feedback", said["action"], key, data=data, text=why))
+                self._operations.append(GraphOperation("feedback", said["action"], key, data=data, text=why))
             case "service_response":
                 data, why = self._ending(key, "Response", said)
-                self._finish(key, Order("reply", said["service"], data=data, text=why))
+                self._finish(key, GraphOperation("reply", said["service"], data=data, text=why))
             case _:  # action_result
                 data, why = self._ending(key, "Result", said)
-                self._finish(key, Order("end", said["action"], data=data, text=why, status=said["status"]))
+                self._finish(key, GraphOperation("end", said["action"], data=data, text=why, status=said["status"]))
 
-    def _request(self, does: Literal["call", "goal"], kind: str, said: dict[str, Any], part: str) -> Order:
+    def _request(
+        self, operation: Literal["call", "goal"], kind: str, said: dict[str, Any], part: str
+    ) -> GraphOperation:
         name = said[kind]
         type_name = self._advertised[kind].get(name, "")
         data, why = self._cdr(type_name, part, said["args"])
-        return Order(does, name, said["id"], type_name, data, why)
+        return GraphOperation(operation, name, said["id"], type_name, data, why)
 
     def _ending(self, key: str, part: str, said: dict[str, Any]) -> tuple[bytes | None, str]:
         if not isinstance(said["values"], dict):
             return None, str(said["values"])
         return self._cdr(self._asked.get(key, ""), part, said["values"])
 
-    def _finish(self, key: str, order: Order) -> None:
+    def _finish(self, key: str, operation: GraphOperation) -> None:
         self._asked.pop(key, None)
-        self._orders.append(order._replace(key=key))
+        self._operations.append(operation._replace(key=key))
         self._wake()
 
     def _cdr(self, type_name: str, part: str, values: Any) -> tuple[bytes | None, str]:

@@ -74,11 +74,11 @@ class OutputTopic(NamedTuple):
     name: str
     type: str
     rate_hz: float
-    build: Callable[["Moment"], Any]
+    build: Callable[["PublishedTick"], Any]
 
 
-class Moment:
-    """One snapshot with what several messages share, each made at most once."""
+class PublishedTick:
+    """A tick as published: its snapshot, and the stamp, headers and orientation that its messages share."""
 
     def __init__(self, snapshot: Snapshot, time: Any, header: Any, quaternion: Any) -> None:
         """Take the generated classes Time, Header and Quaternion."""
@@ -106,7 +106,7 @@ class Outputs:
     """Builds the messages of the output topics."""
 
     def __init__(self, registry: Registry, profile: BridgeProfile, counts: Callable[[], dict[str, Any]] = dict) -> None:
-        """Generate the classes of all output topics; `counts` tells what /console/bridge says (`counters.counted`)."""
+        """Generate the classes of all output topics; `counts` fills /console/bridge (`counters.bridge_status`)."""
         self._counts = counts
         self._odometry_frame = profile.odometry_frame
         names = _TYPES.split()
@@ -129,93 +129,91 @@ class Outputs:
             OutputTopic(CONTROL_MODE, "autoware_vehicle_msgs/ControlModeReport", 30.0, self._control_mode),
             OutputTopic(ARBITRATION, "simconsole_msgs/Arbitration", 50.0, self._arbitration),
             OutputTopic(BRIDGE, "simconsole_msgs/Bridge", 1.0, self._bridge),
-            OutputTopic(GROUND_TRUTH, "nav_msgs/Odometry", 50.0, lambda moment: self._odometry(moment, MAP_FRAME)),
-            OutputTopic(
-                ODOMETRY, "nav_msgs/Odometry", 50.0, lambda moment: self._odometry(moment, self._odometry_frame)
-            ),
+            OutputTopic(GROUND_TRUTH, "nav_msgs/Odometry", 50.0, lambda tick: self._odometry(tick, MAP_FRAME)),
+            OutputTopic(ODOMETRY, "nav_msgs/Odometry", 50.0, lambda tick: self._odometry(tick, self._odometry_frame)),
         )
 
-    def moment(self, snapshot: Snapshot) -> Moment:
-        """Return what the messages of `snapshot` share."""
+    def published_tick(self, snapshot: Snapshot) -> PublishedTick:
+        """Return the tick of `snapshot` as published."""
         types = self._types
-        return Moment(snapshot, types["Time"], types["Header"], types["Quaternion"])
+        return PublishedTick(snapshot, types["Time"], types["Header"], types["Quaternion"])
 
-    def _clock(self, moment: Moment) -> Any:
-        return self._types["Clock"](moment.stamp)
+    def _clock(self, tick: PublishedTick) -> Any:
+        return self._types["Clock"](tick.stamp)
 
-    def _odometry(self, moment: Moment, frame: str) -> Any:
-        types, vehicle = self._types, moment.vehicle
-        pose = types["Pose"](types["Point"](vehicle.x_m, vehicle.y_m, vehicle.z_m), moment.orientation)
+    def _odometry(self, tick: PublishedTick, frame: str) -> Any:
+        types, vehicle = self._types, tick.vehicle
+        pose = types["Pose"](types["Point"](vehicle.x_m, vehicle.y_m, vehicle.z_m), tick.orientation)
         vector = types["Vector3"]
         twist = types["Twist"](vector(vehicle.vx_mps, vehicle.vy_mps, 0.0), vector(0.0, 0.0, vehicle.yaw_rate_radps))
         return types["Odometry"](
-            moment.header(frame),
+            tick.header(frame),
             BASE_FRAME,
             types["PoseWithCovariance"](pose, _NO_COVARIANCE),
             types["TwistWithCovariance"](twist, _NO_COVARIANCE),
         )
 
-    def _tf(self, moment: Moment) -> Any:
-        vehicle = moment.vehicle
+    def _tf(self, tick: PublishedTick) -> Any:
+        vehicle = tick.vehicle
         place = self._types["Vector3"](vehicle.x_m, vehicle.y_m, vehicle.z_m)
-        return self._transform(moment, self._odometry_frame, BASE_FRAME, place, moment.orientation)
+        return self._transform(tick, self._odometry_frame, BASE_FRAME, place, tick.orientation)
 
-    def _tf_static(self, moment: Moment) -> Any:
+    def _tf_static(self, tick: PublishedTick) -> Any:
         nowhere, unturned = self._types["Vector3"](), self._types["Quaternion"]()
-        return self._transform(moment, MAP_FRAME, self._odometry_frame, nowhere, unturned)
+        return self._transform(tick, MAP_FRAME, self._odometry_frame, nowhere, unturned)
 
-    def _transform(self, moment: Moment, parent: str, child: str, place: Any, turn: Any) -> Any:
+    def _transform(self, tick: PublishedTick, parent: str, child: str, place: Any, turn: Any) -> Any:
         types = self._types
-        transform = types["TransformStamped"](moment.header(parent), child, types["Transform"](place, turn))
+        transform = types["TransformStamped"](tick.header(parent), child, types["Transform"](place, turn))
         return types["TFMessage"]([transform])
 
-    def _joy(self, moment: Moment) -> Any:
-        sample = moment.snapshot.sample
+    def _joy(self, tick: PublishedTick) -> Any:
+        sample = tick.snapshot.sample
         wheel, shifter = int(sample.wheel_buttons), int(sample.shifter_buttons)
         buttons = [wheel >> bit & 1 for bit in range(WHEEL_BUTTONS)]
         buttons += [shifter >> bit & 1 for bit in range(SHIFTER_BUTTONS)]
         axes = [*sample[: sample._fields.index("wheel_buttons")], sample.hat_x, sample.hat_y]
-        return self._types["Joy"](moment.header(""), axes, buttons)
+        return self._types["Joy"](tick.header(""), axes, buttons)
 
-    def _velocity(self, moment: Moment) -> Any:
-        vehicle = moment.vehicle
+    def _velocity(self, tick: PublishedTick) -> Any:
+        vehicle = tick.vehicle
         report = self._types["VelocityReport"]
-        return report(moment.header(BASE_FRAME), vehicle.vx_mps, vehicle.vy_mps, vehicle.yaw_rate_radps)
+        return report(tick.header(BASE_FRAME), vehicle.vx_mps, vehicle.vy_mps, vehicle.yaw_rate_radps)
 
-    def _steering(self, moment: Moment) -> Any:
-        return self._types["SteeringReport"](moment.stamp, moment.vehicle.road_wheel_rad)
+    def _steering(self, tick: PublishedTick) -> Any:
+        return self._types["SteeringReport"](tick.stamp, tick.vehicle.road_wheel_rad)
 
-    def _gear(self, moment: Moment) -> Any:
-        gear = moment.vehicle.gear
+    def _gear(self, tick: PublishedTick) -> Any:
+        gear = tick.vehicle.gear
         report = _DRIVE if gear > 0.0 else _REVERSE if gear < 0.0 else _NEUTRAL
-        return self._types["GearReport"](moment.stamp, report)
+        return self._types["GearReport"](tick.stamp, report)
 
-    def _turn_indicators(self, moment: Moment) -> Any:
-        shown = moment.snapshot.command.turn_indicators
+    def _turn_indicators(self, tick: PublishedTick) -> Any:
+        shown = tick.snapshot.command.turn_indicators
         report = _ENABLE_LEFT if shown > 0.0 else _ENABLE_RIGHT if shown < 0.0 else _DISABLE
-        return self._types["TurnIndicatorsReport"](moment.stamp, report)
+        return self._types["TurnIndicatorsReport"](tick.stamp, report)
 
-    def _hazard_lights(self, moment: Moment) -> Any:
-        shown = moment.snapshot.command.hazard_lights
-        return self._types["HazardLightsReport"](moment.stamp, _ENABLE if shown > 0.0 else _DISABLE)
+    def _hazard_lights(self, tick: PublishedTick) -> Any:
+        shown = tick.snapshot.command.hazard_lights
+        return self._types["HazardLightsReport"](tick.stamp, _ENABLE if shown > 0.0 else _DISABLE)
 
-    def _control_mode(self, moment: Moment) -> Any:
-        arbitration = moment.snapshot.arbitration
+    def _control_mode(self, tick: PublishedTick) -> Any:
+        arbitration = tick.snapshot.arbitration
         mode = _CONTROL_MODES.get(arbitration.mode)
         if mode is None:
             mode = _shared_mode(arbitration.remote_lateral > 0.0, arbitration.remote_longitudinal > 0.0)
-        return self._types["ControlModeReport"](moment.stamp, mode)
+        return self._types["ControlModeReport"](tick.stamp, mode)
 
-    def _bridge(self, moment: Moment) -> Any:
+    def _bridge(self, tick: PublishedTick) -> Any:
         counts = self._counts()
         clients = [self._types["BridgeClient"](**client) for client in counts.pop("clients", ())]
-        return self._types["Bridge"](header=moment.header(""), clients=clients, **counts)
+        return self._types["Bridge"](header=tick.header(""), clients=clients, **counts)
 
-    def _arbitration(self, moment: Moment) -> Any:
-        snapshot = moment.snapshot
+    def _arbitration(self, tick: PublishedTick) -> Any:
+        snapshot = tick.snapshot
         decided = snapshot.arbitration
         return self._types["Arbitration"](
-            moment.header(BASE_FRAME),
+            tick.header(BASE_FRAME),
             int(decided.mode),
             int(decided.reason),
             mode_words(decided.mode),

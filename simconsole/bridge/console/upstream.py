@@ -1,4 +1,4 @@
-"""The console as a client of another rosbridge server: what it says there, and what of the answers it takes.
+"""The console as a client of another rosbridge server: what it sends there, and which answers it accepts.
 
 To the router the other server is a client like any other, which hears every output and may command; rosbridge's
 publish is the same operation both ways. It is trusted with commands and nothing else: no call, no subscription.
@@ -10,8 +10,8 @@ import orjson
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.protocol.access import Role
-from simconsole.bridge.protocol.client_session import Session
-from simconsole.bridge.protocol.message_decoding import read
+from simconsole.bridge.protocol.client_session import ClientSession
+from simconsole.bridge.protocol.message_decoding import decode
 from simconsole.bridge.protocol.operations import Publish, Status, read_operation
 from simconsole.bridge.protocol.server_protocol import Outcome
 from simconsole.profiles.bridge import UpstreamProfile
@@ -26,32 +26,32 @@ class Upstream:
         self._console = console
         self._profile = profile
         self._wake = wake
-        self.session: Session | None = None
+        self.session: ClientSession | None = None
 
     def connected(self, now_ns: int) -> list[bytes]:
-        """Take up a new connection; return what is to be said first: what is published here and what is asked for."""
+        """Begin a new connection; return the texts that advertise and subscribe the console's topics."""
         router = self._console.router
         session = self.session = router.connect(
             f"upstream {self._profile.url}", self._wake, self._profile.dialect, Role.CONTROL
         )
         session.set_level("none")  # rosbridge_suite does not know the operation
-        wishes = []
+        registrations = []
         for name, topic in router.topics.items():
             if not topic.owned:
                 continue
             fields = {"topic": name, "type": topic.type.replace("/msg/", "/")}
             if topic.command is None:
-                wishes.append(orjson.dumps({"op": "advertise", **fields, "latch": topic.latch}))
+                registrations.append(orjson.dumps({"op": "advertise", **fields, "latch": topic.latch}))
                 router.receive(session, orjson.dumps({"op": "subscribe", "topic": name}), now_ns)
             else:
-                wishes.append(orjson.dumps({"op": "subscribe", **fields, "queue_length": 1}))
-        return wishes
+                registrations.append(orjson.dumps({"op": "subscribe", **fields, "queue_length": 1}))
+        return registrations
 
     def receive(self, text: bytes, now_ns: int) -> Outcome:
-        """Apply a message of the other server if it is a command; what is none is passed over and told."""
+        """Apply a message of the other server if it is a command; ignore any other, and return what became of it."""
         assert self.session is not None
         try:
-            operation = read_operation(read(text).fields)
+            operation = read_operation(decode(text).fields)
         except BridgeError as error:
             return Outcome("refused", "", str(error))
         if isinstance(operation, Status):

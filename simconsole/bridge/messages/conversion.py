@@ -1,4 +1,4 @@
-"""Spellings of other rosbridge dialects, brought to the one the generated classes read.
+"""Normalises spellings of other rosbridge dialects to the one that the generated classes read.
 
 Called only for a value that did not fit. It looks at nothing but the fields its definition names, so that a hostile
 depth or width costs no more than the definition allows.
@@ -16,7 +16,7 @@ _NAN: Final = float("nan")
 _ROS1_TIME: Final = {"secs": "sec", "nsecs": "nanosec"}
 
 
-def mend(registry: "Registry", name: str, value: Any, gaps: bool, now_ns: int) -> Any:
+def normalise(registry: "Registry", name: str, value: Any, gaps: bool, now_ns: int) -> Any:
     """Return a copy of `value` in which known other spellings are replaced; what is simply wrong stays wrong.
 
     Replaced: secs and nsecs of a time, "now" as a time, a header's seq (ROS 1 has it, ROS 2 not), null as NaN for a
@@ -39,8 +39,8 @@ def _mend_field(registry: "Registry", field: Field, value: Any, gaps: bool, now_
     kind = field.type
     if kind.is_message:
         if kind.array and isinstance(value, list):
-            return [mend(registry, kind.base, item, gaps, now_ns) for item in value]
-        return mend(registry, kind.base, value, gaps, now_ns)
+            return [normalise(registry, kind.base, item, gaps, now_ns) for item in value]
+        return normalise(registry, kind.base, value, gaps, now_ns)
     if kind.is_octets:
         return _mend_octets(value)
     if gaps and kind.base in FLOATS:

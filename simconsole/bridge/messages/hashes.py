@@ -1,4 +1,4 @@
-"""What a definition is known by: ROS 1's md5 of its text, ROS 2's RIHS01 of its description (REP-2016).
+"""Type hashes of definitions: ROS 1's md5 of the text, ROS 2's RIHS01 of the description (REP-2016).
 
 Two programs whose hashes of a type are equal read each other's messages of it.
 """

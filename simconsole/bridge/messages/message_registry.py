@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import msgspec
 
-from simconsole.bridge.messages.conversion import mend
+from simconsole.bridge.messages.conversion import normalise
 from simconsole.bridge.messages.definition import (
     FLOATS,
     HEADER,
@@ -153,7 +153,7 @@ class Registry:
             pass
         # Only what failed is looked at again: spellings of the other dialect cost nobody else anything.
         try:
-            return msgspec.convert(mend(self, self.resolve(name), value, gaps, now_ns), struct)
+            return msgspec.convert(normalise(self, self.resolve(name), value, gaps, now_ns), struct)
         except msgspec.ValidationError as error:
             raise RemoteProtocolError(str(error)) from None
 

@@ -1,4 +1,4 @@
-"""Definitions as a running ROS 2 spells them: the field types that rosidl's generated Python classes tell of."""
+"""Definitions from the field types of rosidl's generated Python classes, such as `sequence<double, 3>`."""
 
 import re
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""When to try again, and when to give a silent connection up: rules without a clock."""
+"""When to reconnect and when a silent connection counts as dead: rules without a clock."""
 
 from typing import Final
 
@@ -26,7 +26,7 @@ class Backoff:
         return pause_s
 
     def reset(self) -> None:
-        """Begin again: the connection stands."""
+        """Start over: the connection is established."""
         self._next_s = self._first_s
 
 
@@ -49,7 +49,7 @@ class Liveness:
         self._heard_s = max(self._heard_s, at_s)
 
     def is_dead(self, now_s: float) -> bool:
-        """Return whether the other side is to be taken for gone."""
+        """Return whether the other side has been silent for too long."""
         return now_s - self._heard_s >= self._dead_after_s
 
     def ping_due(self, now_s: float) -> bool:
@@ -60,6 +60,6 @@ class Liveness:
         return due
 
     def patience_s(self, now_s: float) -> float:
-        """Return how long there is nothing to do about silence."""
+        """Return how long until a ping is due or the connection counts as dead."""
         ask_s = max(self._heard_s, self._pinged_s) + self._ping_after_s
         return max(0.0, min(ask_s, self._heard_s + self._dead_after_s) - now_s)

@@ -13,9 +13,9 @@ import orjson
 
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.protocol.access import Role
-from simconsole.bridge.protocol.client_session import Session, resolve_topic
+from simconsole.bridge.protocol.client_session import ClientSession, resolve_topic
 from simconsole.bridge.protocol.message_decoding import Binary
-from simconsole.bridge.protocol.message_encoding import Dialect, png, spell
+from simconsole.bridge.protocol.message_encoding import Dialect, png, to_plain
 from simconsole.bridge.protocol.operations import (
     ActionFeedback,
     ActionResult,
@@ -49,14 +49,14 @@ class _Builtin(NamedTuple):
 
 
 class _Provider(NamedTuple):
-    session: Session
+    session: ClientSession
     type: str
 
 
 class _Caller(NamedTuple):
     """Who asked, and how the answer is to come."""
 
-    session: Session
+    session: ClientSession
     id: Id
     called: str  # the service or action in the caller's spelling
     fragment_size: int | None
@@ -79,7 +79,7 @@ class _Call(NamedTuple):
     """A request or goal that is with its provider."""
 
     caller: _Caller
-    provider: Session
+    provider: ClientSession
     name: str
     type: str
     deadline_ns: int | None
@@ -127,7 +127,7 @@ class Calls:
         """Return the number of the client that provides each action."""
         return {name: provider.session.number for name, provider in self._actions.items()}
 
-    def apply(self, session: Session, operation: CallOperation, now_ns: int) -> str:
+    def apply(self, session: ClientSession, operation: CallOperation, now_ns: int) -> str:
         """Apply one operation of a client; return the service or action it is about.
 
         Raises:
@@ -156,7 +156,7 @@ class Calls:
                 self._result(session, name, operation)
         return name
 
-    def turn_away(self, session: Session, operation: CallService | SendActionGoal, reason: str) -> None:
+    def reject(self, session: ClientSession, operation: CallService | SendActionGoal, reason: str) -> None:
         """Answer a call or goal of a client that may not make any: it would wait for ever."""
         if isinstance(operation, CallService):
             _Caller(session, operation.id, operation.service, None, "none").respond(reason, False)
@@ -175,7 +175,7 @@ class Calls:
             (call.deadline_ns for call in self._calls.values() if call.deadline_ns is not None), default=None
         )
 
-    def disconnect(self, session: Session) -> None:
+    def disconnect(self, session: ClientSession) -> None:
         """Remove everything of a client: what it provides, what it asked for, what it was asked."""
         for table in (self._services, self._actions):
             for name in [name for name, provider in table.items() if provider.session is session]:
@@ -189,7 +189,7 @@ class Calls:
                 del self._calls[identifier]
                 self._fail(call, "whoever was asked is gone")
 
-    def _advertise(self, session: Session, name: str, operation: AdvertiseService | AdvertiseAction) -> None:
+    def _advertise(self, session: ClientSession, name: str, operation: AdvertiseService | AdvertiseAction) -> None:
         table = self._services if isinstance(operation, AdvertiseService) else self._actions
         known = table.get(name)
         if name in self._builtins or (known is not None and known.session is not session):
@@ -198,7 +198,9 @@ class Calls:
             raise RemoteProtocolError(f"there are {self._limits.topics} services and actions already, the most allowed")
         table[name] = _Provider(session, operation.type[:256])
 
-    def _unadvertise(self, session: Session, name: str, operation: UnadvertiseService | UnadvertiseAction) -> None:
+    def _unadvertise(
+        self, session: ClientSession, name: str, operation: UnadvertiseService | UnadvertiseAction
+    ) -> None:
         is_service = isinstance(operation, UnadvertiseService)
         table = self._services if is_service else self._actions
         known = table.get(name)
@@ -210,7 +212,7 @@ class Calls:
                 del self._calls[identifier]
                 self._fail(call, "it is no longer provided")
 
-    def _call(self, session: Session, name: str, operation: CallService, now_ns: int) -> None:
+    def _call(self, session: ClientSession, name: str, operation: CallService, now_ns: int) -> None:
         caller = _Caller(session, operation.id, operation.service, operation.fragment_size, operation.compression)
         try:
             builtin = self._builtins.get(name)
@@ -235,12 +237,12 @@ class Calls:
     def _builtin(self, builtin: _Builtin, caller: _Caller, args: Any) -> Any:
         if caller.session.role < builtin.role:
             raise RemoteProtocolError(f"this needs the role {builtin.role.name.lower()}")
-        args = self._spell("ros2", builtin.type, "Request", self._args(builtin.type, "Request", args))
+        args = self._to_plain("ros2", builtin.type, "Request", self._args(builtin.type, "Request", args))
         values = builtin.handler(args, caller.session.dialect)
-        return self._spell(caller.session.dialect, builtin.type, "Response", values, _is_typed(caller))
+        return self._to_plain(caller.session.dialect, builtin.type, "Response", values, _is_typed(caller))
 
-    def _respond(self, session: Session, name: str, operation: ServiceResponse) -> None:
-        identifier, call = self._called(session, name, operation.id)
+    def _respond(self, session: ClientSession, name: str, operation: ServiceResponse) -> None:
+        identifier, call = self._find_call(session, name, operation.id)
         del self._calls[identifier]
         values, result = operation.values, operation.result
         # rosbridge_suite for ROS 1 looks at the values alone, and its clients' handlers return nothing that counts.
@@ -254,7 +256,7 @@ class Calls:
             values = {}
         call.caller.respond(values, result)
 
-    def _goal(self, session: Session, name: str, operation: SendActionGoal) -> None:
+    def _goal(self, session: ClientSession, name: str, operation: SendActionGoal) -> None:
         caller = _Caller(session, operation.id, operation.action, operation.fragment_size, operation.compression)
         try:
             provider = self._actions.get(name)
@@ -271,7 +273,7 @@ class Calls:
             feedback=operation.feedback,
         )  # fmt: skip
 
-    def _cancel(self, session: Session, name: str, operation: CancelActionGoal) -> None:
+    def _cancel(self, session: ClientSession, name: str, operation: CancelActionGoal) -> None:
         for identifier, call in self._calls.items():
             is_meant = (call.name, call.caller.id) == (name, operation.id)
             if call.is_goal and call.caller.session is session and is_meant:
@@ -279,14 +281,14 @@ class Calls:
                 return
         raise RemoteProtocolError("no such goal is pursued")
 
-    def _feedback(self, session: Session, name: str, operation: ActionFeedback) -> None:
-        _, call = self._called(session, name, operation.id)
+    def _feedback(self, session: ClientSession, name: str, operation: ActionFeedback) -> None:
+        _, call = self._find_call(session, name, operation.id)
         values = self._checked(call, "Feedback", operation.values)
         if call.feedback:
             call.caller.tell(op="action_feedback", action=call.caller.called, values=values)
 
-    def _result(self, session: Session, name: str, operation: ActionResult) -> None:
-        identifier, call = self._called(session, name, operation.id)
+    def _result(self, session: ClientSession, name: str, operation: ActionResult) -> None:
+        identifier, call = self._find_call(session, name, operation.id)
         del self._calls[identifier]
         values = operation.values
         if isinstance(values, dict) and (values or operation.result):
@@ -315,12 +317,12 @@ class Calls:
 
     def _arguments(self, provider: _Provider, part: str, args: Any, identifier: str) -> Any:
         try:
-            return self._spell(provider.session.dialect, provider.type, part, self._args(provider.type, part, args))
+            return self._to_plain(provider.session.dialect, provider.type, part, self._args(provider.type, part, args))
         except BridgeError:
             del self._calls[identifier]
             raise
 
-    def _called(self, session: Session, name: str, identifier: Id) -> tuple[str, _Call]:
+    def _find_call(self, session: ClientSession, name: str, identifier: Id) -> tuple[str, _Call]:
         """Return the call that a provider speaks of."""
         call = self._calls.get(identifier) if isinstance(identifier, str) else None
         if call is None or call.provider is not session or call.name != name:
@@ -350,14 +352,14 @@ class Calls:
         return args
 
     def _checked(self, call: _Call, part: str, values: Any) -> Any:
-        return self._spell(call.caller.session.dialect, call.type, part, values, _is_typed(call.caller))
+        return self._to_plain(call.caller.session.dialect, call.type, part, values, _is_typed(call.caller))
 
-    def _spell(self, dialect: Dialect, type_name: str, part: str, values: Any, typed: bool = False) -> Any:
+    def _to_plain(self, dialect: Dialect, type_name: str, part: str, values: Any, typed: bool = False) -> Any:
         """Return values checked against their type, if it is known here, in the receiver's dialect."""
         full = self._registry.part(type_name, part)
         if full is None:
             return values
-        return spell(self._registry, full, self._registry.from_plain(full, values), dialect, typed)
+        return to_plain(self._registry, full, self._registry.from_plain(full, values), dialect, typed)
 
 
 def _is_typed(caller: _Caller) -> bool:
@@ -375,5 +377,5 @@ def _encode(compression: Compression, **fields: Any) -> bytes:
     return orjson.dumps({"op": "png", "data": png(text)}) if compression == "png" else text
 
 
-def _send(session: Session, **fields: Any) -> None:
+def _send(session: ClientSession, **fields: Any) -> None:
     session.answer(_encode("none", **fields))

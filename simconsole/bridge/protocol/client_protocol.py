@@ -1,7 +1,7 @@
 """The client's side of rosbridge without a socket: operations out as text, messages in from text.
 
-It keeps what the program asked for (what it advertised, subscribed and provides), so that a new connection can be
-given the same wishes again. Types are named in two parts, which servers of ROS 1 and ROS 2 both know.
+It keeps what the program advertised, subscribed to and provides, so that a new connection can repeat these
+registrations. Types are named in two parts, which servers of ROS 1 and ROS 2 both know.
 """
 
 from collections import deque
@@ -12,9 +12,9 @@ import msgspec
 import orjson
 
 from simconsole.bridge.messages import Registry, standard_registry
-from simconsole.bridge.protocol.fragments import Assembler
-from simconsole.bridge.protocol.message_decoding import read
-from simconsole.bridge.protocol.message_encoding import Dialect, spell
+from simconsole.bridge.protocol.fragments import FragmentAssembler
+from simconsole.bridge.protocol.message_decoding import decode
+from simconsole.bridge.protocol.message_encoding import Dialect, to_plain
 from simconsole.bridge.protocol.operations import (
     ActionFeedback,
     ActionResult,
@@ -73,21 +73,21 @@ class Goal:
         """Take a goal; its arguments are plain values."""
         self.args = args
         self.cancelled = False
-        """Whether whoever sent it no longer wants it."""
+        """Whether its sender has cancelled it."""
         self.action = action
         self.id = identifier
         self._protocol = protocol
 
     def tell(self, values: Any) -> None:
-        """Say how far it is."""
+        """Send feedback: how far it is."""
         self._protocol.reply(op="action_feedback", action=self.action, id=self.id, values=values)
 
     def succeed(self, values: Any) -> None:
-        """End it with its result."""
+        """Report success with the result."""
         self._end(values, SUCCEEDED, True)
 
     def fail(self, reason: str) -> None:
-        """End it without; as cancelled if it was."""
+        """Report failure, as cancelled if the sender cancelled it."""
         self._end(reason, CANCELED if self.cancelled else ABORTED, False)
 
     def _end(self, values: Any, status: int, result: bool) -> None:
@@ -98,29 +98,29 @@ class Goal:
 
 
 class ClientProtocol:
-    """What a client says and hears. Knows no socket and no time but what it is told."""
+    """A client's side of the protocol. It opens no socket and reads no clock; the caller passes the time in."""
 
     def __init__(self, registry: Registry | None = None, dialect: Dialect | None = None) -> None:
         """Use `registry` for message types, the standard one without; None finds the server's dialect out."""
         self.registry = registry if registry is not None else standard_registry()
         self.dialect = dialect
-        """How the server spells times: as it was told, or as the first stamp it sent."""
+        """How the server spells times: as given, or as in the first stamp the server sent."""
         self.statuses: list[Status] = []
-        """What the server remarked, newest last, at most MAX_STATUS."""
+        """Status messages of the server, newest last, at most MAX_STATUS."""
         self.refused = 0
         """Messages of the server that could not be used."""
         self.replies: deque[bytes] = deque()
         """What the server's requests and goals are answered with; whoever owns the connection sends it."""
         self.goals: dict[Any, Goal] = {}
         """What this client pursues for others, by id."""
-        self._wishes: dict[tuple[str, str], bytes] = {}
+        self._registrations: dict[tuple[str, str], bytes] = {}
         self._advertised: dict[str, str] = {}
         self._subscriptions: dict[str, _Subscription] = {}
         self._services: dict[str, Handler] = {}
         self._actions: dict[str, Callable[[Goal], None]] = {}
         self._calls: dict[str, _Call] = {}
         self._numbers = 0
-        self._assembler = Assembler(MAX_WHOLE, MAX_PIECES)
+        self._assembler = FragmentAssembler(MAX_WHOLE, MAX_PIECES)
 
     def advertise(self, topic: str, type_name: str) -> bytes:
         """Return the text that announces a publisher.
@@ -134,7 +134,7 @@ class ClientProtocol:
         if known != full:
             raise LocalProtocolError(f"{topic}: advertised as {known}, cannot be {full} too")
         self._advertised[topic] = full
-        return self._wish("advertise", topic=topic, type=_two_parts(full))
+        return self._register("advertise", topic=topic, type=_two_parts(full))
 
     def unadvertise(self, topic: str) -> bytes:
         """Return the text that withdraws a publisher."""
@@ -155,7 +155,7 @@ class ClientProtocol:
         except RemoteProtocolError as error:
             raise LocalProtocolError(f"{topic}: {error}") from None
         if self.dialect == "ros1":
-            message = spell(self.registry, full, typed, "ros1")
+            message = to_plain(self.registry, full, typed, "ros1")
         # Otherwise as given, not with defaults filled in: a server refuses a command in which a field was forgotten.
         return write_publish(topic, message)
 
@@ -183,7 +183,7 @@ class ClientProtocol:
         self._subscriptions[topic] = _Subscription(full, callback)
         asked = {"throttle_rate": throttle_rate, "queue_length": queue_length}
         more = {name: value for name, value in asked.items() if value}
-        return self._wish("subscribe", topic=topic, type=_two_parts(full), **more)
+        return self._register("subscribe", topic=topic, type=_two_parts(full), **more)
 
     def unsubscribe(self, topic: str) -> bytes:
         """Return the text that ends a subscription."""
@@ -193,7 +193,7 @@ class ClientProtocol:
     def advertise_service(self, service: str, type_name: str, handler: Handler) -> bytes:
         """Return the text that offers a service, answered by `handler` within `receive`."""
         self._services[service] = handler
-        return self._wish("advertise_service", service=service, type=type_name)
+        return self._register("advertise_service", service=service, type=type_name)
 
     def unadvertise_service(self, service: str) -> bytes:
         """Return the text that offers it no more."""
@@ -208,7 +208,7 @@ class ClientProtocol:
     def advertise_action(self, action: str, type_name: str, pursue: Callable[[Goal], None]) -> bytes:
         """Return the text that offers an action, whose goals `pursue` gets within `receive`."""
         self._actions[action] = pursue
-        return self._wish("advertise_action", action=action, type=type_name)
+        return self._register("advertise_action", action=action, type=type_name)
 
     def unadvertise_action(self, action: str) -> bytes:
         """Return the text that offers it no more."""
@@ -223,15 +223,15 @@ class ClientProtocol:
         fields = {"op": "send_action_goal", "action": action, "action_type": type_name, "args": args}
         return orjson.dumps({**fields, "feedback": on_feedback is not None, "id": identifier})
 
-    def wishes(self) -> list[bytes]:
-        """Return the texts that give a new connection everything this client asked for."""
-        return list(self._wishes.values())
+    def registrations(self) -> list[bytes]:
+        """Return the texts that repeat on a new connection everything this client registered."""
+        return list(self._registrations.values())
 
     def end_calls(self) -> None:
         """End everything that cannot outlive its connection: calls fail, goals of others are cancelled."""
         calls, self._calls = self._calls, {}
         goals, self.goals = self.goals, {}
-        self._assembler = Assembler(MAX_WHOLE, MAX_PIECES)
+        self._assembler = FragmentAssembler(MAX_WHOLE, MAX_PIECES)
         self.replies.clear()
         for call in calls.values():
             call.on_answer("the connection has ended", False)
@@ -249,10 +249,10 @@ class ClientProtocol:
         callback is the program's own and goes through.
         """
         try:
-            operation: Operation | None = read_operation(read(text).fields)
+            operation: Operation | None = read_operation(decode(text).fields)
             if isinstance(operation, Fragment):
                 whole = self._assembler.add(operation, now_ns)
-                operation = None if whole is None else read_operation(read(whole).fields)
+                operation = None if whole is None else read_operation(decode(whole).fields)
             message = self._typed(operation) if isinstance(operation, Publish) else None
         except BridgeError:
             self.refused += 1
@@ -321,13 +321,13 @@ class ClientProtocol:
         self._calls[identifier] = _Call(on_answer, on_feedback)
         return identifier
 
-    def _wish(self, op: str, **fields: Any) -> bytes:
+    def _register(self, op: str, **fields: Any) -> bytes:
         name = next(iter(fields.values()))
-        text = self._wishes[op, name] = orjson.dumps({"op": op, **fields})
+        text = self._registrations[op, name] = orjson.dumps({"op": op, **fields})
         return text
 
     def _withdraw(self, op: str, **fields: str) -> bytes:
-        self._wishes.pop((op, next(iter(fields.values()))), None)
+        self._registrations.pop((op, next(iter(fields.values()))), None)
         return orjson.dumps({"op": f"un{op}", **fields})
 
 

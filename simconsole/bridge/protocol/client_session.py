@@ -1,15 +1,15 @@
-"""One connected client as the router sees it: what it wants, what it announced, what waits for it."""
+"""One connected client as the router sees it: its subscriptions, its publishers, and what waits to be sent to it."""
 
 import re
 from collections.abc import Callable
 from typing import Final, NamedTuple
 
 from simconsole.bridge.protocol.access import Role
-from simconsole.bridge.protocol.fragments import Assembler
+from simconsole.bridge.protocol.fragments import FragmentAssembler
 from simconsole.bridge.protocol.message_encoding import Dialect
 from simconsole.bridge.protocol.operations import DEFAULT_LEVEL, SEVERITY, Id, write_status
-from simconsole.bridge.protocol.rate_limiter import Meter
-from simconsole.bridge.protocol.subscription_queue import Outgoing, Outlet
+from simconsole.bridge.protocol.rate_limiter import RateLimiter
+from simconsole.bridge.protocol.subscription_queue import SendQueue, SubscriptionQueue
 from simconsole.values.errors import RemoteProtocolError
 from simconsole.values.units import NS_PER_S
 
@@ -17,8 +17,8 @@ MAX_NAME: Final = 256
 _NAME: Final = re.compile(r"/?[A-Za-z_][A-Za-z0-9_]*(?:/[A-Za-z_][A-Za-z0-9_]*)*")
 
 
-class Counts(NamedTuple):
-    """What went between the server and its clients, in messages."""
+class MessageCounts(NamedTuple):
+    """Messages between the server and its clients."""
 
     received: int = 0
     refused: int = 0
@@ -26,12 +26,12 @@ class Counts(NamedTuple):
     sent: int = 0
     dropped: int = 0
 
-    def plus(self, other: "Counts") -> "Counts":
+    def plus(self, other: "MessageCounts") -> "MessageCounts":
         """Return the sums."""
-        return Counts(*map(sum, zip(self, other, strict=True)))
+        return MessageCounts(*map(sum, zip(self, other, strict=True)))
 
 
-class Session:
+class ClientSession:
     """State of one connection. It is created, changed and removed by its router alone, except for taking texts."""
 
     def __init__(
@@ -41,19 +41,19 @@ class Session:
         max_bytes: int,
         wake: Callable[[], None],
         dialect: Dialect = "ros2",
-        assembler: Assembler | None = None,
+        assembler: FragmentAssembler | None = None,
         role: Role = Role.CONTROL,
-        meter: Meter | None = None,
+        rate_limiter: RateLimiter | None = None,
     ) -> None:
         """Start with nothing; `wake` is called whenever there may be something to send."""
         self.dialect: Dialect = dialect
         self.role = role
-        self.assembler = assembler or Assembler(max_bytes, 256)
-        self.meter = meter or Meter(None)
+        self.assembler = assembler or FragmentAssembler(max_bytes, 256)
+        self.rate_limiter = rate_limiter or RateLimiter(None)
         self.number = number
         self.peer = peer
-        self.outgoing = Outgoing(max_bytes)
-        self.outlets: dict[str, Outlet] = {}
+        self.send_queue = SendQueue(max_bytes)
+        self.queues: dict[str, SubscriptionQueue] = {}
         self.advertised: dict[str, set[Id]] = {}
         self.received = 0
         self.refused = 0
@@ -65,51 +65,51 @@ class Session:
 
     def next_text(self, now_ns: int) -> bytes | None:
         """Return the next text to send to the client, or None when nothing may be sent at `now_ns`."""
-        text = self.outgoing.take(now_ns)
+        text = self.send_queue.take(now_ns)
         if text is not None:
             self.sent += 1
         return text
 
     def due_ns(self) -> int | None:
         """Return when `next_text` has something (0: now), None while nothing waits."""
-        return self.outgoing.due_ns()
+        return self.send_queue.due_ns()
 
     def set_level(self, level: str) -> None:
         """Set how severe a status must be to be sent."""
         self._level = SEVERITY[level]
 
-    def remark(self, level: str, text: str, identifier: Id = None) -> None:
-        """Send a status if the client wants such."""
+    def send_status(self, level: str, text: str, identifier: Id = None) -> None:
+        """Send a status message if the client's level admits it."""
         if SEVERITY[level] <= self._level:
-            self.outgoing.reply(write_status(level, text, identifier))
+            self.send_queue.reply(write_status(level, text, identifier))
             self._wake()
 
-    def pass_over(self, text: str, now_ns: int) -> None:
-        """Count a message that was not wanted any more; tell the client at most once a second."""
+    def throttle(self, text: str, now_ns: int) -> None:
+        """Count a message dropped by the rate limit; tell the client at most once a second."""
         self.throttled += 1
-        self._remark_once("error", text, now_ns)
+        self._send_status_once("error", text, now_ns)
 
-    def counts(self) -> Counts:
+    def counts(self) -> MessageCounts:
         """Return what went to and from this client."""
-        return Counts(self.received, self.refused, self.throttled, self.sent, self.outgoing.dropped)
+        return MessageCounts(self.received, self.refused, self.throttled, self.sent, self.send_queue.dropped)
 
     def answer(self, text: bytes, fragment_size: int | None = None) -> None:
         """Send something that is meant for this client alone."""
-        self.outgoing.reply(text, fragment_size)
+        self.send_queue.reply(text, fragment_size)
         self._wake()
 
-    def deliver(self, outlet: Outlet, text: bytes, now_ns: int) -> None:
+    def deliver(self, queue: SubscriptionQueue, text: bytes, now_ns: int) -> None:
         """Queue a message of a subscribed topic; tell the client, at most once a second, when some were dropped."""
-        dropped = self.outgoing.put(outlet, text)
+        dropped = self.send_queue.put(queue, text)
         self._wake()
         if dropped:
-            self._remark_once("warning", f"too slow: {self.outgoing.dropped} messages dropped so far", now_ns)
+            self._send_status_once("warning", f"too slow: {self.send_queue.dropped} messages dropped so far", now_ns)
 
-    def _remark_once(self, level: str, text: str, now_ns: int) -> None:
-        """Remark at most once a second."""
+    def _send_status_once(self, level: str, text: str, now_ns: int) -> None:
+        """Send at most one such status a second."""
         if self._warned_ns is None or now_ns - self._warned_ns >= NS_PER_S:
             self._warned_ns = now_ns
-            self.remark(level, text)
+            self.send_status(level, text)
 
 
 def resolve_topic(name: str) -> str:

@@ -31,7 +31,7 @@ class _Message:
         self.pieces: dict[int, str] = {}
 
 
-class Assembler:
+class FragmentAssembler:
     """Puts the fragments of one peer together: any order, several messages at once, never more than its bounds."""
 
     def __init__(self, max_bytes: int, max_pieces: int) -> None:

@@ -1,4 +1,4 @@
-"""What is between messages and WebSocket frames whatever library carries them (RFC 6455): joining, limits, heads."""
+"""WebSocket frames and messages, independent of the library (RFC 6455): reassembly, limits, frame headers."""
 
 from typing import Final
 

@@ -1,6 +1,6 @@
-"""Who may come in: the Origin of web pages, the Host a server is addressed by (N15, N16), the drive, tokens, room.
+"""Admission of clients: Origin of web pages, Host header (N15, N16), the drive's nonce, tokens, number of clients.
 
-Each library that reads the first request asks `admit`, so that they cannot differ.
+Every transport decides by `admit`, so that they cannot differ.
 """
 
 import hmac
@@ -24,7 +24,7 @@ DRIVE_HEADER: Final = "X-Simconsole-Drive"
 """Shown by a program that a drive has started, with that drive's nonce; by nobody else."""
 
 
-class Opening(NamedTuple):
+class HandshakeRequest(NamedTuple):
     """A client's first request: its target, and every value it gives for the headers that matter."""
 
     path: str
@@ -35,21 +35,21 @@ class Opening(NamedTuple):
 
 
 class Admission(NamedTuple):
-    """Who came in: what it may do, and how times and headers are spelled for it."""
+    """An admitted client: its role, and how times and headers are spelled for it."""
 
     role: Role
     dialect: Dialect
 
 
 class Refusal(NamedTuple):
-    """What a client is told that may not come in."""
+    """The HTTP answer to a client that is not admitted."""
 
     status: HTTPStatus
     reason: str
 
 
 def admit(
-    opening: Opening, profile: BridgeProfile, access: Access, is_full: bool, drive: str | None = None
+    opening: HandshakeRequest, profile: BridgeProfile, access: Access, is_full: bool, drive: str | None = None
 ) -> Admission | Refusal:
     """Decide on a first request to the server of a `drive` (its nonce), or of none."""
     if len(opening.hosts) != 1 or not is_host_allowed(opening.hosts[0], profile):

@@ -1,4 +1,4 @@
-"""One WebSocket message is one JSON or CBOR document: strict reading, with nothing kept of what was refused."""
+"""Decoding of incoming WebSocket messages, JSON or CBOR: strict, and nothing of a refused message is kept."""
 
 import io
 import json
@@ -31,14 +31,14 @@ class Binary(bytes):
     """What comes or goes in a binary WebSocket message: CBOR; plain bytes are text: JSON."""
 
 
-class Document(NamedTuple):
+class DecodedMessage(NamedTuple):
     """A decoded message; `literals` tells that it held NaN or Infinity, which JSON does not have."""
 
     fields: dict[str, Any]
     literals: bool
 
 
-def read(text: bytes) -> Document:
+def decode(text: bytes) -> DecodedMessage:
     """Decode one message: CBOR if it is `Binary`, JSON otherwise.
 
     NaN and Infinity, which stock clients write, are read as null in texts of at most LENIENT_BYTES and reported.
@@ -57,7 +57,7 @@ def read(text: bytes) -> Document:
         raise RemoteProtocolError(f"message is {_kind(value)}, expected an object")
     if not isinstance(text, Binary) and text.count(b"{") + text.count(b"[") > MAX_DEPTH and _is_deep(value):
         raise RemoteProtocolError(f"message is nested deeper than {MAX_DEPTH}")
-    return Document(value, literals)
+    return DecodedMessage(value, literals)
 
 
 def _read_binary(data: Binary) -> Any:

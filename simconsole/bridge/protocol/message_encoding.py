@@ -1,6 +1,6 @@
-"""The forms a message takes on the wire: JSON, PNG, CBOR and CDR, with ROS 1's or ROS 2's spelling of times.
+"""Encodings of outgoing messages: JSON, PNG, CBOR and CDR, with ROS 1's or ROS 2's times.
 
-A topic's message is brought into each form that somebody wants once, whoever many want it.
+A topic's message is encoded once per encoding in use, however many clients subscribe.
 """
 
 import base64
@@ -37,18 +37,18 @@ _TYPED: Final[dict[str, tuple[int, str]]] = {
 _PNG: Final = b"\x89PNG\r\n\x1a\n"
 
 
-class Form(NamedTuple):
-    """How a subscriber wants its messages."""
+class Encoding(NamedTuple):
+    """How a subscriber wants its messages encoded."""
 
     dialect: Dialect = "ros2"
     compression: Compression = "none"
 
 
-PLAIN: Final = Form()
+PLAIN_JSON: Final = Encoding()
 
 
 class Encoder:
-    """One message on its way to many: each form made at most once."""
+    """One message for many subscribers: each encoding is made at most once."""
 
     __slots__ = ("_json", "_made", "_message", "_now_ns", "_registry", "_sequence", "_type")
 
@@ -60,32 +60,32 @@ class Encoder:
         self._sequence = sequence
         self._now_ns = now_ns
         self._json: dict[Dialect, bytes] = {}
-        self._made: dict[tuple[Form, bytes], bytes] = {}
+        self._made: dict[tuple[Encoding, bytes], bytes] = {}
 
-    def text(self, form: Form, head: bytes, topic: str) -> bytes:
-        """Return the publish operation in `form`; `head` is that of JSON, `topic` the client's spelling."""
-        if form.compression == "none":
-            return head + self._body(form.dialect)
-        key = (form, head)
+    def text(self, encoding: Encoding, head: bytes, topic: str) -> bytes:
+        """Return the publish operation in `encoding`; `head` is that of JSON, `topic` the client's spelling."""
+        if encoding.compression == "none":
+            return head + self._body(encoding.dialect)
+        key = (encoding, head)
         if key not in self._made:
-            self._made[key] = self._compressed(form, head, topic)
+            self._made[key] = self._compressed(encoding, head, topic)
         return self._made[key]
 
     def _body(self, dialect: Dialect) -> bytes:
         body = self._json.get(dialect)
         if body is None:
-            message = self._message if dialect == "ros2" else self._spelled(dialect, False)
+            message = self._message if dialect == "ros2" else self._plain(dialect, False)
             body = self._json[dialect] = msgspec.json.encode(message) + b"}"
         return body
 
-    def _spelled(self, dialect: Dialect, typed: bool) -> Any:
-        return spell(self._registry, self._type, self._message, dialect, typed, self._sequence)
+    def _plain(self, dialect: Dialect, typed: bool) -> Any:
+        return to_plain(self._registry, self._type, self._message, dialect, typed, self._sequence)
 
-    def _compressed(self, form: Form, head: bytes, topic: str) -> bytes:
-        if form.compression == "png":
-            return orjson.dumps({"op": "png", "data": png(head + self._body(form.dialect))})
-        if form.compression == "cbor":
-            message = self._spelled(form.dialect, True)
+    def _compressed(self, encoding: Encoding, head: bytes, topic: str) -> bytes:
+        if encoding.compression == "png":
+            return orjson.dumps({"op": "png", "data": png(head + self._body(encoding.dialect))})
+        if encoding.compression == "cbor":
+            message = self._plain(encoding.dialect, True)
         else:
             seconds, nanoseconds = divmod(self._now_ns, NS_PER_S)
             raw = serialize(self._registry, self._type, self._message)
@@ -93,7 +93,9 @@ class Encoder:
         return Binary(cbor2.dumps({"op": "publish", "topic": topic, "msg": message}))
 
 
-def spell(registry: Registry, name: str, message: Any, dialect: Dialect, typed: bool = False, sequence: int = 0) -> Any:
+def to_plain(
+    registry: Registry, name: str, message: Any, dialect: Dialect, typed: bool = False, sequence: int = 0
+) -> Any:
     """Return a typed message as plain values in a dialect's spelling; `typed` makes numeric arrays CBOR's."""
     if name in (TIME, DURATION) and dialect == "ros1":
         return {"secs": message.sec, "nsecs": message.nanosec}
@@ -101,15 +103,19 @@ def spell(registry: Registry, name: str, message: Any, dialect: Dialect, typed: 
     if name == HEADER and dialect == "ros1":
         plain["seq"] = sequence
     for field in registry.definition(name).fields:
-        plain[field.name] = _spell_field(registry, field.type, getattr(message, field.name), dialect, typed, sequence)
+        plain[field.name] = _field_to_plain(
+            registry, field.type, getattr(message, field.name), dialect, typed, sequence
+        )
     return plain
 
 
-def _spell_field(registry: Registry, kind: FieldType, value: Any, dialect: Dialect, typed: bool, sequence: int) -> Any:
+def _field_to_plain(
+    registry: Registry, kind: FieldType, value: Any, dialect: Dialect, typed: bool, sequence: int
+) -> Any:
     if kind.is_message:
         if kind.array:
-            return [spell(registry, kind.base, item, dialect, typed, sequence) for item in value]
-        return spell(registry, kind.base, value, dialect, typed, sequence)
+            return [to_plain(registry, kind.base, item, dialect, typed, sequence) for item in value]
+        return to_plain(registry, kind.base, value, dialect, typed, sequence)
     if typed and kind.array and kind.base in _TYPED:
         tag, letter = _TYPED[kind.base]
         return cbor2.CBORTag(tag, struct.pack(f"<{len(value)}{letter}", *value))

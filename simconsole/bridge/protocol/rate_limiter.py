@@ -1,10 +1,10 @@
-"""How many commands a client may send: a rate that holds over a second, with no clock of its own."""
+"""Rate limit of a client's commands: a token bucket without a clock of its own."""
 
 from simconsole.values.units import NS_PER_S
 
 
-class Meter:
-    """Lets `rate_hz` messages a second pass, and as many at once after a second's silence."""
+class RateLimiter:
+    """A token bucket: `rate_hz` messages a second, and bursts of as many after a second's silence."""
 
     def __init__(self, rate_hz: float | None) -> None:
         """Start full; None lets everything pass."""

@@ -10,10 +10,10 @@ from typing import Any, Literal, NamedTuple
 from simconsole.bridge.messages import Registry, is_stamped
 from simconsole.bridge.protocol.access import OPEN, Role
 from simconsole.bridge.protocol.calls import Calls
-from simconsole.bridge.protocol.client_session import Counts, Session, resolve_topic
-from simconsole.bridge.protocol.fragments import Assembler
+from simconsole.bridge.protocol.client_session import ClientSession, MessageCounts, resolve_topic
+from simconsole.bridge.protocol.fragments import FragmentAssembler
 from simconsole.bridge.protocol.lease import Lease
-from simconsole.bridge.protocol.message_decoding import Binary, Document, has_duplicate_keys, read
+from simconsole.bridge.protocol.message_decoding import Binary, DecodedMessage, decode, has_duplicate_keys
 from simconsole.bridge.protocol.message_encoding import Dialect
 from simconsole.bridge.protocol.operations import (
     Advertise,
@@ -31,8 +31,8 @@ from simconsole.bridge.protocol.operations import (
     id_of,
     read_operation,
 )
-from simconsole.bridge.protocol.rate_limiter import Meter
-from simconsole.bridge.protocol.topic_registry import RELAY_DEPTH, Accept, Board, Command, Topic
+from simconsole.bridge.protocol.rate_limiter import RateLimiter
+from simconsole.bridge.protocol.topic_registry import RELAY_DEPTH, Accept, Command, Topic, TopicRegistry
 from simconsole.profiles.bridge import BridgeLimits
 from simconsole.values.errors import BridgeError, RemoteProtocolError
 from simconsole.values.kernels import is_finite
@@ -40,7 +40,7 @@ from simconsole.values.units import NS_PER_S
 
 
 class Outcome(NamedTuple):
-    """What became of one text, for the log of whoever owns the connection."""
+    """What became of one received text, for the connection's log."""
 
     kind: Literal["done", "command", "refused", "remark", "throttled"]
     topic: str
@@ -55,15 +55,15 @@ class Router:
     ) -> None:
         """Start without topics. `on_refused` is called for each refused command of whoever may command."""
         self.registry = registry
-        self.board = Board(registry, limits)
+        self.topic_registry = TopicRegistry(registry, limits)
         self.lease = Lease(lease_ns)
         self.on_new_commander: Callable[[], None] = lambda: None
         """Called when a command comes while nobody holds the lease, before it is checked."""
         self._limits = limits
         self._on_refused = on_refused
-        self._sessions: dict[int, Session] = {}
+        self._sessions: dict[int, ClientSession] = {}
         self._numbers = 0
-        self._gone = Counts()
+        self._past_counts = MessageCounts()
         self.upstream: Literal["", "connecting", "connected", "lost"] = ""
         """How it stands with another server that the console is a client of: empty without one, lost once it was there
         and is tried again."""
@@ -71,47 +71,49 @@ class Router:
         self.access = OPEN
 
     @property
-    def sessions(self) -> tuple[Session, ...]:
+    def sessions(self) -> tuple[ClientSession, ...]:
         """The clients connected now."""
         return tuple(self._sessions.values())
 
     @property
     def ros_time_ns(self) -> int:
         """What a message that comes without a stamp is stamped with."""
-        return self.board.ros_time_ns
+        return self.topic_registry.ros_time_ns
 
     @ros_time_ns.setter
     def ros_time_ns(self, now_ns: int) -> None:
-        self.board.ros_time_ns = now_ns
+        self.topic_registry.ros_time_ns = now_ns
 
     @property
     def topics(self) -> dict[str, Topic]:
         """Every topic by name."""
-        return self.board.all()
+        return self.topic_registry.all()
 
     @property
     def connections(self) -> int:
         """How many clients there have been."""
         return self._numbers
 
-    def counts(self) -> Counts:
+    def counts(self) -> MessageCounts:
         """Return what all clients together, also those that are gone, have sent and been sent."""
-        counts = self._gone
+        counts = self._past_counts
         for session in self._sessions.values():
             counts = counts.plus(session.counts())
         return counts
 
     def topic(self, name: str) -> Topic | None:
         """Return a topic, None if there is none of that name."""
-        return self.board.find(name)
+        return self.topic_registry.find(name)
 
     def add_output(self, name: str, type_name: str, depth: int = 1, latch: bool = False) -> None:
         """Add a topic that only the console publishes, keeping the `depth` newest messages for a slow client."""
-        self.board.add(Topic(name, self.registry.resolve(type_name), depth, True, None, latch))
+        self.topic_registry.add(Topic(name, self.registry.resolve(type_name), depth, True, None, latch))
 
     def add_command(self, name: str, type_name: str, accept: Accept, leased: bool = True) -> None:
         """Add a topic by which clients command the console."""
-        self.board.add(Topic(name, self.registry.resolve(type_name), RELAY_DEPTH, True, Command(accept, leased), False))
+        self.topic_registry.add(
+            Topic(name, self.registry.resolve(type_name), RELAY_DEPTH, True, Command(accept, leased), False)
+        )
 
     def connect(
         self,
@@ -119,51 +121,51 @@ class Router:
         wake: Callable[[], None] = lambda: None,
         dialect: Dialect = "ros2",
         role: Role | None = None,
-    ) -> Session:
-        """Take in a client; `peer` names it in logs, `wake` is called when something waits for it."""
+    ) -> ClientSession:
+        """Add a client; `peer` names it in logs, `wake` is called when there is something to send to it."""
         role = self.access.anonymous if role is None else role
         self._numbers += 1
         limits = self._limits
-        assembler = Assembler(limits.message_bytes, limits.message_fragments)
-        meter = Meter(limits.commands_hz)
-        session = Session(self._numbers, peer, limits.queued_bytes, wake, dialect, assembler, role, meter)
+        assembler = FragmentAssembler(limits.message_bytes, limits.message_fragments)
+        rate_limiter = RateLimiter(limits.commands_hz)
+        session = ClientSession(self._numbers, peer, limits.queued_bytes, wake, dialect, assembler, role, rate_limiter)
         self._sessions[session.number] = session
         return session
 
-    def disconnect(self, session: Session, now_ns: int) -> bool:
+    def disconnect(self, session: ClientSession, now_ns: int) -> bool:
         """Remove a client and everything of it; return whether it was commanding the console."""
         if self._sessions.pop(session.number, None) is None:
             return False
-        self._gone = self._gone.plus(session.counts())
-        self.board.leave(session)
+        self._past_counts = self._past_counts.plus(session.counts())
+        self.topic_registry.remove_client(session)
         self.calls.disconnect(session)
         return self.lease.release(session.number, now_ns)
 
-    def wanted(self, name: str) -> bool:
+    def has_subscribers(self, name: str) -> bool:
         """Return whether publishing on an output would reach anyone, now or by a latch."""
-        topic = self.board.find(name)
+        topic = self.topic_registry.find(name)
         return topic is not None and (bool(topic.subscribers) or topic.latch)
 
     def publish(self, name: str, message: Any, now_ns: int) -> None:
         """Send a typed message of the console to all subscribers: encoded once, queued for each."""
-        topic = self.board.find(name)
+        topic = self.topic_registry.find(name)
         assert topic is not None
-        self.board.distribute(topic, message, now_ns)
+        self.topic_registry.distribute(topic, message, now_ns)
 
-    def receive(self, session: Session, text: bytes, now_ns: int) -> Outcome:
+    def receive(self, session: ClientSession, text: bytes, now_ns: int) -> Outcome:
         """Apply one message of a client, text or `Binary`. Never raises for what is in it."""
         session.received += 1
         self.calls.expire(now_ns)
         return self._receive(session, text, now_ns, False)
 
-    def _receive(self, session: Session, text: bytes, now_ns: int, assembled: bool) -> Outcome:
+    def _receive(self, session: ClientSession, text: bytes, now_ns: int, assembled: bool) -> Outcome:
         fields: dict[str, Any] = {}
         try:
-            document = read(text)
-            fields = document.fields
+            decoded = decode(text)
+            fields = decoded.fields
             operation = read_operation(fields)
             if isinstance(operation, Publish):  # first: by far the most are
-                return self._publish(session, operation, document, text, now_ns)
+                return self._publish(session, operation, decoded, text, now_ns)
             if not isinstance(operation, Fragment):
                 return self._apply(session, operation, fields, now_ns)
             if assembled:
@@ -173,22 +175,22 @@ class Router:
             return self._refuse(session, fields, str(error), now_ns)
         return Outcome("done", "", "") if whole is None else self._receive(session, whole, now_ns, True)
 
-    def receive_plain(self, session: Session, name: str, plain: dict[str, Any], now_ns: int) -> Outcome:
+    def receive_plain(self, session: ClientSession, name: str, plain: dict[str, Any], now_ns: int) -> Outcome:
         """Apply a message that did not come as text: checked like any other. Never raises for what is in it."""
         session.received += 1
         self.calls.expire(now_ns)
         fields = {"op": "publish", "topic": name, "msg": plain}
         try:
-            return self._publish(session, Publish(name, plain), Document(fields, False), b"", now_ns)
+            return self._publish(session, Publish(name, plain), DecodedMessage(fields, False), b"", now_ns)
         except BridgeError as error:
             return self._refuse(session, fields, str(error), now_ns)
 
-    def _refuse(self, session: Session, fields: dict[str, Any], reason: str, now_ns: int) -> Outcome:
+    def _refuse(self, session: ClientSession, fields: dict[str, Any], reason: str, now_ns: int) -> Outcome:
         session.refused += 1
         name = next((fields[key] for key in ("topic", "service", "action") if key in fields), "")
         name = name[:256] if isinstance(name, str) else ""
-        topic = self.board.find(name if name.startswith("/") else f"/{name}")
-        # A stranger's mistakes must not count against the commander who drives.
+        topic = self.topic_registry.find(name if name.startswith("/") else f"/{name}")
+        # Mistakes of other clients must not count against the commander.
         if session.role < Role.CONTROL:
             pass
         elif topic is not None and topic.command is not None and topic.command.leased:
@@ -198,10 +200,10 @@ class Router:
             self._on_refused()
         op = fields.get("op")
         place = " ".join(part for part in (op if isinstance(op, str) else "", name) if part)
-        session.remark("error", f"{place[:300]}: {reason}" if place else reason, id_of(fields))
+        session.send_status("error", f"{place[:300]}: {reason}" if place else reason, id_of(fields))
         return Outcome("refused", name, reason)
 
-    def _apply(self, session: Session, operation: Operation, fields: dict[str, Any], now_ns: int) -> Outcome:
+    def _apply(self, session: ClientSession, operation: Operation, fields: dict[str, Any], now_ns: int) -> Outcome:
         if isinstance(operation, Status):
             return Outcome("remark", "", f"{operation.level}: {operation.msg[:1000]}")
         if isinstance(operation, SetLevel):
@@ -216,62 +218,64 @@ class Router:
         except RemoteProtocolError as error:
             outcome = self._refuse(session, fields, str(error), now_ns)
             if isinstance(operation, CallService | SendActionGoal):
-                self.calls.turn_away(session, operation, str(error))
+                self.calls.reject(session, operation, str(error))
             return outcome
         if isinstance(operation, CallOperation):
             return Outcome("done", self.calls.apply(session, operation, now_ns), "")
         assert not isinstance(operation, Fragment | Publish)
         name = resolve_topic(operation.topic)
         if isinstance(operation, Subscribe):
-            self.board.subscribe(session, name, operation, now_ns)
+            self.topic_registry.subscribe(session, name, operation, now_ns)
         elif isinstance(operation, Unsubscribe):
-            self.board.unsubscribe(session, name, operation.id)
+            self.topic_registry.unsubscribe(session, name, operation.id)
         elif isinstance(operation, Advertise):
-            self.board.advertise(session, name, operation)
+            self.topic_registry.advertise(session, name, operation)
         else:
-            self.board.unadvertise(session, name, operation.id)
+            self.topic_registry.unadvertise(session, name, operation.id)
         return Outcome("done", name, "")
 
-    def _require(self, session: Session, role: Role) -> None:
+    def _require(self, session: ClientSession, role: Role) -> None:
         if session.role < role:
             held = f"role {session.role.name.lower()}" if session.role else "no token"
             raise RemoteProtocolError(f"this needs the role {role.name.lower()}; you have {held}")
 
-    def _publish(self, session: Session, operation: Publish, document: Document, text: bytes, now_ns: int) -> Outcome:
+    def _publish(
+        self, session: ClientSession, operation: Publish, decoded: DecodedMessage, text: bytes, now_ns: int
+    ) -> Outcome:
         self._require(session, Role.PUBLISH)
-        # A name that is known as it stands needs no other look.
-        topic = self.board.find(operation.topic) or self.board.find(resolve_topic(operation.topic))
+        # A name that is registered as given needs no resolving.
+        topic = self.topic_registry.find(operation.topic) or self.topic_registry.find(resolve_topic(operation.topic))
         if topic is None:
             raise RemoteProtocolError("advertise the topic first: nobody has said its type")
         if not isinstance(operation.msg, dict):
             raise RemoteProtocolError("msg must be an object")
         if topic.command is not None:
-            return self._command(session, topic, topic.command, operation, document, text, now_ns)
+            return self._command(session, topic, topic.command, operation, decoded, text, now_ns)
         if topic.owned:
             raise RemoteProtocolError("only the console publishes this topic")
         message = self.registry.from_plain(topic.type, operation.msg, now_ns=self.ros_time_ns)
         self._stamp(topic.type, operation.msg, message)
         if operation.latch or operation.qos is not None:
-            self.board.settle(topic, operation)
-        self.board.distribute(topic, message, now_ns)
+            self.topic_registry.apply_qos(topic, operation)
+        self.topic_registry.distribute(topic, message, now_ns)
         return Outcome("done", topic.name, "")
 
     def _command(
         self,
-        session: Session,
+        session: ClientSession,
         topic: Topic,
         command: Command,
         operation: Publish,
-        document: Document,
+        decoded: DecodedMessage,
         text: bytes,
         now_ns: int,
     ) -> Outcome:
         self._require(session, Role.CONTROL)
-        if command.leased and not session.meter.allows(now_ns):
+        if command.leased and not session.rate_limiter.allows(now_ns):
             return self._throttle(session, topic.name, now_ns)
-        if document.literals or (isinstance(text, Binary) and not _is_finite(operation.msg)):
+        if decoded.literals or (isinstance(text, Binary) and not _is_finite(operation.msg)):
             raise RemoteProtocolError("NaN and Infinity are not JSON and no command")
-        if text and has_duplicate_keys(text, document.fields):
+        if text and has_duplicate_keys(text, decoded.fields):
             raise RemoteProtocolError("a key is given twice")
         if command.leased and not self.lease.is_open_to(session.number, now_ns):
             raise RemoteProtocolError("another client commands the console")
@@ -281,17 +285,17 @@ class Router:
         command.accept(operation.msg, message, now_ns)
         if command.leased:
             self.lease.renew(session.number, now_ns)
-        self.board.distribute(topic, message, now_ns)
+        self.topic_registry.distribute(topic, message, now_ns)
         return Outcome("command", topic.name, "")
 
-    def _throttle(self, session: Session, name: str, now_ns: int) -> Outcome:
-        """Pass over a command of a client that sends too many: a newer one is on its way, and none of them is wrong."""
+    def _throttle(self, session: ClientSession, name: str, now_ns: int) -> Outcome:
+        """Drop a command above the rate limit: a newer one is on its way, and it counts as no refusal."""
         reason = f"more than {self._limits.commands_hz:g} commands a second: only so many are taken"
-        session.pass_over(f"{name}: {reason}", now_ns)
+        session.throttle(f"{name}: {reason}", now_ns)
         return Outcome("throttled", name, reason)
 
     def _stamp(self, type_name: str, plain: dict[str, Any], message: Any) -> None:
-        """Give a message that came without a stamp the present, as the protocol promises."""
+        """Stamp a message that came without a stamp with the present time, as the protocol requires."""
         header = plain.get("header")
         if isinstance(header, dict) and "stamp" in header:
             return

@@ -9,7 +9,7 @@ from typing import Final, NamedTuple
 
 from simconsole.bridge.protocol.fragments import split
 from simconsole.bridge.protocol.message_decoding import Binary
-from simconsole.bridge.protocol.message_encoding import PLAIN, Form
+from simconsole.bridge.protocol.message_encoding import PLAIN_JSON, Encoding
 from simconsole.bridge.protocol.operations import Id
 from simconsole.values.units import NS_PER_S
 
@@ -21,26 +21,35 @@ _PREFERRED: Final = ("cbor-raw", "cbor", "png", "none")
 """Of several subscriptions of one client to one topic, as rosbridge_suite has it."""
 
 
-class _Wish(NamedTuple):
+class _Subscription(NamedTuple):
     throttle_ns: int
     depth: int
-    form: Form
+    encoding: Encoding
     fragment_size: int | None
 
 
-class Outlet:
-    """The messages of one topic on their way to one client."""
+class SubscriptionQueue:
+    """The messages of one topic that wait for one client, merged over that client's subscriptions to it."""
 
     __slots__ = (
-        "default_depth", "depth", "dropped", "form", "fragment_size", "head", "next_ns", "texts", "throttle_ns",
-        "topic", "wishes",
+        "default_depth",
+        "depth",
+        "dropped",
+        "encoding",
+        "fragment_size",
+        "head",
+        "next_ns",
+        "subscriptions",
+        "texts",
+        "throttle_ns",
+        "topic",
     )  # fmt: skip
 
     def __init__(self, head: bytes, default_depth: int, topic: str = "") -> None:
         """Start empty; `head` is the publish operation up to its message, in the client's spelling of the topic."""
         self.head = head
         self.topic = topic
-        self.form: Form = PLAIN
+        self.encoding: Encoding = PLAIN_JSON
         self.fragment_size: int | None = None
         self.default_depth = default_depth
         self.depth = default_depth
@@ -48,37 +57,50 @@ class Outlet:
         self.next_ns = 0
         self.dropped = 0
         self.texts: deque[bytes] = deque()
-        self.wishes: dict[Id, _Wish] = {}
+        self.subscriptions: dict[Id, _Subscription] = {}
 
-    def wish(
-        self, identifier: Id, throttle_ms: float, depth: int, form: Form = PLAIN, fragment_size: int | None = None
+    def subscribe(
+        self,
+        identifier: Id,
+        throttle_ms: float,
+        depth: int,
+        encoding: Encoding = PLAIN_JSON,
+        fragment_size: int | None = None,
     ) -> None:
         """Add or replace the subscription `identifier`; depth 0 asks for the topic's own."""
         throttle_ns = int(throttle_ms * NS_PER_MS)
-        self.wishes[identifier] = _Wish(throttle_ns, depth or self.default_depth, form, fragment_size)
+        self.subscriptions[identifier] = _Subscription(
+            throttle_ns, depth or self.default_depth, encoding, fragment_size
+        )
         self._merge()
 
-    def withdraw(self, identifier: Id) -> bool:
+    def unsubscribe(self, identifier: Id) -> bool:
         """End the subscription `identifier`, or all for None; return False if there was none of that id."""
         if identifier is None:
-            self.wishes.clear()
+            self.subscriptions.clear()
             return True
-        known = self.wishes.pop(identifier, None) is not None
+        known = self.subscriptions.pop(identifier, None) is not None
         self._merge()
         return known
 
     def _merge(self) -> None:
         # Several subscriptions of one client to one topic are served by one delivery: the most demanding wins.
-        if self.wishes:
-            wishes = self.wishes.values()
-            self.throttle_ns = min(wish.throttle_ns for wish in wishes)
-            self.depth = max(wish.depth for wish in wishes)
-            self.form = min((wish.form for wish in wishes), key=lambda form: _PREFERRED.index(form.compression))
-            self.fragment_size = min((wish.fragment_size for wish in wishes if wish.fragment_size), default=None)
+        if self.subscriptions:
+            subscriptions = self.subscriptions.values()
+            self.throttle_ns = min(subscription.throttle_ns for subscription in subscriptions)
+            self.depth = max(subscription.depth for subscription in subscriptions)
+            self.encoding = min(
+                (subscription.encoding for subscription in subscriptions),
+                key=lambda encoding: _PREFERRED.index(encoding.compression),
+            )
+            self.fragment_size = min(
+                (subscription.fragment_size for subscription in subscriptions if subscription.fragment_size),
+                default=None,
+            )
 
 
-class Outgoing:
-    """Everything that waits for one client. Topics take turns; replies go first."""
+class SendQueue:
+    """Everything that waits to be sent to one client: replies first, then topics in turn."""
 
     def __init__(self, max_bytes: int) -> None:
         """Hold at most `max_bytes` of messages."""
@@ -90,7 +112,7 @@ class Outgoing:
         self._pieces: Iterator[bytes] = iter(())
         self._piece: bytes | None = None
         self._messages = 0
-        self._waiting: dict[Outlet, None] = {}
+        self._waiting: dict[SubscriptionQueue, None] = {}
 
     def reply(self, text: bytes, fragment_size: int | None = None) -> None:
         """Queue an answer to the client itself; of too many, or too long ones, the oldest is dropped."""
@@ -100,20 +122,20 @@ class Outgoing:
             self._reply_bytes -= len(self._replies.popleft()[0])
             self.dropped += 1
 
-    def put(self, outlet: Outlet, text: bytes) -> int:
+    def put(self, queue: SubscriptionQueue, text: bytes) -> int:
         """Queue a message of a topic; return how many were dropped for it."""
         before = self.dropped
-        while len(outlet.texts) >= outlet.depth:
-            self._drop_oldest(outlet)
+        while len(queue.texts) >= queue.depth:
+            self._drop_oldest(queue)
         while self.bytes + len(text) > self.max_bytes and self._waiting:
-            self._drop_oldest(outlet if outlet.texts else next(iter(self._waiting)))
+            self._drop_oldest(queue if queue.texts else next(iter(self._waiting)))
         if self.bytes + len(text) > self.max_bytes:
-            outlet.dropped += 1
+            queue.dropped += 1
             self.dropped += 1
         else:
-            outlet.texts.append(text)
+            queue.texts.append(text)
             self.bytes += len(text)
-            self._waiting[outlet] = None
+            self._waiting[queue] = None
         return self.dropped - before
 
     def take(self, now_ns: int) -> bytes | None:
@@ -125,18 +147,18 @@ class Outgoing:
             text, size = self._replies.popleft()
             self._reply_bytes -= len(text)
             return self._in_pieces(text, size)
-        for outlet in self._waiting:
-            if outlet.next_ns <= now_ns:
+        for queue in self._waiting:
+            if queue.next_ns <= now_ns:
                 break
         else:
             return None
-        text = outlet.texts.popleft()
+        text = queue.texts.popleft()
         self.bytes -= len(text)
-        outlet.next_ns = now_ns + outlet.throttle_ns
-        del self._waiting[outlet]
-        if outlet.texts:
-            self._waiting[outlet] = None
-        return self._in_pieces(text, outlet.fragment_size)
+        queue.next_ns = now_ns + queue.throttle_ns
+        del self._waiting[queue]
+        if queue.texts:
+            self._waiting[queue] = None
+        return self._in_pieces(text, queue.fragment_size)
 
     def _in_pieces(self, text: bytes, size: int | None) -> bytes:
         """Return a text or, if it is longer than the client wants, its first piece; the others are taken next."""
@@ -151,17 +173,17 @@ class Outgoing:
         """Return when the next waiting text may be sent (0: now), None when nothing waits."""
         if self._replies or self._piece is not None:
             return 0
-        return min((outlet.next_ns for outlet in self._waiting), default=None)
+        return min((queue.next_ns for queue in self._waiting), default=None)
 
-    def forget(self, outlet: Outlet) -> None:
+    def forget(self, queue: SubscriptionQueue) -> None:
         """Discard what waits of a topic that the client no longer wants."""
-        self.bytes -= sum(map(len, outlet.texts))
-        outlet.texts.clear()
-        self._waiting.pop(outlet, None)
+        self.bytes -= sum(map(len, queue.texts))
+        queue.texts.clear()
+        self._waiting.pop(queue, None)
 
-    def _drop_oldest(self, outlet: Outlet) -> None:
-        self.bytes -= len(outlet.texts.popleft())
-        outlet.dropped += 1
+    def _drop_oldest(self, queue: SubscriptionQueue) -> None:
+        self.bytes -= len(queue.texts.popleft())
+        queue.dropped += 1
         self.dropped += 1
-        if not outlet.texts:
-            del self._waiting[outlet]
+        if not queue.texts:
+            del self._waiting[queue]

@@ -4,10 +4,10 @@ from collections.abc import Callable
 from typing import Any, Final, NamedTuple
 
 from simconsole.bridge.messages import Registry
-from simconsole.bridge.protocol.client_session import Session
-from simconsole.bridge.protocol.message_encoding import Encoder, Form
+from simconsole.bridge.protocol.client_session import ClientSession
+from simconsole.bridge.protocol.message_encoding import Encoder, Encoding
 from simconsole.bridge.protocol.operations import NO_QOS, Advertise, Publish, Qos, Subscribe, publish_head
-from simconsole.bridge.protocol.subscription_queue import Outlet
+from simconsole.bridge.protocol.subscription_queue import SubscriptionQueue
 from simconsole.profiles.bridge import BridgeLimits
 from simconsole.values.errors import LocalProtocolError, RemoteProtocolError
 
@@ -28,7 +28,7 @@ class Command(NamedTuple):
 
 
 class Topic:
-    """One topic: who listens, what it carries, and whose it is."""
+    """One topic: its type, publishers, subscribers, and whether the console owns it."""
 
     def __init__(
         self, name: str, type_name: str, depth: int, owned: bool, command: Command | None, latch: bool
@@ -46,17 +46,17 @@ class Topic:
         self.sequence = 0
         self.head = publish_head(name)
         self.publishers: set[int] = set()
-        self.subscribers: dict[int, tuple[Session, Outlet]] = {}
+        self.subscribers: dict[int, tuple[ClientSession, SubscriptionQueue]] = {}
 
-    def kept(self, now_ns: int) -> Encoder | None:
+    def latched_message(self, now_ns: int) -> Encoder | None:
         """Return the latched message that a new subscriber gets, None without one or when its lifespan is over."""
         if self.lifespan_ns is not None and now_ns - self.latched_ns > self.lifespan_ns:
             self.latched = None
         return self.latched
 
 
-class Board:
-    """Topics by name, with the operations that change them."""
+class TopicRegistry:
+    """The topics of one server by name, and the operations that change them."""
 
     def __init__(self, registry: Registry, limits: BridgeLimits) -> None:
         """Start without topics."""
@@ -91,63 +91,63 @@ class Board:
         encoder = Encoder(self.registry, topic.type, message, topic.sequence, self.ros_time_ns)
         if topic.latch:
             topic.latched, topic.latched_ns = encoder, now_ns
-        for session, outlet in topic.subscribers.values():
-            session.deliver(outlet, encoder.text(outlet.form, outlet.head, outlet.topic), now_ns)
+        for session, queue in topic.subscribers.values():
+            session.deliver(queue, encoder.text(queue.encoding, queue.head, queue.topic), now_ns)
 
-    def subscribe(self, session: Session, name: str, operation: Subscribe, now_ns: int) -> None:
+    def subscribe(self, session: ClientSession, name: str, operation: Subscribe, now_ns: int) -> None:
         """Add or change a subscription. Raises RemoteProtocolError with the reason why not."""
-        form = Form(session.dialect, operation.compression)
+        encoding = Encoding(session.dialect, operation.compression)
         qos = operation.qos or NO_QOS
-        outlet = session.outlets.get(name)
-        if outlet is None:
-            if len(session.outlets) >= self._limits.subscriptions:
+        queue = session.queues.get(name)
+        if queue is None:
+            if len(session.queues) >= self._limits.subscriptions:
                 raise RemoteProtocolError(f"{self._limits.subscriptions} subscriptions are the most allowed")
             topic = self._topic(name, operation.type)
             # The client is answered with the name it used, which is what it looks up.
             head = topic.head if operation.topic == name else publish_head(operation.topic)
-            outlet = session.outlets[name] = Outlet(head, topic.depth, operation.topic)
-            topic.subscribers[session.number] = (session, outlet)
-            kept = topic.kept(now_ns)
-            if kept is not None and qos.durability != "volatile":
-                session.deliver(outlet, kept.text(form, head, operation.topic), now_ns)
+            queue = session.queues[name] = SubscriptionQueue(head, topic.depth, operation.topic)
+            topic.subscribers[session.number] = (session, queue)
+            latched = topic.latched_message(now_ns)
+            if latched is not None and qos.durability != "volatile":
+                session.deliver(queue, latched.text(encoding, head, operation.topic), now_ns)
         else:
             self._topic(name, operation.type)
-        if operation.id not in outlet.wishes and len(outlet.wishes) >= self._limits.subscriptions:
+        if operation.id not in queue.subscriptions and len(queue.subscriptions) >= self._limits.subscriptions:
             raise RemoteProtocolError(f"{self._limits.subscriptions} subscriptions are the most allowed")
         depth = operation.queue_length or self._depth(qos)
-        outlet.wish(
+        queue.subscribe(
             operation.id,
             operation.throttle_rate,
             min(depth, self._limits.queue_length),
-            form,
+            encoding,
             operation.fragment_size,
         )
 
-    def unsubscribe(self, session: Session, name: str, identifier: Any) -> None:
+    def unsubscribe(self, session: ClientSession, name: str, identifier: Any) -> None:
         """End the subscription of an id, or all of a client's for None. Raises RemoteProtocolError: there is none."""
-        outlet = session.outlets.get(name)
-        if outlet is None or not outlet.withdraw(identifier):
+        queue = session.queues.get(name)
+        if queue is None or not queue.unsubscribe(identifier):
             raise RemoteProtocolError("not subscribed")
-        if not outlet.wishes:
-            session.outgoing.forget(outlet)
-            del session.outlets[name]
+        if not queue.subscriptions:
+            session.send_queue.forget(queue)
+            del session.queues[name]
             topic = self._topics[name]
             del topic.subscribers[session.number]
-            self._clear(topic)
+            self._remove_unused(topic)
 
-    def advertise(self, session: Session, name: str, operation: Advertise) -> None:
-        """Note that a client will publish. Raises RemoteProtocolError with the reason why it must not."""
+    def advertise(self, session: ClientSession, name: str, operation: Advertise) -> None:
+        """Register a client as a publisher. Raises RemoteProtocolError with the reason why it must not."""
         topic = self._topic(name, operation.type)
         if topic.owned and topic.command is None:
             raise RemoteProtocolError("only the console publishes this topic")
         topic.publishers.add(session.number)
-        self.settle(topic, operation)
+        self.apply_qos(topic, operation)
         identifiers = session.advertised.setdefault(name, set())
         if len(identifiers) < self._limits.topics:
             identifiers.add(operation.id)
 
-    def settle(self, topic: Topic, operation: Advertise | Publish) -> None:
-        """Let a publisher say how its topic is kept: latched, how many for a slow client, for how long."""
+    def apply_qos(self, topic: Topic, operation: Advertise | Publish) -> None:
+        """Apply a publisher's quality of service to its topic: latching, queue depth, lifespan."""
         if topic.owned:
             return
         qos = operation.qos or NO_QOS
@@ -156,8 +156,8 @@ class Board:
         if qos.lifespan is not None:
             topic.lifespan_ns = qos.lifespan_ns
 
-    def unadvertise(self, session: Session, name: str, identifier: Any) -> None:
-        """Take an announcement back, all of a client's for None. Raises RemoteProtocolError: there is none."""
+    def unadvertise(self, session: ClientSession, name: str, identifier: Any) -> None:
+        """Withdraw a publisher, all of a client's for None. Raises RemoteProtocolError: there is none."""
         identifiers = session.advertised.get(name)
         if identifiers is None or (identifier is not None and identifier not in identifiers):
             raise RemoteProtocolError("not advertised")
@@ -166,17 +166,17 @@ class Board:
             del session.advertised[name]
             topic = self._topics[name]
             topic.publishers.discard(session.number)
-            self._clear(topic)
+            self._remove_unused(topic)
 
-    def leave(self, session: Session) -> None:
+    def remove_client(self, session: ClientSession) -> None:
         """Remove everything of a client."""
-        for name in (*session.outlets, *session.advertised):
+        for name in (*session.queues, *session.advertised):
             topic = self._topics.get(name)
             if topic is not None:
                 topic.subscribers.pop(session.number, None)
                 topic.publishers.discard(session.number)
-                self._clear(topic)
-        session.outlets.clear()
+                self._remove_unused(topic)
+        session.queues.clear()
         session.advertised.clear()
 
     def _topic(self, name: str, type_name: str | None) -> Topic:
@@ -197,7 +197,7 @@ class Board:
         """Return how many messages a quality of service asks to keep, 0 if it does not say."""
         return self._limits.queue_length if qos.history == "keep_all" else qos.depth or 0
 
-    def _clear(self, topic: Topic) -> None:
-        """Forget a topic of clients that nobody publishes or hears any more."""
+    def _remove_unused(self, topic: Topic) -> None:
+        """Remove a clients' topic that has neither publishers nor subscribers."""
         if not topic.owned and not topic.publishers and not topic.subscribers:
             self._topics.pop(topic.name, None)

@@ -7,17 +7,17 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Any, Final, NamedTuple
 
-from simconsole.bridge.console.relay import ANYONE, Demand, GraphView, Offer, Order
+from simconsole.bridge.console.relay import ANYONE, GraphEntities, GraphOperation, GraphPublisher, GraphView
 from simconsole.bridge.ros2.message_types import load
 from simconsole.bridge.ros2.service_calls import GraphCalls
 from simconsole.profiles.bridge import Ros2Profile
 from simconsole.values.errors import BridgeError
 
-LOOK_S: Final = 0.1
-"""How often the graph is looked at: what comes or goes there is seen this much later."""
+POLL_S: Final = 0.1
+"""Period of polling the graph: changes there are seen this much later."""
 DEPTH: Final = 10
-MAX_LOOKS: Final = 10
-MAX_UNNAMED: Final = 100
+MAX_POLLS: Final = 10
+MAX_PENDING: Final = 100
 MAX_SENT: Final = 100
 _NAMELESS: Final = "_NODE_NAME_UNKNOWN_"
 """rmw's name of a node whose endpoints are known before itself."""
@@ -28,7 +28,7 @@ _JOIN_S: Final = 3.0
 _DISCOVERY: Final = "ROS_AUTOMATIC_DISCOVERY_RANGE"
 
 
-class Heard(NamedTuple):
+class ReceivedMessage(NamedTuple):
     """A message of the graph, in CDR, and the node that published it."""
 
     topic: str
@@ -36,16 +36,16 @@ class Heard(NamedTuple):
     node: str
 
 
-class _Unnamed(NamedTuple):
-    """A message whose publisher's node is not known yet, and for how many looks at the graph it has waited."""
+class _PendingMessage(NamedTuple):
+    """A message whose publisher's node is not known yet, and for how many polls of the graph it has waited."""
 
     topic: str
     data: bytes
     identity: bytes
-    looks: int
+    polls: int
 
 
-class _Way(NamedTuple):
+class _SubscriptionSettings(NamedTuple):
     """How a topic is subscribed to."""
 
     type: str
@@ -56,7 +56,9 @@ class _Way(NamedTuple):
 class Graph:
     """The console's node. Public methods belong to the bridge's thread, all others to rclpy's."""
 
-    def __init__(self, settings: Ros2Profile, put: Callable[..., None], hear: Callable[[Heard], None]) -> None:
+    def __init__(
+        self, settings: Ros2Profile, put: Callable[..., None], hear: Callable[[ReceivedMessage], None]
+    ) -> None:
         """Join; `put` and `hear` are called on rclpy's thread.
 
         Raises:
@@ -87,7 +89,7 @@ class Graph:
         self._executor: Any = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(node)
         self._calls = GraphCalls(node, self._executor, self._group, put)
-        self._demand = Demand({}, {}, {}, {})
+        self._entities = GraphEntities({}, {}, {}, {})
         self._publishers: dict[str, tuple[Any, Any]] = {}
         self._subscriptions: dict[str, tuple[Any, Any]] = {}
         self._services: dict[str, tuple[Any, Any]] = {}
@@ -100,25 +102,25 @@ class Graph:
         self._lock = threading.Lock()
         self._sent: dict[str, deque[bytes]] = {}
         """The newest messages that were sent on topics which are also heard."""
-        self._unnamed: list[_Unnamed] = []
+        self._pending: list[_PendingMessage] = []
         self._nodes: dict[bytes, str] = {}
         """Who publishes, by the identity of the publisher."""
-        node.create_timer(LOOK_S, self._look, callback_group=self._group)
+        node.create_timer(POLL_S, self._poll, callback_group=self._group)
         self._thread = threading.Thread(target=self._spin, name="ros2", daemon=True)
         self._thread.start()
 
-    def want(self, demand: Demand) -> None:
-        """Have in the graph what `demand` says, soon."""
-        if demand != self._demand:
-            self._demand = demand
+    def set_entities(self, entities: GraphEntities) -> None:
+        """Create and destroy publishers, subscriptions, services and actions to match `entities`, soon."""
+        if entities != self._entities:
+            self._entities = entities
             self._executor.create_task(self._settle)
 
-    def do(self, order: Order) -> None:
-        """Do one thing that the relay ordered."""
-        if order.does == "send":
-            self._send(order.name, order.data or b"")
+    def execute(self, operation: GraphOperation) -> None:
+        """Carry out one operation of the relay."""
+        if operation.kind == "send":
+            self._send(operation.name, operation.data or b"")
         else:
-            self._executor.create_task(self._calls.do, order)
+            self._executor.create_task(self._calls.execute, operation)
 
     def close(self) -> None:
         """Leave; harmless when closed."""
@@ -153,7 +155,7 @@ class Graph:
                 self.broken = True
                 self._put("view", GraphView({}, frozenset(), {}, {}, frozenset()))
 
-    def _look(self) -> None:
+    def _poll(self) -> None:
         node = self._node
         topics, listened = {}, set()
         for name, types in node.get_topic_names_and_types():
@@ -176,19 +178,19 @@ class Graph:
         }
         nodes = {_path(space, name) for name, space in node.get_node_names_and_namespaces()}
         self._name_them(1)
-        self._calls.look()
+        self._calls.poll()
         self._put("view", GraphView(topics, frozenset(listened), services, actions, frozenset(nodes)))
         self._settle()
 
     def _settle(self) -> None:
-        demand, node = self._demand, self._node
-        _keep(self._publishers, demand.publishers, self._make_publisher, node.destroy_publisher)
-        ways = {name: self._way(name, kind) for name, kind in demand.subscriptions.items()}
-        _keep(self._subscriptions, ways, self._make_subscription, node.destroy_subscription)
-        _keep(self._services, demand.services, self._calls.make_service, node.destroy_service)
-        _keep(self._actions, demand.actions, self._calls.make_action, lambda server: server.destroy())
+        entities, node = self._entities, self._node
+        _synchronise(self._publishers, entities.publishers, self._make_publisher, node.destroy_publisher)
+        ways = {name: self._subscription_settings(name, kind) for name, kind in entities.subscriptions.items()}
+        _synchronise(self._subscriptions, ways, self._make_subscription, node.destroy_subscription)
+        _synchronise(self._services, entities.services, self._calls.make_service, node.destroy_service)
+        _synchronise(self._actions, entities.actions, self._calls.make_action, lambda server: server.destroy())
 
-    def _make_publisher(self, name: str, offer: Offer) -> Any:
+    def _make_publisher(self, name: str, offer: GraphPublisher) -> Any:
         from rclpy.qos import DurabilityPolicy, QoSProfile
 
         durability = DurabilityPolicy.TRANSIENT_LOCAL if offer.latched else DurabilityPolicy.VOLATILE
@@ -199,7 +201,7 @@ class Graph:
             publisher.publish(early)
         return publisher
 
-    def _way(self, name: str, kind: str) -> _Way:
+    def _subscription_settings(self, name: str, kind: str) -> _SubscriptionSettings:
         """Return what all who publish now can do: a reliable subscription hears nothing of a best-effort publisher."""
         from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
@@ -207,9 +209,9 @@ class Graph:
         others = [info.qos_profile for info in found if _path(info.node_namespace, info.node_name) != self._name]
         reliable = all(qos.reliability != ReliabilityPolicy.BEST_EFFORT for qos in others)
         latched = bool(others) and all(qos.durability == DurabilityPolicy.TRANSIENT_LOCAL for qos in others)
-        return _Way(kind, reliable, latched)
+        return _SubscriptionSettings(kind, reliable, latched)
 
-    def _make_subscription(self, name: str, way: _Way) -> Any:
+    def _make_subscription(self, name: str, way: _SubscriptionSettings) -> Any:
         from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
         qos = QoSProfile(
@@ -223,9 +225,9 @@ class Graph:
             identity = (info.get("publisher_gid") or {}).get("data")
             if identity is None:
                 if not self._is_own(name, data):
-                    self._hear(Heard(name, data, ANYONE))
+                    self._hear(ReceivedMessage(name, data, ANYONE))
                 return
-            self._unnamed.append(_Unnamed(name, data, identity, 0))
+            self._pending.append(_PendingMessage(name, data, identity, 0))
             self._name_them(0)
 
         return self._node.create_subscription(load(way.type), name, take, qos, raw=True, callback_group=self._group)
@@ -239,22 +241,22 @@ class Graph:
                 return False
         return True
 
-    def _name_them(self, looks: int) -> None:
+    def _name_them(self, polls: int) -> None:
         """Pass on, in order, what has come from publishers whose node is known by now.
 
         A publisher is found some moments before the name of its node. Such messages wait rather than be taken for
         another node's; for a second at most.
         """
-        waiting, self._unnamed = self._unnamed, []
+        waiting, self._pending = self._pending, []
         for each in waiting:
             node = self._publisher(each)
-            if node is None and each.looks < MAX_LOOKS:
-                self._unnamed.append(each._replace(looks=each.looks + looks))
+            if node is None and each.polls < MAX_POLLS:
+                self._pending.append(each._replace(polls=each.polls + polls))
             elif node != self._name:
-                self._hear(Heard(each.topic, each.data, node or ANYONE))
-        del self._unnamed[:-MAX_UNNAMED]
+                self._hear(ReceivedMessage(each.topic, each.data, node or ANYONE))
+        del self._pending[:-MAX_PENDING]
 
-    def _publisher(self, message: _Unnamed) -> str | None:
+    def _publisher(self, message: _PendingMessage) -> str | None:
         if message.identity not in self._nodes:
             for known in self._node.get_publishers_info_by_topic(message.topic):
                 if known.node_name != _NAMELESS:
@@ -266,10 +268,10 @@ def _path(namespace: str, name: str) -> str:
     return f"{namespace.rstrip('/')}/{name}"
 
 
-def _keep(
+def _synchronise(
     have: dict[str, tuple[Any, Any]], want: Any, make: Callable[[str, Any], Any], end: Callable[[Any], Any]
 ) -> None:
-    """Bring what there is to what is wanted; what changed is ended and made anew."""
+    """Make the entities match what is wanted; a changed one is destroyed and created anew."""
     for name in [name for name, (how, _) in have.items() if want.get(name) != how]:
         end(have.pop(name)[1])
     for name, how in want.items():
@@ -279,7 +281,7 @@ def _keep(
 
 @contextmanager
 def _environment(name: str, value: str) -> Iterator[None]:
-    """Have a variable of the environment while ROS reads it, and no longer: programs started here keep their own."""
+    """Set an environment variable only while ROS reads it: programs started later keep their own value."""
     before = os.environ.get(name)
     os.environ[name] = value
     try:

@@ -13,7 +13,7 @@ from typing import Any, Final
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.relay import Relay
 from simconsole.bridge.protocol.access import Role
-from simconsole.bridge.ros2.graph import NOT_INSTALLED, Graph, Heard
+from simconsole.bridge.ros2.graph import NOT_INSTALLED, Graph, ReceivedMessage
 from simconsole.bridge.ros2.message_types import describe
 from simconsole.profiles.bridge import BridgeProfile, Ros2Profile
 from simconsole.values.errors import BridgeError, ProfileError
@@ -44,7 +44,7 @@ class Ros2Link:
         """
         settings = profile.ros2 or Ros2Profile()
         self._inbox: deque[tuple[str, tuple[Any, ...]]] = deque()
-        self._heard: deque[Heard] = deque(maxlen=MAX_HEARD)
+        self._heard: deque[ReceivedMessage] = deque(maxlen=MAX_HEARD)
         self._remarks: dict[str, int] = {}
         self._wake = wake
         self._relay = Relay(console, role_of_graph(profile, console.router.access.anonymous), describe, wake)
@@ -64,16 +64,16 @@ class Ros2Link:
         while self._inbox:
             event, arguments = self._inbox.popleft()
             if event == "view":
-                self._graph.want(self._relay.observe(arguments[0], now_ns))
+                self._graph.set_entities(self._relay.observe(arguments[0], now_ns))
             else:
                 getattr(self._relay, event)(*arguments, now_ns)
         for _ in range(len(self._heard)):
             self._relay.hear(*self._heard.popleft(), now_ns)
-        for order in self._relay.orders(now_ns):
-            if order.does == "remark":
-                self._log(order.name, order.text)
+        for operation in self._relay.operations(now_ns):
+            if operation.kind == "remark":
+                self._log(operation.name, operation.text)
             else:
-                self._graph.do(order)
+                self._graph.execute(operation)
 
     def close(self) -> None:
         """Leave the graph; harmless when closed."""
@@ -88,7 +88,7 @@ class Ros2Link:
         self._inbox.append((event, arguments))
         self._wake()
 
-    def _hear(self, heard: Heard) -> None:
+    def _hear(self, heard: ReceivedMessage) -> None:
         self._heard.append(heard)
         self._wake()
 

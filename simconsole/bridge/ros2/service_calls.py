@@ -9,10 +9,10 @@ import logging
 from collections.abc import Callable
 from typing import Any, Final
 
-from simconsole.bridge.console.relay import ABORTED, CANCELED, SUCCEEDED, Order
+from simconsole.bridge.console.relay import ABORTED, CANCELED, SUCCEEDED, GraphOperation
 from simconsole.bridge.ros2.message_types import load
 
-MAX_LOOKS: Final = 300
+MAX_POLLS: Final = 300
 """How often a service or action that is known but not found is looked for."""
 
 _logger: Final = logging.getLogger("simconsole.bridge.ros2.node")
@@ -35,27 +35,27 @@ class GraphCalls:
         """The graph's goals by key: handle and types."""
         self._pursued: dict[str, Any] = {}
         """Handles of the clients' goals by key; until the graph has accepted one None, or a word if it is unwanted."""
-        self._unready: list[tuple[Order, int]] = []
-        """What is for a service or action not yet found by our end of it, and how many looks are left."""
+        self._unready: list[tuple[GraphOperation, int]] = []
+        """What is for a service or action not yet found by our end of it, and how many polls are left."""
 
-    def do(self, order: Order) -> None:
+    def execute(self, operation: GraphOperation) -> None:
         """Do one thing that the relay ordered."""
-        match order.does:
+        match operation.kind:
             case "call" | "goal":
-                self._ask_graph(order, MAX_LOOKS)
+                self._ask_graph(operation, MAX_POLLS)
             case "cancel":
-                self._cancel(order)
+                self._cancel(operation)
             case "reply" | "end":
-                self._finish(order)
+                self._finish(operation)
             case "feedback":
-                self._tell(order)
+                self._tell(operation)
 
-    def look(self) -> None:
+    def poll(self) -> None:
         """Ask again for what was not yet there: a request sent before both ends know each other is lost."""
         waiting, self._unready = self._unready, []
-        for order, looks in waiting:
-            if looks:
-                self._ask_graph(order, looks - 1)
+        for operation, polls in waiting:
+            if polls:
+                self._ask_graph(operation, polls - 1)
 
     def make_service(self, name: str, kind: str) -> Any:
         """Return a service of the graph that a client of the bridge answers."""
@@ -66,12 +66,12 @@ class GraphCalls:
         async def serve(request: Any, response: Any) -> Any:
             """Have the bridge answer a request of the graph; what fails is the empty answer."""
             _, answer = self._ask("ask", name, serialize_message(request))
-            order = await answer
-            if order.data is None:
+            operation = await answer
+            if operation.data is None:
                 # ROS 2 has no word for a failed call: the response stays what it is by default.
-                _logger.warning("%s: %s", name, order.text)
+                _logger.warning("%s: %s", name, operation.text)
                 return response
-            return deserialize_message(order.data, types.Response)
+            return deserialize_message(operation.data, types.Response)
 
         return self._node.create_service(types, name, serve, callback_group=self._group)
 
@@ -86,16 +86,16 @@ class GraphCalls:
             """Have the bridge pursue a goal of the graph, to its end."""
             key, end = self._ask("pursue", name, serialize_message(goal.request))
             self._served[key] = (goal, types)
-            order = await end
+            operation = await end
             del self._served[key]
-            if order.status == SUCCEEDED:
+            if operation.status == SUCCEEDED:
                 goal.succeed()
-            elif order.status == CANCELED and goal.is_cancel_requested:
+            elif operation.status == CANCELED and goal.is_cancel_requested:
                 goal.canceled()
             else:
-                _logger.warning("%s: %s", name, order.text or "aborted")
+                _logger.warning("%s: %s", name, operation.text or "aborted")
                 goal.abort()
-            return types.Result() if order.data is None else deserialize_message(order.data, types.Result)
+            return types.Result() if operation.data is None else deserialize_message(operation.data, types.Result)
 
         def cancel(goal: Any) -> Any:
             """Hand the wish to end a goal on to whoever pursues it."""
@@ -119,60 +119,60 @@ class GraphCalls:
         self._put(event, key, name, data)
         return key, future
 
-    def _finish(self, order: Order) -> None:
-        future = self._waiting.pop(order.key, None)
+    def _finish(self, operation: GraphOperation) -> None:
+        future = self._waiting.pop(operation.key, None)
         if future is not None:
-            future.set_result(order)
+            future.set_result(operation)
 
-    def _tell(self, order: Order) -> None:
+    def _tell(self, operation: GraphOperation) -> None:
         from rclpy.serialization import deserialize_message
 
-        if order.key in self._served and order.data is not None:
-            goal, types = self._served[order.key]
-            goal.publish_feedback(deserialize_message(order.data, types.Feedback))
+        if operation.key in self._served and operation.data is not None:
+            goal, types = self._served[operation.key]
+            goal.publish_feedback(deserialize_message(operation.data, types.Feedback))
 
-    def _ask_graph(self, order: Order, looks: int) -> None:
+    def _ask_graph(self, operation: GraphOperation, polls: int) -> None:
         from rclpy.action import ActionClient
         from rclpy.serialization import deserialize_message
 
-        is_call = order.does == "call"
-        if order.data is None:
+        is_call = operation.kind == "call"
+        if operation.data is None:
             if is_call:
-                self._put("answered", order.key, order.name, None, order.text)
+                self._put("answered", operation.key, operation.name, None, operation.text)
             else:
-                self._put("ended", order.key, order.name, None, ABORTED, order.text)
+                self._put("ended", operation.key, operation.name, None, ABORTED, operation.text)
             return
-        types = load(order.type)
-        client = self._clients.get(order.name)
+        types = load(operation.type)
+        client = self._clients.get(operation.name)
         if client is None and is_call:
-            client = self._node.create_client(types, order.name, callback_group=self._group)
+            client = self._node.create_client(types, operation.name, callback_group=self._group)
         elif client is None:
-            client = ActionClient(self._node, types, order.name, callback_group=self._group)
-        self._clients[order.name] = client
+            client = ActionClient(self._node, types, operation.name, callback_group=self._group)
+        self._clients[operation.name] = client
         if not is_call:
-            self._pursued.setdefault(order.key, None)
+            self._pursued.setdefault(operation.key, None)
         if not (client.service_is_ready() if is_call else client.server_is_ready()):
-            self._unready.append((order, looks))
+            self._unready.append((operation, polls))
         elif is_call:
-            self._call(order, client, deserialize_message(order.data, types.Request))
+            self._call(operation, client, deserialize_message(operation.data, types.Request))
         else:
-            self._pursue(order, client, deserialize_message(order.data, types.Goal))
+            self._pursue(operation, client, deserialize_message(operation.data, types.Goal))
 
-    def _call(self, order: Order, client: Any, request: Any) -> None:
+    def _call(self, operation: GraphOperation, client: Any, request: Any) -> None:
         from rclpy.serialization import serialize_message
 
         def done(future: Any) -> None:
             """Put the answer of the graph, or why there is none, into the bridge's inbox."""
             error = future.exception()
             data = None if error is not None else serialize_message(future.result())
-            self._put("answered", order.key, order.name, data, str(error))
+            self._put("answered", operation.key, operation.name, data, str(error))
 
         client.call_async(request).add_done_callback(done)
 
-    def _pursue(self, order: Order, client: Any, goal: Any) -> None:
+    def _pursue(self, operation: GraphOperation, client: Any, goal: Any) -> None:
         from rclpy.serialization import serialize_message
 
-        key, name = order.key, order.name
+        key, name = operation.key, operation.name
 
         def accepted(future: Any) -> None:
             handle = future.result()
@@ -196,11 +196,11 @@ class GraphCalls:
 
         client.send_goal_async(goal, feedback_callback=progressed).add_done_callback(accepted)
 
-    def _cancel(self, order: Order) -> None:
-        if order.key not in self._pursued:
+    def _cancel(self, operation: GraphOperation) -> None:
+        if operation.key not in self._pursued:
             return
-        goal = self._pursued[order.key]
+        goal = self._pursued[operation.key]
         if goal is None:
-            self._pursued[order.key] = "cancel"
+            self._pursued[operation.key] = "cancel"
         elif not isinstance(goal, str):
             goal.cancel_goal_async()

@@ -13,10 +13,10 @@ from typing import Any, Final, NamedTuple
 import orjson
 
 from simconsole.bridge.tools.bench_peers import Peer, connect
-from simconsole.bridge.tools.bench_servers import Served, serving
+from simconsole.bridge.tools.bench_servers import RunningServer, running_servers
 from simconsole.values.errors import BridgeError
 
-UNDER_WAY: Final = 20
+IN_FLIGHT: Final = 20
 RATE_HZ: Final = 100
 _SILENCE_S: Final = 0.3
 _PATIENCE_S: Final = 10.0
@@ -34,7 +34,7 @@ class Case(NamedTuple):
     subscribers: int
 
 
-class Figures(NamedTuple):
+class Measurement(NamedTuple):
     """Medians over the rounds.
 
     Messages a second to each subscriber, with how many under way; the server's processor time for one message to one
@@ -48,20 +48,20 @@ class Figures(NamedTuple):
     p99_ms: float
 
 
-def bench(rounds: int = 3, seconds: float = 1.0, url: str | None = None) -> dict[Case, Figures]:
+def bench(rounds: int = 3, seconds: float = 1.0, url: str | None = None) -> dict[Case, Measurement]:
     """Measure our server, the bare brokers and, if `url` is given, that server.
 
     Raises:
         BridgeError: a server cannot be reached, or loses messages.
     """
-    with serving() as served:
+    with running_servers() as served:
         if url is not None:
-            served.append(Served("url", "", url, None))
+            served.append(RunningServer("url", "", url, None))
         return asyncio.run(_measure(served, rounds, seconds))
 
 
-async def _measure(served: Sequence[Served], rounds: int, seconds: float) -> dict[Case, Figures]:
-    found: dict[Case, list[Figures]] = {}
+async def _measure(served: Sequence[RunningServer], rounds: int, seconds: float) -> dict[Case, Measurement]:
+    found: dict[Case, list[Measurement]] = {}
     for _ in range(rounds):
         for message, subscribers in _CASES:
             for one in served:
@@ -73,17 +73,17 @@ async def _measure(served: Sequence[Served], rounds: int, seconds: float) -> dic
     return {case: _medians(several) for case, several in found.items()}
 
 
-def _medians(several: Sequence[Figures]) -> Figures:
+def _medians(several: Sequence[Measurement]) -> Measurement:
     columns = zip(*several, strict=True)
-    return Figures(*(None if None in column else median(column) for column in columns))  # type: ignore[arg-type]  # None in one column only
+    return Measurement(*(None if None in column else median(column) for column in columns))  # type: ignore[arg-type]  # None in one column only
 
 
-async def _once(served: Served, message: str, subscribers: int, seconds: float) -> Figures:
+async def _once(served: RunningServer, message: str, subscribers: int, seconds: float) -> Measurement:
     topic = f"/bench/t{time.monotonic_ns()}"
-    hearing = _Hearing(subscribers)
+    deliveries = _Deliveries(subscribers)
     peers = [await connect(served.url, lambda: None)]
     try:
-        peers += [await connect(served.url, hearing.listener(number)) for number in range(subscribers)]
+        peers += [await connect(served.url, deliveries.listener(number)) for number in range(subscribers)]
         publisher, *listeners = peers
         kind = _TYPES[message]
         publisher.send(orjson.dumps({"op": "advertise", "topic": topic, "type": kind}))
@@ -91,18 +91,18 @@ async def _once(served: Served, message: str, subscribers: int, seconds: float) 
         for listener in listeners:
             listener.send(orjson.dumps(wish))
         text = _text(topic, message)
-        await _warm_up(publisher, hearing, text)
-        under_way = await _window(publisher, hearing, text)
+        await _warm_up(publisher, deliveries, text)
+        under_way = await _window(publisher, deliveries, text)
         before_s = served.cpu_s()
-        rate_hz, count = await _closed_loop(publisher, hearing, text, under_way, seconds)
+        rate_hz, count = await _closed_loop(publisher, deliveries, text, under_way, seconds)
         after_s = served.cpu_s()
-        latencies_ms = sorted(await _paced(publisher, hearing, text, seconds))
+        latencies_ms = sorted(await _paced(publisher, deliveries, text, seconds))
     finally:
         for peer in peers:
             await peer.close()
     cpu_us = None if before_s is None or after_s is None else 1e6 * (after_s - before_s) / (count * subscribers)
     p99_ms = latencies_ms[int(0.99 * (len(latencies_ms) - 1))]
-    return Figures(rate_hz, under_way, cpu_us, median(latencies_ms), p99_ms)
+    return Measurement(rate_hz, under_way, cpu_us, median(latencies_ms), p99_ms)
 
 
 def _text(topic: str, message: str) -> bytes:
@@ -115,8 +115,8 @@ def _text(topic: str, message: str) -> bytes:
     return orjson.dumps({"op": "publish", "topic": topic, "msg": content})
 
 
-class _Hearing:
-    """What each listener has heard, in messages; a round is a message that all have heard."""
+class _Deliveries:
+    """Messages delivered to each subscriber; a round is a message that all have received."""
 
     def __init__(self, listeners: int) -> None:
         self.heard = [0] * listeners
@@ -170,38 +170,38 @@ class _Hearing:
         self.on_round()
 
 
-async def _warm_up(publisher: Peer, hearing: _Hearing, text: bytes) -> None:
+async def _warm_up(publisher: Peer, deliveries: _Deliveries, text: bytes) -> None:
     """Return when every subscription stands: each listener has heard, and nothing more is under way."""
     for _ in range(_TRIES):
         publisher.send(text)
         deadline_s = time.monotonic() + 0.5
-        while time.monotonic() < deadline_s and not all(hearing.heard):
+        while time.monotonic() < deadline_s and not all(deliveries.heard):
             await asyncio.sleep(0.005)
-        if all(hearing.heard):
-            await hearing.fall_silent()
+        if all(deliveries.heard):
+            await deliveries.fall_silent()
             return
     raise TimeoutError
 
 
-async def _window(publisher: Peer, hearing: _Hearing, text: bytes) -> int:
-    """Return how many messages may be under way: UNDER_WAY, or half of what a server with shorter queues keeps of them.
+async def _window(publisher: Peer, deliveries: _Deliveries, text: bytes) -> int:
+    """Return how many messages may be under way: IN_FLIGHT, or half of what a server with shorter queues keeps of them.
 
     A ROS 2 graph behind the server keeps the last 10 by default. With more under way the loop would wait for lost ones;
     a burst fares a little better than the queue is long, hence half.
     """
-    hearing.forget()
-    for _ in range(UNDER_WAY):
+    deliveries.forget()
+    for _ in range(IN_FLIGHT):
         publisher.send(text)
-    await hearing.fall_silent()
-    kept = min(hearing.heard)
-    return UNDER_WAY if kept == UNDER_WAY else max(1, kept // 2)
+    await deliveries.fall_silent()
+    kept = min(deliveries.heard)
+    return IN_FLIGHT if kept == IN_FLIGHT else max(1, kept // 2)
 
 
 async def _closed_loop(
-    publisher: Peer, hearing: _Hearing, text: bytes, under_way: int, seconds: float
+    publisher: Peer, deliveries: _Deliveries, text: bytes, under_way: int, seconds: float
 ) -> tuple[float, int]:
     """Send one for each that everybody has heard; return the rate in Hz, and how many there were altogether."""
-    hearing.forget()
+    deliveries.forget()
     count, ended_s = under_way, 0.0
     began_s = time.monotonic()
     until_s = began_s + seconds
@@ -215,30 +215,30 @@ async def _closed_loop(
         elif not ended_s:
             ended_s = now_s
 
-    hearing.on_round = again
+    deliveries.on_round = again
     for _ in range(under_way):
         publisher.send(text)
     await asyncio.sleep(seconds)
-    await hearing.rounds_are(count)
-    hearing.on_round = lambda: None
+    await deliveries.rounds_are(count)
+    deliveries.on_round = lambda: None
     return (count - under_way + 1) / (ended_s - began_s), count
 
 
-async def _paced(publisher: Peer, hearing: _Hearing, text: bytes, seconds: float) -> list[float]:
+async def _paced(publisher: Peer, deliveries: _Deliveries, text: bytes, seconds: float) -> list[float]:
     """Return, for each of the messages sent at RATE_HZ, how long it took to everybody, in ms."""
     latencies_ms: list[float] = []
     next_s, sent_s = time.monotonic(), 0.0
-    hearing.forget()
+    deliveries.forget()
 
     def note() -> None:
         latencies_ms.append(1000.0 * (time.monotonic() - sent_s))
 
-    hearing.on_round = note
+    deliveries.on_round = note
     for number in range(1, max(1, int(seconds * RATE_HZ)) + 1):
         await asyncio.sleep(max(0.0, next_s - time.monotonic()))
         next_s += 1.0 / RATE_HZ
         sent_s = time.monotonic()
         publisher.send(text)
-        await hearing.rounds_are(number)
-    hearing.on_round = lambda: None
+        await deliveries.rounds_are(number)
+    deliveries.on_round = lambda: None
     return latencies_ms

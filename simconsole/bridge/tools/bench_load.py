@@ -26,7 +26,7 @@ _STATM_PAGE: Final = 4096
 _CONTROL: Final = "/control/command/control_cmd"
 
 
-class Load(NamedTuple):
+class LoadResult(NamedTuple):
     """Lost by a healthy subscriber beside a stalled one, the server's growth; the applied command's age in a flood."""
 
     lost: int
@@ -37,7 +37,7 @@ class Load(NamedTuple):
     age_max_ms: float
 
 
-def load(seconds: float = 3.0) -> Load:
+def load(seconds: float = 3.0) -> LoadResult:
     """Measure both; the flood lasts `seconds`.
 
     Raises:
@@ -62,7 +62,7 @@ def load(seconds: float = 3.0) -> Load:
     if not ages_ms:
         raise BridgeError("no command of the flood was applied")
     middle, high = ages_ms[len(ages_ms) // 2], ages_ms[int(0.99 * (len(ages_ms) - 1))]
-    return Load(lost, growth_mb, sent_hz, middle, high, ages_ms[-1])
+    return LoadResult(lost, growth_mb, sent_hz, middle, high, ages_ms[-1])
 
 
 async def _stall(url: str, server: int) -> tuple[int, float]:

@@ -24,7 +24,7 @@ class Peer(Protocol):
         """Send a text message at once."""
 
     async def close(self) -> None:
-        """Say good-bye and wait for it."""
+        """Close the connection and wait for the answer."""
 
 
 OnMessage = Callable[[], None]

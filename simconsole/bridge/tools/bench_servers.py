@@ -26,7 +26,7 @@ _USER_AT: Final = 11
 """Index of utime, then stime, in /proc/PID/stat behind the name's bracket."""
 
 
-class Served(NamedTuple):
+class RunningServer(NamedTuple):
     """A server that runs."""
 
     server: str
@@ -45,7 +45,7 @@ class Served(NamedTuple):
 
 
 @contextmanager
-def serving() -> Iterator[list[Served]]:
+def running_servers() -> Iterator[list[RunningServer]]:
     """Run every server until the block's end.
 
     Raises:
@@ -59,7 +59,7 @@ def serving() -> Iterator[list[Served]]:
         programs += [("bare", "picows", _serve_bare_picows), ("simconsole", "picows", _serve_ours_picows)]
     context = multiprocessing.get_context("spawn")
     started: list[tuple[Any, Connection]] = []
-    served: list[Served] = []
+    served: list[RunningServer] = []
     try:
         for name, library, program in programs:
             ours, theirs = context.Pipe()
@@ -68,7 +68,7 @@ def serving() -> Iterator[list[Served]]:
             started.append((process, ours))
             if not ours.poll(_START_S):
                 raise BridgeError(f"the {name} server on {library} did not start")
-            served.append(Served(name, library, f"ws://127.0.0.1:{ours.recv()}", process.pid))
+            served.append(RunningServer(name, library, f"ws://127.0.0.1:{ours.recv()}", process.pid))
         yield served
     finally:
         for process, ours in started:

@@ -1,6 +1,6 @@
-"""`simconsole bridge check`: how a rosbridge server behaves where implementations differ, row by row.
+"""`simconsole bridge check`: how a rosbridge server behaves where implementations differ, check by check.
 
-Each row opens a connection of its own, on which it talks over a topic that nobody else uses.
+Each check opens a connection of its own and uses a topic that nobody else uses.
 """
 
 import itertools
@@ -23,8 +23,8 @@ _ODOMETRY: Final = "nav_msgs/msg/Odometry"
 _POINT: Final = "geometry_msgs/msg/PointStamped"
 
 
-class Row(NamedTuple):
-    """One behaviour: whether it is the protocol's, and what the server did if not."""
+class CheckResult(NamedTuple):
+    """The result of one check: whether the server follows the protocol, and what it did if not."""
 
     name: str
     passed: bool
@@ -32,10 +32,10 @@ class Row(NamedTuple):
 
 
 class DeviationError(Exception):
-    """A server that does not do what a row asks."""
+    """A server does not do what a check asks."""
 
 
-class _Talk:
+class _Connection:
     """One connection to the server."""
 
     def __init__(self, peer: ClientConnection) -> None:
@@ -63,7 +63,7 @@ class _Talk:
         return decoded if isinstance(decoded, dict) else {}
 
     def want(self, op: str) -> dict[str, Any]:
-        """Return the next message of an operation; others that come before it are passed over."""
+        """Return the next message of an operation; others that come before it are ignored."""
         deadline_s = time.monotonic() + _PATIENCE_S
         while (left_s := deadline_s - time.monotonic()) > 0.0:
             message = self.next(left_s)
@@ -93,45 +93,45 @@ def _expect(holds: bool, found: str) -> None:
         raise DeviationError(found)
 
 
-def _null_in(talk: _Talk) -> None:
-    data = talk.echo("std_msgs/msg/Float64", {"data": None})["data"]
+def _null_in(connection: _Connection) -> None:
+    data = connection.echo("std_msgs/msg/Float64", {"data": None})["data"]
     _expect(data is None, f"null came back as {data}")
 
 
-def _literal_in(talk: _Talk) -> None:
-    talk.pair("std_msgs/msg/Float64")
-    talk.send_text(f'{{"op":"publish","topic":"{talk.topic}","msg":{{"data":NaN}}}}')
-    data = talk.want("publish")["msg"]["data"]
+def _literal_in(connection: _Connection) -> None:
+    connection.pair("std_msgs/msg/Float64")
+    connection.send_text(f'{{"op":"publish","topic":"{connection.topic}","msg":{{"data":NaN}}}}')
+    data = connection.want("publish")["msg"]["data"]
     _expect(data is None, f"NaN came back as {data}")
 
 
-def _not_a_number_in_array(talk: _Talk) -> None:
+def _not_a_number_in_array(connection: _Connection) -> None:
     covariance = [None] + [0.0] * 35
-    pose = talk.echo(_ODOMETRY, {"pose": {"covariance": covariance}})["pose"]
+    pose = connection.echo(_ODOMETRY, {"pose": {"covariance": covariance}})["pose"]
     _expect(pose["covariance"][0] is None, f"came back as {pose['covariance'][0]}")
 
 
-def _integer_for_float(talk: _Talk) -> None:
-    data = talk.echo("std_msgs/msg/Float64", {"data": 3})["data"]
+def _integer_for_float(connection: _Connection) -> None:
+    data = connection.echo("std_msgs/msg/Float64", {"data": 3})["data"]
     _expect(data == 3.0, f"3 came back as {data}")
 
 
-def _octets(talk: _Talk) -> None:
-    data = talk.echo("std_msgs/msg/UInt8MultiArray", {"data": [1, 2, 255]})["data"]
+def _octets(connection: _Connection) -> None:
+    data = connection.echo("std_msgs/msg/UInt8MultiArray", {"data": [1, 2, 255]})["data"]
     _expect(data == "AQL/", f"[1, 2, 255] came back as {data}")
 
 
-def _out_of_range(talk: _Talk) -> None:
-    talk.pair("std_msgs/msg/UInt8")
-    talk.send(op="publish", topic=talk.topic, msg={"data": 999}, id="range")
-    status = talk.want("status")
+def _out_of_range(connection: _Connection) -> None:
+    connection.pair("std_msgs/msg/UInt8")
+    connection.send(op="publish", topic=connection.topic, msg={"data": 999}, id="range")
+    status = connection.want("status")
     _expect(status.get("id") == "range", "status without the id")
     _expect("data" in str(status.get("msg")), "status without the field")
 
 
-def _both_stamps(talk: _Talk) -> None:
+def _both_stamps(connection: _Connection) -> None:
     for stamp in ({"sec": 5, "nanosec": 6}, {"secs": 5, "nsecs": 6}):
-        header = talk.echo("geometry_msgs/msg/PointStamped", {"header": {"stamp": stamp}})["header"]
+        header = connection.echo("geometry_msgs/msg/PointStamped", {"header": {"stamp": stamp}})["header"]
         _expect(list(header["stamp"].values()) == [5, 6], f"{stamp} came back as {header['stamp']}")
 
 
@@ -139,136 +139,136 @@ def _is_stamped(content: dict[str, Any]) -> bool:
     return any(content["header"]["stamp"].values())
 
 
-def _now(talk: _Talk) -> None:
-    _expect(_is_stamped(talk.echo(_POINT, {"header": {"stamp": "now"}})), 'the stamp "now" came back as 0')
+def _now(connection: _Connection) -> None:
+    _expect(_is_stamped(connection.echo(_POINT, {"header": {"stamp": "now"}})), 'the stamp "now" came back as 0')
 
 
-def _header_without_stamp(talk: _Talk) -> None:
-    _expect(_is_stamped(talk.echo(_POINT, {"header": {"frame_id": "a"}})), "the stamp is 0")
+def _header_without_stamp(connection: _Connection) -> None:
+    _expect(_is_stamped(connection.echo(_POINT, {"header": {"frame_id": "a"}})), "the stamp is 0")
 
 
-def _no_header(talk: _Talk) -> None:
-    _expect(_is_stamped(talk.echo(_POINT, {"point": {"x": 1.0}})), "the stamp is 0")
+def _no_header(connection: _Connection) -> None:
+    _expect(_is_stamped(connection.echo(_POINT, {"point": {"x": 1.0}})), "the stamp is 0")
 
 
-def _sequence(talk: _Talk) -> None:
-    frame = talk.echo(_POINT, {"header": {"seq": 7, "frame_id": "a"}})["header"]["frame_id"]
+def _sequence(connection: _Connection) -> None:
+    frame = connection.echo(_POINT, {"header": {"seq": 7, "frame_id": "a"}})["header"]["frame_id"]
     _expect(frame == "a", f"frame_id a came back as {frame}")
 
 
-def _octets_in_base64(talk: _Talk) -> None:
-    data = talk.echo("std_msgs/msg/UInt8MultiArray", {"data": "AQL/"})["data"]
+def _octets_in_base64(connection: _Connection) -> None:
+    data = connection.echo("std_msgs/msg/UInt8MultiArray", {"data": "AQL/"})["data"]
     _expect(data == "AQL/", f"AQL/ came back as {data}")
 
 
-def _long_integer(talk: _Talk) -> None:
-    data = talk.echo("std_msgs/msg/Int64", {"data": 2**53 + 1})["data"]
+def _long_integer(connection: _Connection) -> None:
+    data = connection.echo("std_msgs/msg/Int64", {"data": 2**53 + 1})["data"]
     _expect(data == 2**53 + 1, f"2^53 + 1 came back as {data!r}")
 
 
-def _slashes(talk: _Talk) -> None:
-    data = talk.echo("std_msgs/msg/String", {"data": "a/b\\c"})["data"]
+def _slashes(connection: _Connection) -> None:
+    data = connection.echo("std_msgs/msg/String", {"data": "a/b\\c"})["data"]
     _expect(data == "a/b\\c", f"a/b\\c came back as {data!r}")
 
 
-def _missing_fields(talk: _Talk) -> None:
-    point = talk.echo("geometry_msgs/msg/Point", {"x": 1.0})
+def _missing_fields(connection: _Connection) -> None:
+    point = connection.echo("geometry_msgs/msg/Point", {"x": 1.0})
     _expect(point == {"x": 1.0, "y": 0.0, "z": 0.0}, f"came back as {point}")
 
 
-def _unknown_field(talk: _Talk) -> None:
-    talk.pair("geometry_msgs/msg/Point")
-    talk.send(op="publish", topic=talk.topic, msg={"x": 1.0, "w": 2.0}, id="field")
-    status = talk.want("status")
+def _unknown_field(connection: _Connection) -> None:
+    connection.pair("geometry_msgs/msg/Point")
+    connection.send(op="publish", topic=connection.topic, msg={"x": 1.0, "w": 2.0}, id="field")
+    status = connection.want("status")
     _expect(status.get("id") == "field" and "w" in str(status.get("msg")), f"status {status}"[:200])
 
 
-def _other_type(talk: _Talk) -> None:
-    talk.pair("std_msgs/msg/String")
-    talk.send(op="advertise", topic=talk.topic, type="std_msgs/msg/Bool", id="type")
-    _expect(talk.want("status").get("id") == "type", "status without the id")
+def _other_type(connection: _Connection) -> None:
+    connection.pair("std_msgs/msg/String")
+    connection.send(op="advertise", topic=connection.topic, type="std_msgs/msg/Bool", id="type")
+    _expect(connection.want("status").get("id") == "type", "status without the id")
 
 
-def _fragments_in(talk: _Talk) -> None:
-    talk.pair("std_msgs/msg/String")
-    text = json.dumps({"op": "publish", "topic": talk.topic, "msg": {"data": "in pieces"}})
+def _fragments_in(connection: _Connection) -> None:
+    connection.pair("std_msgs/msg/String")
+    text = json.dumps({"op": "publish", "topic": connection.topic, "msg": {"data": "in pieces"}})
     half = len(text) // 2
     # The total as rosbridge_suite itself writes it, and the second piece first.
     for number, piece in ((1, text[half:]), (0, text[:half])):
-        talk.send(op="fragment", id="f", num=number, total=1.7, data=piece)
-    data = talk.want("publish")["msg"]["data"]
+        connection.send(op="fragment", id="f", num=number, total=1.7, data=piece)
+    data = connection.want("publish")["msg"]["data"]
     _expect(data == "in pieces", f"came as {data}")
 
 
-def _latch(talk: _Talk) -> None:
-    talk.send(op="advertise", topic=talk.topic, type="std_msgs/msg/String", latch=True)
-    talk.send(op="publish", topic=talk.topic, msg={"data": "kept"}, latch=True)
-    talk.send(op="subscribe", topic=talk.topic, type="std_msgs/msg/String")
-    _expect(talk.want("publish")["msg"]["data"] == "kept", "another message came")
+def _latch(connection: _Connection) -> None:
+    connection.send(op="advertise", topic=connection.topic, type="std_msgs/msg/String", latch=True)
+    connection.send(op="publish", topic=connection.topic, msg={"data": "kept"}, latch=True)
+    connection.send(op="subscribe", topic=connection.topic, type="std_msgs/msg/String")
+    _expect(connection.want("publish")["msg"]["data"] == "kept", "another message came")
 
 
-def _both_names(talk: _Talk) -> None:
+def _both_names(connection: _Connection) -> None:
     for kind in ("std_msgs/String", "std_msgs/msg/String"):
-        _expect(talk.echo(kind, {"data": kind})["data"] == kind, f"{kind} did not work")
+        _expect(connection.echo(kind, {"data": kind})["data"] == kind, f"{kind} did not work")
 
 
-def _survives_garbage(talk: _Talk) -> None:
-    talk.send_text('{"op": "publish", "topic": ')
-    data = talk.echo("std_msgs/msg/String", {"data": "after"})["data"]
+def _survives_garbage(connection: _Connection) -> None:
+    connection.send_text('{"op": "publish", "topic": ')
+    data = connection.echo("std_msgs/msg/String", {"data": "after"})["data"]
     _expect(data == "after", f"came back as {data}")
 
 
-def _garbage_has_status(talk: _Talk) -> None:
-    talk.send_text('{"op": "publish", "topic": ')
-    talk.want("status")
+def _garbage_has_status(connection: _Connection) -> None:
+    connection.send_text('{"op": "publish", "topic": ')
+    connection.want("status")
 
 
-def _unknown_has_status(talk: _Talk) -> None:
-    talk.send(op="no_such_operation", id="unknown")
-    _expect(talk.want("status").get("id") == "unknown", "status without the id")
+def _unknown_has_status(connection: _Connection) -> None:
+    connection.send(op="no_such_operation", id="unknown")
+    _expect(connection.want("status").get("id") == "unknown", "status without the id")
 
 
-def _set_level(talk: _Talk) -> None:
-    talk.send(op="set_level", level="none")
-    talk.send(op="no_such_operation")
-    _expect(talk.next(_QUIET_S) is None, "a status came in spite of level none")
+def _set_level(connection: _Connection) -> None:
+    connection.send(op="set_level", level="none")
+    connection.send(op="no_such_operation")
+    _expect(connection.next(_QUIET_S) is None, "a status came in spite of level none")
 
 
-def _fragments(talk: _Talk) -> None:
-    talk.pair("std_msgs/msg/String", fragment_size=100)
+def _fragments(connection: _Connection) -> None:
+    connection.pair("std_msgs/msg/String", fragment_size=100)
     identifiers = set()
     for _ in range(2):
-        talk.send(op="publish", topic=talk.topic, msg={"data": "x" * 400})
-        pieces = [talk.want("fragment")]
+        connection.send(op="publish", topic=connection.topic, msg={"data": "x" * 400})
+        pieces = [connection.want("fragment")]
         _expect(isinstance(pieces[0]["total"], int), f"total is {pieces[0]['total']}")
-        pieces += [talk.want("fragment") for _ in range(pieces[0]["total"] - 1)]
+        pieces += [connection.want("fragment") for _ in range(pieces[0]["total"] - 1)]
         whole = json.loads("".join(piece["data"] for piece in sorted(pieces, key=lambda piece: int(piece["num"]))))
         _expect(whole["msg"]["data"] == "x" * 400, "the pieces do not make the message")
         identifiers |= {str(piece["id"]) for piece in pieces}
     _expect(len(identifiers) == 2, "two messages in pieces have one id")
 
 
-def _once(talk: _Talk) -> None:
-    talk.pair("std_msgs/msg/String", id="first")
-    talk.send(op="subscribe", topic=talk.topic, type="std_msgs/msg/String", id="second")
-    talk.send(op="publish", topic=talk.topic, msg={"data": "once"})
-    talk.want("publish")
-    _expect(talk.next(_QUIET_S) is None, "it came more than once")
+def _once(connection: _Connection) -> None:
+    connection.pair("std_msgs/msg/String", id="first")
+    connection.send(op="subscribe", topic=connection.topic, type="std_msgs/msg/String", id="second")
+    connection.send(op="publish", topic=connection.topic, msg={"data": "once"})
+    connection.want("publish")
+    _expect(connection.next(_QUIET_S) is None, "it came more than once")
 
 
-def _failed_call(talk: _Talk) -> None:
-    talk.send(op="call_service", service=f"{talk.topic}_nothing", id="call")
-    answer = talk.want("service_response")
+def _failed_call(connection: _Connection) -> None:
+    connection.send(op="call_service", service=f"{connection.topic}_nothing", id="call")
+    answer = connection.want("service_response")
     _expect(answer.get("id") == "call" and answer.get("result") is False, f"answered {answer}"[:200])
 
 
-def _cbor(talk: _Talk) -> None:
-    talk.pair("std_msgs/msg/String", compression="cbor")
-    talk.send(op="publish", topic=talk.topic, msg={"data": "x"})
-    _expect(b"publish" in talk.want("binary")["bytes"], "no publish in the binary message")
+def _cbor(connection: _Connection) -> None:
+    connection.pair("std_msgs/msg/String", compression="cbor")
+    connection.send(op="publish", topic=connection.topic, msg={"data": "x"})
+    _expect(b"publish" in connection.want("binary")["bytes"], "no publish in the binary message")
 
 
-ROWS: Final[dict[str, Callable[[_Talk], None]]] = {
+CHECKS: Final[dict[str, Callable[[_Connection], None]]] = {
     "NaN literal in is taken, out is null": _literal_in,
     "null in is NaN, out is null": _null_in,
     "NaN in an array goes out as null": _not_a_number_in_array,
@@ -300,16 +300,16 @@ ROWS: Final[dict[str, Callable[[_Talk], None]]] = {
 }
 
 
-def check(url: str, token: str | None = None) -> list[Row]:
-    """Try every row on the server at `url`.
+def check(url: str, token: str | None = None) -> list[CheckResult]:
+    """Run every check on the server at `url`.
 
     Raises:
         BridgeError: nobody answers there.
     """
-    return [_try(url, token, name, probe) for name, probe in ROWS.items()]
+    return [_try(url, token, name, probe) for name, probe in CHECKS.items()]
 
 
-def _try(url: str, token: str | None, name: str, probe: Callable[[_Talk], None]) -> Row:
+def _try(url: str, token: str | None, name: str, probe: Callable[[_Connection], None]) -> CheckResult:
     headers = None if token is None else {"Authorization": f"Bearer {token}"}
     try:
         with connect(url, open_timeout=_OPEN_S, close_timeout=1.0, additional_headers=headers) as peer:
@@ -318,13 +318,13 @@ def _try(url: str, token: str | None, name: str, probe: Callable[[_Talk], None])
         raise BridgeError(f"{url}: {error}") from None
 
 
-def _probe(peer: ClientConnection, name: str, probe: Callable[[_Talk], None]) -> Row:
+def _probe(peer: ClientConnection, name: str, probe: Callable[[_Connection], None]) -> CheckResult:
     try:
-        probe(_Talk(peer))
+        probe(_Connection(peer))
     except DeviationError as deviation:
-        return Row(name, False, str(deviation))
+        return CheckResult(name, False, str(deviation))
     except WebSocketException as error:
-        return Row(name, False, f"connection lost: {error}")
+        return CheckResult(name, False, f"connection lost: {error}")
     except (KeyError, IndexError, TypeError, AttributeError, ValueError) as error:
-        return Row(name, False, f"answered in another form: {error!r}")
-    return Row(name, True, "")
+        return CheckResult(name, False, f"answered in another form: {error!r}")
+    return CheckResult(name, True, "")

@@ -1,16 +1,16 @@
-"""What the bridge in an event loop and a client's connection ask of each other, whatever library carries it."""
+"""The interface between the bridge in an event loop and the WebSocket library that carries its clients."""
 
 import importlib.util
 from collections.abc import Awaitable, Callable, Sequence
 from typing import Protocol
 
-from simconsole.bridge.protocol.handshake import Admission, Opening, Refusal
+from simconsole.bridge.protocol.handshake import Admission, HandshakeRequest, Refusal
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import ProfileError
 
 
-class Transport(Protocol):
-    """A client's connection: whole messages out, an end without a word, and an eye on it."""
+class Connection(Protocol):
+    """One client's WebSocket connection."""
 
     @property
     def is_open(self) -> bool:
@@ -20,55 +20,55 @@ class Transport(Protocol):
     def takes_more(self) -> bool:
         """Whether messages may be given; false while the system takes nothing, so that what waits here is bounded."""
 
-    def put(self, messages: Sequence[bytes]) -> None:
-        """Send messages in order, text or `documents.Binary`."""
+    def write(self, messages: Sequence[bytes]) -> None:
+        """Send messages in order, text or `message_decoding.Binary`."""
 
     def abort(self) -> None:
         """End the connection at once, without waiting for the other side."""
 
-    def look(self, now_ns: int) -> str | None:
-        """Ask a quiet client for a sign of life; return why the connection has to be cut, None while it has not."""
+    def check(self, now_ns: int) -> str | None:
+        """Ping a quiet client; return why the connection has to be aborted, None while it has not."""
 
 
-class Client(Protocol):
-    """Who is told what happens on a connection, in the loop's thread."""
+class ConnectionHandler(Protocol):
+    """Receives what happens on a connection, in the loop's thread."""
 
     def receive(self, message: bytes) -> None:
-        """Take a whole message, `documents.Binary` if it was no text."""
+        """Take a whole message, `message_decoding.Binary` if it was not text."""
 
     def resume(self) -> None:
-        """Give messages again: the system takes more."""
+        """Continue sending: the socket takes more."""
 
-    def gone(self) -> None:
-        """Forget the connection, however it ended; called once."""
-
-
-class House(Protocol):
-    """Who lets clients in."""
-
-    def admit(self, opening: Opening) -> Admission | Refusal:
-        """Decide on a first request."""
-
-    def welcome(self, transport: Transport, peer: str, admission: Admission) -> Client:
-        """Take in a client whose handshake is done; `peer` names it in the log."""
+    def closed(self) -> None:
+        """Note the end of the connection, however it ended; called once."""
 
 
-class Door(Protocol):
-    """A server that listens."""
+class Acceptor(Protocol):
+    """Accepts clients."""
+
+    def admit(self, opening: HandshakeRequest) -> Admission | Refusal:
+        """Decide on a client's opening handshake."""
+
+    def accept(self, transport: Connection, peer: str, admission: Admission) -> ConnectionHandler:
+        """Add a client whose handshake is done; `peer` names it in the log."""
+
+
+class Listener(Protocol):
+    """A listening WebSocket server."""
 
     def close(self) -> None:
-        """Let nobody in any more and say good-bye to who is there."""
+        """Stop accepting; close clients."""
 
     def wait_closed(self) -> Awaitable[object]:
-        """Return when everybody has gone."""
+        """Return when all connections have ended."""
 
 
-OpenDoor = Callable[..., Awaitable[Door]]
-"""Takes a `House`, the listening socket, the profile, TLS and the clock in ns."""
+StartListener = Callable[..., Awaitable[Listener]]
+"""Takes an `Acceptor`, the listening socket, the profile, TLS and the clock in ns."""
 
 
-def load_transport(profile: BridgeProfile) -> OpenDoor:
-    """Return how clients come in with the library that the profile names.
+def load_transport(profile: BridgeProfile) -> StartListener:
+    """Return how to start a listener of the library that the profile names.
 
     Raises:
         ProfileError: that library is not installed.
@@ -76,9 +76,9 @@ def load_transport(profile: BridgeProfile) -> OpenDoor:
     if profile.transport == "websockets":
         from simconsole.bridge.transport import websockets_transport
 
-        return websockets_transport.open_door
+        return websockets_transport.start_listener
     if importlib.util.find_spec("picows") is None:
         raise ProfileError("outputs.bridge.transport: picows is not installed: pip install 'simconsole[picows]'")
     from simconsole.bridge.transport import picows_transport
 
-    return picows_transport.open_door
+    return picows_transport.start_listener

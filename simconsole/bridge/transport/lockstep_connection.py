@@ -13,11 +13,11 @@ from websockets.server import ServerProtocol
 
 from simconsole.bridge.protocol.access import Access
 from simconsole.bridge.protocol.backoff import Liveness
-from simconsole.bridge.protocol.client_session import Session
+from simconsole.bridge.protocol.client_session import ClientSession
 from simconsole.bridge.protocol.frames import CLOSE, MessageAssembler
 from simconsole.bridge.protocol.handshake import Admission, Refusal, admit
 from simconsole.bridge.protocol.message_decoding import Binary
-from simconsole.bridge.transport.sockets import CLOSE_S, RECEIVE_BYTES, is_unacknowledged, opening_of
+from simconsole.bridge.transport.sockets import CLOSE_S, RECEIVE_BYTES, handshake_request, is_unacknowledged
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import FrameError
 
@@ -28,8 +28,8 @@ _LATER: Final = (BlockingIOError, InterruptedError, ssl.SSLWantReadError, ssl.SS
 _logger = logging.getLogger("simconsole.bridge.transport.lockstep_server")
 
 
-class Owner(Protocol):
-    """Who is told what happens on a connection."""
+class ConnectionOwner(Protocol):
+    """Receives what happens on a connection."""
 
     @property
     def access(self) -> Access:
@@ -39,23 +39,25 @@ class Owner(Protocol):
     def drive(self) -> str | None:
         """The nonce of the drive whose bridge this is."""
 
-    def connected(self, peer: str, admission: Admission) -> Session:
-        """Take in a client whose handshake is done."""
+    def connected(self, peer: str, admission: Admission) -> ClientSession:
+        """Add a client whose handshake is done."""
 
-    def received(self, session: Session, text: bytes) -> None:
+    def received(self, session: ClientSession, text: bytes) -> None:
         """Apply a message of a client, `Binary` if it was not text."""
 
 
-class Connection:
+class LockstepConnection:
     """A client of the lockstep bridge, from its first byte to its last."""
 
-    def __init__(self, owner: Owner, sock: socket.socket, peer: str, profile: BridgeProfile, is_full: bool) -> None:
-        """Take over an accepted socket; `is_full` turns the client away politely."""
+    def __init__(
+        self, owner: ConnectionOwner, sock: socket.socket, peer: str, profile: BridgeProfile, is_full: bool
+    ) -> None:
+        """Take over an accepted socket; `is_full` answers the handshake with status 503."""
         sock.setblocking(False)
         sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.socket = sock
         self.peer = peer
-        self.session: Session | None = None
+        self.session: ClientSession | None = None
         self.closed = False
         self._owner = owner
         self._profile = profile
@@ -79,7 +81,7 @@ class Connection:
         return bool(self._unsent)
 
     def read(self) -> None:
-        """Read once and hand on what arrived: a session at the handshake, then texts."""
+        """Read once and process what arrived: the handshake, then messages."""
         try:
             data = self.socket.recv(RECEIVE_BYTES)
             while isinstance(self.socket, ssl.SSLSocket) and self.socket.pending():
@@ -96,7 +98,7 @@ class Connection:
             self._web.receive_eof()
         self._collect()
         if len(self._unsent) > UNSENT_BYTES + 2 * self._profile.limits.queued_bytes:
-            self.close()  # it sends pings without end and reads no answer
+            self.close()  # a client that sends pings without end and reads no answer
             return
         for event in self._web.events_received():
             if isinstance(event, Request):
@@ -107,7 +109,7 @@ class Connection:
             self.close()
 
     def flush(self, now_ns: int) -> None:
-        """Frame what waits in the session and send what the system takes."""
+        """Frame what waits in the session and send what the socket takes."""
         if self.closed:
             return
         session = self.session
@@ -124,8 +126,8 @@ class Connection:
         self._collect()
         self._send()
 
-    def look(self) -> None:
-        """Ask a quiet client for a sign of life; close one whose machine is gone."""
+    def check(self) -> None:
+        """Ping a quiet client; close one whose machine is gone."""
         now_s = time.monotonic()
         if self._web.close_sent is not None:
             self._closing_since_s = self._closing_since_s or now_s
@@ -136,8 +138,8 @@ class Connection:
         elif self.is_open and self._liveness.ping_due(now_s):
             self._web.send_ping(b"")
 
-    def say_good_bye(self) -> None:
-        """Begin to close in the WebSocket's own way; a connection that is none is closed at once."""
+    def start_closing(self) -> None:
+        """Start the closing handshake; a connection that is not open yet is closed at once."""
         if self.is_open:
             self._web.send_close(CloseCode.GOING_AWAY)
             self.flush(0)
@@ -150,7 +152,9 @@ class Connection:
         self.socket.close()
 
     def _answer(self, request: Request) -> None:
-        decision = admit(opening_of(request), self._profile, self._owner.access, self._is_full, self._owner.drive)
+        decision = admit(
+            handshake_request(request), self._profile, self._owner.access, self._is_full, self._owner.drive
+        )
         if isinstance(decision, Refusal):
             self._web.send_response(self._web.reject(decision.status, f"{decision.reason}\n"))
             return
@@ -158,7 +162,7 @@ class Connection:
         if self._web.state is State.OPEN:
             self.session = self._owner.connected(self.peer, decision)
 
-    def _take(self, frame: Frame, session: Session) -> None:
+    def _take(self, frame: Frame, session: ClientSession) -> None:
         try:
             message = self._messages.add(frame.opcode, bytes(frame.data), frame.fin, time.monotonic_ns())
         except FrameError as error:
@@ -183,7 +187,7 @@ class Connection:
                 if not isinstance(self.socket, ssl.SSLSocket):  # half a TLS connection cannot be closed
                     self.socket.shutdown(socket.SHUT_WR)
             if self._web.close_rcvd is not None and not self._unsent:
-                self.close()  # both have said good-bye: the server ends the connection (RFC 6455, 7.1.1)
+                self.close()  # both have sent close frames: the server closes (RFC 6455, 7.1.1)
         except _LATER:
             return
         except OSError:

@@ -20,10 +20,10 @@ from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.topics import ODOMETRY
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.protocol.access import Access
-from simconsole.bridge.protocol.client_session import Session
+from simconsole.bridge.protocol.client_session import ClientSession
 from simconsole.bridge.protocol.handshake import Admission
 from simconsole.bridge.transport import sockets
-from simconsole.bridge.transport.lockstep_connection import Connection
+from simconsole.bridge.transport.lockstep_connection import LockstepConnection
 from simconsole.bridge.transport.message_files import load_registry
 from simconsole.bridge.transport.sockets import RECEIVE_BYTES, address_url, listen, load_access, load_tls, log_outcome
 from simconsole.bridge.transport.topic_recorder import open_recorder
@@ -36,9 +36,9 @@ if TYPE_CHECKING:
     from simconsole.bridge.ros2.node import Ros2Link
 
 _ANSWERS: Final = 4.0
-"""Commands a controller may send for each odometry, at least: it must never be too fast to be answered to."""
-_GOOD_BYE_S: Final = 0.5
-_LOOK_S: Final = 0.25
+"""Commands a controller may send for each odometry, at least: the rate limit must never refuse an answer."""
+_CLOSE_S: Final = 0.5
+_CHECK_S: Final = 0.25
 _logger = logging.getLogger("simconsole.bridge.transport.lockstep_server")
 
 
@@ -83,15 +83,15 @@ class LockstepBridge:
         self._lost_at: float | None = None
         """The command's sequence number when the commander vanished."""
         self._closing = False
-        self._next_look_s = 0.0
-        self._connections: dict[Connection, float] = {}
+        self._next_check_s = 0.0
+        self._connections: dict[LockstepConnection, float] = {}
         """Each with when it was accepted, in s."""
         self._listener = listen(profile.host, profile.port)
         self._selector = selectors.DefaultSelector()
         self._selector.register(self._listener, selectors.EVENT_READ, None)
         self._recorder = open_recorder(self.console, profile, folder)
         self._ros2: Ros2Link | None = None
-        self._bell: tuple[socket.socket, ...] = ()
+        self._wake_sockets: tuple[socket.socket, ...] = ()
         if profile.ros2 is not None:
             self._join_ros2()
 
@@ -128,7 +128,7 @@ class LockstepBridge:
         """Serve until a client has subscribed to odometry; False when none did in time (wall time)."""
         odometry = self.console.names[ODOMETRY]
         deadline = time.monotonic() + timeout_s
-        while not any(odometry in session.outlets for session in self.console.router.sessions):
+        while not any(odometry in session.queues for session in self.console.router.sessions):
             left_s = deadline - time.monotonic()
             if left_s <= 0.0:
                 return False
@@ -176,7 +176,7 @@ class LockstepBridge:
             left_s = deadline - time.monotonic()
             if left_s <= 0.0 or stop() or inputs.command.sequence == self._lost_at or not self.clients:
                 return False
-            self._serve(min(left_s, _LOOK_S))
+            self._serve(min(left_s, _CHECK_S))
 
     def counts(self) -> dict[str, int]:
         """Return how many messages went to and from all clients."""
@@ -187,16 +187,16 @@ class LockstepBridge:
         return self.console.inputs.take(tick)
 
     def close(self) -> None:
-        """Say good-bye to all clients, give them half a second to answer, stop listening; harmless when closed."""
+        """Close all clients, give them half a second to answer, stop listening; harmless when closed."""
         if self._listener.fileno() < 0:
             return
         self._closing = True
         if self._ros2 is not None:
             self._ros2.close()
             self._ros2 = None
-        deadline = time.monotonic() + _GOOD_BYE_S
+        deadline = time.monotonic() + _CLOSE_S
         for connection in list(self._connections):
-            connection.say_good_bye()
+            connection.start_closing()
             if connection.closed:
                 self._forget(connection)
         while self._connections and (left_s := deadline - time.monotonic()) > 0.0:
@@ -208,21 +208,21 @@ class LockstepBridge:
         self._listener.close()
         if self._recorder is not None:
             self._recorder.close()
-        for end in self._bell:
+        for end in self._wake_sockets:
             end.close()
 
     @property
     def access(self) -> Access:
-        """Who may do what (Connection's owner)."""
+        """Roles by token (`ConnectionOwner`)."""
         return self.console.router.access
 
-    def connected(self, peer: str, admission: Admission) -> Session:
-        """Take in a client (Connection's owner)."""
+    def connected(self, peer: str, admission: Admission) -> ClientSession:
+        """Add a client (`ConnectionOwner`)."""
         _logger.info("%s connected", peer)
         return self.console.router.connect(peer, dialect=admission.dialect, role=admission.role)
 
-    def received(self, session: Session, text: bytes) -> None:
-        """Apply a text of a client (Connection's owner)."""
+    def received(self, session: ClientSession, text: bytes) -> None:
+        """Apply a text of a client (`ConnectionOwner`)."""
         log_outcome(_logger, session, self.console.receive(session, text, self._now_ns))
 
     def _serve(self, timeout_s: float) -> None:
@@ -234,38 +234,38 @@ class LockstepBridge:
             if isinstance(key.data, socket.socket):
                 self._pump_ros2(key.data)
                 continue
-            connection: Connection = key.data
+            connection: LockstepConnection = key.data
             if mask & selectors.EVENT_READ:
                 connection.read()
             self._settle(connection)
         for connection in list(self._connections):
-            # What one client published may wait for another.
+            # A message that one client published may wait for another client.
             if connection.session is not None and connection.session.due_ns() is not None:
                 self._settle(connection)
 
     def _record(self) -> None:
         if self._recorder is not None:
-            self._recorder.look(self._now_ns)
+            self._recorder.update(self._now_ns)
 
     def _join_ros2(self) -> None:
         from simconsole.bridge.ros2.node import Ros2Link
 
-        # rclpy's thread rings, so that a wait for sockets ends for the graph too; one byte that waits is enough.
-        rung, ring = socket.socketpair()
-        rung.setblocking(False)
-        ring.setblocking(False)
+        # rclpy's thread writes a byte, so that a wait for sockets ends for the graph too; one unread byte is enough.
+        receiver, sender = socket.socketpair()
+        receiver.setblocking(False)
+        sender.setblocking(False)
 
         def wake() -> None:
             with suppress(OSError):
-                ring.send(b"!")
+                sender.send(b"!")
 
-        self._selector.register(rung, selectors.EVENT_READ, rung)
-        self._bell = (rung, ring)
+        self._selector.register(receiver, selectors.EVENT_READ, receiver)
+        self._wake_sockets = (receiver, sender)
         self._ros2 = Ros2Link(self.console, self._profile, wake)
 
-    def _pump_ros2(self, rung: socket.socket | None = None) -> None:
-        if rung is not None:
-            rung.recv(RECEIVE_BYTES)
+    def _pump_ros2(self, receiver: socket.socket | None = None) -> None:
+        if receiver is not None:
+            receiver.recv(RECEIVE_BYTES)
         if self._ros2 is not None:
             self._ros2.check()
             self._ros2.pump(self._now_ns)
@@ -274,7 +274,7 @@ class LockstepBridge:
         try:
             sock, address = self._listener.accept()
         except OSError:
-            return  # the client was gone before it was let in
+            return  # the client was gone before it was accepted
         if self._tls is not None:
             # Its handshake happens with the first bytes read; it must not make the tick loop wait.
             sock.setblocking(False)
@@ -282,7 +282,7 @@ class LockstepBridge:
         now_s = time.monotonic()
         self._sweep(now_s)
         is_full = len(self._connections) >= self._profile.limits.clients
-        connection = Connection(self, sock, f"{address[0]}:{address[1]}", self._profile, is_full)
+        connection = LockstepConnection(self, sock, f"{address[0]}:{address[1]}", self._profile, is_full)
         self._connections[connection] = now_s
         self._selector.register(sock, selectors.EVENT_READ, connection)
 
@@ -295,15 +295,15 @@ class LockstepBridge:
 
     def _flush(self) -> None:
         now_s = time.monotonic()
-        looking = now_s >= self._next_look_s
-        if looking:
-            self._next_look_s = now_s + _LOOK_S
+        checking = now_s >= self._next_check_s
+        if checking:
+            self._next_check_s = now_s + _CHECK_S
         for connection in list(self._connections):
-            if looking:
-                connection.look()
+            if checking:
+                connection.check()
             self._settle(connection)
 
-    def _forget(self, connection: Connection) -> None:
+    def _forget(self, connection: LockstepConnection) -> None:
         if self._connections.pop(connection, None) is None:
             return
         self._selector.unregister(connection.socket)
@@ -317,7 +317,7 @@ class LockstepBridge:
             else:
                 _logger.info("%s is gone", connection.peer)
 
-    def _settle(self, connection: Connection) -> None:
+    def _settle(self, connection: LockstepConnection) -> None:
         """Send what waits for a client and ask to be woken for writing only while the system takes no more."""
         connection.flush(self._now_ns)
         if connection.closed:

@@ -11,17 +11,17 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from simconsole.bridge.console.counters import standing
+from simconsole.bridge.console.counters import link_state
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.input_slots import OnCommand, OnEvents
 from simconsole.bridge.console.operator_acts import OnAct
 from simconsole.bridge.messages import Registry
-from simconsole.bridge.protocol.handshake import Admission, Opening, Refusal, admit
-from simconsole.bridge.transport.interface import Client, Door, Transport, load_transport
+from simconsole.bridge.protocol.handshake import Admission, HandshakeRequest, Refusal, admit
+from simconsole.bridge.transport.interface import Connection, ConnectionHandler, Listener, load_transport
 from simconsole.bridge.transport.message_files import load_registry
 from simconsole.bridge.transport.sockets import CLOSE_S, address_url, listen, load_access, load_tls, log_outcome
 from simconsole.bridge.transport.topic_recorder import TopicRecorder, open_recorder
-from simconsole.bridge.transport.upstream_client import Uplink
+from simconsole.bridge.transport.upstream_client import UpstreamClient
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.state_vector import Snapshot
 from simconsole.values.units import NS_PER_S
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 _WATCH_S: Final = 0.25
 _POLL_S: Final = 0.001
 _COUNT_S: Final = 1.0
-_STANDING_S: Final = 0.1
+_LINK_STATE_S: Final = 0.1
 _WRITE_BYTES: Final = 32_768
 _TOGETHER: Final = 3
 """Messages for each client there is that one may have waiting before they are sent: with few clients soon, so that the
@@ -43,14 +43,14 @@ _QUIET: Final = ("done", "command")
 _logger = logging.getLogger("simconsole.bridge.transport.server")
 
 
-class _Client:
-    """One client: what it says goes to the console, what waits for it goes out when its connection takes it.
+class _ClientHandler:
+    """One client: passes its messages to the console, and sends what waits for it while its connection takes more.
 
-    Nothing waits for a client that reads nothing: it keeps its bounded queues, and the loop serves the others.
+    A client that reads nothing holds up nobody: its queues are bounded, and the loop serves the others.
     """
 
-    def __init__(self, server: "BridgeServer", transport: Transport, peer: str, admission: Admission) -> None:
-        self.transport = transport
+    def __init__(self, server: "BridgeServer", connection: Connection, peer: str, admission: Admission) -> None:
+        self.connection = connection
         self.stalled_since_ns: int | None = None
         self._server = server
         self._console = server.console
@@ -58,7 +58,7 @@ class _Client:
         self._loop = asyncio.get_running_loop()
         self._is_woken = False
         self._queued = 0
-        self._alarm: asyncio.TimerHandle | None = None
+        self._timer: asyncio.TimerHandle | None = None
         self.session = self._console.router.connect(peer, self._wake, admission.dialect, admission.role)
 
     def receive(self, message: bytes) -> None:
@@ -68,18 +68,18 @@ class _Client:
             log_outcome(_logger, self.session, outcome)
 
     def resume(self) -> None:
-        """Go on sending."""
+        """Continue sending."""
         self.stalled_since_ns = None
         self._wake()
 
-    def gone(self) -> None:
-        """Leave the server."""
-        if self._alarm is not None:
-            self._alarm.cancel()
-        self._server.leave(self)
+    def closed(self) -> None:
+        """Remove the client from the server."""
+        if self._timer is not None:
+            self._timer.cancel()
+        self._server.remove(self)
 
     def _wake(self) -> None:
-        """Send in a moment what is queued until then, in one piece; of more than a few, the first at once."""
+        """Send what is queued by the loop's next turn in one piece; many messages are sent at once."""
         self._queued += 1
         if self._queued >= _TOGETHER * self._server.clients:
             self._send()
@@ -93,23 +93,23 @@ class _Client:
 
     def _send(self) -> None:
         self._queued = 0
-        transport, now_ns = self.transport, self._clock_ns()
-        while transport.is_open and transport.takes_more:
+        connection, now_ns = self.connection, self._clock_ns()
+        while connection.is_open and connection.takes_more:
             messages = self._due(now_ns)
             if not messages:
-                self._set_alarm(now_ns)
+                self._set_timer(now_ns)
                 return
-            transport.put(messages)
-            if not transport.takes_more:
+            connection.write(messages)
+            if not connection.takes_more:
                 self.stalled_since_ns = now_ns
 
-    def _set_alarm(self, now_ns: int) -> None:
-        """Look again when the first throttled message may go, whether or not more is published until then."""
+    def _set_timer(self, now_ns: int) -> None:
+        """Wake up when the first throttled message is due, whether or not more is published until then."""
         due_ns = self.session.due_ns()
         if due_ns is not None:
-            if self._alarm is not None:
-                self._alarm.cancel()
-            self._alarm = self._loop.call_later(max(0, due_ns - now_ns) / NS_PER_S, self._wake)
+            if self._timer is not None:
+                self._timer.cancel()
+            self._timer = self._loop.call_later(max(0, due_ns - now_ns) / NS_PER_S, self._wake)
 
     def _due(self, now_ns: int) -> list[bytes]:
         """Return the messages that may be sent now, at most a system call's worth of them."""
@@ -150,10 +150,10 @@ class BridgeServer:
         self._access = self.console.router.access = load_access(profile)
         self._tls = load_tls(profile)
         self.clock_ns = clock_ns
-        self._clients: set[_Client] = set()
-        self._door: Door | None = None
+        self._clients: set[_ClientHandler] = set()
+        self._listener: Listener | None = None
         self._watcher: asyncio.Task[None] | None = None
-        self._uplink: asyncio.Task[None] | None = None
+        self._upstream_client: asyncio.Task[None] | None = None
         self._port = 0
         self._ros2: Ros2Link | None = None
         self._ros2_woken = False
@@ -173,9 +173,9 @@ class BridgeServer:
         """How many clients are connected."""
         return len(self._clients)
 
-    def standing(self) -> str:
-        """Return how the link stands, in one word of `simconsole.values.labels`."""
-        return standing(self.console.router, self.clock_ns())
+    def link_state(self) -> str:
+        """Return the link's state, in a word of `simconsole.values.labels`."""
+        return link_state(self.console.router, self.clock_ns())
 
     async def start(self) -> None:
         """Listen.
@@ -185,12 +185,12 @@ class BridgeServer:
         """
         listener = listen(self._profile.host, self._profile.port)
         self._port = int(listener.getsockname()[1])
-        open_door = load_transport(self._profile)
-        self._door = await open_door(self, listener, self._profile, self._tls, self.clock_ns)
+        start_listener = load_transport(self._profile)
+        self._listener = await start_listener(self, listener, self._profile, self._tls, self.clock_ns)
         self._watcher = asyncio.create_task(self._watch())
         if self._profile.upstream is not None:
-            uplink = Uplink(self.console, self._profile.upstream, self.clock_ns)
-            self._uplink = asyncio.create_task(uplink.run())
+            upstream_client = UpstreamClient(self.console, self._profile.upstream, self.clock_ns)
+            self._upstream_client = asyncio.create_task(upstream_client.run())
         self._recorder = open_recorder(self.console, self._profile, self._folder)
         if self._profile.ros2 is not None:
             self._join_ros2(asyncio.get_running_loop())
@@ -199,13 +199,13 @@ class BridgeServer:
         """Queue what is due of a snapshot; the clients' tasks send it."""
         now_ns = self.clock_ns()
         if self._recorder is not None:
-            self._recorder.look(now_ns)
+            self._recorder.update(now_ns)
         self.console.publish(snapshot, now_ns)
         if self._ros2 is not None:
             self._ros2.check()
 
     async def close(self) -> None:
-        """Say good-bye to all clients and stop listening; harmless when closed."""
+        """Close all clients and stop listening; harmless when closed."""
         if self._ros2 is not None:
             self._ros2.close()
             self._ros2 = None
@@ -214,38 +214,38 @@ class BridgeServer:
         if self._watcher is not None:
             self._watcher.cancel()
             self._watcher = None
-        if self._uplink is not None:
-            self._uplink.cancel()
-            await asyncio.gather(self._uplink, return_exceptions=True)
-            self._uplink = None
-        door, self._door = self._door, None
-        if door is not None:
-            door.close()
+        if self._upstream_client is not None:
+            self._upstream_client.cancel()
+            await asyncio.gather(self._upstream_client, return_exceptions=True)
+            self._upstream_client = None
+        listener, self._listener = self._listener, None
+        if listener is not None:
+            listener.close()
             try:
                 async with asyncio.timeout(2.0 * CLOSE_S):
-                    await door.wait_closed()
-            except TimeoutError:  # somebody takes nothing, not even a good-bye
+                    await listener.wait_closed()
+            except TimeoutError:  # a client takes nothing, not even the close frame
                 for client in self._clients:
-                    client.transport.abort()
-                await door.wait_closed()
+                    client.connection.abort()
+                await listener.wait_closed()
 
-    def admit(self, opening: Opening) -> Admission | Refusal:
-        """Decide on a client's first request (`House`)."""
+    def admit(self, opening: HandshakeRequest) -> Admission | Refusal:
+        """Decide on a client's opening handshake (`Acceptor`)."""
         is_full = len(self._clients) >= self._profile.limits.clients
         return admit(opening, self._profile, self._access, is_full, self._drive)
 
-    def welcome(self, transport: Transport, peer: str, admission: Admission) -> Client:
-        """Take a client in (`House`)."""
-        client = _Client(self, transport, peer, admission)
+    def accept(self, connection: Connection, peer: str, admission: Admission) -> ConnectionHandler:
+        """Add a client (`Acceptor`)."""
+        client = _ClientHandler(self, connection, peer, admission)
         self._clients.add(client)
         _logger.info("%s connected", peer)
         return client
 
-    def leave(self, client: _Client) -> None:
+    def remove(self, client: _ClientHandler) -> None:
         """Forget a client whose connection has ended."""
         self._clients.discard(client)
         commanded = self.console.disconnect(client.session, self.clock_ns())
-        if commanded and self._door is not None:
+        if commanded and self._listener is not None:
             _logger.warning("%s was commanding and is gone", client.session.peer)
         else:  # also when it was this side that closed
             _logger.info("%s is gone", client.session.peer)
@@ -266,26 +266,26 @@ class BridgeServer:
             self._ros2.pump(self.clock_ns())
 
     async def _watch(self) -> None:
-        """Ask quiet clients for a sign of life, cut those that are gone and those that take nothing."""
+        """Check all clients, four times a second."""
         while True:
             await asyncio.sleep(_WATCH_S)
-            self.look()
+            self.check_clients()
 
-    def look(self) -> None:
-        """Do what is due of it now."""
+    def check_clients(self) -> None:
+        """Ping quiet clients; abort those that are gone and those that take nothing."""
         now_ns = self.clock_ns()
         self.console.router.calls.expire(now_ns)
         for client in list(self._clients):
-            reason = self._why_cut(client, now_ns)
+            reason = self._abort_reason(client, now_ns)
             if reason is not None:
                 _logger.warning("%s %s and is cut", client.session.peer, reason)
-                client.transport.abort()
+                client.connection.abort()
 
-    def _why_cut(self, client: _Client, now_ns: int) -> str | None:
+    def _abort_reason(self, client: _ClientHandler, now_ns: int) -> str | None:
         since_ns, patience_s = client.stalled_since_ns, self._profile.stall_close_s
-        if client.transport.is_open and since_ns is not None and now_ns - since_ns > patience_s * NS_PER_S:
+        if client.connection.is_open and since_ns is not None and now_ns - since_ns > patience_s * NS_PER_S:
             return f"took nothing for {patience_s:g} s"
-        return client.transport.look(now_ns)
+        return client.connection.check(now_ns)
 
 
 def serve(
@@ -298,7 +298,7 @@ def serve(
     on_ready: Callable[[int], None] = lambda port: None,
     on_act: OnAct | None = None,
     on_counts: Callable[[dict[str, int]], None] = lambda counts: None,
-    on_standing: Callable[[str], None] = lambda state: None,
+    on_link_state: Callable[[str], None] = lambda state: None,
     registry: Registry | None = None,
     folder: Path | None = None,
     drive: str | None = None,
@@ -313,8 +313,8 @@ def serve(
         stop: asked every millisecond.
         on_ready: gets the port when the server listens.
         on_act: gets each act of an operator, at once.
-        on_counts: gets what was counted, once a second and at the end.
-        on_standing: gets how the link stands, within 0.1 s of a change and once a second.
+        on_counts: gets the counts, once a second and at the end.
+        on_link_state: gets the link's state, within 0.1 s of a change and once a second.
         registry: message types; without, the standard ones and those of the profile's folder.
         folder: where topics are recorded if the profile says so.
         drive: the nonce of the drive whose bridge it is.
@@ -325,7 +325,7 @@ def serve(
     """
 
     async def main() -> None:
-        """Start, publish and tell until it is to stop, close."""
+        """Start; publish and report until told to stop; close."""
         server = BridgeServer(
             profile,
             registry=registry,
@@ -337,10 +337,10 @@ def serve(
         )
         await server.start()
         on_ready(server.port)
-        teller = _Teller(server, on_counts, on_standing)
+        reporter = _StatusReporter(server, on_counts, on_link_state)
         try:
             while not stop():
-                teller.look(time.monotonic())
+                reporter.update(time.monotonic())
                 snapshot = read_snapshot()
                 if snapshot is not None:
                     server.publish(snapshot)
@@ -352,27 +352,27 @@ def serve(
     asyncio.run(main())
 
 
-class _Teller:
-    """Tells of a running server: its counts once a second, and with them and at each change how the link stands."""
+class _StatusReporter:
+    """Reports a running server's counts once a second, and with them and at each change the link's state."""
 
     def __init__(
-        self, server: BridgeServer, on_counts: Callable[[dict[str, int]], None], on_standing: Callable[[str], None]
+        self, server: BridgeServer, on_counts: Callable[[dict[str, int]], None], on_link_state: Callable[[str], None]
     ) -> None:
         self._server = server
         self._on_counts = on_counts
-        self._on_standing = on_standing
-        self._next_count_s = self._next_look_s = 0.0
-        self._told = ""
+        self._on_link_state = on_link_state
+        self._next_count_s = self._next_state_s = 0.0
+        self._reported = ""
 
-    def look(self, now_s: float) -> None:
-        """Tell what is due at `now_s` of the monotonic clock."""
+    def update(self, now_s: float) -> None:
+        """Report what is due at `now_s` of the monotonic clock."""
         if now_s >= self._next_count_s:
             self._next_count_s = now_s + _COUNT_S
             self._on_counts(self._server.console.counts())
-            self._told = ""
-        if now_s >= self._next_look_s or not self._told:
-            self._next_look_s = now_s + _STANDING_S
-            state = self._server.standing()
-            if state != self._told:
-                self._told = state
-                self._on_standing(state)
+            self._reported = ""
+        if now_s >= self._next_state_s or not self._reported:
+            self._next_state_s = now_s + _LINK_STATE_S
+            state = self._server.link_state()
+            if state != self._reported:
+                self._reported = state
+                self._on_link_state(state)

@@ -1,4 +1,4 @@
-"""What servers share: listening, tokens and certificates from files, what the system knows of a client, the log."""
+"""What the servers share: listening sockets, tokens and certificates from files, TCP state, the log of refusals."""
 
 import logging
 import socket
@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from simconsole.bridge.protocol.access import OPEN, Access, Role, read_tokens
-from simconsole.bridge.protocol.client_session import Session
-from simconsole.bridge.protocol.handshake import DRIVE_HEADER, Opening, check_exposure
+from simconsole.bridge.protocol.client_session import ClientSession
+from simconsole.bridge.protocol.handshake import DRIVE_HEADER, HandshakeRequest, check_exposure
 from simconsole.bridge.protocol.server_protocol import Outcome
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import BridgeError, ProfileError
@@ -21,7 +21,7 @@ RECEIVE_BYTES: Final = 65_536
 HANDSHAKE_S: Final = 5.0
 """How long a client may take until its connection is a WebSocket (N12)."""
 CLOSE_S: Final = 1.0
-"""How long a client may take to answer a good-bye."""
+"""How long a client may take to answer a close frame."""
 _BACKLOG: Final = 64
 _UNACKNOWLEDGED_AT: Final = 24
 _LAST_ACKNOWLEDGED_AT: Final = 56
@@ -71,14 +71,14 @@ def address_url(host: str, port: int, secure: bool = False) -> str:
     return f"{scheme}://[{host}]:{port}" if ":" in host else f"{scheme}://{host}:{port}"
 
 
-def opening_of(request: "Request") -> Opening:
-    """Return what matters of a first request that websockets has read."""
+def handshake_request(request: "Request") -> HandshakeRequest:
+    """Return the opening handshake from a request that websockets has read."""
     names = ("Host", "Origin", "Authorization", DRIVE_HEADER)
-    return Opening(request.path, *(request.headers.get_all(name) for name in names))
+    return HandshakeRequest(request.path, *(request.headers.get_all(name) for name in names))
 
 
 def load_access(profile: BridgeProfile) -> Access:
-    """Return who may do what on a server of `profile`.
+    """Return the roles by token on a server of `profile`.
 
     Raises:
         ProfileError: the file of tokens cannot be used, or the server would be open to other machines.
@@ -130,7 +130,7 @@ def load_tls(profile: BridgeProfile) -> ssl.SSLContext | None:
     return context
 
 
-def log_outcome(logger: logging.Logger, session: Session, outcome: Outcome) -> None:
+def log_outcome(logger: logging.Logger, session: ClientSession, outcome: Outcome) -> None:
     """Log what was refused, the first of a client each and later ones now and then: a flood must not fill the disk."""
     if outcome.kind == "refused":
         if session.refused <= _LOGGED_REFUSALS or session.refused % _LOGGED_EVERY == 0:

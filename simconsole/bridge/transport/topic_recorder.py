@@ -55,18 +55,18 @@ class TopicRecorder:
         self._session = self._router.connect("record", self._drain, role=Role.VIEW)
         self._session.set_level("none")
 
-    def look(self, now_ns: int) -> None:
-        """Take in topics that are new, forget those that are gone."""
+    def update(self, now_ns: int) -> None:
+        """Subscribe to new topics and unsubscribe from those that are gone."""
         if self._failed:
             self.close()  # not at once: the router was in the midst of its subscribers
         if self._writer is None:
             return
         for name, topic in self._router.topics.items():
             fits = any(fnmatchcase(name, pattern) for pattern in self._patterns)
-            if fits and name not in self._session.outlets:
+            if fits and name not in self._session.queues:
                 self._channel(name, topic.type)
                 self._say(now_ns, op="subscribe", topic=name, compression="cbor-raw", queue_length=_QUEUE)
-            elif not topic.owned and name in self._session.outlets and not topic.publishers:
+            elif not topic.owned and name in self._session.queues and not topic.publishers:
                 others = topic.subscribers.keys() - {self._session.number}
                 if not others:  # else this recorder alone would keep it
                     self._say(now_ns, op="unsubscribe", topic=name)

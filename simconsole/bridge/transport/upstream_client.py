@@ -27,8 +27,8 @@ _MAX_MESSAGE_BYTES: Final = 16_777_216
 _logger = logging.getLogger("simconsole.bridge.transport.upstream_client")
 
 
-class Uplink:
-    """Connects, stays connected, and connects again with everything restored."""
+class UpstreamClient:
+    """Connects, stays connected, and reconnects with everything registered again."""
 
     def __init__(
         self,
@@ -88,8 +88,8 @@ class Uplink:
             await asyncio.sleep(self._backoff.pause_s(chance.random()))
 
     async def _talk(self, peer: ClientConnection) -> None:
-        for wish in self._upstream.connected(self._clock_ns()):
-            await peer.send(wish, text=True)
+        for registration in self._upstream.connected(self._clock_ns()):
+            await peer.send(registration, text=True)
         self._tell("connected")
         _logger.info("%s: connected", self._profile.url)
         sender = asyncio.create_task(self._send(peer))

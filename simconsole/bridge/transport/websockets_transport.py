@@ -1,4 +1,4 @@
-"""Clients' connections by the library websockets, with an eye on silence, fragments and floods (shell)."""
+"""Clients' connections by the library websockets, with limits on silence, fragments and floods."""
 
 import socket
 import ssl
@@ -16,19 +16,19 @@ from simconsole.bridge.protocol.backoff import Liveness
 from simconsole.bridge.protocol.frames import CLOSE, MessageAssembler, frame_head
 from simconsole.bridge.protocol.handshake import Admission, Refusal
 from simconsole.bridge.transport import sockets
-from simconsole.bridge.transport.interface import Client, House
+from simconsole.bridge.transport.interface import Acceptor, ConnectionHandler
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import FrameError
 from simconsole.values.units import NS_PER_S
 
 
-class Connection(ServerConnection):
-    """A connection that hands messages on as they are read, and knows when it last heard something (`Transport`)."""
+class WebsocketsConnection(ServerConnection):
+    """A connection that hands messages on as they are read, and knows when it last heard something (`Connection`)."""
 
     def __init__(self, profile: BridgeProfile, clock_ns: Callable[[], int], *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)
         self.admission: Admission | None = None
-        self.client: Client | None = None
+        self.client: ConnectionHandler | None = None
         self._early: list[bytes] = []
         self._has_failed = False
         self._assembler = MessageAssembler(profile.limits.message_bytes, profile.limits.message_fragments)
@@ -50,11 +50,11 @@ class Connection(ServerConnection):
         """Whether messages may be given."""
         return not self.paused
 
-    def put(self, messages: Sequence[bytes]) -> None:
+    def write(self, messages: Sequence[bytes]) -> None:
         """Send messages.
 
         Whole frames are written past the library, whose sending costs more than all the rest (decision 8); it still
-        writes pings, pongs and good-byes, between them.
+        writes pings, pongs and close frames, between them.
         """
         self.transport.write(b"".join(part for message in messages for part in (frame_head(message), message)))
 
@@ -62,8 +62,8 @@ class Connection(ServerConnection):
         """End the connection at once."""
         self.transport.abort()
 
-    def look(self, now_ns: int) -> str | None:
-        """Ask a quiet client for a sign of life; return why the connection has to be cut, None while it has not."""
+    def check(self, now_ns: int) -> str | None:
+        """Ping a quiet client; return why the connection has to be aborted, None while it has not."""
         if not self.is_open:
             self._closing_since_ns = self._closing_since_ns or now_ns
             return "does not close" if now_ns - self._closing_since_ns > sockets.CLOSE_S * NS_PER_S else None
@@ -79,7 +79,7 @@ class Connection(ServerConnection):
             self.send_data()
         return None
 
-    def begin(self, client: Client) -> None:
+    def begin(self, client: ConnectionHandler) -> None:
         """Hand messages on from now on, those first that came while the handshake was being finished."""
         self.client = client
         for message in self._early:
@@ -92,9 +92,9 @@ class Connection(ServerConnection):
         self._liveness.heard(self._clock_ns() / NS_PER_S)
         super().data_received(data)
         if self.protocol.close_rcvd is not None:
-            self.transport.close()  # both have said good-bye: the server ends the connection (RFC 6455, 7.1.1)
+            self.transport.close()  # both have sent close frames: the server closes (RFC 6455, 7.1.1)
         if self.transport.get_write_buffer_size() > self._max_unsent_bytes:
-            self.transport.abort()  # it sends pings without end and reads no answer
+            self.transport.abort()  # a client that sends pings without end and reads no answer
 
     def process_event(self, event: Any) -> None:
         """Join frames here and now: the library's queue and its reader would cost as much as reading them."""
@@ -119,51 +119,51 @@ class Connection(ServerConnection):
             self.transport.pause_reading()  # until the handshake is finished
 
     def resume_writing(self) -> None:
-        """Let the client's messages flow again."""
+        """Continue sending: the socket takes more."""
         super().resume_writing()
         if self.client is not None:
             self.client.resume()
 
 
-async def open_door(
-    house: House,
-    listener: socket.socket,
+async def start_listener(
+    acceptor: Acceptor,
+    sock: socket.socket,
     profile: BridgeProfile,
     tls: ssl.SSLContext | None,
     clock_ns: Callable[[], int],
 ) -> Server:
-    """Let clients of `listener` into `house`."""
-    make: Any = partial(Connection, profile, clock_ns)  # any function will do; its type says a class
+    """Listen on `sock`."""
+    make: Any = partial(WebsocketsConnection, profile, clock_ns)  # any function will do; its type says a class
 
     def admit(connection: ServerConnection, request: Request) -> Response | None:
-        assert isinstance(connection, Connection)
-        decision = house.admit(sockets.opening_of(request))
+        assert isinstance(connection, WebsocketsConnection)
+        decision = acceptor.admit(sockets.handshake_request(request))
         if isinstance(decision, Refusal):
             return connection.respond(decision.status, f"{decision.reason}\n")
         connection.admission = decision
         return None
 
     async def attend(connection: ServerConnection) -> None:
-        assert isinstance(connection, Connection)
+        assert isinstance(connection, WebsocketsConnection)
         assert connection.admission is not None
         connection.transport.get_extra_info("socket").setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         host, port = connection.remote_address[:2]
-        client = house.welcome(connection, f"{host}:{port}", connection.admission)
+        client = acceptor.accept(connection, f"{host}:{port}", connection.admission)
         try:
             connection.begin(client)
             await connection.wait_closed()
         finally:
-            client.gone()
+            client.closed()
 
     options: dict[str, Any] = {} if tls is None else {"ssl": tls, "ssl_handshake_timeout": sockets.HANDSHAKE_S}
     return await serve_websockets(
         attend,
-        sock=listener,
+        sock=sock,
         process_request=admit,
         create_connection=make,
         compression=None,
         max_size=profile.limits.message_bytes,
-        ping_interval=None,  # `look` asks, and cuts nobody who is merely slow
+        ping_interval=None,  # `check` pings, and does not abort clients that are merely slow
         open_timeout=sockets.HANDSHAKE_S,
         close_timeout=sockets.CLOSE_S,
         server_header=None,

@@ -169,7 +169,7 @@ def test_silent_server_is_given_up(serving: Callable[..., Any]) -> None:
         assert client.state == "connected"
         # As if three seconds had passed in silence, and a ping had not been answered.
         client._liveness.begin(time.monotonic() - 3.5)
-        client._link.heard_s = 0.0
+        client._connection.heard_s = 0.0
         assert client.receive(0.0) is None
         assert (client.state, client.connections) == ("connecting", 1)
         assert "silent" in client.failure
@@ -181,9 +181,9 @@ def test_ping_keeps_a_quiet_connection(serving: Callable[..., Any]) -> None:
     with BridgeClient(serving().url) as client:
         client.receive(0.01)
         client._liveness.begin(time.monotonic() - 1.5)
-        client._link.heard_s = 0.0
+        client._connection.heard_s = 0.0
         assert client.receive(0.3) is None
-        assert client._link.heard_s > 0.0
+        assert client._connection.heard_s > 0.0
         assert client.connections == 1
 
 

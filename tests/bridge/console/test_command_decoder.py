@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from simconsole.bridge.console.command_decoder import CommandIntake
+from simconsole.bridge.console.command_decoder import CommandDecoder
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.profiles.bridge import BridgeProfile, CommandLimits
 from simconsole.values.errors import RemoteProtocolError
@@ -266,8 +266,8 @@ def test_both_spellings_of_a_stamp(peer: Any, control: Callable[..., Any]) -> No
 
 def test_value_that_is_not_finite_is_refused_whoever_brings_it(bridge: ConsoleBridge) -> None:
     """JSON cannot say it; a later encoding of the same messages could."""
-    intake = CommandIntake(bridge.inputs, BridgeProfile())
-    (topic,) = (topic for topic in intake.topics() if topic.name == "/ball/desired_speed")
+    decoder = CommandDecoder(bridge.inputs, BridgeProfile())
+    (topic,) = (topic for topic in decoder.topics() if topic.name == "/ball/desired_speed")
     for value in (math.nan, math.inf, -math.inf):
         with pytest.raises(RemoteProtocolError, match="not finite"):
             topic.accept({"data": value}, bridge.router.registry.struct(topic.type)(value), 0)

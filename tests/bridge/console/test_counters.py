@@ -1,7 +1,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from simconsole.bridge.console.counters import standing, summed
+from simconsole.bridge.console.counters import link_state, total_counts
 from simconsole.bridge.console.endpoint import ConsoleBridge
 
 CONTROL = "/control/command/control_cmd"
@@ -33,7 +33,7 @@ def test_counts_are_published_and_outlive_their_clients(
     assert first["waiting_bytes"] > 0
     assert (second["received"], second["refused"], second["throttled"], second["topics"]) == (501, 1, 1, [])
     totals = {"connections": 3, "received": 504, "refused": 2, "throttled": 1, "sent": 3, "dropped": 2}
-    assert bridge.counts() == summed(bridge.router) == totals
+    assert bridge.counts() == total_counts(bridge.router) == totals
     commander.now_ns = 10**9
     bridge.publish(snapshot(500), 10**9)
     (counts,) = [message["msg"] for message in watcher.heard() if message["topic"] == "/console/bridge"]
@@ -44,7 +44,7 @@ def test_link_goes_from_nobody_over_clients_and_a_commander_to_lost(
     bridge: ConsoleBridge, join: Callable[..., Any], control: Callable[..., Any]
 ) -> None:
     def now(now_ns: int = 0) -> str:
-        return standing(bridge.router, now_ns)
+        return link_state(bridge.router, now_ns)
 
     assert now() == "nobody"
     first = join(bridge)

@@ -59,7 +59,7 @@ def test_state_topics_keep_the_newest_for_a_slow_client(peer: Any, snapshot: Cal
         peer.bridge.publish(snapshot(tick, x_m=float(tick)), 0)
     (message,) = peer.heard()
     assert message["msg"]["pose"]["pose"]["position"]["x"] == 100.0
-    assert peer.session.outgoing.dropped == 19
+    assert peer.session.send_queue.dropped == 19
 
 
 def test_odometry_can_be_asked_for_out_of_turn(peer: Any, snapshot: Callable[..., Any]) -> None:

@@ -1,4 +1,4 @@
-from simconsole.bridge.console.input_slots import BridgeInputs, aged
+from simconsole.bridge.console.input_slots import BridgeInputs, with_age
 from simconsole.values.signals import NEVER_TICKS, NO_COMMAND, Event, RemoteCommand, RemoteKind
 
 COMMAND = NO_COMMAND._replace(kind=float(RemoteKind.SPEED), speed_mps=3.0, direction=0.0)
@@ -67,7 +67,7 @@ def test_every_change_is_announced_at_once() -> None:
 
 
 def test_age_from_a_monotonic_clock_in_whole_ticks() -> None:
-    assert aged(COMMAND, None, 5, 250).age_ticks == NEVER_TICKS
-    assert aged(COMMAND, 1_000_000, 4_999_999, 250).age_ticks == 0.0
-    assert aged(COMMAND, 1_000_000, 5_000_000, 250).age_ticks == 1.0
-    assert aged(COMMAND, 5_000_000, 1_000_000, 250).age_ticks == 0.0
+    assert with_age(COMMAND, None, 5, 250).age_ticks == NEVER_TICKS
+    assert with_age(COMMAND, 1_000_000, 4_999_999, 250).age_ticks == 0.0
+    assert with_age(COMMAND, 1_000_000, 5_000_000, 250).age_ticks == 1.0
+    assert with_age(COMMAND, 5_000_000, 1_000_000, 250).age_ticks == 0.0

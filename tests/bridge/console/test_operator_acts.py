@@ -7,7 +7,7 @@ import pytest
 
 from simconsole.bridge.console.command_decoder import REQUESTS
 from simconsole.bridge.console.endpoint import ConsoleBridge
-from simconsole.bridge.console.operator_acts import ACTS_MAX, Act, told
+from simconsole.bridge.console.operator_acts import ACTS_MAX, Act, summarise_acts
 from simconsole.bridge.protocol.access import Role
 from simconsole.values.signals import Event
 from simconsole.values.state_vector import Snapshot
@@ -76,7 +76,7 @@ def test_a_flood_of_notes_is_not_kept_without_bound(bridge: ConsoleBridge, peer:
 
 def test_summary_names_the_last_participant_and_trial() -> None:
     acts = [{"tick": 1, "act": "mark", "participant": "P1", "trial": "1"}, {"tick": 2, "act": "mark", "trial": "2"}]
-    assert told(acts) == {"participant": "P1", "trial": "2", "acts": acts}
+    assert summarise_acts(acts) == {"participant": "P1", "trial": "2", "acts": acts}
     unnamed = [{"tick": 1, "act": "mark"}]
-    assert told(unnamed) == {"acts": unnamed}
-    assert told([]) == {}
+    assert summarise_acts(unnamed) == {"acts": unnamed}
+    assert summarise_acts([]) == {}

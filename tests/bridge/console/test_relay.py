@@ -6,7 +6,16 @@ from typing import Any
 import pytest
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
-from simconsole.bridge.console.relay import ABORTED, CANCELED, MAX_NODES, SUCCEEDED, GraphView, Offer, Order, Relay
+from simconsole.bridge.console.relay import (
+    ABORTED,
+    CANCELED,
+    MAX_NODES,
+    SUCCEEDED,
+    GraphOperation,
+    GraphPublisher,
+    GraphView,
+    Relay,
+)
 from simconsole.bridge.messages import Definition, standard_registry
 from simconsole.bridge.messages.cdr import deserialize, serialize
 from simconsole.bridge.messages.rosidl_types import definition_of
@@ -49,11 +58,15 @@ class Graph:
     def observe(self, **view: Any) -> Any:
         return self.relay.observe(NOTHING._replace(**view), self.now_ns)
 
-    def orders(self) -> list[Order]:
-        return [order for order in self.relay.orders(self.now_ns) if order.does != "remark"]
+    def operations(self) -> list[GraphOperation]:
+        return [operation for operation in self.relay.operations(self.now_ns) if operation.kind != "remark"]
 
     def remarks(self) -> list[tuple[str, str]]:
-        return [(order.name, order.text) for order in self.relay.orders(self.now_ns) if order.does == "remark"]
+        return [
+            (operation.name, operation.text)
+            for operation in self.relay.operations(self.now_ns)
+            if operation.kind == "remark"
+        ]
 
     def hear(self, topic: str, type_name: str, plain: dict[str, Any], node: str = "/driver") -> None:
         self.relay.hear(topic, self.cdr(type_name, plain), node, self.now_ns)
@@ -73,40 +86,40 @@ def graph(bridge: ConsoleBridge) -> Graph:
 
 
 def test_what_the_console_wants_in_the_graph(graph: Graph) -> None:
-    demand = graph.observe()
-    assert demand.publishers["/odom"] == Offer("nav_msgs/msg/Odometry", False, 10)
-    assert demand.subscriptions["/cmd_vel"] == "geometry_msgs/msg/Twist"
-    assert "/tf_static" not in demand.publishers
-    assert demand.services == demand.actions == {}
+    entities = graph.observe()
+    assert entities.publishers["/odom"] == GraphPublisher("nav_msgs/msg/Odometry", False, 10)
+    assert entities.subscriptions["/cmd_vel"] == "geometry_msgs/msg/Twist"
+    assert "/tf_static" not in entities.publishers
+    assert entities.services == entities.actions == {}
     missing, other = graph.remarks()[::-1]
     assert missing[1].startswith("not relayed, because this ROS 2 has no such type: ")
     assert "tf2_msgs/msg/TFMessage" in missing[1]
     assert other == ("ros2", "std_msgs/msg/Float64 is not relayed: std_msgs/msg/Float64 has other fields in this ROS 2")
-    assert graph.observe() == demand
+    assert graph.observe() == entities
     assert graph.remarks() == []
 
 
 def test_outputs_are_sent_while_somebody_listens(graph: Graph, snapshot: Any) -> None:
     graph.observe()
     graph.bridge.publish(snapshot(250), 0)
-    assert graph.orders() == []
+    assert graph.operations() == []
     graph.observe(listened=frozenset({"/odom"}))
     graph.bridge.publish(snapshot(500, x_m=3.0), 0)
-    (order,) = graph.orders()
-    assert (order.does, order.name) == ("send", "/odom")
-    assert graph.plain("nav_msgs/Odometry", order.data)["pose"]["pose"]["position"]["x"] == 3.0
+    (operation,) = graph.operations()
+    assert (operation.kind, operation.name) == ("send", "/odom")
+    assert graph.plain("nav_msgs/Odometry", operation.data)["pose"]["pose"]["position"]["x"] == 3.0
     assert graph.woken
     graph.observe()
     graph.bridge.publish(snapshot(750), 0)
-    assert graph.orders() == []
+    assert graph.operations() == []
 
 
 def test_latched_outputs_are_sent_at_once(graph: Graph, snapshot: Any) -> None:
     NOT_INSTALLED.clear()
     try:
         graph.bridge.publish(snapshot(1), 0)
-        assert graph.observe().publishers["/tf_static"] == Offer("tf2_msgs/msg/TFMessage", True, 1)
-        assert [order.name for order in graph.orders()] == ["/tf_static"]
+        assert graph.observe().publishers["/tf_static"] == GraphPublisher("tf2_msgs/msg/TFMessage", True, 1)
+        assert [operation.name for operation in graph.operations()] == ["/tf_static"]
     finally:
         NOT_INSTALLED.add("tf2_msgs/msg/TFMessage")
 
@@ -154,8 +167,8 @@ def test_a_viewing_graph_does_nothing(bridge: ConsoleBridge, join: Callable[...,
     graph, peer = Graph(bridge, Role.VIEW), join(bridge)
     peer.send(op="subscribe", topic="/chatter", type="std_msgs/String")
     peer.send(op="advertise_service", service="/add", type=ADD)
-    demand = graph.observe(topics={"/talk": "std_msgs/msg/String"}, services={"/sum": ADD})
-    assert (demand.subscriptions, demand.services) == ({}, {})
+    entities = graph.observe(topics={"/talk": "std_msgs/msg/String"}, services={"/sum": ADD})
+    assert (entities.subscriptions, entities.services) == ({}, {})
     assert bridge.router.topic("/talk") is None
     graph.hear("/cmd_vel", "geometry_msgs/Twist", {})
     assert bridge.inputs.command.sequence == 0.0
@@ -177,14 +190,14 @@ def test_topics_between_graph_and_clients(graph: Graph, join: Callable[..., Any]
     assert graph.observe(**view).subscriptions["/grip"] == "demo/msg/Grip"
     graph.hear("/grip", "demo/Grip", {"force": 1.5})
     assert [message["msg"] for message in peer.heard()] == [{"force": 1.5}]
-    assert graph.orders() == []
+    assert graph.operations() == []
     peer.publish("/grip", {"force": 2.5})
     peer.send(op="advertise", topic="/grip", type="demo/Grip")
-    assert graph.observe(**view).publishers["/grip"] == Offer("demo/msg/Grip", False, 100)
+    assert graph.observe(**view).publishers["/grip"] == GraphPublisher("demo/msg/Grip", False, 100)
     peer.publish("/grip", {"force": 3.5})
     graph.hear("/grip", "demo/Grip", {"force": 4.5})
     peer.publish("/grip", {"force": 5.5})
-    sent = [graph.plain("demo/Grip", order.data)["force"] for order in graph.orders()]
+    sent = [graph.plain("demo/Grip", operation.data)["force"] for operation in graph.operations()]
     assert sent == [3.5, 5.5]  # what came from the graph does not go back
     assert [message["msg"]["force"] for message in peer.heard()] == [2.5, 3.5, 4.5, 5.5]
 
@@ -217,12 +230,12 @@ def test_clients_call_services_of_the_graph(graph: Graph, join: Callable[..., An
     graph.observe(services={"/sum": ADD})
     for number in range(3):
         peer.send(op="call_service", service="/sum", id=number, args={"a": 1, "b": number})
-    orders = graph.orders()
-    assert {(order.does, order.name, order.type) for order in orders} == {("call", "/sum", ADD)}
-    assert graph.plain("example_interfaces/AddTwoInts_Request", orders[2].data) == {"a": 1, "b": 2}
+    operations = graph.operations()
+    assert {(operation.kind, operation.name, operation.type) for operation in operations} == {("call", "/sum", ADD)}
+    assert graph.plain("example_interfaces/AddTwoInts_Request", operations[2].data) == {"a": 1, "b": 2}
     answer = graph.cdr("example_interfaces/AddTwoInts_Response", {"sum": 3})
-    graph.relay.answered(orders[2].key, "/sum", answer, "", 0)
-    graph.relay.answered(orders[0].key, "/sum", None, "it broke", 0)
+    graph.relay.answered(operations[2].key, "/sum", answer, "", 0)
+    graph.relay.answered(operations[0].key, "/sum", None, "it broke", 0)
     heard = {message["id"]: (message["result"], message["values"]) for message in peer.heard()}
     assert heard == {2: (True, {"sum": 3}), 0: (False, "it broke")}
     graph.observe()  # the third is never answered: the service is gone
@@ -241,15 +254,15 @@ def test_the_graph_calls_services_of_clients(graph: Graph, join: Callable[..., A
     peer.send(op="service_response", service="/add", id=first["id"], values={"sum": 5}, result=True)
     peer.send(op="service_response", service="/add", id=second["id"], values="no", result=False)
     peer.send(op="service_response", service="/add", id=third["id"], values={"sum": "x"}, result=True)
-    good, bad, wrong = graph.orders()
-    assert (good.does, good.key, graph.plain("example_interfaces/AddTwoInts_Response", good.data)) == (
+    good, bad, wrong = graph.operations()
+    assert (good.kind, good.key, graph.plain("example_interfaces/AddTwoInts_Response", good.data)) == (
         "reply", "one", {"sum": 5},
     )  # fmt: skip
     assert (bad.key, bad.data, bad.text) == ("two", None, "no")
     assert (wrong.key, wrong.data) == ("three", None)
     graph.relay.ask("four", "/add", b"", 0)
     graph.relay.ask("five", "/none", request, 0)
-    assert [(order.key, order.data) for order in graph.orders()] == [("four", None), ("five", None)]
+    assert [(operation.key, operation.data) for operation in graph.operations()] == [("four", None), ("five", None)]
 
 
 def test_clients_pursue_goals_in_the_graph(graph: Graph, join: Callable[..., Any]) -> None:
@@ -258,8 +271,8 @@ def test_clients_pursue_goals_in_the_graph(graph: Graph, join: Callable[..., Any
     for name in ("g", "h"):
         peer.send(op="send_action_goal", action="/go", action_type=FIBONACCI, id=name, args={"order": 3}, feedback=True)
     peer.send(op="cancel_action_goal", action="/go", id="h")
-    goal, other, cancel = graph.orders()
-    assert (goal.does, goal.name, goal.type, cancel.does, cancel.key) == ("goal", "/go", FIBONACCI, "cancel", other.key)
+    goal, other, cancel = graph.operations()
+    assert (goal.kind, goal.name, goal.type, cancel.kind, cancel.key) == ("goal", "/go", FIBONACCI, "cancel", other.key)
     assert graph.plain("example_interfaces/Fibonacci_Goal", goal.data) == {"order": 3}
     sequence = graph.cdr("example_interfaces/Fibonacci_Result", {"sequence": [0, 1, 1]})
     graph.relay.progressed(goal.key, "/go", sequence, 0)
@@ -284,10 +297,10 @@ def test_the_graph_pursues_goals_of_clients(graph: Graph, join: Callable[..., An
     told = {"action": "/go", "id": asked["id"], "values": {"sequence": [0, 1]}}
     peer.send(op="action_feedback", **told)
     peer.send(op="action_result", status=SUCCEEDED, result=True, **told)
-    wrong, feedback, end = graph.orders()
-    assert (wrong.does, wrong.key, wrong.data, wrong.status) == ("end", "two", None, ABORTED)
-    assert (feedback.does, feedback.key) == ("feedback", "one")
-    assert (end.does, end.key, end.status) == ("end", "one", SUCCEEDED)
+    wrong, feedback, end = graph.operations()
+    assert (wrong.kind, wrong.key, wrong.data, wrong.status) == ("end", "two", None, ABORTED)
+    assert (feedback.kind, feedback.key) == ("feedback", "one")
+    assert (end.kind, end.key, end.status) == ("end", "one", SUCCEEDED)
     assert graph.plain("example_interfaces/Fibonacci_Result", end.data) == {"sequence": [0, 1]}
 
 
@@ -296,9 +309,9 @@ def test_a_service_that_leaves_with_a_call_on_its_way(graph: Graph, join: Callab
     graph.observe(services={"/sum": ADD})
     peer.send(op="call_service", service="/sum", id=1, args={"a": 1})
     graph.observe()
-    (order,) = graph.orders()
-    assert (order.does, order.data, order.text) == ("call", None, "it has left the graph")
-    graph.relay.answered(order.key, "/sum", b"\0\1\0\0", "", 0)  # nobody waits for it any more
+    (operation,) = graph.operations()
+    assert (operation.kind, operation.data, operation.text) == ("call", None, "it has left the graph")
+    graph.relay.answered(operation.key, "/sum", b"\0\1\0\0", "", 0)  # nobody waits for it any more
     assert [message["result"] for message in peer.heard()] == [False]
 
 

@@ -30,10 +30,14 @@ def heard(link: Upstream) -> list[dict[str, Any]]:
 
 def test_outputs_are_advertised_and_commands_asked_for_under_the_console_s_names() -> None:
     profile = BridgeProfile(namespace="/ego", rename={"/odom": "/localization"}, rates_hz={"/tf": 0.0})
-    wishes = [json.loads(text) for text in upstream(ConsoleBridge(profile)).connected(0)]
-    advertised = {wish["topic"]: wish for wish in wishes if wish["op"] == "advertise"}
-    subscribed = {wish["topic"]: wish for wish in wishes if wish["op"] == "subscribe"}
-    assert len(wishes) == len(advertised) + len(subscribed)
+    registrations = [json.loads(text) for text in upstream(ConsoleBridge(profile)).connected(0)]
+    advertised = {
+        registration["topic"]: registration for registration in registrations if registration["op"] == "advertise"
+    }
+    subscribed = {
+        registration["topic"]: registration for registration in registrations if registration["op"] == "subscribe"
+    }
+    assert len(registrations) == len(advertised) + len(subscribed)
     assert advertised["/localization"] == {
         "op": "advertise", "topic": "/localization", "type": "nav_msgs/Odometry", "latch": False,
     }  # fmt: skip
@@ -86,7 +90,7 @@ def test_it_is_one_commander_among_others(
 def test_nothing_else_is_taken(bridge: ConsoleBridge) -> None:
     link = upstream(bridge)
     link.connected(0)
-    outlets = len(link.session.outlets) if link.session else 0
+    subscriptions = len(link.session.queues) if link.session else 0
     for operation, kind in (
         ({"op": "subscribe", "topic": "/new", "type": "std_msgs/String"}, "done"),
         ({"op": "call_service", "service": "/rosapi/set_param", "args": {"name": "a", "value": "1"}}, "done"),
@@ -97,7 +101,7 @@ def test_nothing_else_is_taken(bridge: ConsoleBridge) -> None:
     ):
         assert link.receive(json.dumps(operation).encode(), 0).kind == kind
     assert link.session is not None
-    assert len(link.session.outlets) == outlets
+    assert len(link.session.queues) == subscriptions
     assert "/new" not in bridge.router.topics
 
 

@@ -114,8 +114,11 @@ def test_wishes_are_what_is_still_wanted() -> None:
     client.subscribe("/d", "std_msgs/String")
     assert json.loads(client.unadvertise("/a"))["op"] == "unadvertise"
     assert json.loads(client.unsubscribe("/c"))["op"] == "unsubscribe"
-    wishes = [json.loads(text) for text in client.wishes()]
-    assert [(wish["op"], wish["topic"]) for wish in wishes] == [("advertise", "/b"), ("subscribe", "/d")]
+    registrations = [json.loads(text) for text in client.registrations()]
+    assert [(registration["op"], registration["topic"]) for registration in registrations] == [
+        ("advertise", "/b"),
+        ("subscribe", "/d"),
+    ]
 
 
 def sent(client: ClientProtocol) -> list[dict[str, Any]]:
@@ -165,9 +168,9 @@ def test_requests_are_answered_and_none_is_left_open() -> None:
         ("1", True, {"sum": 3}),
         ("2", False, "not provided here"),
     ]
-    assert len(client.wishes()) == 1
+    assert len(client.registrations()) == 1
     client.unadvertise_service("/add")
-    assert client.wishes() == []
+    assert client.registrations() == []
 
 
 def test_goals_are_told_of_cancelled_and_ended() -> None:
@@ -191,7 +194,7 @@ def test_goals_are_told_of_cancelled_and_ended() -> None:
     ]
     assert client.goals == {}
     client.unadvertise_action("/go")
-    assert client.wishes() == []
+    assert client.registrations() == []
 
 
 def test_answers_find_who_asked_and_nobody_waits_for_ever() -> None:

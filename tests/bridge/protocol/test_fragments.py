@@ -3,7 +3,7 @@ import random
 
 import pytest
 
-from simconsole.bridge.protocol.fragments import MAX_OPEN, TIMEOUT_NS, Assembler, split
+from simconsole.bridge.protocol.fragments import MAX_OPEN, TIMEOUT_NS, FragmentAssembler, split
 from simconsole.bridge.protocol.operations import Fragment
 from simconsole.values.errors import RemoteProtocolError
 
@@ -17,7 +17,7 @@ def pieces(text: str, size: int, identifier: str = "a") -> list[Fragment]:
 def test_what_is_split_comes_together_in_any_order(size: int) -> None:
     chance = random.Random(size)
     text = '{"é":"€𝄞", "x": [1, 2]}'
-    assembler = Assembler(1000, 100)
+    assembler = FragmentAssembler(1000, 100)
     made = pieces(text, size) + pieces(text[::-1], size, "b")
     assert all(len(piece.data) <= size for piece in made)
     chance.shuffle(made)
@@ -37,7 +37,7 @@ def test_what_is_split_comes_together_in_any_order(size: int) -> None:
     ],
 )
 def test_wrong_piece_ends_its_message_and_leaves_nothing(more: Fragment, complaint: str) -> None:
-    assembler = Assembler(100, 8)
+    assembler = FragmentAssembler(100, 8)
     assert assembler.add(Fragment("123456", 0, 3, "a"), 0) is None
     with pytest.raises(RemoteProtocolError, match=complaint):
         assembler.add(more, 0)
@@ -45,7 +45,7 @@ def test_wrong_piece_ends_its_message_and_leaves_nothing(more: Fragment, complai
 
 
 def test_number_of_pieces_and_of_unfinished_messages_is_bounded() -> None:
-    assembler = Assembler(100, 8)
+    assembler = FragmentAssembler(100, 8)
     with pytest.raises(RemoteProtocolError, match="more than 8 fragments"):
         assembler.add(Fragment("", 0, 9, "a"), 0)
     for number in range(MAX_OPEN):

@@ -5,7 +5,7 @@ import pytest
 from simconsole.bridge.protocol.access import Access, Role
 from simconsole.bridge.protocol.handshake import (
     Admission,
-    Opening,
+    HandshakeRequest,
     Refusal,
     admit,
     check_exposure,
@@ -91,7 +91,7 @@ def test_wrong_token_is_refused_at_the_door(path: str, header: str | None) -> No
         role_at(path, header, ACCESS)
 
 
-OPENING = Opening("/ros1?token=" + "c" * 16, ["localhost:9090"], [], [])
+OPENING = HandshakeRequest("/ros1?token=" + "c" * 16, ["localhost:9090"], [], [])
 
 
 @pytest.mark.parametrize(

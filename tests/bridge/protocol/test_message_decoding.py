@@ -4,12 +4,12 @@ import struct
 import cbor2
 import pytest
 
-from simconsole.bridge.protocol.message_decoding import LENIENT_BYTES, TYPED_ARRAYS, Binary, has_duplicate_keys, read
+from simconsole.bridge.protocol.message_decoding import LENIENT_BYTES, TYPED_ARRAYS, Binary, decode, has_duplicate_keys
 from simconsole.values.errors import RemoteProtocolError
 
 
 def test_object_is_read() -> None:
-    assert read(b' {"op": "x", "n": [1, null]} ') == ({"op": "x", "n": [1, None]}, False)
+    assert decode(b' {"op": "x", "n": [1, null]} ') == ({"op": "x", "n": [1, None]}, False)
 
 
 @pytest.mark.parametrize(
@@ -37,7 +37,7 @@ def test_object_is_read() -> None:
 )
 def test_what_is_no_json_document(text: bytes) -> None:
     with pytest.raises(RemoteProtocolError, match="not one JSON document"):
-        read(text)
+        decode(text)
 
 
 @pytest.mark.parametrize(
@@ -45,22 +45,22 @@ def test_what_is_no_json_document(text: bytes) -> None:
 )
 def test_document_must_be_an_object(text: bytes, kind: str) -> None:
     with pytest.raises(RemoteProtocolError, match=f"message is {kind}"):
-        read(text)
+        decode(text)
 
 
 def test_literals_of_stock_clients_become_null_and_are_told() -> None:
-    document = read(b'{"a": NaN, "b": [Infinity, -Infinity, 1], "c": "NaN \\" Infinity"}')
+    document = decode(b'{"a": NaN, "b": [Infinity, -Infinity, 1], "c": "NaN \\" Infinity"}')
     assert document.fields == {"a": None, "b": [None, None, 1], "c": 'NaN " Infinity'}
     assert document.literals
 
 
 def test_literals_in_strings_are_no_literals() -> None:
-    assert read(b'{"a": "NaN"}') == ({"a": "NaN"}, False)
+    assert decode(b'{"a": "NaN"}') == ({"a": "NaN"}, False)
 
 
 def test_long_text_is_not_searched_for_literals() -> None:
     with pytest.raises(RemoteProtocolError):
-        read(b'{"a": NaN, "b": "' + b"x" * LENIENT_BYTES + b'"}')
+        decode(b'{"a": NaN, "b": "' + b"x" * LENIENT_BYTES + b'"}')
 
 
 @pytest.mark.parametrize(
@@ -79,23 +79,23 @@ def test_long_text_is_not_searched_for_literals() -> None:
     ],
 )
 def test_keys_given_twice(text: bytes, twice: bool) -> None:
-    assert has_duplicate_keys(text, read(text).fields) is twice
+    assert has_duplicate_keys(text, decode(text).fields) is twice
 
 
 def test_depth_beyond_any_message_is_refused() -> None:
     for depth, escape in itertools.product((31, 32, 1000), (b"", b"\\u0062")):
         text = b'{"a":' + b"[" * depth + b"]" * depth + b',"' + escape + b'":[{},[],[]]}'
         if depth == 31:
-            assert not has_duplicate_keys(text, read(text).fields)
+            assert not has_duplicate_keys(text, decode(text).fields)
         else:
             with pytest.raises(RemoteProtocolError, match="nested deeper than 32"):
-                read(text)
-    assert read(b'{"a":[' + b"[]," * 100 + b"1]}").fields["a"][100] == 1
+                decode(text)
+    assert decode(b'{"a":[' + b"[]," * 100 + b"1]}").fields["a"][100] == 1
 
 
 def test_cbor_is_read() -> None:
     message = {"op": "x", "n": [1, None, 1.5, "t", b"o", True, 2**64 - 1], "d": {"ä": -1}}
-    assert read(Binary(cbor2.dumps(message))) == (message, False)
+    assert decode(Binary(cbor2.dumps(message))) == (message, False)
     assert not has_duplicate_keys(Binary(cbor2.dumps(message)), message)
 
 
@@ -105,7 +105,7 @@ def test_cbor_is_read() -> None:
 )
 def test_typed_arrays_are_lists_and_octets_stay(tag: int, letter: str) -> None:
     octets = struct.pack(f"<3{letter}", 1, 2, 3)
-    value = read(Binary(cbor2.dumps({"a": cbor2.CBORTag(tag, octets)}))).fields["a"]
+    value = decode(Binary(cbor2.dumps({"a": cbor2.CBORTag(tag, octets)}))).fields["a"]
     assert value == (octets if letter == "B" else [1, 2, 3])
     if letter != "B":
         for wrong in (
@@ -113,7 +113,7 @@ def test_typed_arrays_are_lists_and_octets_stay(tag: int, letter: str) -> None:
             cbor2.CBORTag(tag, "x"),
         ):
             with pytest.raises(RemoteProtocolError, match="a tag other than"):
-                read(Binary(cbor2.dumps({"a": wrong})))
+                decode(Binary(cbor2.dumps({"a": wrong})))
 
 
 @pytest.mark.parametrize(
@@ -140,7 +140,7 @@ def test_typed_arrays_are_lists_and_octets_stay(tag: int, letter: str) -> None:
 )
 def test_what_is_no_cbor_document(data: bytes) -> None:
     with pytest.raises(RemoteProtocolError, match="not one CBOR document"):
-        read(Binary(data))
+        decode(Binary(data))
 
 
 def test_no_other_tag_is_read_whatever_the_library_makes_of_it() -> None:
@@ -148,7 +148,7 @@ def test_no_other_tag_is_read_whatever_the_library_makes_of_it() -> None:
     for number in range(70_000):
         head = bytes([0xC0 | number]) if number < 24 else b"\xda" + number.to_bytes(4, "big")
         try:
-            read(Binary(b"\xa1\x61a" + head + b"\x48" + bytes(8)))
+            decode(Binary(b"\xa1\x61a" + head + b"\x48" + bytes(8)))
         except RemoteProtocolError:
             continue
         allowed.add(number)

@@ -8,7 +8,7 @@ import pytest
 
 from simconsole.bridge.messages import standard_registry
 from simconsole.bridge.protocol.message_decoding import Binary
-from simconsole.bridge.protocol.message_encoding import PLAIN, Encoder, Form, png, spell
+from simconsole.bridge.protocol.message_encoding import PLAIN_JSON, Encoder, Encoding, png, to_plain
 from tests.bridge.reading import unpacked
 
 HEAD = b'{"op":"publish","topic":"/a","msg":'
@@ -22,11 +22,11 @@ def encoder(type_name: str, plain: dict[str, Any]) -> Encoder:
 
 def test_json_of_both_dialects() -> None:
     made = encoder("sensor_msgs/Joy", {"header": {"stamp": {"sec": 1, "nanosec": 2}}, "axes": [0.5]})
-    assert json.loads(made.text(PLAIN, HEAD, "/a"))["msg"]["header"] == {
+    assert json.loads(made.text(PLAIN_JSON, HEAD, "/a"))["msg"]["header"] == {
         "stamp": {"sec": 1, "nanosec": 2},
         "frame_id": "",
     }
-    old = made.text(Form("ros1"), HEAD, "/a")
+    old = made.text(Encoding("ros1"), HEAD, "/a")
     assert json.loads(old)["msg"] == {
         "header": {"seq": 7, "stamp": {"secs": 1, "nsecs": 2}, "frame_id": ""},
         "axes": [0.5],
@@ -38,14 +38,14 @@ def test_messages_within_messages_are_spelled_too() -> None:
     registry = standard_registry()
     plain = {"transforms": [{"header": {"stamp": {"sec": 4}}}]}
     message = registry.from_plain("tf2_msgs/TFMessage", plain)
-    spelled = spell(registry, "tf2_msgs/msg/TFMessage", message, "ros1")
+    spelled = to_plain(registry, "tf2_msgs/msg/TFMessage", message, "ros1")
     assert spelled["transforms"][0]["header"]["stamp"] == {"secs": 4, "nsecs": 0}
 
 
 @pytest.mark.parametrize("length", [0, 1, 5, 900, 10_001])
 def test_png_carries_the_text(length: int) -> None:
     made = encoder("std_msgs/String", {"data": "é" * length})
-    text = made.text(Form("ros2", "png"), HEAD, "/a")
+    text = made.text(Encoding("ros2", "png"), HEAD, "/a")
     assert json.loads(text)["op"] == "png"
     assert json.loads(unpacked(text)) == {"op": "publish", "topic": "/a", "msg": {"data": "é" * length}}
     assert png(b"")
@@ -53,7 +53,7 @@ def test_png_carries_the_text(length: int) -> None:
 
 def test_cbor_has_typed_arrays_and_true_not_a_numbers() -> None:
     made = encoder("sensor_msgs/LaserScan", {"ranges": [1.5, None], "angle_min": None})
-    text = made.text(Form("ros2", "cbor"), HEAD, "/a")
+    text = made.text(Encoding("ros2", "cbor"), HEAD, "/a")
     assert isinstance(text, Binary)
     decoded = cbor2.loads(text)
     assert (decoded["op"], decoded["topic"]) == ("publish", "/a")
@@ -67,19 +67,19 @@ def test_octets_are_a_byte_string_in_cbor() -> None:
     registry = standard_registry()
     registry.add("demo/Bytes", "uint8[] data\nint64[2] numbers\nbool[] flags\n")
     message = registry.from_plain("demo/Bytes", {"data": [1, 255], "numbers": [2**62, -1], "flags": [True]})
-    made = Encoder(registry, "demo/msg/Bytes", message, 0, 0).text(Form("ros2", "cbor"), HEAD, "/a")
+    made = Encoder(registry, "demo/msg/Bytes", message, 0, 0).text(Encoding("ros2", "cbor"), HEAD, "/a")
     fields = cbor2.loads(made)["msg"]
     assert (fields["data"], fields["flags"]) == (b"\x01\xff", [True])
     assert (fields["numbers"].tag, fields["numbers"].value) == (79, struct.pack("<2q", 2**62, -1))
 
 
 def test_raw_cbor_carries_cdr_and_when_it_was_received() -> None:
-    text = encoder("std_msgs/Int16", {"data": -2}).text(Form("ros2", "cbor-raw"), HEAD, "/a")
+    text = encoder("std_msgs/Int16", {"data": -2}).text(Encoding("ros2", "cbor-raw"), HEAD, "/a")
     assert cbor2.loads(text)["msg"] == {"secs": 3, "nsecs": 4, "bytes": b"\x00\x01\x00\x00\xfe\xff"}
 
 
 def test_each_form_is_made_once_for_all() -> None:
     made = encoder("std_msgs/String", {"data": "x"})
-    form = Form("ros2", "cbor")
-    assert made.text(form, HEAD, "/a") is made.text(form, HEAD, "/a")
-    assert made.text(form, HEAD.replace(b"/a", b"a"), "a") != made.text(form, HEAD, "/a")
+    encoding = Encoding("ros2", "cbor")
+    assert made.text(encoding, HEAD, "/a") is made.text(encoding, HEAD, "/a")
+    assert made.text(encoding, HEAD.replace(b"/a", b"a"), "a") != made.text(encoding, HEAD, "/a")

@@ -65,7 +65,7 @@ def test_unsubscribe_without_id_ends_all_and_drops_what_waits(peer: Any) -> None
     peer.publish("/chatter", {"data": "x"})
     peer.send(op="unsubscribe", topic="/chatter")
     assert peer.heard() == []
-    assert peer.session.outgoing.bytes == 0
+    assert peer.session.send_queue.bytes == 0
 
 
 def test_latched_message_reaches_who_comes_later(bridge: ConsoleBridge, join: Callable[..., Any]) -> None:
@@ -147,7 +147,7 @@ def test_refusal_is_answered_with_id_and_reason(peer: Any, operation: dict[str, 
 def test_refused_topics_leave_nothing_behind(peer: Any) -> None:
     peer.send(op="subscribe", topic="/new", type="std_msgs/String", compression="zip")
     peer.send(op="advertise", topic="/new", type="demo/Nothing")
-    assert peer.session.outlets == {}
+    assert peer.session.queues == {}
     assert peer.session.advertised == {}
     assert peer.send(op="subscribe", topic="/new", type="std_msgs/Bool").kind == "done"
 
@@ -166,7 +166,7 @@ def test_throttle_and_queue_of_a_subscription(peer: Any) -> None:
         peer.now_ns = number * 10 * MS
         peer.publish("/chatter", {"data": str(number)})
     assert [message["msg"]["data"] for message in peer.heard(0)] == ["29"]
-    assert peer.session.outgoing.dropped == 29
+    assert peer.session.send_queue.dropped == 29
     delivered = []
     for number in range(30, 60):
         peer.now_ns = number * 10 * MS
@@ -183,7 +183,7 @@ def test_client_that_goes_leaves_nothing(bridge: ConsoleBridge, join: Callable[.
     bridge.disconnect(first.session, 0)
     bridge.disconnect(first.session, 0)
     assert bridge.router.sessions == ()
-    assert not bridge.router.wanted("/odom")
+    assert not bridge.router.has_subscribers("/odom")
     other = join(bridge)
     # The topic is gone with its only user: its type is free again.
     assert other.send(op="advertise", topic="/chatter", type="std_msgs/Bool").kind == "done"
@@ -215,7 +215,7 @@ def test_limits_of_one_client_and_of_all() -> None:
     assert answers[12] == ""
     assert "16 topics already" in answers[13]
     assert send("subscribe", "/t0", ',"id":0,"queue_length":1000000') == ""
-    assert session.outlets["/t0"].depth <= 1000
+    assert session.queues["/t0"].depth <= 1000
     for number in range(2000):
         send("advertise", "/a0", f',"id":{number}')
     assert len(session.advertised["/a0"]) <= 16
@@ -334,10 +334,10 @@ def test_stalled_client_costs_bounded_memory_and_no_one_a_message(
         talker.publish("/chatter", {"data": "x" * 20_000})
         heard += len(healthy.heard())
     assert heard == 1000
-    assert stalled.session.outgoing.bytes <= 1_048_576
+    assert stalled.session.send_queue.bytes <= 1_048_576
     kept = len(stalled.heard())
     assert kept > 0
-    assert kept + stalled.session.outgoing.dropped == 1000
+    assert kept + stalled.session.send_queue.dropped == 1000
 
 
 def test_text_in_fragments_is_applied_once_it_is_whole(peer: Any) -> None:

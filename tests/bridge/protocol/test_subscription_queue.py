@@ -2,163 +2,163 @@ import random
 
 import pytest
 
-from simconsole.bridge.protocol.message_encoding import Form
-from simconsole.bridge.protocol.subscription_queue import MAX_REPLIES, Outgoing, Outlet
+from simconsole.bridge.protocol.message_encoding import Encoding
+from simconsole.bridge.protocol.subscription_queue import MAX_REPLIES, SendQueue, SubscriptionQueue
 
 
-def outlet(depth: int, throttle_ms: float = 0.0) -> Outlet:
-    made = Outlet(b"", 1)
-    made.wish(None, throttle_ms, depth)
+def queue(depth: int, throttle_ms: float = 0.0) -> SubscriptionQueue:
+    made = SubscriptionQueue(b"", 1)
+    made.subscribe(None, throttle_ms, depth)
     return made
 
 
-def drain(outgoing: Outgoing, now_ns: int = 0) -> list[bytes]:
+def drain(send_queue: SendQueue, now_ns: int = 0) -> list[bytes]:
     texts = []
-    while (text := outgoing.take(now_ns)) is not None:
+    while (text := send_queue.take(now_ns)) is not None:
         texts.append(text)
     return texts
 
 
 def test_latest_keeps_only_the_newest() -> None:
-    outgoing, latest = Outgoing(1000), outlet(1)
-    assert [outgoing.put(latest, bytes([65 + number])) for number in range(4)] == [0, 1, 1, 1]
-    assert drain(outgoing) == [b"D"]
-    assert latest.dropped == outgoing.dropped == 3
+    send_queue, latest = SendQueue(1000), queue(1)
+    assert [send_queue.put(latest, bytes([65 + number])) for number in range(4)] == [0, 1, 1, 1]
+    assert drain(send_queue) == [b"D"]
+    assert latest.dropped == send_queue.dropped == 3
 
 
 def test_fifo_keeps_the_newest_in_order() -> None:
-    outgoing, fifo = Outgoing(1000), outlet(3)
+    send_queue, fifo = SendQueue(1000), queue(3)
     for number in range(5):
-        outgoing.put(fifo, b"%d" % number)
-    assert drain(outgoing) == [b"2", b"3", b"4"]
+        send_queue.put(fifo, b"%d" % number)
+    assert drain(send_queue) == [b"2", b"3", b"4"]
 
 
 def test_topics_take_turns() -> None:
-    outgoing, many, few = Outgoing(1000), outlet(10), outlet(10)
+    send_queue, many, few = SendQueue(1000), queue(10), queue(10)
     for text in (b"a1", b"a2", b"a3"):
-        outgoing.put(many, text)
-    outgoing.put(few, b"b1")
-    assert drain(outgoing) == [b"a1", b"b1", b"a2", b"a3"]
+        send_queue.put(many, text)
+    send_queue.put(few, b"b1")
+    assert drain(send_queue) == [b"a1", b"b1", b"a2", b"a3"]
 
 
 def test_replies_go_first_and_are_bounded() -> None:
-    outgoing, fifo = Outgoing(1000), outlet(10)
-    outgoing.put(fifo, b"topic")
+    send_queue, fifo = SendQueue(1000), queue(10)
+    send_queue.put(fifo, b"topic")
     for number in range(MAX_REPLIES + 2):
-        outgoing.reply(b"%d" % number)
-    texts = drain(outgoing)
+        send_queue.reply(b"%d" % number)
+    texts = drain(send_queue)
     assert texts[0] == b"2"
     assert texts[-1] == b"topic"
     assert len(texts) == MAX_REPLIES + 1
 
 
 def test_throttle_holds_the_newest_until_its_time() -> None:
-    outgoing, slow = Outgoing(1000), outlet(1, throttle_ms=10.0)
-    outgoing.put(slow, b"1")
-    assert drain(outgoing, 0) == [b"1"]
+    send_queue, slow = SendQueue(1000), queue(1, throttle_ms=10.0)
+    send_queue.put(slow, b"1")
+    assert drain(send_queue, 0) == [b"1"]
     for text in (b"2", b"3"):
-        outgoing.put(slow, text)
-    assert drain(outgoing, 9_999_999) == []
-    assert outgoing.due_ns() == 10_000_000
-    assert drain(outgoing, 10_000_000) == [b"3"]
-    assert outgoing.due_ns() is None
+        send_queue.put(slow, text)
+    assert drain(send_queue, 9_999_999) == []
+    assert send_queue.due_ns() == 10_000_000
+    assert drain(send_queue, 10_000_000) == [b"3"]
+    assert send_queue.due_ns() is None
 
 
 def test_throttled_topic_does_not_hold_up_another() -> None:
-    outgoing, slow, fast = Outgoing(1000), outlet(5, throttle_ms=1000.0), outlet(5)
-    outgoing.put(slow, b"s1")
-    drain(outgoing)
-    outgoing.put(slow, b"s2")
-    outgoing.put(fast, b"f1")
-    assert drain(outgoing, 1) == [b"f1"]
+    send_queue, slow, fast = SendQueue(1000), queue(5, throttle_ms=1000.0), queue(5)
+    send_queue.put(slow, b"s1")
+    drain(send_queue)
+    send_queue.put(slow, b"s2")
+    send_queue.put(fast, b"f1")
+    assert drain(send_queue, 1) == [b"f1"]
 
 
 def test_byte_limit_drops_the_oldest_of_the_topic_first() -> None:
-    outgoing, a, b = Outgoing(10), outlet(100), outlet(100)
-    outgoing.put(b, b"bbb")
+    send_queue, a, b = SendQueue(10), queue(100), queue(100)
+    send_queue.put(b, b"bbb")
     for number in range(5):
-        outgoing.put(a, b"aa%d" % number)
-    assert outgoing.bytes <= 10
-    assert drain(outgoing) == [b"bbb", b"aa3", b"aa4"]
+        send_queue.put(a, b"aa%d" % number)
+    assert send_queue.bytes <= 10
+    assert drain(send_queue) == [b"bbb", b"aa3", b"aa4"]
     assert (a.dropped, b.dropped) == (3, 0)
 
 
 def test_byte_limit_reaches_other_topics_when_it_must() -> None:
-    outgoing, a, b = Outgoing(10), outlet(100), outlet(100)
-    outgoing.put(b, b"bbbbbbbb")
-    outgoing.put(a, b"aaaa")
-    assert drain(outgoing) == [b"aaaa"]
+    send_queue, a, b = SendQueue(10), queue(100), queue(100)
+    send_queue.put(b, b"bbbbbbbb")
+    send_queue.put(a, b"aaaa")
+    assert drain(send_queue) == [b"aaaa"]
     assert b.dropped == 1
 
 
 def test_text_beyond_the_limit_is_dropped_itself() -> None:
-    outgoing, a = Outgoing(10), outlet(100)
-    assert outgoing.put(a, b"x" * 11) == 1
-    assert drain(outgoing) == []
-    assert outgoing.bytes == 0
+    send_queue, a = SendQueue(10), queue(100)
+    assert send_queue.put(a, b"x" * 11) == 1
+    assert drain(send_queue) == []
+    assert send_queue.bytes == 0
 
 
 def test_several_wishes_of_one_client_merge_to_the_most_demanding() -> None:
-    made = Outlet(b"", 7)
-    made.wish("a", 100.0, 5)
-    made.wish("b", 50.0, 0)
+    made = SubscriptionQueue(b"", 7)
+    made.subscribe("a", 100.0, 5)
+    made.subscribe("b", 50.0, 0)
     assert (made.throttle_ns, made.depth) == (50_000_000, 7)
-    assert made.withdraw("b")
+    assert made.unsubscribe("b")
     assert (made.throttle_ns, made.depth) == (100_000_000, 5)
-    assert not made.withdraw("b")
-    assert made.withdraw(None)
-    assert made.wishes == {}
+    assert not made.unsubscribe("b")
+    assert made.unsubscribe(None)
+    assert made.subscriptions == {}
 
 
 def test_forgotten_topic_leaves_nothing() -> None:
-    outgoing, a = Outgoing(100), outlet(5)
-    outgoing.put(a, b"1234")
-    outgoing.forget(a)
-    assert (outgoing.bytes, drain(outgoing)) == (0, [])
+    send_queue, a = SendQueue(100), queue(5)
+    send_queue.put(a, b"1234")
+    send_queue.forget(a)
+    assert (send_queue.bytes, drain(send_queue)) == (0, [])
 
 
 @pytest.mark.parametrize("seed", range(20))
 def test_bounds_hold_under_random_use(seed: int) -> None:
     print("seed", seed)
     chance = random.Random(seed)
-    outgoing = Outgoing(500)
-    outlets = [outlet(chance.randint(1, 5), chance.choice([0.0, 3.0])) for _ in range(4)]
+    send_queue = SendQueue(500)
+    subscriptions = [queue(chance.randint(1, 5), chance.choice([0.0, 3.0])) for _ in range(4)]
     put = taken = 0
     for now_ns in range(0, 40_000_000, 20_000):
         if chance.random() < 0.7:
-            outgoing.put(chance.choice(outlets), b"x" * chance.randint(1, 200))
+            send_queue.put(chance.choice(subscriptions), b"x" * chance.randint(1, 200))
             put += 1
-        elif outgoing.take(now_ns) is not None:
+        elif send_queue.take(now_ns) is not None:
             taken += 1
-        assert outgoing.bytes == sum(len(text) for each in outlets for text in each.texts) <= 500
-        assert all(len(each.texts) <= each.depth for each in outlets)
-    assert put == taken + outgoing.dropped + sum(len(each.texts) for each in outlets)
+        assert send_queue.bytes == sum(len(text) for each in subscriptions for text in each.texts) <= 500
+        assert all(len(each.texts) <= each.depth for each in subscriptions)
+    assert put == taken + send_queue.dropped + sum(len(each.texts) for each in subscriptions)
 
 
 def test_replies_are_bounded_in_bytes_too() -> None:
-    outgoing = Outgoing(100)
+    send_queue = SendQueue(100)
     for letter in (b"a", b"b", b"c"):
-        outgoing.reply(letter * 45)
-    assert drain(outgoing) == [b"b" * 45, b"c" * 45]
-    outgoing.reply(b"d" * 200)
-    assert drain(outgoing) == [b"d" * 200]
+        send_queue.reply(letter * 45)
+    assert drain(send_queue) == [b"b" * 45, b"c" * 45]
+    send_queue.reply(b"d" * 200)
+    assert drain(send_queue) == [b"d" * 200]
 
 
 def test_pieces_of_one_message_stay_together() -> None:
-    outgoing, topic = Outgoing(1000), Outlet(b"", 1)
-    topic.wish("a", 0.0, 9, fragment_size=50)
-    topic.wish("b", 0.0, 9, fragment_size=20)
-    outgoing.put(topic, b"x" * 45)
-    first = outgoing.take(0)
-    outgoing.reply(b"later")
-    assert outgoing.due_ns() == 0
-    texts = [first, *drain(outgoing)]
+    send_queue, topic = SendQueue(1000), SubscriptionQueue(b"", 1)
+    topic.subscribe("a", 0.0, 9, fragment_size=50)
+    topic.subscribe("b", 0.0, 9, fragment_size=20)
+    send_queue.put(topic, b"x" * 45)
+    first = send_queue.take(0)
+    send_queue.reply(b"later")
+    assert send_queue.due_ns() == 0
+    texts = [first, *drain(send_queue)]
     assert [b'"fragment"' in (text or b"") for text in texts] == [True, True, True, False]
-    assert outgoing.due_ns() is None
+    assert send_queue.due_ns() is None
 
 
 def test_most_demanding_form_wins() -> None:
-    topic = Outlet(b"", 1)
+    topic = SubscriptionQueue(b"", 1)
     for number, compression in enumerate(("none", "png", "cbor", "cbor-raw")):
-        topic.wish(number, 0.0, 1, Form("ros2", compression))  # type: ignore[arg-type]  # the literals are listed here
-        assert topic.form.compression == compression
+        topic.subscribe(number, 0.0, 1, Encoding("ros2", compression))  # type: ignore[arg-type]  # the literals are listed here
+        assert topic.encoding.compression == compression

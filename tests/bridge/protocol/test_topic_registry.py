@@ -1,4 +1,4 @@
-"""Quality of service: what a publisher or subscriber asks for is done. The rest of a board is in test_protocol.py."""
+"""Quality of service: what a publisher or subscriber asks for is done. The rest is in test_server_protocol.py."""
 
 from collections.abc import Callable
 from typing import Any
@@ -94,7 +94,7 @@ def test_depth_of_a_publisher_is_for_whoever_does_not_say(pair: tuple[Any, Any])
 def test_depth_ends_at_the_limit(pair: tuple[Any, Any]) -> None:
     talker, slow = pair
     slow.send(op="subscribe", **CHATTER, qos={"depth": 1_000_000})
-    assert slow.session.outlets["/chatter"].depth == 1000
+    assert slow.session.queues["/chatter"].depth == 1000
     talker.send(op="advertise", **CHATTER, qos={"depth": 1_000_000})
     assert talker.bridge.router.topics["/chatter"].depth == 1000
 

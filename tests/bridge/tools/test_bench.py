@@ -7,7 +7,7 @@ import orjson
 import pytest
 from websockets.asyncio.server import ServerConnection, serve
 
-from simconsole.bridge.tools.bench import UNDER_WAY, Case, bench
+from simconsole.bridge.tools.bench import IN_FLIGHT, Case, bench
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import BridgeError
 from tests.bridge.fixtures import Served
@@ -92,7 +92,7 @@ def test_a_server_with_short_queues_is_measured_with_fewer_under_way(short_queue
     found = bench(rounds=1, seconds=0.05, url=short_queues)
     for case, figures in found.items():
         assert figures.rate_hz > 0.0
-        assert (figures.under_way < UNDER_WAY) == (case.server == "url"), (case, figures)
+        assert (figures.under_way < IN_FLIGHT) == (case.server == "url"), (case, figures)
 
 
 def test_a_server_that_passes_nothing_on_is_left(short_queues: str, monkeypatch: pytest.MonkeyPatch) -> None:

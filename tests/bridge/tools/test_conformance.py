@@ -11,7 +11,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.server import ServerConnection
 from websockets.sync.server import serve as serve_websockets
 
-from simconsole.bridge.tools.conformance import ROWS, check
+from simconsole.bridge.tools.conformance import CHECKS, check
 from simconsole.values.errors import BridgeError
 
 
@@ -46,7 +46,7 @@ def test_deviations_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
         server.shutdown()
         thread.join()
     found = {row.name: row.found for row in rows if not row.passed}
-    assert [row.name for row in rows] == list(ROWS)
+    assert [row.name for row in rows] == list(CHECKS)
     assert found["null in is NaN, out is null"] == "sent invalid JSON: the literal NaN"
     assert found["unknown operation has a status with id"] == "no status came"
     assert "set_level is obeyed" not in found

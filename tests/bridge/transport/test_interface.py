@@ -13,9 +13,9 @@ import pytest
 from websockets.asyncio.client import ClientConnection, connect
 
 from simconsole.bridge.protocol.access import Role
-from simconsole.bridge.protocol.handshake import Admission, Opening, Refusal
+from simconsole.bridge.protocol.handshake import Admission, HandshakeRequest, Refusal
 from simconsole.bridge.protocol.message_decoding import Binary
-from simconsole.bridge.transport.interface import Client, Transport, load_transport
+from simconsole.bridge.transport.interface import Connection, ConnectionHandler, load_transport
 from simconsole.bridge.transport.server import BridgeServer
 from simconsole.bridge.transport.sockets import listen
 from simconsole.profiles.bridge import BridgeProfile
@@ -47,23 +47,23 @@ class Notes:
     def resume(self) -> None:
         self.resumed += 1
 
-    def gone(self) -> None:
+    def closed(self) -> None:
         self.ended += 1
 
 
 class Home:
     """Lets everybody in; the latest connection and its client are kept. `make` makes the client."""
 
-    def __init__(self, make: Callable[[Transport], Client]) -> None:
-        self.transport: Transport | None = None
-        self.client: Client | None = None
+    def __init__(self, make: Callable[[Connection], ConnectionHandler]) -> None:
+        self.connection: Connection | None = None
+        self.client: ConnectionHandler | None = None
         self._make = make
 
-    def admit(self, opening: Opening) -> Admission | Refusal:
+    def admit(self, opening: HandshakeRequest) -> Admission | Refusal:
         return ADMISSION
 
-    def welcome(self, transport: Transport, peer: str, admission: Admission) -> Client:
-        self.transport, self.client = transport, self._make(transport)
+    def accept(self, connection: Connection, peer: str, admission: Admission) -> ConnectionHandler:
+        self.connection, self.client = connection, self._make(connection)
         return self.client
 
 
@@ -72,7 +72,7 @@ class InMemory:
 
     def __init__(self) -> None:
         self.is_open = True
-        self.client: Client
+        self.client: ConnectionHandler
         self._out: list[bytes] = []
         self._more = asyncio.Event()
 
@@ -80,16 +80,16 @@ class InMemory:
     def takes_more(self) -> bool:
         return len(self._out) < 2
 
-    def put(self, messages: Sequence[bytes]) -> None:
+    def write(self, messages: Sequence[bytes]) -> None:
         self._out += messages
         self._more.set()
 
     def abort(self) -> None:
         if self.is_open:
             self.is_open = False
-            asyncio.get_running_loop().call_soon(self.client.gone)
+            asyncio.get_running_loop().call_soon(self.client.closed)
 
-    def look(self, now_ns: int) -> str | None:
+    def check(self, now_ns: int) -> str | None:
         return None
 
     async def say(self, message: bytes) -> None:
@@ -127,7 +127,9 @@ class OverSockets:
 
 
 @asynccontextmanager
-async def in_memory(make: Callable[[Transport], Client]) -> AsyncIterator[tuple[Transport, Client, Far]]:
+async def in_memory(
+    make: Callable[[Connection], ConnectionHandler],
+) -> AsyncIterator[tuple[Connection, ConnectionHandler, Far]]:
     both = InMemory()
     both.client = make(both)
     yield both, both.client, both
@@ -135,25 +137,25 @@ async def in_memory(make: Callable[[Transport], Client]) -> AsyncIterator[tuple[
 
 @asynccontextmanager
 async def over_sockets(
-    library: Any, make: Callable[[Transport], Client]
-) -> AsyncIterator[tuple[Transport, Client, Far]]:
+    library: Any, make: Callable[[Connection], ConnectionHandler]
+) -> AsyncIterator[tuple[Connection, ConnectionHandler, Far]]:
     profile = BridgeProfile(port=0, transport=library)
-    listener = listen(profile.host, 0)
+    sock = listen(profile.host, 0)
     home = Home(make)
-    door = await load_transport(profile)(home, listener, profile, None, time.monotonic_ns)
-    async with connect(f"ws://127.0.0.1:{listener.getsockname()[1]}", max_size=None) as far:
+    listener = await load_transport(profile)(home, sock, profile, None, time.monotonic_ns)
+    async with connect(f"ws://127.0.0.1:{sock.getsockname()[1]}", max_size=None) as far:
         while home.client is None:
             await asyncio.sleep(0.001)
-        assert home.transport is not None
+        assert home.connection is not None
         try:
-            yield home.transport, home.client, OverSockets(far)
+            yield home.connection, home.client, OverSockets(far)
         finally:
-            home.transport.abort()
-            door.close()
-            await door.wait_closed()
+            home.connection.abort()
+            listener.close()
+            await listener.wait_closed()
 
 
-Pair = Callable[[Callable[[Transport], Client]], AbstractAsyncContextManager[tuple[Transport, Any, Far]]]
+Pair = Callable[[Callable[[Connection], ConnectionHandler]], AbstractAsyncContextManager[tuple[Connection, Any, Far]]]
 each = pytest.mark.parametrize(
     "pair",
     [in_memory, partial(over_sockets, "websockets"), partial(over_sockets, "picows")],
@@ -166,17 +168,17 @@ async def until(holds: Callable[[], bool]) -> None:
         await asyncio.sleep(0.001)
 
 
-def run(pair: Pair, check: Callable[[Transport, Notes, Far], Any]) -> None:
+def run(pair: Pair, check: Callable[[Connection, Notes, Far], Any]) -> None:
     async def main() -> None:
-        async with asyncio.timeout(20.0), pair(lambda _: Notes()) as (transport, client, far):
-            await check(transport, client, far)
+        async with asyncio.timeout(20.0), pair(lambda _: Notes()) as (connection, client, far):
+            await check(connection, client, far)
 
     asyncio.run(main())
 
 
 @each
 def test_messages_come_in_whole_and_say_whether_they_are_text(pair: Pair) -> None:
-    async def check(transport: Transport, client: Notes, far: Far) -> None:
+    async def check(connection: Connection, client: Notes, far: Far) -> None:
         said = [b"{}", Binary(b"\xa0"), b"x" * 100_000]
         for message in said:
             await far.say(message)
@@ -184,26 +186,26 @@ def test_messages_come_in_whole_and_say_whether_they_are_text(pair: Pair) -> Non
         await until(lambda: client.ended == 1)
         assert client.heard == said
         assert [isinstance(message, Binary) for message in client.heard] == [False, True, False]
-        assert not transport.is_open
+        assert not connection.is_open
 
     run(pair, check)
 
 
 @each
 def test_messages_go_out_in_order_and_no_more_are_taken_of_who_does_not_read(pair: Pair) -> None:
-    async def check(transport: Transport, client: Notes, far: Far) -> None:
+    async def check(connection: Connection, client: Notes, far: Far) -> None:
         given = [bytes([65 + number % 26]) * 65_536 for number in range(400)]
         sent = 0
-        while transport.takes_more:
-            transport.put(given[sent : sent + 1])
+        while connection.takes_more:
+            connection.write(given[sent : sent + 1])
             sent += 1
             await asyncio.sleep(0)
         assert sent < len(given), "26 MB were taken though nobody reads"
         assert client.resumed == 0
         heard = 0
         while heard < len(given):
-            if transport.takes_more and sent < len(given):
-                transport.put(given[sent : sent + 1])
+            if connection.takes_more and sent < len(given):
+                connection.write(given[sent : sent + 1])
                 sent += 1
             assert await far.hear() == given[heard]
             heard += 1
@@ -214,8 +216,8 @@ def test_messages_go_out_in_order_and_no_more_are_taken_of_who_does_not_read(pai
 
 @each
 def test_text_and_binary_go_out_as_they_are(pair: Pair) -> None:
-    async def check(transport: Transport, client: Notes, far: Far) -> None:
-        transport.put([b"a", Binary(b"b")])
+    async def check(connection: Connection, client: Notes, far: Far) -> None:
+        connection.write([b"a", Binary(b"b")])
         heard = [await far.hear(), await far.hear()]
         assert heard == [b"a", b"b"]
         assert [isinstance(message, Binary) for message in heard] == [False, True]
@@ -225,13 +227,13 @@ def test_text_and_binary_go_out_as_they_are(pair: Pair) -> None:
 
 @each
 def test_abort_ends_it_at_once(pair: Pair) -> None:
-    async def check(transport: Transport, client: Notes, far: Far) -> None:
-        assert transport.is_open
-        assert transport.look(0) is None
-        transport.abort()
+    async def check(connection: Connection, client: Notes, far: Far) -> None:
+        assert connection.is_open
+        assert connection.check(0) is None
+        connection.abort()
         await until(lambda: client.ended == 1)
         assert client.heard == []
-        assert not transport.is_open
+        assert not connection.is_open
 
     run(pair, check)
 
@@ -241,12 +243,12 @@ def test_a_server_drives_over_it(pair: Pair, snapshot: Callable[..., Any], contr
     async def main() -> None:
         server = BridgeServer(PROFILE)
 
-        def welcome(transport: Transport) -> Client:
-            return server.welcome(transport, "far", ADMISSION)
+        def accept(connection: Connection) -> ConnectionHandler:
+            return server.accept(connection, "far", ADMISSION)
 
-        async with asyncio.timeout(20.0), pair(welcome) as (_, _, far):
+        async with asyncio.timeout(20.0), pair(accept) as (_, _, far):
             await far.say(b'{"op":"subscribe","topic":"/odom"}')
-            await until(lambda: server.console.router.wanted("/odom"))
+            await until(lambda: server.console.router.has_subscribers("/odom"))
             server.publish(snapshot(5, x_m=7.0))
             assert json.loads(await far.hear())["msg"]["pose"]["pose"]["position"]["x"] == 7.0
             command = {"op": "publish", "topic": "/control/command/control_cmd", "msg": control(0.25)}

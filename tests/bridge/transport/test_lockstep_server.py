@@ -293,10 +293,10 @@ def test_slow_subscriber_costs_bounded_memory_and_the_loop_nothing(snapshot: Cal
             (session,) = bridge.console.router.sessions
             for tick in range(1, 50_000):
                 bridge.publish(snapshot(tick))
-                if session.outgoing.dropped > 100:
+                if session.send_queue.dropped > 100:
                     break
-            assert session.outgoing.dropped > 0
-            assert session.outgoing.bytes <= 65_536
+            assert session.send_queue.dropped > 0
+            assert session.send_queue.bytes <= 65_536
             assert stalled.recv(1) == b"\x81"
 
 

@@ -244,7 +244,7 @@ def test_client_that_takes_nothing_is_cut(transport: Any) -> None:
         (session,) = server.console.router.sessions
         server.console.receive(session, b'{"op":"subscribe","topic":"/s","type":"std_msgs/String"}', 0)
         text = json.dumps({"op": "publish", "topic": "/s", "msg": {"data": "x" * 200_000}}).encode()
-        while session.outgoing.bytes < 500_000:  # the system's buffers are full and the queues begin to fill
+        while session.send_queue.bytes < 500_000:  # the system's buffers are full and the queues begin to fill
             server.console.receive(session, text, 0)
             await asyncio.sleep(0)
         now_ns = 6 * 10**9

@@ -3,7 +3,7 @@ import socket
 
 import pytest
 
-from simconsole.bridge.protocol.client_session import Session
+from simconsole.bridge.protocol.client_session import ClientSession
 from simconsole.bridge.protocol.server_protocol import Outcome
 from simconsole.bridge.transport.sockets import (
     address_url,
@@ -51,7 +51,7 @@ def test_addresses_as_clients_write_them() -> None:
 
 def test_flood_of_refusals_does_not_fill_the_log(caplog: pytest.LogCaptureFixture) -> None:
     logger = logging.getLogger("simconsole.bridge.test")
-    session = Session(1, "peer", 1000, lambda: None)
+    session = ClientSession(1, "peer", 1000, lambda: None)
     with caplog.at_level(logging.INFO, logger.name):
         for number in range(1, 5001):
             session.refused = number

@@ -32,17 +32,17 @@ def test_outputs_and_commands_and_topics_of_clients(
     bridge: ConsoleBridge, join: Callable[..., Any], snapshot: Any, tmp_path: Path
 ) -> None:
     peer, recorder = join(bridge), TopicRecorder(bridge, tmp_path, ("/odom", "/c*"))
-    recorder.look(0)
+    recorder.update(0)
     bridge.publish(snapshot(5, x_m=3.0), 0)
     peer.publish("/cmd_vel", {"linear": {"x": 1.0}, "angular": {"z": 0.5}})
     peer.send(op="advertise", topic="/chatter", type="std_msgs/String")
-    recorder.look(0)
+    recorder.update(0)
     peer.publish("/chatter", {"data": "hé"})
     peer.send(op="unadvertise", topic="/chatter")
-    recorder.look(0)
+    recorder.update(0)
     assert bridge.router.topic("/chatter") is None
     peer.send(op="advertise", topic="/chatter", type="std_msgs/Int8")  # the name again, another type
-    recorder.look(0)
+    recorder.update(0)
     peer.publish("/chatter", {"data": 7})
     peer.publish("/cmd_vel", {"linear": {}})  # refused: not recorded
     recorder.close()
@@ -122,16 +122,16 @@ def test_a_full_disk_ends_the_recording_only(
 ) -> None:
     monkeypatch.setattr(record, "_new_file", _open_full_disk)
     recorder = TopicRecorder(bridge, Path(), ("/odom",))
-    recorder.look(0)
+    recorder.update(0)
     peer = join(bridge)
     peer.send(op="subscribe", topic="/odom")
     for tick in range(5, 10_000, 5):
         bridge.publish(snapshot(tick), 0)
     assert caplog.text.count("recording ends") == 1
-    recorder.look(0)
+    recorder.update(0)
     assert len(bridge.router.sessions) == 1
     assert peer.heard()
-    recorder.look(0)  # nothing more
+    recorder.update(0)  # nothing more
 
 
 def test_only_where_it_is_asked_for(bridge: ConsoleBridge, tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from websockets.asyncio.server import serve as serve_websockets
 from simconsole.bridge.protocol.backoff import Backoff
 from simconsole.bridge.transport.lockstep_server import LockstepBridge
 from simconsole.bridge.transport.server import BridgeServer
-from simconsole.bridge.transport.upstream_client import Uplink
+from simconsole.bridge.transport.upstream_client import UpstreamClient
 from simconsole.profiles.bridge import BridgeProfile, UpstreamProfile
 from simconsole.values.errors import ProfileError
 
@@ -102,7 +102,7 @@ def test_nobody_there_is_no_reason_to_stop(snapshot: Callable[..., Any]) -> None
     async def main() -> None:
         server = BridgeServer(BridgeProfile(port=0))
         profile = UpstreamProfile(url="ws://127.0.0.1:1")
-        task = asyncio.create_task(Uplink(server.console, profile, backoff=Backoff(0.001, 0.001)).run())
+        task = asyncio.create_task(UpstreamClient(server.console, profile, backoff=Backoff(0.001, 0.001)).run())
         await until(lambda: server.console.router.upstream == "connecting")
         await asyncio.sleep(0.01)
         assert not task.done()
@@ -117,7 +117,7 @@ def test_what_cannot_be_used_is_one_line(profile: dict[str, Any]) -> None:
     async def main() -> None:
         console = BridgeServer(BridgeProfile(port=0)).console
         with pytest.raises(ProfileError, match=r"outputs\.bridge\.upstream: ws"):
-            Uplink(console, UpstreamProfile(**{"url": "ws://ros:9090", **profile}))
+            UpstreamClient(console, UpstreamProfile(**{"url": "ws://ros:9090", **profile}))
 
     asyncio.run(main())
 
