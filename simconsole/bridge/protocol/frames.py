@@ -1,5 +1,6 @@
 """WebSocket frames and messages, independent of the library (RFC 6455): reassembly, limits, frame headers."""
 
+from collections.abc import Iterable
 from typing import Final
 
 from simconsole.bridge.protocol.message_decoding import Binary
@@ -91,6 +92,11 @@ def check_close(data: bytes) -> None:
         data[2:].decode()
     except UnicodeDecodeError:
         raise FrameError(INVALID_DATA, "a close frame's reason is no UTF-8") from None
+
+
+def framed(messages: Iterable[bytes]) -> bytes:
+    """Return messages, text or `Binary`, as a server's frames, one after another."""
+    return b"".join(part for message in messages for part in (frame_head(message), message))
 
 
 def frame_head(message: bytes) -> bytes:

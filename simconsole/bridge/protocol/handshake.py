@@ -6,7 +6,7 @@ Every transport decides by `admit`, so that they cannot differ.
 import hmac
 import ipaddress
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from http import HTTPStatus
 from typing import Final, NamedTuple
 from urllib.parse import parse_qs, urlsplit
@@ -47,24 +47,40 @@ class Refusal(NamedTuple):
     status: HTTPStatus
     reason: str
 
+    @property
+    def body(self) -> str:
+        """The text that the client gets."""
+        return f"{self.reason}\n"
+
+
+def handshake_request(path: str, values_of: Callable[[str], Sequence[str]]) -> HandshakeRequest:
+    """Return what matters of a first request; `values_of` returns every value given for a header."""
+    return HandshakeRequest(
+        path=path,
+        hosts=values_of("Host"),
+        origins=values_of("Origin"),
+        authorizations=values_of("Authorization"),
+        drives=values_of(DRIVE_HEADER),
+    )
+
 
 def admit(
-    opening: HandshakeRequest, profile: BridgeProfile, access: Access, is_full: bool, drive: str | None = None
+    request: HandshakeRequest, profile: BridgeProfile, access: Access, is_full: bool, drive: str | None = None
 ) -> Admission | Refusal:
     """Decide on a first request to the server of a `drive` (its nonce), or of none."""
-    if len(opening.hosts) != 1 or not is_host_allowed(opening.hosts[0], profile):
+    if len(request.hosts) != 1 or not is_host_allowed(request.hosts[0], profile):
         return Refusal(HTTPStatus.FORBIDDEN, "this server does not answer to that Host")
-    if not is_origin_allowed(opening.origins, profile):
+    if not is_origin_allowed(request.origins, profile):
         return Refusal(HTTPStatus.FORBIDDEN, "this server does not answer to pages of that Origin")
-    if not is_of_drive(opening.drives, drive):
+    if not is_of_drive(request.drives, drive):
         return Refusal(HTTPStatus.FORBIDDEN, "this server belongs to another drive than the one that started you")
     try:
-        role = role_at(opening.path, opening.authorizations[0] if opening.authorizations else None, access)
+        role = role_at(request.path, request.authorizations[0] if request.authorizations else None, access)
     except RemoteProtocolError:
         return Refusal(HTTPStatus.UNAUTHORIZED, "this server does not know that token")
     if is_full:
         return Refusal(HTTPStatus.SERVICE_UNAVAILABLE, "too many clients")
-    return Admission(role, dialect_of(opening.path, profile))
+    return Admission(role, dialect_of(request.path, profile))
 
 
 def is_origin_allowed(origins: Sequence[str], profile: BridgeProfile) -> bool:

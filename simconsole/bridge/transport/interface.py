@@ -46,7 +46,7 @@ class ConnectionHandler(Protocol):
 class Acceptor(Protocol):
     """Accepts clients."""
 
-    def admit(self, opening: HandshakeRequest) -> Admission | Refusal:
+    def admit(self, request: HandshakeRequest) -> Admission | Refusal:
         """Decide on a client's opening handshake."""
 
     def accept(self, transport: Connection, peer: str, admission: Admission) -> ConnectionHandler:

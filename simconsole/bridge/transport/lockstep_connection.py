@@ -12,12 +12,11 @@ from websockets.protocol import SEND_EOF, State
 from websockets.server import ServerProtocol
 
 from simconsole.bridge.protocol.access import Access
-from simconsole.bridge.protocol.backoff import Liveness
 from simconsole.bridge.protocol.client_session import ClientSession
-from simconsole.bridge.protocol.frames import CLOSE, MessageAssembler
-from simconsole.bridge.protocol.handshake import Admission, Refusal, admit
-from simconsole.bridge.protocol.message_decoding import Binary
-from simconsole.bridge.transport.sockets import CLOSE_S, RECEIVE_BYTES, handshake_request, is_unacknowledged
+from simconsole.bridge.protocol.frames import CLOSE, framed
+from simconsole.bridge.protocol.handshake import Admission, Refusal, admit, handshake_request
+from simconsole.bridge.transport.connection_checks import ConnectionChecks
+from simconsole.bridge.transport.sockets import RECEIVE_BYTES
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import FrameError
 
@@ -63,11 +62,8 @@ class LockstepConnection:
         self._profile = profile
         self._is_full = is_full
         self._web = ServerProtocol(max_size=profile.limits.message_bytes, logger=_logger)
-        self._messages = MessageAssembler(profile.limits.message_bytes, profile.limits.message_fragments)
-        self._liveness = Liveness(profile.ping_interval_s, profile.dead_after_s)
-        self._liveness.begin(time.monotonic())
+        self._checks = ConnectionChecks(profile, time.monotonic_ns())
         self._unsent = bytearray()
-        self._closing_since_s: float | None = None
         self._ending = False
 
     @property
@@ -92,7 +88,7 @@ class LockstepConnection:
             self.close()
             return
         if data:
-            self._liveness.heard(time.monotonic())
+            self._checks.heard(time.monotonic_ns())
             self._web.receive_data(data)
         else:
             self._web.receive_eof()
@@ -114,29 +110,21 @@ class LockstepConnection:
             return
         session = self.session
         if session is not None and self._web.state is State.OPEN:
-            while len(self._unsent) < UNSENT_BYTES:
-                text = session.next_text(now_ns)
-                if text is None:
-                    break
-                if isinstance(text, Binary):
-                    self._web.send_binary(text)
-                else:
-                    self._web.send_text(text)
-                self._collect()
+            self._collect()
+            while len(self._unsent) < UNSENT_BYTES and (message := session.next_text(now_ns)) is not None:
+                self._unsent += framed((message,))
         self._collect()
         self._send()
 
     def check(self) -> None:
         """Ping a quiet client; close one whose machine is gone."""
-        now_s = time.monotonic()
+        now_ns = time.monotonic_ns()
         if self._web.close_sent is not None:
-            self._closing_since_s = self._closing_since_s or now_s
-            if now_s - self._closing_since_s > CLOSE_S:
-                self.close()
-        elif self._liveness.is_dead(now_s) and is_unacknowledged(self.socket):
+            reason = self._checks.closing(now_ns)
+        else:
+            reason = self._checks.check(now_ns, self.socket, self._send_ping)
+        if reason is not None:
             self.close()
-        elif self.is_open and self._liveness.ping_due(now_s):
-            self._web.send_ping(b"")
 
     def start_closing(self) -> None:
         """Start the closing handshake; a connection that is not open yet is closed at once."""
@@ -151,12 +139,15 @@ class LockstepConnection:
         self.closed = True
         self.socket.close()
 
+    def _send_ping(self) -> None:
+        if self.is_open:
+            self._web.send_ping(b"")
+
     def _answer(self, request: Request) -> None:
-        decision = admit(
-            handshake_request(request), self._profile, self._owner.access, self._is_full, self._owner.drive
-        )
+        asked = handshake_request(request.path, request.headers.get_all)
+        decision = admit(asked, self._profile, self._owner.access, self._is_full, self._owner.drive)
         if isinstance(decision, Refusal):
-            self._web.send_response(self._web.reject(decision.status, f"{decision.reason}\n"))
+            self._web.send_response(self._web.reject(decision.status, decision.body))
             return
         self._web.send_response(self._web.accept(request))
         if self._web.state is State.OPEN:
@@ -164,7 +155,7 @@ class LockstepConnection:
 
     def _take(self, frame: Frame, session: ClientSession) -> None:
         try:
-            message = self._messages.add(frame.opcode, bytes(frame.data), frame.fin, time.monotonic_ns())
+            message = self._checks.assembler.add(frame.opcode, bytes(frame.data), frame.fin, time.monotonic_ns())
         except FrameError as error:
             self._web.fail(error.code, str(error))
             return

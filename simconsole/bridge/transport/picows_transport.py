@@ -8,6 +8,7 @@ import logging
 import socket
 import ssl
 from collections.abc import Callable, Sequence
+from http import HTTPStatus
 from typing import Any, Final
 
 from picows import (
@@ -22,21 +23,19 @@ from picows import (
     ws_create_server,
 )
 
-from simconsole.bridge.protocol.backoff import Liveness
 from simconsole.bridge.protocol.frames import (
     CLOSE,
     PING,
     PROTOCOL_ERROR,
-    MessageAssembler,
     check_close,
-    frame_head,
+    framed,
 )
-from simconsole.bridge.protocol.handshake import DRIVE_HEADER, Admission, HandshakeRequest, Refusal
+from simconsole.bridge.protocol.handshake import Admission, Refusal, handshake_request
 from simconsole.bridge.transport import sockets
+from simconsole.bridge.transport.connection_checks import ConnectionChecks
 from simconsole.bridge.transport.interface import Acceptor, ConnectionHandler
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import FrameError
-from simconsole.values.units import NS_PER_S
 
 _VERSION: Final = "13"
 
@@ -53,11 +52,7 @@ class PicowsConnection(WSListener):
         self._listener = listener
         self._admission = admission
         self._clock_ns = listener.clock_ns
-        limits = listener.profile.limits
-        self._assembler = MessageAssembler(limits.message_bytes, limits.message_fragments)
-        self._liveness = Liveness(listener.profile.ping_interval_s, listener.profile.dead_after_s)
         self._pinged: bytes | None = None
-        self._closing_since_ns: int | None = None
         self._paused = False
         self._client: ConnectionHandler | None = None
         self._transport: WSTransport
@@ -67,7 +62,7 @@ class PicowsConnection(WSListener):
     def is_open(self) -> bool:
         """Whether messages can pass, as far as this side knows."""
         transport = self._transport
-        return not (transport.is_close_frame_sent or transport.is_disconnected or self._closing_since_ns is not None)
+        return not (transport.is_close_frame_sent or transport.is_disconnected or self._checks.is_closing)
 
     @property
     def takes_more(self) -> bool:
@@ -76,8 +71,7 @@ class PicowsConnection(WSListener):
 
     def write(self, messages: Sequence[bytes]) -> None:
         """Send messages, all that are given in one system call."""
-        frames = b"".join(part for message in messages for part in (frame_head(message), message))
-        self._transport.underlying_transport.write(frames)
+        self._transport.underlying_transport.write(framed(messages))
 
     def abort(self) -> None:
         """End the connection at once."""
@@ -86,18 +80,9 @@ class PicowsConnection(WSListener):
     def check(self, now_ns: int) -> str | None:
         """Ping a quiet client; return why the connection has to be aborted, None while it has not."""
         if not self.is_open:
-            self._closing_since_ns = self._closing_since_ns or now_ns
-            return "does not close" if now_ns - self._closing_since_ns > sockets.CLOSE_S * NS_PER_S else None
-        overdue = self._assembler.overdue(now_ns)
-        if overdue is not None:
-            return f"sends too slowly: {overdue}"
-        now_s = now_ns / NS_PER_S
-        # A program that is slow to answer is not a machine that is gone, which acknowledges nothing either.
-        if self._liveness.is_dead(now_s) and sockets.is_unacknowledged(self._socket()):
-            return f"has been gone for {self._listener.profile.dead_after_s:g} s"
-        if self._liveness.ping_due(now_s):
-            self._transport.send_ping()
-        return None
+            return self._checks.closing(now_ns)
+        sock: socket.socket = self._transport.underlying_transport.get_extra_info("socket")
+        return self._checks.check(now_ns, sock, self._transport.send_ping)
 
     def start_closing(self) -> None:
         """Start the closing handshake; `check` aborts a client that does not answer."""
@@ -107,7 +92,7 @@ class PicowsConnection(WSListener):
     def on_ws_connected(self, transport: WSTransport) -> None:
         """Add the client."""
         self._transport = transport
-        self._liveness.begin(self._clock_ns() / NS_PER_S)
+        self._checks = ConnectionChecks(self._listener.profile, self._clock_ns())
         host, port = transport.underlying_transport.get_extra_info("peername")[:2]
         self._listener.connections.add(self)
         self._client = self._listener.acceptor.accept(self, f"{host}:{port}", self._admission)
@@ -115,14 +100,14 @@ class PicowsConnection(WSListener):
     def on_ws_frame(self, transport: WSTransport, frame: WSFrame) -> None:
         """Take a frame. The library has checked opcode, mask and the length of control frames."""
         now_ns = self._clock_ns()
-        self._liveness.heard(now_ns / NS_PER_S)
+        self._checks.heard(now_ns)
         kind: int = frame.msg_type.value
         try:
             if frame.rsv1 or frame.rsv2 or frame.rsv3:
                 raise FrameError(PROTOCOL_ERROR, "a reserved bit is set: no extension was agreed on")
             if kind < CLOSE:
                 if self.is_open and self._client is not None:
-                    message = self._assembler.add(kind, frame.get_payload_as_bytes(), bool(frame.fin), now_ns)
+                    message = self._checks.assembler.add(kind, frame.get_payload_as_bytes(), bool(frame.fin), now_ns)
                     if message is not None:
                         self._client.receive(message)
             elif kind == CLOSE:
@@ -171,12 +156,8 @@ class PicowsConnection(WSListener):
         check_close(data)
         if self.is_open:
             self._transport.send(WSMsgType.CLOSE, data[:2])
-        self._closing_since_ns = self._clock_ns()
+        self._checks.closing(self._clock_ns())
         self._transport.disconnect()  # both have sent close frames: the server closes (RFC 6455, 7.1.1)
-
-    def _socket(self) -> socket.socket:
-        found: socket.socket = self._transport.underlying_transport.get_extra_info("socket")
-        return found
 
 
 class PicowsListener:
@@ -195,7 +176,6 @@ class PicowsListener:
         # The library reads all that waits in one piece, and its buffer grows to that; left to itself the system lets
         # megabytes wait. Connections inherit it.
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, self.profile.limits.message_bytes)
-        options: dict[str, Any] = {} if tls is None else {"ssl": tls, "ssl_handshake_timeout": sockets.HANDSHAKE_S}
         self._server = await ws_create_server(
             self._open,
             sock=sock,
@@ -203,7 +183,7 @@ class PicowsListener:
             enable_auto_pong=False,  # or a client that sends pings and reads no answer could not be stopped
             max_frame_size=self.profile.limits.message_bytes,
             logger_name=_library_logger,
-            **options,
+            **sockets.tls_options(tls),
         )
 
     def close(self) -> None:
@@ -225,32 +205,26 @@ class PicowsListener:
 
     def _open(self, request: WSUpgradeRequest) -> WSUpgradeResponseWithListener:
         headers = request.headers
-        decision = self.acceptor.admit(
-            HandshakeRequest(
-                request.path.decode("ascii", "surrogateescape"),
-                headers.getall("Host", ()),
-                headers.getall("Origin", ()),
-                headers.getall("Authorization", ()),
-                headers.getall(DRIVE_HEADER, ()),
-            )
-        )
+        path = request.path.decode("ascii", "surrogateescape")
+        decision = self.acceptor.admit(handshake_request(path, lambda name: headers.getall(name, ())))
         if isinstance(decision, Refusal):
-            return _refused(decision.status, decision.reason)
+            return _refused(decision)
         if not self._server.is_serving():
-            return _refused(503, "this server is closing")
+            return _refused(Refusal(HTTPStatus.SERVICE_UNAVAILABLE, "this server is closing"))
         # The library reads no list here (Firefox sends keep-alive, Upgrade), and takes versions that never were.
         connection = ",".join(headers.getall("Connection", ()))
         if "upgrade" in (word.strip().lower() for word in connection.split(",")):
             headers["Connection"] = "upgrade"
         if headers.get("Sec-WebSocket-Version") != _VERSION:
-            return _refused(426, f"this server speaks WebSocket version {_VERSION}")
+            return _refused(Refusal(HTTPStatus.UPGRADE_REQUIRED, f"this server speaks WebSocket version {_VERSION}"))
         return WSUpgradeResponseWithListener(WSUpgradeResponse.create_101_response(), PicowsConnection(self, decision))
 
 
-def _refused(status: int, reason: str) -> WSUpgradeResponseWithListener:
-    more = {"Upgrade": "websocket", "Sec-WebSocket-Version": _VERSION} if status == 426 else {}
+def _refused(refusal: Refusal) -> WSUpgradeResponseWithListener:
+    is_version = refusal.status == HTTPStatus.UPGRADE_REQUIRED
+    more = {"Upgrade": "websocket", "Sec-WebSocket-Version": _VERSION} if is_version else {}
     return WSUpgradeResponseWithListener(
-        WSUpgradeResponse.create_error_response(status, f"{reason}\n".encode(), more), None
+        WSUpgradeResponse.create_error_response(refusal.status, refusal.body.encode(), more), None
     )
 
 

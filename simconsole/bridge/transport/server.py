@@ -229,10 +229,10 @@ class BridgeServer:
                     client.connection.abort()
                 await listener.wait_closed()
 
-    def admit(self, opening: HandshakeRequest) -> Admission | Refusal:
+    def admit(self, request: HandshakeRequest) -> Admission | Refusal:
         """Decide on a client's opening handshake (`Acceptor`)."""
         is_full = len(self._clients) >= self._profile.limits.clients
-        return admit(opening, self._profile, self._access, is_full, self._drive)
+        return admit(request, self._profile, self._access, is_full, self._drive)
 
     def accept(self, connection: Connection, peer: str, admission: Admission) -> ConnectionHandler:
         """Add a client (`Acceptor`)."""

@@ -5,17 +5,14 @@ import socket
 import ssl
 import struct
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Any, Final
 
 from simconsole.bridge.protocol.access import OPEN, Access, Role, read_tokens
 from simconsole.bridge.protocol.client_session import ClientSession
-from simconsole.bridge.protocol.handshake import DRIVE_HEADER, HandshakeRequest, check_exposure
+from simconsole.bridge.protocol.handshake import check_exposure
 from simconsole.bridge.protocol.server_protocol import Outcome
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import BridgeError, ProfileError
-
-if TYPE_CHECKING:
-    from websockets.http11 import Request
 
 RECEIVE_BYTES: Final = 65_536
 HANDSHAKE_S: Final = 5.0
@@ -71,10 +68,9 @@ def address_url(host: str, port: int, secure: bool = False) -> str:
     return f"{scheme}://[{host}]:{port}" if ":" in host else f"{scheme}://{host}:{port}"
 
 
-def handshake_request(request: "Request") -> HandshakeRequest:
-    """Return the opening handshake from a request that websockets has read."""
-    names = ("Host", "Origin", "Authorization", DRIVE_HEADER)
-    return HandshakeRequest(request.path, *(request.headers.get_all(name) for name in names))
+def tls_options(tls: ssl.SSLContext | None) -> dict[str, Any]:
+    """Return what asyncio's servers take for TLS: nothing without."""
+    return {} if tls is None else {"ssl": tls, "ssl_handshake_timeout": HANDSHAKE_S}
 
 
 def load_access(profile: BridgeProfile) -> Access:

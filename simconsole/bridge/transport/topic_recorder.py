@@ -6,7 +6,7 @@ The recorder is one more client of the router: it gets what clients get, when th
 import logging
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import cbor2
 import msgspec
@@ -18,9 +18,6 @@ from simconsole.bridge.protocol.message_decoding import Binary
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import BridgeError
 from simconsole.values.units import NS_PER_S
-
-if TYPE_CHECKING:
-    pass
 
 NAME: Final = "topics.mcap"
 MAX_FILES: Final = 100

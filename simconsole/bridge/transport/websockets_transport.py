@@ -12,14 +12,13 @@ from websockets.frames import Frame
 from websockets.http11 import Request, Response
 from websockets.protocol import State
 
-from simconsole.bridge.protocol.backoff import Liveness
-from simconsole.bridge.protocol.frames import CLOSE, MessageAssembler, frame_head
-from simconsole.bridge.protocol.handshake import Admission, Refusal
+from simconsole.bridge.protocol.frames import CLOSE, framed
+from simconsole.bridge.protocol.handshake import Admission, Refusal, handshake_request
 from simconsole.bridge.transport import sockets
+from simconsole.bridge.transport.connection_checks import ConnectionChecks
 from simconsole.bridge.transport.interface import Acceptor, ConnectionHandler
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import FrameError
-from simconsole.values.units import NS_PER_S
 
 
 class WebsocketsConnection(ServerConnection):
@@ -31,12 +30,8 @@ class WebsocketsConnection(ServerConnection):
         self.client: ConnectionHandler | None = None
         self._early: list[bytes] = []
         self._has_failed = False
-        self._assembler = MessageAssembler(profile.limits.message_bytes, profile.limits.message_fragments)
-        self._liveness = Liveness(profile.ping_interval_s, profile.dead_after_s)
-        self._liveness.begin(clock_ns() / NS_PER_S)
+        self._checks = ConnectionChecks(profile, clock_ns())
         self._clock_ns = clock_ns
-        self._closing_since_ns: int | None = None
-        self._dead_after_s = profile.dead_after_s
         # More than the sender, which waits for the socket between two messages, can have put there.
         self._max_unsent_bytes = 2 * profile.limits.queued_bytes
 
@@ -56,7 +51,7 @@ class WebsocketsConnection(ServerConnection):
         Whole frames are written past the library, whose sending costs more than all the rest (decision 8); it still
         writes pings, pongs and close frames, between them.
         """
-        self.transport.write(b"".join(part for message in messages for part in (frame_head(message), message)))
+        self.transport.write(framed(messages))
 
     def abort(self) -> None:
         """End the connection at once."""
@@ -65,19 +60,12 @@ class WebsocketsConnection(ServerConnection):
     def check(self, now_ns: int) -> str | None:
         """Ping a quiet client; return why the connection has to be aborted, None while it has not."""
         if not self.is_open:
-            self._closing_since_ns = self._closing_since_ns or now_ns
-            return "does not close" if now_ns - self._closing_since_ns > sockets.CLOSE_S * NS_PER_S else None
-        overdue = self._assembler.overdue(now_ns)
-        if overdue is not None:
-            return f"sends too slowly: {overdue}"
-        now_s = now_ns / NS_PER_S
-        # A program that is slow to answer is not a machine that is gone, which acknowledges nothing either.
-        if self._liveness.is_dead(now_s) and sockets.is_unacknowledged(self.transport.get_extra_info("socket")):
-            return f"has been gone for {self._dead_after_s:g} s"
-        if self._liveness.ping_due(now_s):
-            self.protocol.send_ping(b"")
-            self.send_data()
-        return None
+            return self._checks.closing(now_ns)
+        return self._checks.check(now_ns, self.transport.get_extra_info("socket"), self._send_ping)
+
+    def _send_ping(self) -> None:
+        self.protocol.send_ping(b"")
+        self.send_data()
 
     def begin(self, client: ConnectionHandler) -> None:
         """Hand messages on from now on, those first that came while the handshake was being finished."""
@@ -89,7 +77,7 @@ class WebsocketsConnection(ServerConnection):
 
     def data_received(self, data: bytes) -> None:
         """Note the time of whatever comes, pongs too."""
-        self._liveness.heard(self._clock_ns() / NS_PER_S)
+        self._checks.heard(self._clock_ns())
         super().data_received(data)
         if self.protocol.close_rcvd is not None:
             self.transport.close()  # both have sent close frames: the server closes (RFC 6455, 7.1.1)
@@ -104,7 +92,7 @@ class WebsocketsConnection(ServerConnection):
         if self._has_failed:
             return
         try:
-            message = self._assembler.add(event.opcode, bytes(event.data), event.fin, self._clock_ns())
+            message = self._checks.assembler.add(event.opcode, bytes(event.data), event.fin, self._clock_ns())
         except FrameError as error:
             self._has_failed = True
             self.protocol.fail(error.code, str(error))
@@ -137,9 +125,9 @@ async def start_listener(
 
     def admit(connection: ServerConnection, request: Request) -> Response | None:
         assert isinstance(connection, WebsocketsConnection)
-        decision = acceptor.admit(sockets.handshake_request(request))
+        decision = acceptor.admit(handshake_request(request.path, request.headers.get_all))
         if isinstance(decision, Refusal):
-            return connection.respond(decision.status, f"{decision.reason}\n")
+            return connection.respond(decision.status, decision.body)
         connection.admission = decision
         return None
 
@@ -155,7 +143,6 @@ async def start_listener(
         finally:
             client.closed()
 
-    options: dict[str, Any] = {} if tls is None else {"ssl": tls, "ssl_handshake_timeout": sockets.HANDSHAKE_S}
     return await serve_websockets(
         attend,
         sock=sock,
@@ -168,5 +155,5 @@ async def start_listener(
         close_timeout=sockets.CLOSE_S,
         server_header=None,
         logger=sockets.logger,
-        **options,
+        **sockets.tls_options(tls),
     )

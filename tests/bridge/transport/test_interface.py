@@ -59,7 +59,7 @@ class Home:
         self.client: ConnectionHandler | None = None
         self._make = make
 
-    def admit(self, opening: HandshakeRequest) -> Admission | Refusal:
+    def admit(self, request: HandshakeRequest) -> Admission | Refusal:
         return ADMISSION
 
     def accept(self, connection: Connection, peer: str, admission: Admission) -> ConnectionHandler:
