@@ -246,7 +246,7 @@ def _own_token(session: SessionProfile) -> str | None:
     """Return what the session's own autopilot shows its bridge; None where it has to show nothing."""
     if session.outputs.bridge is None or session.features.autopilot is None:
         return None
-    from simconsole.bridge.transport.sockets import control_token
+    from simconsole.bridge.transport.credentials import control_token
 
     return control_token(session.outputs.bridge)
 

@@ -12,9 +12,9 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 
 from simconsole.bridge.client.bridge_client import BridgeClient
+from simconsole.bridge.transport.credentials import load_tls
 from simconsole.bridge.transport.lockstep_server import LockstepBridge
 from simconsole.bridge.transport.server import BridgeServer
-from simconsole.bridge.transport.sockets import load_tls
 from simconsole.cli.certificate import make, write_private
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import BridgeError, ProfileError

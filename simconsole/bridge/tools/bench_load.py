@@ -4,7 +4,6 @@ Only against a server of our own, in a process of its own: what makes a peer fai
 """
 
 import asyncio
-import multiprocessing
 import time
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -13,7 +12,7 @@ from typing import Any, Final, NamedTuple
 import orjson
 from websockets.asyncio.client import connect
 
-from simconsole.processes.lifetimes import attached
+from simconsole.bridge.tools.bench_servers import server_process
 from simconsole.values.errors import BridgeError
 from simconsole.values.signals import RemoteCommand
 
@@ -21,7 +20,6 @@ MESSAGES: Final = 1000
 MESSAGE_BYTES: Final = 20_000
 FLOOD_HZ: Final = 10_000
 TICK_S: Final = 0.01
-_START_S: Final = 30.0
 _STATM_PAGE: Final = 4096
 _CONTROL: Final = "/control/command/control_cmd"
 
@@ -43,22 +41,11 @@ def load(seconds: float = 3.0) -> LoadResult:
     Raises:
         BridgeError: the server does not start.
     """
-    context = multiprocessing.get_context("spawn")
-    ours, theirs = context.Pipe()
-    process = context.Process(target=attached, args=(_serve, theirs), daemon=True)
-    process.start()
-    try:
-        if not ours.poll(_START_S):
-            raise BridgeError("the server did not start")
-        url = f"ws://127.0.0.1:{ours.recv()}"
-        lost, growth_mb = asyncio.run(_stall(url, process.pid or 0))
-        sent_hz = asyncio.run(_flood(url, seconds))
-        ours.send(None)
-        ages_ms = sorted(ours.recv())
-    finally:
-        ours.close()
-        process.terminate()
-        process.join()
+    with server_process("simconsole", "websockets", _serve) as (server, pipe):
+        lost, growth_mb = asyncio.run(_stall(server.url, server.process or 0))
+        sent_hz = asyncio.run(_flood(server.url, seconds))
+        pipe.send(None)
+        ages_ms = sorted(pipe.recv())
     if not ages_ms:
         raise BridgeError("no command of the flood was applied")
     middle, high = ages_ms[len(ages_ms) // 2], ages_ms[int(0.99 * (len(ages_ms) - 1))]

@@ -7,10 +7,10 @@ import asyncio
 import importlib.util
 import multiprocessing
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Any, Final, Literal, NamedTuple
+from typing import Final, Literal, NamedTuple
 
 import orjson
 from websockets.asyncio.server import ServerConnection
@@ -57,24 +57,31 @@ def running_servers() -> Iterator[list[RunningServer]]:
     ]
     if importlib.util.find_spec("picows") is not None:
         programs += [("bare", "picows", _serve_bare_picows), ("simconsole", "picows", _serve_ours_picows)]
+    with ExitStack() as servers:
+        yield [servers.enter_context(server_process(name, library, program))[0] for name, library, program in programs]
+
+
+@contextmanager
+def server_process(
+    name: str, library: str, program: Callable[[Connection], None]
+) -> Iterator[tuple[RunningServer, Connection]]:
+    """Run `program` in a process until the block's end; it sends its port through its end of the pipe first.
+
+    Raises:
+        BridgeError: it does not start.
+    """
     context = multiprocessing.get_context("spawn")
-    started: list[tuple[Any, Connection]] = []
-    served: list[RunningServer] = []
+    ours, theirs = context.Pipe()
+    process = context.Process(target=attached, args=(program, theirs), daemon=True)
+    process.start()
     try:
-        for name, library, program in programs:
-            ours, theirs = context.Pipe()
-            process = context.Process(target=attached, args=(program, theirs), daemon=True)
-            process.start()
-            started.append((process, ours))
-            if not ours.poll(_START_S):
-                raise BridgeError(f"the {name} server on {library} did not start")
-            served.append(RunningServer(name, library, f"ws://127.0.0.1:{ours.recv()}", process.pid))
-        yield served
+        if not ours.poll(_START_S):
+            raise BridgeError(f"the {name} server on {library} did not start")
+        yield RunningServer(name, library, f"ws://127.0.0.1:{ours.recv()}", process.pid), ours
     finally:
-        for process, ours in started:
-            ours.close()
-            process.terminate()
-            process.join()
+        ours.close()
+        process.terminate()
+        process.join()
 
 
 def _serve_ours(pipe: Connection, transport: Literal["websockets", "picows"] = "websockets") -> None:

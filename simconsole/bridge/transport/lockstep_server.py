@@ -23,9 +23,11 @@ from simconsole.bridge.protocol.access import Access
 from simconsole.bridge.protocol.client_session import ClientSession
 from simconsole.bridge.protocol.handshake import Admission
 from simconsole.bridge.transport import sockets
+from simconsole.bridge.transport.client_log import log_departure, log_outcome
+from simconsole.bridge.transport.credentials import load_access, load_tls
 from simconsole.bridge.transport.lockstep_connection import LockstepConnection
 from simconsole.bridge.transport.message_files import load_registry
-from simconsole.bridge.transport.sockets import RECEIVE_BYTES, address_url, listen, load_access, load_tls, log_outcome
+from simconsole.bridge.transport.sockets import RECEIVE_BYTES, address_url, listen
 from simconsole.bridge.transport.topic_recorder import open_recorder
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import ProfileError
@@ -312,10 +314,7 @@ class LockstepBridge:
             commanded = self.console.disconnect(session, self._now_ns)
             if commanded:
                 self._lost_at = self.console.inputs.command.sequence
-            if commanded and not self._closing:
-                _logger.warning("%s was commanding and is gone", connection.peer)
-            else:
-                _logger.info("%s is gone", connection.peer)
+            log_departure(_logger, connection.peer, commanded and not self._closing)
 
     def _settle(self, connection: LockstepConnection) -> None:
         """Send what waits for a client and ask to be woken for writing only while the system takes no more."""

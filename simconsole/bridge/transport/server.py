@@ -17,9 +17,11 @@ from simconsole.bridge.console.input_slots import OnCommand, OnEvents
 from simconsole.bridge.console.operator_acts import OnAct
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.protocol.handshake import Admission, HandshakeRequest, Refusal, admit
+from simconsole.bridge.transport.client_log import log_departure, log_outcome
+from simconsole.bridge.transport.credentials import load_access, load_tls
 from simconsole.bridge.transport.interface import Connection, ConnectionHandler, Listener, load_transport
 from simconsole.bridge.transport.message_files import load_registry
-from simconsole.bridge.transport.sockets import CLOSE_S, address_url, listen, load_access, load_tls, log_outcome
+from simconsole.bridge.transport.sockets import CLOSE_S, address_url, listen
 from simconsole.bridge.transport.topic_recorder import TopicRecorder, open_recorder
 from simconsole.bridge.transport.upstream_client import UpstreamClient
 from simconsole.profiles.bridge import BridgeProfile
@@ -245,10 +247,8 @@ class BridgeServer:
         """Forget a client whose connection has ended."""
         self._clients.discard(client)
         commanded = self.console.disconnect(client.session, self.clock_ns())
-        if commanded and self._listener is not None:
-            _logger.warning("%s was commanding and is gone", client.session.peer)
-        else:  # also when it was this side that closed
-            _logger.info("%s is gone", client.session.peer)
+        is_this_side = self._listener is None
+        log_departure(_logger, client.session.peer, commanded and not is_this_side)
 
     def _join_ros2(self, loop: asyncio.AbstractEventLoop) -> None:
         from simconsole.bridge.ros2.node import Ros2Link

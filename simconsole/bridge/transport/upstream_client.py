@@ -17,7 +17,7 @@ from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.upstream import Upstream
 from simconsole.bridge.protocol.backoff import DEAD_AFTER_S, PING_AFTER_S, Backoff
 from simconsole.bridge.protocol.message_decoding import Binary
-from simconsole.bridge.transport.sockets import log_outcome
+from simconsole.bridge.transport.client_log import log_outcome
 from simconsole.profiles.bridge import UpstreamProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.units import NS_PER_S

@@ -1,5 +1,6 @@
 """Clients' connections by the library websockets, with limits on silence, fragments and floods."""
 
+import logging
 import socket
 import ssl
 from collections.abc import Callable, Sequence
@@ -19,6 +20,8 @@ from simconsole.bridge.transport.connection_checks import ConnectionChecks
 from simconsole.bridge.transport.interface import Acceptor, ConnectionHandler
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import FrameError
+
+_logger = logging.getLogger("simconsole.bridge.transport.server")
 
 
 class WebsocketsConnection(ServerConnection):
@@ -154,6 +157,6 @@ async def start_listener(
         open_timeout=sockets.HANDSHAKE_S,
         close_timeout=sockets.CLOSE_S,
         server_header=None,
-        logger=sockets.logger,
+        logger=_logger,
         **sockets.tls_options(tls),
     )

@@ -1,16 +1,8 @@
-import logging
 import socket
 
 import pytest
 
-from simconsole.bridge.protocol.client_session import ClientSession
-from simconsole.bridge.protocol.server_protocol import Outcome
-from simconsole.bridge.transport.sockets import (
-    address_url,
-    is_unacknowledged,
-    listen,
-    log_outcome,
-)
+from simconsole.bridge.transport.sockets import address_url, is_unacknowledged, listen
 from simconsole.values.errors import BridgeError
 from tests.bridge.networks import go_deaf
 
@@ -47,18 +39,3 @@ def test_address_in_use_is_one_line() -> None:
 def test_addresses_as_clients_write_them() -> None:
     assert address_url("127.0.0.1", 9090) == "ws://127.0.0.1:9090"
     assert address_url("::1", 9090) == "ws://[::1]:9090"
-
-
-def test_flood_of_refusals_does_not_fill_the_log(caplog: pytest.LogCaptureFixture) -> None:
-    logger = logging.getLogger("simconsole.bridge.test")
-    session = ClientSession(1, "peer", 1000, lambda: None)
-    with caplog.at_level(logging.INFO, logger.name):
-        for number in range(1, 5001):
-            session.refused = number
-            log_outcome(logger, session, Outcome("refused", "/cmd", "no"))
-        log_outcome(logger, session, Outcome("done", "/cmd", ""))
-        log_outcome(logger, session, Outcome("remark", "", "info: hello"))
-    lines = [record.getMessage() for record in caplog.records]
-    assert len(lines) == 10 + 5 + 1
-    assert lines[0] == "peer: refused (1): /cmd no"
-    assert lines[-1] == "peer: says info: hello"

@@ -1,0 +1,33 @@
+import logging
+
+import pytest
+
+from simconsole.bridge.protocol.client_session import ClientSession
+from simconsole.bridge.protocol.server_protocol import Outcome
+from simconsole.bridge.transport.client_log import log_departure, log_outcome
+
+LOGGER = logging.getLogger("simconsole.bridge.test")
+
+
+def test_flood_of_refusals_does_not_fill_the_log(caplog: pytest.LogCaptureFixture) -> None:
+    session = ClientSession(1, "peer", 1000, lambda: None)
+    with caplog.at_level(logging.INFO, LOGGER.name):
+        for number in range(1, 5001):
+            session.refused = number
+            log_outcome(LOGGER, session, Outcome("refused", "/cmd", "no"))
+        log_outcome(LOGGER, session, Outcome("done", "/cmd", ""))
+        log_outcome(LOGGER, session, Outcome("remark", "", "info: hello"))
+    lines = [record.getMessage() for record in caplog.records]
+    assert len(lines) == 10 + 5 + 1
+    assert lines[0] == "peer: refused (1): /cmd no"
+    assert lines[-1] == "peer: says info: hello"
+
+
+def test_departure_of_the_commander_is_a_warning(caplog: pytest.LogCaptureFixture) -> None:
+    with caplog.at_level(logging.INFO, LOGGER.name):
+        log_departure(LOGGER, "driver", True)
+        log_departure(LOGGER, "viewer", False)
+    assert [(record.levelname, record.getMessage()) for record in caplog.records] == [
+        ("WARNING", "driver was commanding and is gone"),
+        ("INFO", "viewer is gone"),
+    ]
