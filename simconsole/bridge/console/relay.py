@@ -326,7 +326,7 @@ class Relay:
         name = said[kind]
         type_name = self._advertised[kind].get(name, "")
         data, why = self._cdr(type_name, part, said["args"])
-        return GraphOperation(operation, name, said["id"], type_name, data, why)
+        return GraphOperation(operation, name, key=said["id"], type=type_name, data=data, text=why)
 
     def _ending(self, key: str, part: str, said: dict[str, Any]) -> tuple[bytes | None, str]:
         if not isinstance(said["values"], dict):

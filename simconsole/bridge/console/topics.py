@@ -213,31 +213,31 @@ class Outputs:
         snapshot = tick.snapshot
         decided = snapshot.arbitration
         return self._types["Arbitration"](
-            tick.header(BASE_FRAME),
-            int(decided.mode),
-            int(decided.reason),
-            mode_words(decided.mode),
-            reason_words(decided.reason),
-            int(decided.refusal),
-            reason_words(decided.refusal) if decided.refusal else "",
-            int(snapshot.notice),
-            notice_words(snapshot.notice),
-            decided.remote_lateral,
-            decided.remote_longitudinal,
-            decided.person_road_wheel_rad,
-            decided.person_throttle,
-            decided.person_brake,
-            decided.remote_road_wheel_rad,
-            decided.remote_throttle,
-            decided.remote_brake,
-            int(decided.takeover_stage),
-            int(decided.commander),
-            commander_words(decided.commander),
-            self._controller(
+            header=tick.header(BASE_FRAME),
+            mode=int(decided.mode),
+            reason=int(decided.reason),
+            mode_words=mode_words(decided.mode),
+            reason_words=reason_words(decided.reason),
+            refusal=int(decided.refusal),
+            refusal_words=reason_words(decided.refusal) if decided.refusal else "",
+            notice=int(snapshot.notice),
+            notice_words=notice_words(snapshot.notice),
+            remote_lateral=decided.remote_lateral,
+            remote_longitudinal=decided.remote_longitudinal,
+            person_road_wheel=decided.person_road_wheel_rad,
+            person_throttle=decided.person_throttle,
+            person_brake=decided.person_brake,
+            remote_road_wheel=decided.remote_road_wheel_rad,
+            remote_throttle=decided.remote_throttle,
+            remote_brake=decided.remote_brake,
+            takeover_stage=int(decided.takeover_stage),
+            commander=int(decided.commander),
+            commander_words=commander_words(decided.commander),
+            ros=self._controller(
                 snapshot.ros, snapshot.ros_link, decided.ros_road_wheel_rad, decided.ros_throttle, decided.ros_brake,
                 snapshot.tick_hz,
             ),
-            self._controller(
+            ecu=self._controller(
                 snapshot.ecu, snapshot.ecu_link, decided.ecu_road_wheel_rad, decided.ecu_throttle, decided.ecu_brake,
                 snapshot.tick_hz,
             ),
@@ -247,14 +247,14 @@ class Outputs:
         self, command: RemoteCommand, link: Link, road_wheel_rad: float, throttle: float, brake: float, tick_hz: int
     ) -> Any:
         return self._types["Controller"](
-            int(link.state),
-            link_words(link.state),
-            road_wheel_rad,
-            throttle,
-            brake,
-            int(command.sequence),
-            int(command.refused + link.implausible),
-            -1.0 if command.age_ticks >= NEVER_TICKS else command.age_ticks / tick_hz,
+            state=int(link.state),
+            state_words=link_words(link.state),
+            road_wheel=road_wheel_rad,
+            throttle=throttle,
+            brake=brake,
+            commands_accepted=int(command.sequence),
+            commands_refused=int(command.refused + link.implausible),
+            command_age=-1.0 if command.age_ticks >= NEVER_TICKS else command.age_ticks / tick_hz,
         )
 
 

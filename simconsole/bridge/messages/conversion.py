@@ -23,26 +23,26 @@ def normalise(registry: "Registry", name: str, value: Any, gaps: bool, now_ns: i
     float if `gaps`, a list of integers for an array of bytes.
     """
     if name in (TIME, DURATION):
-        return _mend_time(value, now_ns)
+        return _normalise_time(value, now_ns)
     if not isinstance(value, dict):
         return value
-    mended = dict(value)
+    normalised = dict(value)
     if name == HEADER:
-        mended.pop("seq", None)
+        normalised.pop("seq", None)
     for field in registry.definition(name).fields:
-        if field.name in mended:
-            mended[field.name] = _mend_field(registry, field, mended[field.name], gaps, now_ns)
-    return mended
+        if field.name in normalised:
+            normalised[field.name] = _normalise_field(registry, field, normalised[field.name], gaps, now_ns)
+    return normalised
 
 
-def _mend_field(registry: "Registry", field: Field, value: Any, gaps: bool, now_ns: int) -> Any:
+def _normalise_field(registry: "Registry", field: Field, value: Any, gaps: bool, now_ns: int) -> Any:
     kind = field.type
     if kind.is_message:
         if kind.array and isinstance(value, list):
             return [normalise(registry, kind.base, item, gaps, now_ns) for item in value]
         return normalise(registry, kind.base, value, gaps, now_ns)
     if kind.is_octets:
-        return _mend_octets(value)
+        return _normalise_octets(value)
     if gaps and kind.base in FLOATS:
         if value is None and not kind.array:
             return _NAN
@@ -51,13 +51,13 @@ def _mend_field(registry: "Registry", field: Field, value: Any, gaps: bool, now_
     return value
 
 
-def _mend_octets(value: Any) -> Any:
+def _normalise_octets(value: Any) -> Any:
     if isinstance(value, list) and all(type(item) is int and 0 <= item <= 255 for item in value):
         return bytes(value)
     return value
 
 
-def _mend_time(value: Any, now_ns: int) -> Any:
+def _normalise_time(value: Any, now_ns: int) -> Any:
     if value == "now":
         return {"sec": now_ns // NS_PER_S, "nanosec": now_ns % NS_PER_S}
     if isinstance(value, dict):

@@ -312,7 +312,15 @@ class Calls:
             raise RemoteProtocolError(f"{self._limits.calls} calls at a time are the most allowed")
         self._numbers += 1
         identifier = f"{'goal' if is_goal else 'call'}:{name}:{self._numbers}"
-        self._calls[identifier] = _Call(caller, provider.session, name, provider.type, deadline_ns, feedback, is_goal)
+        self._calls[identifier] = _Call(
+            caller=caller,
+            provider=provider.session,
+            name=name,
+            type=provider.type,
+            deadline_ns=deadline_ns,
+            feedback=feedback,
+            is_goal=is_goal,
+        )
         return identifier
 
     def _arguments(self, provider: _Provider, part: str, args: Any, identifier: str) -> Any:

@@ -107,13 +107,12 @@ class Router:
 
     def add_output(self, name: str, type_name: str, depth: int = 1, latch: bool = False) -> None:
         """Add a topic that only the console publishes, keeping the `depth` newest messages for a slow client."""
-        self.topic_registry.add(Topic(name, self.registry.resolve(type_name), depth, True, None, latch))
+        self.topic_registry.add(Topic(name, self.registry.resolve(type_name), depth, owned=True, latch=latch))
 
     def add_command(self, name: str, type_name: str, accept: Accept, leased: bool = True) -> None:
         """Add a topic by which clients command the console."""
-        self.topic_registry.add(
-            Topic(name, self.registry.resolve(type_name), RELAY_DEPTH, True, Command(accept, leased), False)
-        )
+        topic_type, command = self.registry.resolve(type_name), Command(accept, leased)
+        self.topic_registry.add(Topic(name, topic_type, RELAY_DEPTH, owned=True, command=command))
 
     def connect(
         self,
@@ -126,9 +125,16 @@ class Router:
         role = self.access.anonymous if role is None else role
         self._numbers += 1
         limits = self._limits
-        assembler = FragmentAssembler(limits.message_bytes, limits.message_fragments)
-        rate_limiter = RateLimiter(limits.commands_hz)
-        session = ClientSession(self._numbers, peer, limits.queued_bytes, wake, dialect, assembler, role, rate_limiter)
+        session = ClientSession(
+            self._numbers,
+            peer,
+            limits.queued_bytes,
+            wake,
+            dialect=dialect,
+            assembler=FragmentAssembler(limits.message_bytes, limits.message_fragments),
+            role=role,
+            rate_limiter=RateLimiter(limits.commands_hz),
+        )
         self._sessions[session.number] = session
         return session
 

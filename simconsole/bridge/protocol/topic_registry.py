@@ -31,7 +31,14 @@ class Topic:
     """One topic: its type, publishers, subscribers, and whether the console owns it."""
 
     def __init__(
-        self, name: str, type_name: str, depth: int, owned: bool, command: Command | None, latch: bool
+        self,
+        name: str,
+        type_name: str,
+        depth: int,
+        *,
+        owned: bool = False,
+        command: Command | None = None,
+        latch: bool = False,
     ) -> None:
         """Create a topic; `owned` topics belong to the console and stay."""
         self.name = name
@@ -188,7 +195,7 @@ class TopicRegistry:
                 raise RemoteProtocolError("the topic is not known here: give its type")
             if len(self._topics) >= self._limits.topics:
                 raise RemoteProtocolError(f"there are {self._limits.topics} topics already, the most allowed")
-            topic = self._topics[name] = Topic(name, full, RELAY_DEPTH, False, None, False)
+            topic = self._topics[name] = Topic(name, full, RELAY_DEPTH)
         elif full is not None and full != topic.type:
             raise RemoteProtocolError(f"the topic is {topic.type}, not {full}")
         return topic

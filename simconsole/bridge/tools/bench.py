@@ -102,7 +102,7 @@ async def _once(served: RunningServer, message: str, subscribers: int, seconds: 
             await peer.close()
     cpu_us = None if before_s is None or after_s is None else 1e6 * (after_s - before_s) / (count * subscribers)
     p99_ms = latencies_ms[int(0.99 * (len(latencies_ms) - 1))]
-    return Measurement(rate_hz, under_way, cpu_us, median(latencies_ms), p99_ms)
+    return Measurement(rate_hz=rate_hz, under_way=under_way, cpu_us=cpu_us, p50_ms=median(latencies_ms), p99_ms=p99_ms)
 
 
 def _text(topic: str, message: str) -> bytes:

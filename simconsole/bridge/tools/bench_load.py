@@ -49,7 +49,14 @@ def load(seconds: float = 3.0) -> LoadResult:
     if not ages_ms:
         raise BridgeError("no command of the flood was applied")
     middle, high = ages_ms[len(ages_ms) // 2], ages_ms[int(0.99 * (len(ages_ms) - 1))]
-    return LoadResult(lost, growth_mb, sent_hz, middle, high, ages_ms[-1])
+    return LoadResult(
+        lost=lost,
+        growth_mb=growth_mb,
+        sent_hz=sent_hz,
+        age_p50_ms=middle,
+        age_p99_ms=high,
+        age_max_ms=ages_ms[-1],
+    )
 
 
 async def _stall(url: str, server: int) -> tuple[int, float]:
