@@ -200,7 +200,7 @@ class BridgeClient:
         return self._ask(lambda: self.protocol.call_service(service, args, on_answer))
 
     def advertise_action(self, action: str, type_name: str, pursue: Callable[[Goal], None]) -> None:
-        """Take the goals of an action; `pursue` gets each and may keep it to tell of its progress and end later."""
+        """Take the goals of an action; `pursue` gets each and may keep it to send feedback and the result later."""
         self._register(self.protocol.advertise_action(action, type_name, pursue))
 
     def unadvertise_action(self, action: str) -> None:

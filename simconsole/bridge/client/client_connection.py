@@ -64,7 +64,7 @@ class ClientConnection:
         self.heard_s = 0.0
         """When something last arrived, on the monotonic clock."""
         self.close_code: int | None = None
-        """With which the server last closed; None if it did not say."""
+        """The server's last close code; None without one."""
 
     @property
     def is_open(self) -> bool:
@@ -132,7 +132,7 @@ class ClientConnection:
         self._flush()
 
     def ping(self) -> None:
-        """Ask the server for a sign of life. Raises BridgeError: the connection is lost."""
+        """Ping the server. Raises BridgeError: the connection is lost."""
         if self._web is not None and self._web.state is State.OPEN:
             self._web.send_ping(b"")
             self._flush()

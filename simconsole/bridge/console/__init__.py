@@ -1,1 +1,1 @@
-"""What the console says and hears over rosbridge: topics, commands, an operator's acts. No socket."""
+"""What the console sends and accepts over rosbridge: topics, commands, an operator's acts. No socket."""

@@ -259,7 +259,7 @@ def _setting(plain: dict[str, Any], command: int, settings: dict[int, float], na
 
 
 def _in_frame(header: Any, frames: tuple[str, ...]) -> None:
-    """Refuse what is said in a frame that the console does not take commands in; no name is the right one."""
+    """Refuse a frame that the console does not take commands in; an empty name stands for the right one."""
     if header.frame_id.removeprefix("/") not in frames:
         named = " or ".join(filter(None, frames))
         raise RemoteProtocolError(f"{header.frame_id[:64]!r} is not {named} - at `$.header.frame_id`")
@@ -276,5 +276,5 @@ def _within(path: str, value: float, most: float, least: float | None = None) ->
 
 
 def _sign(speed_mps: float) -> float:
-    """Return the direction a speed asks for; 0 leaves the direction as it is."""
+    """Return the direction of travel of a speed; 0 leaves the direction as it is."""
     return 1.0 if speed_mps > 0.0 else -1.0 if speed_mps < 0.0 else 0.0

@@ -19,7 +19,7 @@ def bridge_status(router: Router, now_ns: int) -> dict[str, Any]:
         "state": link_state(router, now_ns),
         "connections": router.connections,
         **router.counts()._asdict(),
-        "clients": [_of(session) for session in sessions],
+        "clients": [_client_counts(session) for session in sessions],
     }
 
 
@@ -40,7 +40,7 @@ def total_counts(router: Router) -> dict[str, int]:
     return {"connections": router.connections, **router.counts()._asdict()}
 
 
-def _of(session: ClientSession) -> dict[str, Any]:
+def _client_counts(session: ClientSession) -> dict[str, Any]:
     return {
         "peer": session.peer,
         "role": session.role.name.lower(),

@@ -33,10 +33,10 @@ OnAct = Callable[[Act], None]
 
 
 class Operator:
-    """Takes the operator's acts: raises their events and hands on what was said with them."""
+    """Handles the operator's acts: raises their events and passes the texts on."""
 
     def __init__(self, raise_events: Callable[[int], None], on_act: OnAct) -> None:
-        """Raise masks of `signals.Event` with the one, tell of acts with the other."""
+        """Raise masks of `signals.Event` with `raise_events`, report acts with `on_act`."""
         self._raise_events = raise_events
         self._on_act = on_act
         self._kept = 0
@@ -44,7 +44,7 @@ class Operator:
         """The newest tick that was published."""
 
     def operate(self, args: dict[str, Any], *_: object) -> dict[str, Any]:
-        """Do one act; whether arbitration grants it is told on `/console/arbitration`, as for any other ask.
+        """Do one act; whether arbitration grants it appears on `/console/arbitration`, as for any other request.
 
         Raises:
             BridgeError: no such act, or a text is too long.

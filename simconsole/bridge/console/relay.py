@@ -19,13 +19,11 @@ from simconsole.bridge.messages.rosidl_types import is_same_layout
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.client_session import ClientSession
 from simconsole.bridge.protocol.message_decoding import Binary
+from simconsole.bridge.protocol.operations import ABORTED, SUCCEEDED
 from simconsole.values.errors import BridgeError
 
 Describe = Callable[[str], tuple[Definition, ...] | None]
-"""Tells the messages that a type of the graph is made of, None where it is not installed."""
-
-SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
-"""action_msgs/GoalStatus."""
+"""Returns the messages that a type of the graph is made of, None where it is not installed."""
 
 ANYONE: Final = "graph"
 """The publishing node where ROS does not name it: all unnamed publishers count as one node."""
@@ -34,7 +32,7 @@ OUTPUT_DEPTH: Final = 10
 """Messages of a topic of the console that ROS keeps for a slow node: rclpy's default."""
 
 MAX_NODES: Final = 64
-"""Nodes told apart as commanders; further ones count as one."""
+"""Nodes that are distinguished as commanders; further ones count as one."""
 _UNASKED: Final = frozenset({"rcl_interfaces", "type_description_interfaces"})
 """Packages of services that every node has; six for each would fill the table."""
 
@@ -58,7 +56,7 @@ class GraphPublisher(NamedTuple):
 
 
 class GraphEntities(NamedTuple):
-    """What the relay needs to have in the graph, by name: types of topics heard, of services and actions offered."""
+    """What the relay needs to have in the graph, by name: publishers, and types of topics, services and actions."""
 
     publishers: dict[str, GraphPublisher]
     subscriptions: dict[str, str]
@@ -119,13 +117,13 @@ class Relay:
             self._missing.clear()
         heard = {name for name, offer in entities.publishers.items() if offer.latched or name in view.listened}
         for name in sorted(heard - self._listening):
-            self._say(now_ns, op="subscribe", topic=name, compression="cbor-raw")
+            self._submit(now_ns, op="subscribe", topic=name, compression="cbor-raw")
         for name in sorted(self._listening - heard):
-            self._say(now_ns, op="unsubscribe", topic=name)
+            self._submit(now_ns, op="unsubscribe", topic=name)
         self._listening = heard
         return entities
 
-    def hear(self, name: str, data: bytes, node: str, now_ns: int) -> None:
+    def receive(self, name: str, data: bytes, node: str, now_ns: int) -> None:
         """Take a message of the graph's `node`."""
         topic = self._router.topic(name)
         if topic is None:
@@ -143,35 +141,35 @@ class Relay:
             # What was drained before was for the graph; what waits now came from it and must not go back.
             self._main.send_queue.forget(echo)
 
-    def ask(self, key: str, service: str, data: bytes, now_ns: int) -> None:
+    def call_service(self, key: str, service: str, data: bytes, now_ns: int) -> None:
         """Take a call by the graph of a client's service; a `reply` operation with this key will follow."""
         self._pass_on(key, service, "Request", data, now_ns, op="call_service", service=service)
 
-    def pursue(self, key: str, action: str, data: bytes, now_ns: int) -> None:
+    def send_goal(self, key: str, action: str, data: bytes, now_ns: int) -> None:
         """Take a goal of the graph for a client's action; an `end` operation with this key will follow."""
         self._pass_on(key, action, "Goal", data, now_ns, op="send_action_goal", action=action, feedback=True)
 
     def cancel(self, key: str, action: str, now_ns: int) -> None:
         """Take the graph's request to cancel a goal."""
-        self._say(now_ns, op="cancel_action_goal", action=action, id=key)
+        self._submit(now_ns, op="cancel_action_goal", action=action, id=key)
 
-    def answered(self, key: str, service: str, data: bytes | None, why: str, now_ns: int) -> None:
+    def service_responded(self, key: str, service: str, data: bytes | None, why: str, now_ns: int) -> None:
         """Take the graph's answer to a `call`, None for a failure."""
         values = self._values("service", service, "Response", data)
-        self._say(
+        self._submit(
             now_ns, op="service_response", service=service, id=key, result=values is not None,
             values=why if values is None else values,
         )  # fmt: skip
 
-    def progressed(self, key: str, action: str, data: bytes, now_ns: int) -> None:
+    def feedback_received(self, key: str, action: str, data: bytes, now_ns: int) -> None:
         """Take feedback on a `goal`."""
         values = self._values("action", action, "Feedback", data)
-        self._say(now_ns, op="action_feedback", action=action, id=key, values=values)
+        self._submit(now_ns, op="action_feedback", action=action, id=key, values=values)
 
-    def ended(self, key: str, action: str, data: bytes | None, status: int, why: str, now_ns: int) -> None:
+    def goal_ended(self, key: str, action: str, data: bytes | None, status: int, why: str, now_ns: int) -> None:
         """Take the end of a `goal`, None for a failure."""
         values = self._values("action", action, "Result", data)
-        self._say(
+        self._submit(
             now_ns, op="action_result", action=action, id=key, status=status, result=status == SUCCEEDED,
             values=why if values is None else values,
         )  # fmt: skip
@@ -221,11 +219,11 @@ class Relay:
         op = "advertise" if kind == "topic" else f"advertise_{kind}"
         for name in [name for name in known if seen.get(name) != known[name]]:
             del known[name]
-            self._say(now_ns, op=f"un{op}", **{kind: name})
+            self._submit(now_ns, op=f"un{op}", **{kind: name})
         for name, type_name in seen.items():
             if name in known or type_name.partition("/")[0] in _UNASKED or not self._is_free(kind, name, type_name):
                 continue
-            if self._is_usable(type_name) and self._say(now_ns, op=op, type=type_name, **{kind: name}):
+            if self._is_usable(type_name) and self._submit(now_ns, op=op, type=type_name, **{kind: name}):
                 known[name] = type_name
 
     def _is_free(self, kind: str, name: str, type_name: str) -> bool:
@@ -266,7 +264,7 @@ class Relay:
             session.set_level("warning")
         return session
 
-    def _say(self, now_ns: int, **operation: Any) -> bool:
+    def _submit(self, now_ns: int, **operation: Any) -> bool:
         """Send an operation to the router as a client; return whether it was accepted."""
         return self._router.receive(self._main, msgspec.json.encode(operation), now_ns).kind == "done"
 
@@ -280,7 +278,7 @@ class Relay:
                 key, GraphOperation("end" if part == "Goal" else "reply", name, text=str(error), status=ABORTED)
             )
             return
-        self._say(now_ns, id=key, args=args, **operation)
+        self._submit(now_ns, id=key, args=args, **operation)
 
     def _values(self, kind: str, name: str, part: str, data: bytes | None) -> Any:
         if data is None:
@@ -291,9 +289,9 @@ class Relay:
     def _drain(self, now_ns: int) -> None:
         for name, session in (("ros2", self._main), *self._nodes.items()):
             while (text := session.next_text(now_ns)) is not None:
-                self._take(name, text)
+                self._translate(name, text)
 
-    def _take(self, peer: str, text: bytes) -> None:
+    def _translate(self, peer: str, text: bytes) -> None:
         """Turn what the router sends to one of the relay's sessions into a graph operation."""
         if isinstance(text, Binary):
             published = cbor2.loads(text)

@@ -31,7 +31,7 @@ HAZARD_LIGHTS_STATUS: Final = "/vehicle/status/hazard_lights_status"
 CONTROL_MODE: Final = "/vehicle/status/control_mode"
 
 GLOBAL_TOPICS: Final = frozenset({CLOCK, TF, TF_STATIC})
-"""Never put under a namespace: ROS programs look for these names only."""
+"""Never put under a namespace: ROS programs expect exactly these names."""
 
 ONCE: Final = -1.0
 MAP_FRAME: Final = "map"

@@ -9,6 +9,7 @@ from collections.abc import Callable
 import orjson
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.messages.definition_text import two_parts
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.client_session import ClientSession
 from simconsole.bridge.protocol.message_decoding import decode
@@ -39,7 +40,7 @@ class Upstream:
         for name, topic in router.topics.items():
             if not topic.owned:
                 continue
-            fields = {"topic": name, "type": topic.type.replace("/msg/", "/")}
+            fields = {"topic": name, "type": two_parts(topic.type)}
             if topic.command is None:
                 registrations.append(orjson.dumps({"op": "advertise", **fields, "latch": topic.latch}))
                 router.receive(session, orjson.dumps({"op": "subscribe", "topic": name}), now_ns)

@@ -151,7 +151,7 @@ class Registry:
             return msgspec.convert(value, struct)
         except msgspec.ValidationError:
             pass
-        # Only what failed is looked at again: spellings of the other dialect cost nobody else anything.
+        # Only a value that failed is normalised: messages in our own dialect pay nothing for the other one.
         try:
             return msgspec.convert(normalise(self, self.resolve(name), value, gaps, now_ns), struct)
         except msgspec.ValidationError as error:

@@ -7,8 +7,8 @@ from typing import Final, Literal
 from simconsole.bridge.messages.definition import OCTETS, Definition, Field, FieldType, full_name
 from simconsole.values.errors import BridgeError
 
-_WORDS: Final = {"boolean": "bool", "octet": "byte", "float": "float32", "double": "float64"}
-_SPELLED: Final = re.compile(
+_NAMES: Final = {"boolean": "bool", "octet": "byte", "float": "float32", "double": "float64"}
+_TYPE: Final = re.compile(
     r"(?:(?P<sequence>sequence)<)?(?P<base>[a-z]\w*(?:/[A-Za-z]\w*)?)(?:<(?P<limit>\d+)>)?"
     r"(?:(?:, (?P<bound>\d+))?>|\[(?P<size>\d+)\])?"
 )
@@ -18,14 +18,14 @@ def definition_of(name: str, fields: Mapping[str, str]) -> Definition:
     """Return the definition of a message from its fields' spelled types, such as `sequence<double, 3>`.
 
     Raises:
-        BridgeError: a type that no rosidl class tells of.
+        BridgeError: a type that no rosidl class has.
     """
     return Definition(name, tuple(Field(key, field_type(text), None) for key, text in fields.items()), {})
 
 
 def field_type(text: str) -> FieldType:
     """Return one spelled type. Raises BridgeError as `definition_of`."""
-    match = _SPELLED.fullmatch(text)
+    match = _TYPE.fullmatch(text)
     if match is None:
         raise BridgeError(f"{text[:80]!r} is not a type as rosidl spells it")
     array: Literal["", "fixed", "bounded", "unbounded"] = ""
@@ -34,7 +34,7 @@ def field_type(text: str) -> FieldType:
     elif match["size"]:
         array = "fixed"
     base = match["base"]
-    resolved = full_name(base) if "/" in base else _WORDS.get(base, base)
+    resolved = full_name(base) if "/" in base else _NAMES.get(base, base)
     return FieldType(resolved, array, int(match["bound"] or match["size"] or 0), int(match["limit"] or 0))
 
 

@@ -57,7 +57,7 @@ class Access:
         return self._role(fits)
 
     def _role(self, fits: Callable[[str], bool]) -> Role:
-        # Every token is compared, whichever fits, so that the time tells nothing.
+        # Every token is compared, so that the time taken reveals nothing.
         roles = [role for known, role in self._tokens.items() if fits(known)]
         if not roles:
             raise RemoteProtocolError("not a token of this server")
@@ -65,11 +65,11 @@ class Access:
 
 
 OPEN: Final = Access({}, Role.CONTROL)
-"""A server for its own machine: whoever is there may do everything."""
+"""A server for its own machine: every client may do everything."""
 
 
 def read_tokens(text: str, name: str) -> dict[str, Role]:
-    """Return the tokens of a file whose lines are `ROLE TOKEN`; empty lines and # comments are passed over.
+    """Return the tokens of a file whose lines are `ROLE TOKEN`; empty lines and # comments are ignored.
 
     Raises:
         ProfileError: naming the file and the line.

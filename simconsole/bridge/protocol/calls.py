@@ -5,7 +5,7 @@ never waits for another, so that one slow provider holds up nobody else.
 """
 
 from collections.abc import Callable
-from typing import Any, Final, NamedTuple
+from typing import Any, NamedTuple
 
 import cbor2
 import msgspec
@@ -17,6 +17,7 @@ from simconsole.bridge.protocol.client_session import ClientSession, resolve_top
 from simconsole.bridge.protocol.message_decoding import Binary
 from simconsole.bridge.protocol.message_encoding import Dialect, png, to_plain
 from simconsole.bridge.protocol.operations import (
+    ABORTED,
     ActionFeedback,
     ActionResult,
     AdvertiseAction,
@@ -35,9 +36,6 @@ from simconsole.profiles.bridge import BridgeLimits
 from simconsole.values.errors import BridgeError, RemoteProtocolError
 from simconsole.values.units import NS_PER_S
 
-ABORTED: Final = 6
-"""action_msgs/GoalStatus."""
-
 Handler = Callable[[dict[str, Any], Dialect], dict[str, Any]]
 """A service of the console: takes arguments and the caller's dialect, returns values; raises BridgeError to fail."""
 
@@ -54,7 +52,7 @@ class _Provider(NamedTuple):
 
 
 class _Caller(NamedTuple):
-    """Who asked, and how the answer is to come."""
+    """The calling client, and the form of the answer."""
 
     session: ClientSession
     id: Id
@@ -62,17 +60,17 @@ class _Caller(NamedTuple):
     fragment_size: int | None
     compression: Compression
 
-    def tell(self, **fields: Any) -> None:
-        """Send an operation to the caller in the form it wanted."""
+    def send(self, **fields: Any) -> None:
+        """Send an operation to the caller in the form it asked for."""
         self.session.answer(_encode(self.compression, id=self.id, **fields), self.fragment_size)
 
     def respond(self, values: Any, result: bool) -> None:
         """Answer a request."""
-        self.tell(op="service_response", service=self.called, values=values, result=result)
+        self.send(op="service_response", service=self.called, values=values, result=result)
 
     def end(self, values: Any, status: int, result: bool) -> None:
         """End a goal."""
-        self.tell(op="action_result", action=self.called, values=values, status=status, result=result)
+        self.send(op="action_result", action=self.called, values=values, status=status, result=result)
 
 
 class _Call(NamedTuple):
@@ -164,7 +162,7 @@ class Calls:
             _Caller(session, operation.id, operation.action, None, "none").end(reason, ABORTED, False)
 
     def expire(self, now_ns: int) -> None:
-        """End the calls whose time is over; cheap when there are none."""
+        """End the calls that have timed out; cheap when there are none."""
         if self._next_deadline_ns is None or now_ns < self._next_deadline_ns:
             return
         for identifier, call in list(self._calls.items()):
@@ -176,7 +174,7 @@ class Calls:
         )
 
     def disconnect(self, session: ClientSession) -> None:
-        """Remove everything of a client: what it provides, what it asked for, what it was asked."""
+        """Remove everything of a client: what it provides, its own calls, and calls to it."""
         for table in (self._services, self._actions):
             for name in [name for name, provider in table.items() if provider.session is session]:
                 del table[name]
@@ -245,7 +243,7 @@ class Calls:
         identifier, call = self._find_call(session, name, operation.id)
         del self._calls[identifier]
         values, result = operation.values, operation.result
-        # rosbridge_suite for ROS 1 looks at the values alone, and its clients' handlers return nothing that counts.
+        # rosbridge_suite for ROS 1 uses the values alone, and its clients set no meaningful result.
         if isinstance(values, dict) and (values or result):
             try:
                 values, result = self._checked(call, "Response", values), True
@@ -285,7 +283,7 @@ class Calls:
         _, call = self._find_call(session, name, operation.id)
         values = self._checked(call, "Feedback", operation.values)
         if call.feedback:
-            call.caller.tell(op="action_feedback", action=call.caller.called, values=values)
+            call.caller.send(op="action_feedback", action=call.caller.called, values=values)
 
     def _result(self, session: ClientSession, name: str, operation: ActionResult) -> None:
         identifier, call = self._find_call(session, name, operation.id)
@@ -331,7 +329,7 @@ class Calls:
             raise
 
     def _find_call(self, session: ClientSession, name: str, identifier: Id) -> tuple[str, _Call]:
-        """Return the call that a provider speaks of."""
+        """Return the open call that a provider refers to."""
         call = self._calls.get(identifier) if isinstance(identifier, str) else None
         if call is None or call.provider is not session or call.name != name:
             raise RemoteProtocolError("nobody waits for this: no call has this id")
@@ -376,7 +374,7 @@ def _is_typed(caller: _Caller) -> bool:
 
 
 def _encode(compression: Compression, **fields: Any) -> bytes:
-    """Return an operation as the receiver wanted it; cbor-raw is for topics, its answers come in plain CBOR."""
+    """Return an operation in the receiver's compression; cbor-raw is for topics, its answers come in plain CBOR."""
     if fields.get("id") is None:
         fields.pop("id", None)
     if compression in ("cbor", "cbor-raw"):

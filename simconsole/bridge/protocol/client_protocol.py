@@ -12,10 +12,14 @@ import msgspec
 import orjson
 
 from simconsole.bridge.messages import Registry, standard_registry
+from simconsole.bridge.messages.definition_text import two_parts
 from simconsole.bridge.protocol.fragments import FragmentAssembler
 from simconsole.bridge.protocol.message_decoding import decode
 from simconsole.bridge.protocol.message_encoding import Dialect, to_plain
 from simconsole.bridge.protocol.operations import (
+    ABORTED,
+    CANCELED,
+    SUCCEEDED,
     ActionFeedback,
     ActionResult,
     CallService,
@@ -34,10 +38,6 @@ from simconsole.values.errors import BridgeError, LocalProtocolError, RemoteProt
 MAX_STATUS: Final = 100
 MAX_WHOLE: Final = 16_777_216
 MAX_PIECES: Final = 65_536
-SUCCEEDED: Final = 4
-CANCELED: Final = 5
-ABORTED: Final = 6
-"""action_msgs/GoalStatus."""
 
 Callback = Callable[[str, Any], None]
 Answer = Callable[[Any, bool], None]
@@ -110,7 +110,7 @@ class ClientProtocol:
         self.refused = 0
         """Messages of the server that could not be used."""
         self.replies: deque[bytes] = deque()
-        """What the server's requests and goals are answered with; whoever owns the connection sends it."""
+        """Answers to the server's requests and goals; the owner of the connection sends them."""
         self.goals: dict[Any, Goal] = {}
         """What this client pursues for others, by id."""
         self._registrations: dict[tuple[str, str], bytes] = {}
@@ -134,7 +134,7 @@ class ClientProtocol:
         if known != full:
             raise LocalProtocolError(f"{topic}: advertised as {known}, cannot be {full} too")
         self._advertised[topic] = full
-        return self._register("advertise", topic=topic, type=_two_parts(full))
+        return self._register("advertise", topic=topic, type=two_parts(full))
 
     def unadvertise(self, topic: str) -> bytes:
         """Return the text that withdraws a publisher."""
@@ -183,7 +183,7 @@ class ClientProtocol:
         self._subscriptions[topic] = _Subscription(full, callback)
         asked = {"throttle_rate": throttle_rate, "queue_length": queue_length}
         more = {name: value for name, value in asked.items() if value}
-        return self._register("subscribe", topic=topic, type=_two_parts(full), **more)
+        return self._register("subscribe", topic=topic, type=two_parts(full), **more)
 
     def unsubscribe(self, topic: str) -> bytes:
         """Return the text that ends a subscription."""
@@ -329,10 +329,6 @@ class ClientProtocol:
     def _withdraw(self, op: str, **fields: str) -> bytes:
         self._registrations.pop((op, next(iter(fields.values()))), None)
         return orjson.dumps({"op": f"un{op}", **fields})
-
-
-def _two_parts(full: str) -> str:
-    return full.replace("/msg/", "/")
 
 
 def _dialect_of(message: Any) -> Dialect | None:

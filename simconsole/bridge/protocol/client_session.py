@@ -94,7 +94,7 @@ class ClientSession:
         return MessageCounts(self.received, self.refused, self.throttled, self.sent, self.send_queue.dropped)
 
     def answer(self, text: bytes, fragment_size: int | None = None) -> None:
-        """Send something that is meant for this client alone."""
+        """Send a text to this client alone."""
         self.send_queue.reply(text, fragment_size)
         self._wake()
 

@@ -12,7 +12,7 @@ from simconsole.values.units import NS_PER_S
 
 MAX_OPEN: Final = 8
 TIMEOUT_NS: Final = 5 * NS_PER_S
-"""Of silence, not in all: a message whose pieces keep coming is waited for, however slow its sender (N14)."""
+"""Longest silence between two pieces; a slow sender whose pieces keep coming is waited for (N14)."""
 
 
 def split(text: bytes, size: int, identifier: str) -> Iterator[bytes]:

@@ -96,11 +96,11 @@ def check_close(data: bytes) -> None:
 
 def framed(messages: Iterable[bytes]) -> bytes:
     """Return messages, text or `Binary`, as a server's frames, one after another."""
-    return b"".join(part for message in messages for part in (frame_head(message), message))
+    return b"".join(part for message in messages for part in (_header(message), message))
 
 
-def frame_head(message: bytes) -> bytes:
-    """Return what stands before a message in a server's frame: final, unmasked, binary or text (5.2)."""
+def _header(message: bytes) -> bytes:
+    """Return the header of a server's frame for a whole message: final, unmasked, binary or text (5.2)."""
     opcode = 0x80 | (BINARY if isinstance(message, Binary) else TEXT)
     length = len(message)
     if length < 126:

@@ -21,7 +21,7 @@ _LOCAL_PAGE: Final = re.compile(r"https?://(?:localhost|127\.0\.0\.1|\[::1\])(?:
 _PORT: Final = re.compile(r":\d{1,5}$")
 
 DRIVE_HEADER: Final = "X-Simconsole-Drive"
-"""Shown by a program that a drive has started, with that drive's nonce; by nobody else."""
+"""Header with the drive's nonce, sent only by programs that the drive has started."""
 
 
 class HandshakeRequest(NamedTuple):
@@ -106,7 +106,7 @@ def is_host_allowed(host: str, profile: BridgeProfile) -> bool:
 
 
 def dialect_of(path: str, profile: BridgeProfile) -> Dialect:
-    """Return how times and headers are spelled for a client: as its URL's path, /ros1 or /ros2, says if it does."""
+    """Return how times and headers are spelled for a client: by its URL's path, /ros1 or /ros2, else the profile's."""
     name = path.partition("?")[0].strip("/")
     if name == "ros1":
         return "ros1"

@@ -17,7 +17,7 @@ class Lease:
         return self._holder
 
     def is_open_to(self, client: int, now_ns: int) -> bool:
-        """Return whether `client` may command: it holds the lease, or nobody does."""
+        """Return whether `client` may command: it holds the lease, or the lease is free."""
         return self.holder(now_ns) in (None, client)
 
     def renew(self, client: int, now_ns: int) -> None:

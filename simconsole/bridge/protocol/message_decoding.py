@@ -32,7 +32,7 @@ class Binary(bytes):
 
 
 class DecodedMessage(NamedTuple):
-    """A decoded message; `literals` tells that it held NaN or Infinity, which JSON does not have."""
+    """A decoded message; `literals` is whether it held NaN or Infinity, which JSON does not have."""
 
     fields: dict[str, Any]
     literals: bool
@@ -61,7 +61,7 @@ def decode(text: bytes) -> DecodedMessage:
 
 
 def _read_binary(data: Binary) -> Any:
-    """Decode CBOR without indefinite lengths, foreign tags, repeated keys, and what JSON has no word for."""
+    """Decode CBOR without indefinite lengths, foreign tags, repeated keys, and values that JSON cannot express."""
     stream = io.BytesIO(data)
     try:
         value = cbor2.load(

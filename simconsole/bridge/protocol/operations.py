@@ -1,4 +1,4 @@
-"""The operations of the rosbridge v2 protocol that this bridge speaks: their fields, read and written.
+"""The operations of the rosbridge v2 protocol that this bridge supports: their fields, read and written.
 
 Source: ROSBRIDGE_PROTOCOL.md of rosbridge_suite. Fields a peer adds to an operation are ignored unless named here.
 """
@@ -16,7 +16,10 @@ Id = str | int | None
 Level = Literal["none", "error", "warning", "info"]
 SEVERITY: Final[dict[str, int]] = {"none": 0, "error": 1, "warning": 2, "info": 3}
 DEFAULT_LEVEL: Final = "error"
-
+SUCCEEDED: Final = 4
+CANCELED: Final = 5
+ABORTED: Final = 6
+"""How a goal ended (action_msgs/GoalStatus)."""
 
 Compression = Literal["none", "png", "cbor", "cbor-raw"]
 FragmentSize = Annotated[int, Meta(ge=16)] | None
@@ -31,7 +34,7 @@ class Span(Struct):
 
 
 class Qos(Struct):
-    """ROS 2's quality of service, as rosbridge_suite has it since its pull request 1150; what is absent is ours to say.
+    """ROS 2's quality of service, as in rosbridge_suite since its pull request 1150; absent fields get our defaults.
 
     Applied: `depth` and `history` as the queue's length, `durability` as the latch, `lifespan` (s, or a Duration) as
     the latch's end. Every queue here is reliable until it is full: `reliability` means nothing more.
@@ -82,7 +85,7 @@ class Publish(Struct):
 
 
 class Subscribe(Struct):
-    """A client wants a topic: at most one message per `throttle_rate` ms, `queue_length` kept while it waits."""
+    """A client subscribes: at most one message per `throttle_rate` ms, `queue_length` kept while it waits."""
 
     topic: str
     type: str | None = None
@@ -95,7 +98,7 @@ class Subscribe(Struct):
 
 
 class Unsubscribe(Struct):
-    """A client no longer wants a topic; without id all its subscriptions of the topic end."""
+    """A client unsubscribes from a topic; without id, all its subscriptions to it."""
 
     topic: str
     id: Id = None
@@ -168,7 +171,7 @@ class UnadvertiseAction(Struct):
 
 
 class SendActionGoal(Struct):
-    """A goal, either way; `feedback` asks to be told of its progress."""
+    """A goal, either way; `feedback` asks for its progress."""
 
     action: str
     action_type: str | None = None
@@ -180,7 +183,7 @@ class SendActionGoal(Struct):
 
 
 class CancelActionGoal(Struct):
-    """A goal is no longer wanted, either way."""
+    """A goal is cancelled, either way."""
 
     action: str
     id: Id
@@ -309,5 +312,5 @@ def publish_head(topic: str) -> bytes:
 
 
 def write_publish(topic: str, message: Any) -> bytes:
-    """Return a publish operation. NaN and infinities become null, so that it is JSON whatever is in it."""
+    """Return a publish operation. NaN and infinities become null, so that the result is always JSON."""
     return publish_head(topic) + msgspec.json.encode(message) + b"}"

@@ -9,7 +9,7 @@ from typing import Any, Final
 import orjson
 
 from simconsole.bridge.messages.definition import FieldType
-from simconsole.bridge.messages.definition_text import full_text
+from simconsole.bridge.messages.definition_text import full_text, two_parts
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.client_session import resolve_topic
 from simconsole.bridge.protocol.message_encoding import Dialect
@@ -72,7 +72,7 @@ class RosApi:
 
     def _topics(self, args: Fields, dialect: Dialect) -> Fields:
         topics = self._router.topics
-        return {"topics": list(topics), "types": [_spelled(topic.type, dialect) for topic in topics.values()]}
+        return {"topics": list(topics), "types": [_type_name(topic.type, dialect) for topic in topics.values()]}
 
     def _topics_for_type(self, args: Fields, dialect: Dialect) -> Fields:
         try:
@@ -87,7 +87,7 @@ class RosApi:
 
     def _topic_type(self, args: Fields, dialect: Dialect) -> Fields:
         topic = self._router.topics.get(resolve_topic(args["topic"]))
-        return {"type": "" if topic is None else _spelled(topic.type, dialect)}
+        return {"type": "" if topic is None else _type_name(topic.type, dialect)}
 
     def _publishers(self, args: Fields, dialect: Dialect) -> Fields:
         topic = self._topic(args)
@@ -115,7 +115,7 @@ class RosApi:
         return {"type": self._router.calls.services().get(resolve_topic(args["service"]), "")}
 
     def _service_providers(self, args: Fields, dialect: Dialect) -> Fields:
-        # As rosapi has it: asked by type, and by name too since that is what its clients send.
+        # As in rosapi: by type, and by name too since that is what its clients send.
         wanted = args["service"]
         names = [name for name, kind in self._router.calls.services().items() if _short(kind) == _short(wanted)]
         providers = [self._provider(name) for name in names] or [self._provider(resolve_topic(wanted))]
@@ -150,7 +150,7 @@ class RosApi:
         return {"typedefs": self._part(args["type"], "Feedback")}
 
     def _interfaces(self, args: Fields, dialect: Dialect) -> Fields:
-        return {"interfaces": [_spelled(name, dialect) for name in self._registry.names()]}
+        return {"interfaces": [_type_name(name, dialect) for name in self._registry.names()]}
 
     def _node_names(self) -> list[str]:
         return [NODE, *(f"/client_{session.number}" for session in self._router.sessions)]
@@ -195,9 +195,9 @@ class RosApi:
     def _typedefs(self, name: str) -> list[Fields]:
         return [
             {
-                "type": _spelled(definition.name, "ros1"),
+                "type": _type_name(definition.name, "ros1"),
                 "fieldnames": [field.name for field in definition.fields],
-                "fieldtypes": [_spelled(field.type.base, "ros1") for field in definition.fields],
+                "fieldtypes": [_type_name(field.type.base, "ros1") for field in definition.fields],
                 "fieldarraylen": [_array_length(field.type) for field in definition.fields],
                 "examples": [_example(field.type) for field in definition.fields],
                 "constnames": list(definition.constants),
@@ -216,7 +216,7 @@ class RosApi:
         return {"names": sorted(self._parameters)}
 
     def _search_param(self, args: Fields, dialect: Dialect) -> Fields:
-        # ROS 1 looks upwards through the namespaces of the asking node; all nodes here stand at the root.
+        # ROS 1 searches upwards through the namespaces of the calling node; all nodes here are at the root.
         name = args["name"]
         found = next((known for known in (name, f"/{name}") if known in self._parameters), "")
         return {"global_name": found}
@@ -246,8 +246,8 @@ class RosApi:
         return {"version": 1, "distro": "noetic"} if dialect == "ros1" else {"version": 2, "distro": _DISTRO}
 
 
-def _spelled(name: str, dialect: Dialect) -> str:
-    return name.replace("/msg/", "/") if dialect == "ros1" else name
+def _type_name(name: str, dialect: Dialect) -> str:
+    return two_parts(name) if dialect == "ros1" else name
 
 
 def _short(name: str) -> str:

@@ -53,7 +53,7 @@ class Router:
     def __init__(
         self, registry: Registry, limits: BridgeLimits, lease_ns: int, on_refused: Callable[[], None] = lambda: None
     ) -> None:
-        """Start without topics. `on_refused` is called for each refused command of whoever may command."""
+        """Start without topics. `on_refused` is called for each refused command of a client that may command."""
         self.registry = registry
         self.topic_registry = TopicRegistry(registry, limits)
         self.lease = Lease(lease_ns)
@@ -65,8 +65,8 @@ class Router:
         self._numbers = 0
         self._past_counts = MessageCounts()
         self.upstream: Literal["", "connecting", "connected", "lost"] = ""
-        """How it stands with another server that the console is a client of: empty without one, lost once it was there
-        and is tried again."""
+        """State of the connection to the server that the console is a client of: empty without one; lost while it
+        reconnects."""
         self.calls = Calls(registry, limits)
         self.access = OPEN
 
@@ -95,7 +95,7 @@ class Router:
         return self._numbers
 
     def counts(self) -> MessageCounts:
-        """Return what all clients together, also those that are gone, have sent and been sent."""
+        """Return the counts of all clients together, also of those that are gone."""
         counts = self._past_counts
         for session in self._sessions.values():
             counts = counts.plus(session.counts())
@@ -310,7 +310,7 @@ class Router:
 
 
 def _is_finite(value: Any) -> bool:
-    """Return whether no number in decoded CBOR is NaN or infinite; JSON has no way to say one."""
+    """Return whether no number in decoded CBOR is NaN or infinite; JSON cannot express them."""
     if isinstance(value, dict):
         return all(map(_is_finite, value.values()))
     if isinstance(value, list):

@@ -161,7 +161,7 @@ class SendQueue:
         return self._in_pieces(text, queue.fragment_size)
 
     def _in_pieces(self, text: bytes, size: int | None) -> bytes:
-        """Return a text or, if it is longer than the client wants, its first piece; the others are taken next."""
+        """Return a text or, if it is longer than the fragment size, its first piece; the others are taken next."""
         if size is None or len(text) <= size or isinstance(text, Binary):
             return text
         self._messages += 1
@@ -176,7 +176,7 @@ class SendQueue:
         return min((queue.next_ns for queue in self._waiting), default=None)
 
     def forget(self, queue: SubscriptionQueue) -> None:
-        """Discard what waits of a topic that the client no longer wants."""
+        """Discard what waits of a topic that the client has unsubscribed from."""
         self.bytes -= sum(map(len, queue.texts))
         queue.texts.clear()
         self._waiting.pop(queue, None)

@@ -1,4 +1,4 @@
-"""All topics of one server: what each carries, whose it is, who hears it. A message is encoded once for everybody."""
+"""All topics of one server: type, owner, publishers, subscribers. A message is encoded once for all subscribers."""
 
 from collections.abc import Callable
 from typing import Any, Final, NamedTuple
@@ -12,7 +12,7 @@ from simconsole.profiles.bridge import BridgeLimits
 from simconsole.values.errors import LocalProtocolError, RemoteProtocolError
 
 RELAY_DEPTH: Final = 100
-"""Messages kept of a topic between clients for a slow subscriber that did not say how many it wants."""
+"""Messages kept of a topic between clients for a slow subscriber that gave no queue length."""
 
 _UINT32: Final = 0xFFFFFFFF
 
@@ -110,7 +110,7 @@ class TopicRegistry:
             if len(session.queues) >= self._limits.subscriptions:
                 raise RemoteProtocolError(f"{self._limits.subscriptions} subscriptions are the most allowed")
             topic = self._topic(name, operation.type)
-            # The client is answered with the name it used, which is what it looks up.
+            # Messages carry the name that the client used, for it matches them by that.
             head = topic.head if operation.topic == name else publish_head(operation.topic)
             queue = session.queues[name] = SubscriptionQueue(head, topic.depth, operation.topic)
             topic.subscribers[session.number] = (session, queue)
@@ -201,7 +201,7 @@ class TopicRegistry:
         return topic
 
     def _depth(self, qos: Qos) -> int:
-        """Return how many messages a quality of service asks to keep, 0 if it does not say."""
+        """Return the queue depth that a quality of service asks for, 0 without one."""
         return self._limits.queue_length if qos.history == "keep_all" else qos.depth or 0
 
     def _remove_unused(self, topic: Topic) -> None:

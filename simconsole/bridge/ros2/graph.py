@@ -57,9 +57,9 @@ class Graph:
     """The console's node. Public methods belong to the bridge's thread, all others to rclpy's."""
 
     def __init__(
-        self, settings: Ros2Profile, put: Callable[..., None], hear: Callable[[ReceivedMessage], None]
+        self, settings: Ros2Profile, put: Callable[..., None], receive: Callable[[ReceivedMessage], None]
     ) -> None:
-        """Join; `put` and `hear` are called on rclpy's thread.
+        """Join; `put` and `receive` are called on rclpy's thread.
 
         Raises:
             BridgeError: rclpy is not installed, or cannot join.
@@ -73,7 +73,7 @@ class Graph:
             raise BridgeError(f"{NOT_INSTALLED}: {error}") from None
         self._rclpy: Any = rclpy
         self._put = put
-        self._hear = hear
+        self._receive = receive
         self._context: Any = rclpy.Context()
         try:
             with _environment(_DISCOVERY, settings.discovery.upper()):
@@ -95,13 +95,13 @@ class Graph:
         self._services: dict[str, tuple[Any, Any]] = {}
         self._actions: dict[str, tuple[Any, Any]] = {}
         self.broken = False
-        """Whether rclpy's thread has ended although nobody wanted that."""
+        """Whether rclpy's thread has ended unexpectedly."""
         self._closing = False
         self._early: dict[str, bytes] = {}
         """The newest message of each topic whose publisher is not yet made."""
         self._lock = threading.Lock()
         self._sent: dict[str, deque[bytes]] = {}
-        """The newest messages that were sent on topics which are also heard."""
+        """The newest messages that were sent on topics which are also subscribed to."""
         self._pending: list[_PendingMessage] = []
         self._nodes: dict[bytes, str] = {}
         """Who publishes, by the identity of the publisher."""
@@ -113,7 +113,7 @@ class Graph:
         """Create and destroy publishers, subscriptions, services and actions to match `entities`, soon."""
         if entities != self._entities:
             self._entities = entities
-            self._executor.create_task(self._settle)
+            self._executor.create_task(self._update_entities)
 
     def execute(self, operation: GraphOperation) -> None:
         """Carry out one operation of the relay."""
@@ -143,7 +143,7 @@ class Graph:
         if name in self._subscriptions:
             with self._lock:
                 self._sent.setdefault(name, deque(maxlen=MAX_SENT)).append(data)
-        with suppress(InvalidHandle):  # destroyed meanwhile, because nobody wants it
+        with suppress(InvalidHandle):  # destroyed meanwhile, because nothing subscribes any more
             known[1].publish(data)
 
     def _spin(self) -> None:
@@ -177,12 +177,12 @@ class Graph:
             if len(types) == 1 and node.count_services(f"{name}/_action/send_goal") > (name in self._actions)
         }
         nodes = {_path(space, name) for name, space in node.get_node_names_and_namespaces()}
-        self._name_them(1)
+        self._resolve_publishers(1)
         self._calls.poll()
         self._put("view", GraphView(topics, frozenset(listened), services, actions, frozenset(nodes)))
-        self._settle()
+        self._update_entities()
 
-    def _settle(self) -> None:
+    def _update_entities(self) -> None:
         entities, node = self._entities, self._node
         _synchronise(self._publishers, entities.publishers, self._make_publisher, node.destroy_publisher)
         ways = {name: self._subscription_settings(name, kind) for name, kind in entities.subscriptions.items()}
@@ -202,7 +202,7 @@ class Graph:
         return publisher
 
     def _subscription_settings(self, name: str, kind: str) -> _SubscriptionSettings:
-        """Return what all who publish now can do: a reliable subscription hears nothing of a best-effort publisher."""
+        """Return settings that fit all publishers: a reliable subscription gets nothing from a best-effort one."""
         from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
         found = self._node.get_publishers_info_by_topic(name)
@@ -221,19 +221,19 @@ class Graph:
         )
 
         def take(data: bytes, info: Any) -> None:
-            # Where ROS does not tell who publishes (before Kilted), all of the graph is one.
+            # Where ROS does not name the publisher (before Kilted), the whole graph counts as one node.
             identity = (info.get("publisher_gid") or {}).get("data")
             if identity is None:
                 if not self._is_own(name, data):
-                    self._hear(ReceivedMessage(name, data, ANYONE))
+                    self._receive(ReceivedMessage(name, data, ANYONE))
                 return
             self._pending.append(_PendingMessage(name, data, identity, 0))
-            self._name_them(0)
+            self._resolve_publishers(0)
 
         return self._node.create_subscription(load(way.type), name, take, qos, raw=True, callback_group=self._group)
 
     def _is_own(self, name: str, data: bytes) -> bool:
-        """Return whether a message is one that was sent from here, where ROS does not tell who publishes."""
+        """Return whether a message is one that was sent from here, where ROS does not name the publisher."""
         with self._lock:
             try:
                 self._sent[name].remove(data)
@@ -241,7 +241,7 @@ class Graph:
                 return False
         return True
 
-    def _name_them(self, polls: int) -> None:
+    def _resolve_publishers(self, polls: int) -> None:
         """Pass on, in order, what has come from publishers whose node is known by now.
 
         A publisher is found some moments before the name of its node. Such messages wait rather than be taken for
@@ -253,7 +253,7 @@ class Graph:
             if node is None and each.polls < MAX_POLLS:
                 self._pending.append(each._replace(polls=each.polls + polls))
             elif node != self._name:
-                self._hear(ReceivedMessage(each.topic, each.data, node or ANYONE))
+                self._receive(ReceivedMessage(each.topic, each.data, node or ANYONE))
         del self._pending[:-MAX_PENDING]
 
     def _publisher(self, message: _PendingMessage) -> str | None:

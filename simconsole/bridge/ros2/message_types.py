@@ -1,4 +1,4 @@
-"""The types of an installed ROS 2: its generated Python classes, and what they tell of themselves."""
+"""The types of an installed ROS 2: its generated Python classes, and their definitions."""
 
 import importlib
 from typing import Any

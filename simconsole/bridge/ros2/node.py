@@ -18,7 +18,7 @@ from simconsole.bridge.ros2.message_types import describe
 from simconsole.profiles.bridge import BridgeProfile, Ros2Profile
 from simconsole.values.errors import BridgeError, ProfileError
 
-MAX_HEARD: Final = 1000
+MAX_RECEIVED: Final = 1000
 """Messages that wait for the bridge's thread; of more, the oldest are dropped."""
 LOGGED: Final = 10
 LOGGED_EVERY: Final = 1000
@@ -44,12 +44,12 @@ class Ros2Link:
         """
         settings = profile.ros2 or Ros2Profile()
         self._inbox: deque[tuple[str, tuple[Any, ...]]] = deque()
-        self._heard: deque[ReceivedMessage] = deque(maxlen=MAX_HEARD)
+        self._received: deque[ReceivedMessage] = deque(maxlen=MAX_RECEIVED)
         self._remarks: dict[str, int] = {}
         self._wake = wake
         self._relay = Relay(console, role_of_graph(profile, console.router.access.anonymous), describe, wake)
         try:
-            self._graph = Graph(settings, self._put, self._hear)
+            self._graph = Graph(settings, self._put, self._receive)
         except BridgeError:
             self._relay.leave(0)
             raise
@@ -67,8 +67,8 @@ class Ros2Link:
                 self._graph.set_entities(self._relay.observe(arguments[0], now_ns))
             else:
                 getattr(self._relay, event)(*arguments, now_ns)
-        for _ in range(len(self._heard)):
-            self._relay.hear(*self._heard.popleft(), now_ns)
+        for _ in range(len(self._received)):
+            self._relay.receive(*self._received.popleft(), now_ns)
         for operation in self._relay.operations(now_ns):
             if operation.kind == "remark":
                 self._log(operation.name, operation.text)
@@ -88,8 +88,8 @@ class Ros2Link:
         self._inbox.append((event, arguments))
         self._wake()
 
-    def _hear(self, heard: ReceivedMessage) -> None:
-        self._heard.append(heard)
+    def _receive(self, message: ReceivedMessage) -> None:
+        self._received.append(message)
         self._wake()
 
 

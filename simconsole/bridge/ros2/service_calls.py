@@ -9,7 +9,8 @@ import logging
 from collections.abc import Callable
 from typing import Any, Final
 
-from simconsole.bridge.console.relay import ABORTED, CANCELED, SUCCEEDED, GraphOperation
+from simconsole.bridge.console.relay import GraphOperation
+from simconsole.bridge.protocol.operations import ABORTED, CANCELED, SUCCEEDED
 from simconsole.bridge.ros2.message_types import load
 
 MAX_POLLS: Final = 300
@@ -30,11 +31,11 @@ class GraphCalls:
         self._numbers = itertools.count(1)
         self._clients: dict[str, Any] = {}
         self._waiting: dict[str, Any] = {}
-        """Futures by key: what the graph has asked of rosbridge clients."""
+        """Futures by key, of the graph's calls to rosbridge clients."""
         self._served: dict[str, tuple[Any, Any]] = {}
         """The graph's goals by key: handle and types."""
-        self._pursued: dict[str, Any] = {}
-        """Handles of the clients' goals by key; until the graph has accepted one None, or a word if it is unwanted."""
+        self._goals: dict[str, Any] = {}
+        """Handles of the clients' goals by key; None before acceptance, a string if cancelled before."""
         self._unready: list[tuple[GraphOperation, int]] = []
         """What is for a service or action not yet found by our end of it, and how many polls are left."""
 
@@ -42,20 +43,20 @@ class GraphCalls:
         """Do one thing that the relay ordered."""
         match operation.kind:
             case "call" | "goal":
-                self._ask_graph(operation, MAX_POLLS)
+                self._request(operation, MAX_POLLS)
             case "cancel":
                 self._cancel(operation)
             case "reply" | "end":
                 self._finish(operation)
             case "feedback":
-                self._tell(operation)
+                self._publish_feedback(operation)
 
     def poll(self) -> None:
         """Ask again for what was not yet there: a request sent before both ends know each other is lost."""
         waiting, self._unready = self._unready, []
         for operation, polls in waiting:
             if polls:
-                self._ask_graph(operation, polls - 1)
+                self._request(operation, polls - 1)
 
     def make_service(self, name: str, kind: str) -> Any:
         """Return a service of the graph that a client of the bridge answers."""
@@ -65,10 +66,10 @@ class GraphCalls:
 
         async def serve(request: Any, response: Any) -> Any:
             """Have the bridge answer a request of the graph; what fails is the empty answer."""
-            _, answer = self._ask("ask", name, serialize_message(request))
+            _, answer = self._forward("call_service", name, serialize_message(request))
             operation = await answer
             if operation.data is None:
-                # ROS 2 has no word for a failed call: the response stays what it is by default.
+                # ROS 2 cannot express a failed call: the response keeps its defaults.
                 _logger.warning("%s: %s", name, operation.text)
                 return response
             return deserialize_message(operation.data, types.Response)
@@ -84,7 +85,7 @@ class GraphCalls:
 
         async def execute(goal: Any) -> Any:
             """Have the bridge pursue a goal of the graph, to its end."""
-            key, end = self._ask("pursue", name, serialize_message(goal.request))
+            key, end = self._forward("send_goal", name, serialize_message(goal.request))
             self._served[key] = (goal, types)
             operation = await end
             del self._served[key]
@@ -98,7 +99,7 @@ class GraphCalls:
             return types.Result() if operation.data is None else deserialize_message(operation.data, types.Result)
 
         def cancel(goal: Any) -> Any:
-            """Hand the wish to end a goal on to whoever pursues it."""
+            """Pass the request to cancel a goal on to the client that executes it."""
             identity = bytes(goal.goal_id.uuid)
             for key, (known, _) in self._served.items():
                 if bytes(known.goal_id.uuid) == identity:
@@ -110,7 +111,7 @@ class GraphCalls:
             self._node, types, name, execute, callback_group=self._group, cancel_callback=cancel
         )  # fmt: skip
 
-    def _ask(self, event: str, name: str, data: bytes) -> tuple[str, Any]:
+    def _forward(self, event: str, name: str, data: bytes) -> tuple[str, Any]:
         from rclpy.task import Future
 
         key = f"graph:{next(self._numbers)}"
@@ -124,23 +125,23 @@ class GraphCalls:
         if future is not None:
             future.set_result(operation)
 
-    def _tell(self, operation: GraphOperation) -> None:
+    def _publish_feedback(self, operation: GraphOperation) -> None:
         from rclpy.serialization import deserialize_message
 
         if operation.key in self._served and operation.data is not None:
             goal, types = self._served[operation.key]
             goal.publish_feedback(deserialize_message(operation.data, types.Feedback))
 
-    def _ask_graph(self, operation: GraphOperation, polls: int) -> None:
+    def _request(self, operation: GraphOperation, polls: int) -> None:
         from rclpy.action import ActionClient
         from rclpy.serialization import deserialize_message
 
         is_call = operation.kind == "call"
         if operation.data is None:
             if is_call:
-                self._put("answered", operation.key, operation.name, None, operation.text)
+                self._put("service_responded", operation.key, operation.name, None, operation.text)
             else:
-                self._put("ended", operation.key, operation.name, None, ABORTED, operation.text)
+                self._put("goal_ended", operation.key, operation.name, None, ABORTED, operation.text)
             return
         types = load(operation.type)
         client = self._clients.get(operation.name)
@@ -150,13 +151,13 @@ class GraphCalls:
             client = ActionClient(self._node, types, operation.name, callback_group=self._group)
         self._clients[operation.name] = client
         if not is_call:
-            self._pursued.setdefault(operation.key, None)
+            self._goals.setdefault(operation.key, None)
         if not (client.service_is_ready() if is_call else client.server_is_ready()):
             self._unready.append((operation, polls))
         elif is_call:
             self._call(operation, client, deserialize_message(operation.data, types.Request))
         else:
-            self._pursue(operation, client, deserialize_message(operation.data, types.Goal))
+            self._send_goal(operation, client, deserialize_message(operation.data, types.Goal))
 
     def _call(self, operation: GraphOperation, client: Any, request: Any) -> None:
         from rclpy.serialization import serialize_message
@@ -165,11 +166,11 @@ class GraphCalls:
             """Put the answer of the graph, or why there is none, into the bridge's inbox."""
             error = future.exception()
             data = None if error is not None else serialize_message(future.result())
-            self._put("answered", operation.key, operation.name, data, str(error))
+            self._put("service_responded", operation.key, operation.name, data, str(error))
 
         client.call_async(request).add_done_callback(done)
 
-    def _pursue(self, operation: GraphOperation, client: Any, goal: Any) -> None:
+    def _send_goal(self, operation: GraphOperation, client: Any, goal: Any) -> None:
         from rclpy.serialization import serialize_message
 
         key, name = operation.key, operation.name
@@ -177,30 +178,30 @@ class GraphCalls:
         def accepted(future: Any) -> None:
             handle = future.result()
             if not handle.accepted:
-                self._pursued.pop(key, None)
-                self._put("ended", key, name, None, ABORTED, "the goal was not accepted")
+                self._goals.pop(key, None)
+                self._put("goal_ended", key, name, None, ABORTED, "the goal was not accepted")
                 return
-            is_unwanted = isinstance(self._pursued.get(key), str)
-            self._pursued[key] = handle
+            is_unwanted = isinstance(self._goals.get(key), str)
+            self._goals[key] = handle
             handle.get_result_async().add_done_callback(ended)
             if is_unwanted:
                 handle.cancel_goal_async()
 
         def ended(future: Any) -> None:
-            self._pursued.pop(key, None)
+            self._goals.pop(key, None)
             found = future.result()
-            self._put("ended", key, name, serialize_message(found.result), found.status, "")
+            self._put("goal_ended", key, name, serialize_message(found.result), found.status, "")
 
         def progressed(message: Any) -> None:
-            self._put("progressed", key, name, serialize_message(message.feedback))
+            self._put("feedback_received", key, name, serialize_message(message.feedback))
 
         client.send_goal_async(goal, feedback_callback=progressed).add_done_callback(accepted)
 
     def _cancel(self, operation: GraphOperation) -> None:
-        if operation.key not in self._pursued:
+        if operation.key not in self._goals:
             return
-        goal = self._pursued[operation.key]
+        goal = self._goals[operation.key]
         if goal is None:
-            self._pursued[operation.key] = "cancel"
+            self._goals[operation.key] = "cancel"
         elif not isinstance(goal, str):
             goal.cancel_goal_async()

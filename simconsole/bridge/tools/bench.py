@@ -119,33 +119,33 @@ class _Deliveries:
     """Messages delivered to each subscriber; a round is a message that all have received."""
 
     def __init__(self, listeners: int) -> None:
-        self.heard = [0] * listeners
+        self.received = [0] * listeners
         self.rounds = 0
         self.on_round: Callable[[], None] = lambda: None
         self._missing: dict[int, int] = {}
 
     def listener(self, number: int) -> Callable[[], None]:
         """Return what a listener calls for each message."""
-        if len(self.heard) == 1:
-            return self._hear_alone
-        return lambda: self._hear(number)
+        if len(self.received) == 1:
+            return self._receive_alone
+        return lambda: self._receive(number)
 
     def forget(self) -> None:
         """Begin to count anew: some messages never came to everybody."""
-        self.heard = [0] * len(self.heard)
+        self.received = [0] * len(self.received)
         self.rounds = 0
         self._missing.clear()
 
-    async def fall_silent(self) -> None:
+    async def wait_for_silence(self) -> None:
         """Return when nothing has come for a while."""
         while True:
-            before = list(self.heard)
+            before = list(self.received)
             await asyncio.sleep(_SILENCE_S)
-            if before == self.heard:
+            if before == self.received:
                 return
 
-    async def rounds_are(self, count: int) -> None:
-        """Return when all have heard `count` messages. Raises TimeoutError: none came for long."""
+    async def wait_for_rounds(self, count: int) -> None:
+        """Return when all have received `count` messages. Raises TimeoutError: none came for long."""
         while self.rounds < count:
             before, deadline_s = self.rounds, time.monotonic() + _PATIENCE_S
             while self.rounds == before:
@@ -153,15 +153,15 @@ class _Deliveries:
                     raise TimeoutError
                 await asyncio.sleep(0.001)
 
-    def _hear_alone(self) -> None:
-        self.heard[0] += 1
+    def _receive_alone(self) -> None:
+        self.received[0] += 1
         self.rounds += 1
         self.on_round()
 
-    def _hear(self, number: int) -> None:
-        index = self.heard[number]
-        self.heard[number] = index + 1
-        missing = self._missing.get(index, len(self.heard)) - 1
+    def _receive(self, number: int) -> None:
+        index = self.received[number]
+        self.received[number] = index + 1
+        missing = self._missing.get(index, len(self.received)) - 1
         if missing:
             self._missing[index] = missing
             return
@@ -171,14 +171,14 @@ class _Deliveries:
 
 
 async def _warm_up(publisher: Peer, deliveries: _Deliveries, text: bytes) -> None:
-    """Return when every subscription stands: each listener has heard, and nothing more is under way."""
+    """Return when every subscription works: each subscriber has received, and nothing more is in flight."""
     for _ in range(_TRIES):
         publisher.send(text)
         deadline_s = time.monotonic() + 0.5
-        while time.monotonic() < deadline_s and not all(deliveries.heard):
+        while time.monotonic() < deadline_s and not all(deliveries.received):
             await asyncio.sleep(0.005)
-        if all(deliveries.heard):
-            await deliveries.fall_silent()
+        if all(deliveries.received):
+            await deliveries.wait_for_silence()
             return
     raise TimeoutError
 
@@ -192,15 +192,15 @@ async def _window(publisher: Peer, deliveries: _Deliveries, text: bytes) -> int:
     deliveries.forget()
     for _ in range(IN_FLIGHT):
         publisher.send(text)
-    await deliveries.fall_silent()
-    kept = min(deliveries.heard)
+    await deliveries.wait_for_silence()
+    kept = min(deliveries.received)
     return IN_FLIGHT if kept == IN_FLIGHT else max(1, kept // 2)
 
 
 async def _closed_loop(
     publisher: Peer, deliveries: _Deliveries, text: bytes, under_way: int, seconds: float
 ) -> tuple[float, int]:
-    """Send one for each that everybody has heard; return the rate in Hz, and how many there were altogether."""
+    """Send one for each that all have received; return the rate in Hz, and how many there were altogether."""
     deliveries.forget()
     count, ended_s = under_way, 0.0
     began_s = time.monotonic()
@@ -219,7 +219,7 @@ async def _closed_loop(
     for _ in range(under_way):
         publisher.send(text)
     await asyncio.sleep(seconds)
-    await deliveries.rounds_are(count)
+    await deliveries.wait_for_rounds(count)
     deliveries.on_round = lambda: None
     return (count - under_way + 1) / (ended_s - began_s), count
 
@@ -239,6 +239,6 @@ async def _paced(publisher: Peer, deliveries: _Deliveries, text: bytes, seconds:
         next_s += 1.0 / RATE_HZ
         sent_s = time.monotonic()
         publisher.send(text)
-        await deliveries.rounds_are(number)
+        await deliveries.wait_for_rounds(number)
     deliveries.on_round = lambda: None
     return latencies_ms

@@ -1,4 +1,4 @@
-"""The benchmark's clients: callbacks for what is heard, the same for every server measured (shell).
+"""The benchmark's clients: a callback for each message received, the same for every server measured.
 
 picows carries them where it is installed: a client in Python would be slower than the servers it measures.
 """

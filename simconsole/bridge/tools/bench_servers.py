@@ -1,4 +1,4 @@
-"""Servers to be measured, each in a process of its own: ours, and bare brokers of the same libraries (shell).
+"""Servers to be measured, each in a process of its own: ours, and bare brokers of the same libraries.
 
 A bare broker parses, encodes once and fans out, with no validation: what is left to gain.
 """
@@ -101,7 +101,7 @@ def _serve_bare(pipe: Connection) -> None:
     listening: dict[str, list[ServerConnection]] = {}
 
     async def client(peer: ServerConnection) -> None:
-        """Take subscriptions, and pass on what is published to whoever has subscribed."""
+        """Take subscriptions, and pass on what is published to the subscribers."""
         async for text in peer:
             operation = orjson.loads(text)
             if operation["op"] == "subscribe":

@@ -48,7 +48,7 @@ class _Connection:
     def send_text(self, text: str) -> None:
         self._peer.send(text)
 
-    def next(self, timeout_s: float = _PATIENCE_S) -> dict[str, Any] | None:
+    def receive(self, timeout_s: float = _PATIENCE_S) -> dict[str, Any] | None:
         """Return the next message, decoded strictly, None when none came."""
         try:
             text = self._peer.recv(timeout=timeout_s)
@@ -62,25 +62,25 @@ class _Connection:
             raise DeviationError(f"sent invalid JSON: {error}") from None
         return decoded if isinstance(decoded, dict) else {}
 
-    def want(self, op: str) -> dict[str, Any]:
+    def receive_op(self, op: str) -> dict[str, Any]:
         """Return the next message of an operation; others that come before it are ignored."""
         deadline_s = time.monotonic() + _PATIENCE_S
         while (left_s := deadline_s - time.monotonic()) > 0.0:
-            message = self.next(left_s)
+            message = self.receive(left_s)
             if message is not None and message.get("op") == op:
                 return message
         raise DeviationError(f"no {op} came")
 
-    def pair(self, kind: str, **more: Any) -> None:
+    def advertise_and_subscribe(self, kind: str, **more: Any) -> None:
         """Advertise and subscribe this connection's own topic."""
         self.send(op="advertise", topic=self.topic, type=kind)
         self.send(op="subscribe", topic=self.topic, type=kind, **more)
 
     def echo(self, kind: str, msg: Any, **more: Any) -> dict[str, Any]:
         """Return how a message of this connection comes back to it."""
-        self.pair(kind, **more)
+        self.advertise_and_subscribe(kind, **more)
         self.send(op="publish", topic=self.topic, msg=msg)
-        content = self.want("publish")["msg"]
+        content = self.receive_op("publish")["msg"]
         return content if isinstance(content, dict) else {}
 
 
@@ -99,9 +99,9 @@ def _null_in(connection: _Connection) -> None:
 
 
 def _literal_in(connection: _Connection) -> None:
-    connection.pair("std_msgs/msg/Float64")
+    connection.advertise_and_subscribe("std_msgs/msg/Float64")
     connection.send_text(f'{{"op":"publish","topic":"{connection.topic}","msg":{{"data":NaN}}}}')
-    data = connection.want("publish")["msg"]["data"]
+    data = connection.receive_op("publish")["msg"]["data"]
     _expect(data is None, f"NaN came back as {data}")
 
 
@@ -122,9 +122,9 @@ def _octets(connection: _Connection) -> None:
 
 
 def _out_of_range(connection: _Connection) -> None:
-    connection.pair("std_msgs/msg/UInt8")
+    connection.advertise_and_subscribe("std_msgs/msg/UInt8")
     connection.send(op="publish", topic=connection.topic, msg={"data": 999}, id="range")
-    status = connection.want("status")
+    status = connection.receive_op("status")
     _expect(status.get("id") == "range", "status without the id")
     _expect("data" in str(status.get("msg")), "status without the field")
 
@@ -177,26 +177,26 @@ def _missing_fields(connection: _Connection) -> None:
 
 
 def _unknown_field(connection: _Connection) -> None:
-    connection.pair("geometry_msgs/msg/Point")
+    connection.advertise_and_subscribe("geometry_msgs/msg/Point")
     connection.send(op="publish", topic=connection.topic, msg={"x": 1.0, "w": 2.0}, id="field")
-    status = connection.want("status")
+    status = connection.receive_op("status")
     _expect(status.get("id") == "field" and "w" in str(status.get("msg")), f"status {status}"[:200])
 
 
 def _other_type(connection: _Connection) -> None:
-    connection.pair("std_msgs/msg/String")
+    connection.advertise_and_subscribe("std_msgs/msg/String")
     connection.send(op="advertise", topic=connection.topic, type="std_msgs/msg/Bool", id="type")
-    _expect(connection.want("status").get("id") == "type", "status without the id")
+    _expect(connection.receive_op("status").get("id") == "type", "status without the id")
 
 
 def _fragments_in(connection: _Connection) -> None:
-    connection.pair("std_msgs/msg/String")
+    connection.advertise_and_subscribe("std_msgs/msg/String")
     text = json.dumps({"op": "publish", "topic": connection.topic, "msg": {"data": "in pieces"}})
     half = len(text) // 2
     # The total as rosbridge_suite itself writes it, and the second piece first.
     for number, piece in ((1, text[half:]), (0, text[:half])):
         connection.send(op="fragment", id="f", num=number, total=1.7, data=piece)
-    data = connection.want("publish")["msg"]["data"]
+    data = connection.receive_op("publish")["msg"]["data"]
     _expect(data == "in pieces", f"came as {data}")
 
 
@@ -204,7 +204,7 @@ def _latch(connection: _Connection) -> None:
     connection.send(op="advertise", topic=connection.topic, type="std_msgs/msg/String", latch=True)
     connection.send(op="publish", topic=connection.topic, msg={"data": "kept"}, latch=True)
     connection.send(op="subscribe", topic=connection.topic, type="std_msgs/msg/String")
-    _expect(connection.want("publish")["msg"]["data"] == "kept", "another message came")
+    _expect(connection.receive_op("publish")["msg"]["data"] == "kept", "another message came")
 
 
 def _both_names(connection: _Connection) -> None:
@@ -220,28 +220,28 @@ def _survives_garbage(connection: _Connection) -> None:
 
 def _garbage_has_status(connection: _Connection) -> None:
     connection.send_text('{"op": "publish", "topic": ')
-    connection.want("status")
+    connection.receive_op("status")
 
 
 def _unknown_has_status(connection: _Connection) -> None:
     connection.send(op="no_such_operation", id="unknown")
-    _expect(connection.want("status").get("id") == "unknown", "status without the id")
+    _expect(connection.receive_op("status").get("id") == "unknown", "status without the id")
 
 
 def _set_level(connection: _Connection) -> None:
     connection.send(op="set_level", level="none")
     connection.send(op="no_such_operation")
-    _expect(connection.next(_QUIET_S) is None, "a status came in spite of level none")
+    _expect(connection.receive(_QUIET_S) is None, "a status came in spite of level none")
 
 
 def _fragments(connection: _Connection) -> None:
-    connection.pair("std_msgs/msg/String", fragment_size=100)
+    connection.advertise_and_subscribe("std_msgs/msg/String", fragment_size=100)
     identifiers = set()
     for _ in range(2):
         connection.send(op="publish", topic=connection.topic, msg={"data": "x" * 400})
-        pieces = [connection.want("fragment")]
+        pieces = [connection.receive_op("fragment")]
         _expect(isinstance(pieces[0]["total"], int), f"total is {pieces[0]['total']}")
-        pieces += [connection.want("fragment") for _ in range(pieces[0]["total"] - 1)]
+        pieces += [connection.receive_op("fragment") for _ in range(pieces[0]["total"] - 1)]
         whole = json.loads("".join(piece["data"] for piece in sorted(pieces, key=lambda piece: int(piece["num"]))))
         _expect(whole["msg"]["data"] == "x" * 400, "the pieces do not make the message")
         identifiers |= {str(piece["id"]) for piece in pieces}
@@ -249,23 +249,23 @@ def _fragments(connection: _Connection) -> None:
 
 
 def _once(connection: _Connection) -> None:
-    connection.pair("std_msgs/msg/String", id="first")
+    connection.advertise_and_subscribe("std_msgs/msg/String", id="first")
     connection.send(op="subscribe", topic=connection.topic, type="std_msgs/msg/String", id="second")
     connection.send(op="publish", topic=connection.topic, msg={"data": "once"})
-    connection.want("publish")
-    _expect(connection.next(_QUIET_S) is None, "it came more than once")
+    connection.receive_op("publish")
+    _expect(connection.receive(_QUIET_S) is None, "it came more than once")
 
 
 def _failed_call(connection: _Connection) -> None:
     connection.send(op="call_service", service=f"{connection.topic}_nothing", id="call")
-    answer = connection.want("service_response")
+    answer = connection.receive_op("service_response")
     _expect(answer.get("id") == "call" and answer.get("result") is False, f"answered {answer}"[:200])
 
 
 def _cbor(connection: _Connection) -> None:
-    connection.pair("std_msgs/msg/String", compression="cbor")
+    connection.advertise_and_subscribe("std_msgs/msg/String", compression="cbor")
     connection.send(op="publish", topic=connection.topic, msg={"data": "x"})
-    _expect(b"publish" in connection.want("binary")["bytes"], "no publish in the binary message")
+    _expect(b"publish" in connection.receive_op("binary")["bytes"], "no publish in the binary message")
 
 
 CHECKS: Final[dict[str, Callable[[_Connection], None]]] = {

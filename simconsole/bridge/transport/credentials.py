@@ -22,7 +22,7 @@ def load_access(profile: BridgeProfile) -> Access:
 
 
 def control_token(profile: BridgeProfile) -> str | None:
-    """Return a token that may command, for a program of the console's own; None where no token is asked for.
+    """Return a token of role control, for a program of the console's own; None where no tokens are used.
 
     Raises:
         ProfileError: the file of tokens cannot be used, or has none of role control.

@@ -22,7 +22,7 @@ from simconsole.values.errors import FrameError
 
 UNSENT_BYTES: Final = 262_144
 """Bytes taken out of a session's bounded queues beyond what the system's socket buffer holds."""
-_LATER: Final = (BlockingIOError, InterruptedError, ssl.SSLWantReadError, ssl.SSLWantWriteError)
+_WOULD_BLOCK: Final = (BlockingIOError, InterruptedError, ssl.SSLWantReadError, ssl.SSLWantWriteError)
 
 _logger = logging.getLogger("simconsole.bridge.transport.lockstep_server")
 
@@ -82,7 +82,7 @@ class LockstepConnection:
             data = self.socket.recv(RECEIVE_BYTES)
             while isinstance(self.socket, ssl.SSLSocket) and self.socket.pending():
                 data += self.socket.recv(RECEIVE_BYTES)  # a selector does not see what TLS has read already
-        except _LATER:
+        except _WOULD_BLOCK:
             return
         except OSError:
             self.close()
@@ -179,7 +179,7 @@ class LockstepConnection:
                     self.socket.shutdown(socket.SHUT_WR)
             if self._web.close_rcvd is not None and not self._unsent:
                 self.close()  # both have sent close frames: the server closes (RFC 6455, 7.1.1)
-        except _LATER:
+        except _WOULD_BLOCK:
             return
         except OSError:
             self.close()

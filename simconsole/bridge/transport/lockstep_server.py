@@ -37,7 +37,7 @@ from simconsole.values.state_vector import Snapshot
 if TYPE_CHECKING:
     from simconsole.bridge.ros2.node import Ros2Link
 
-_ANSWERS: Final = 4.0
+_COMMANDS_PER_ODOMETRY: Final = 4.0
 """Commands a controller may send for each odometry, at least: the rate limit must never refuse an answer."""
 _CLOSE_S: Final = 0.5
 _CHECK_S: Final = 0.25
@@ -70,7 +70,7 @@ class LockstepBridge:
             ProfileError: as `ConsoleBridge`, or its certificate or tokens cannot be used.
         """
         if odometry_hz is not None:
-            commands_hz = max(profile.limits.commands_hz, _ANSWERS * odometry_hz)
+            commands_hz = max(profile.limits.commands_hz, _COMMANDS_PER_ODOMETRY * odometry_hz)
             limits = msgspec.structs.replace(profile.limits, commands_hz=commands_hz)
             rates_hz = {**profile.rates_hz, ODOMETRY: odometry_hz}
             profile = msgspec.structs.replace(profile, rates_hz=rates_hz, limits=limits)
@@ -200,12 +200,12 @@ class LockstepBridge:
         for connection in list(self._connections):
             connection.start_closing()
             if connection.closed:
-                self._forget(connection)
+                self._remove(connection)
         while self._connections and (left_s := deadline - time.monotonic()) > 0.0:
             self._serve(left_s)
         for connection in list(self._connections):
             connection.close()
-            self._forget(connection)
+            self._remove(connection)
         self._selector.close()
         self._listener.close()
         if self._recorder is not None:
@@ -239,11 +239,11 @@ class LockstepBridge:
             connection: LockstepConnection = key.data
             if mask & selectors.EVENT_READ:
                 connection.read()
-            self._settle(connection)
+            self._send_waiting(connection)
         for connection in list(self._connections):
             # A message that one client published may wait for another client.
             if connection.session is not None and connection.session.due_ns() is not None:
-                self._settle(connection)
+                self._send_waiting(connection)
 
     def _record(self) -> None:
         if self._recorder is not None:
@@ -282,18 +282,18 @@ class LockstepBridge:
             sock.setblocking(False)
             sock = self._tls.wrap_socket(sock, server_side=True, do_handshake_on_connect=False)
         now_s = time.monotonic()
-        self._sweep(now_s)
+        self._close_stale(now_s)
         is_full = len(self._connections) >= self._profile.limits.clients
         connection = LockstepConnection(self, sock, f"{address[0]}:{address[1]}", self._profile, is_full)
         self._connections[connection] = now_s
         self._selector.register(sock, selectors.EVENT_READ, connection)
 
-    def _sweep(self, now_s: float) -> None:
+    def _close_stale(self, now_s: float) -> None:
         """Close connections that have not become, or no longer are, WebSockets after a while (N12)."""
         for connection, since_s in list(self._connections.items()):
             if not connection.is_open and now_s - since_s > sockets.HANDSHAKE_S:
                 connection.close()
-                self._forget(connection)
+                self._remove(connection)
 
     def _flush(self) -> None:
         now_s = time.monotonic()
@@ -303,9 +303,9 @@ class LockstepBridge:
         for connection in list(self._connections):
             if checking:
                 connection.check()
-            self._settle(connection)
+            self._send_waiting(connection)
 
-    def _forget(self, connection: LockstepConnection) -> None:
+    def _remove(self, connection: LockstepConnection) -> None:
         if self._connections.pop(connection, None) is None:
             return
         self._selector.unregister(connection.socket)
@@ -316,11 +316,11 @@ class LockstepBridge:
                 self._lost_at = self.console.inputs.command.sequence
             log_departure(_logger, connection.peer, commanded and not self._closing)
 
-    def _settle(self, connection: LockstepConnection) -> None:
+    def _send_waiting(self, connection: LockstepConnection) -> None:
         """Send what waits for a client and ask to be woken for writing only while the system takes no more."""
         connection.flush(self._now_ns)
         if connection.closed:
-            self._forget(connection)
+            self._remove(connection)
             return
         wanted = selectors.EVENT_READ | (selectors.EVENT_WRITE if connection.waits_to_write else 0)
         if self._selector.get_key(connection.socket).events != wanted:

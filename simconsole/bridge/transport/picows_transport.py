@@ -119,7 +119,7 @@ class PicowsConnection(WSListener):
 
     def on_ws_disconnected(self, transport: WSTransport) -> None:
         """Note the end of the connection."""
-        self._listener.leave(self)
+        self._listener.remove(self)
         if self._client is not None:
             self._client.closed()
 
@@ -191,13 +191,13 @@ class PicowsListener:
         self._server.close()
         for connection in list(self.connections):
             connection.start_closing()
-        self.leave()
+        self.remove()
 
     async def wait_closed(self) -> None:
         """Return when all connections have ended."""
         await self._empty.wait()
 
-    def leave(self, connection: PicowsConnection | None = None) -> None:
+    def remove(self, connection: PicowsConnection | None = None) -> None:
         """Remove a connection that has ended."""
         self.connections.discard(connection)
         if not self.connections and not self._server.is_serving():

@@ -31,15 +31,15 @@ from simconsole.values.units import NS_PER_S
 if TYPE_CHECKING:
     from simconsole.bridge.ros2.node import Ros2Link
 
-_WATCH_S: Final = 0.25
+_CHECK_S: Final = 0.25
 _POLL_S: Final = 0.001
 _COUNT_S: Final = 1.0
 _LINK_STATE_S: Final = 0.1
 _WRITE_BYTES: Final = 32_768
-_TOGETHER: Final = 3
+_BATCH_PER_CLIENT: Final = 3
 """Messages for each client there is that one may have waiting before they are sent: with few clients soon, so that the
-reader works while we do; with many in longer pieces, for then somebody works in any case, and system calls cost."""
-_QUIET: Final = ("done", "command")
+reader works while we do; with many in larger batches, for the processor is busy in any case, and system calls cost."""
+_NOT_LOGGED: Final = ("done", "command")
 """What becomes of most messages, and is not logged."""
 
 _logger = logging.getLogger("simconsole.bridge.transport.server")
@@ -66,7 +66,7 @@ class _ClientHandler:
     def receive(self, message: bytes) -> None:
         """Apply a message."""
         outcome = self._console.receive(self.session, message, self._clock_ns())
-        if outcome.kind not in _QUIET:
+        if outcome.kind not in _NOT_LOGGED:
             log_outcome(_logger, self.session, outcome)
 
     def resume(self) -> None:
@@ -83,7 +83,7 @@ class _ClientHandler:
     def _wake(self) -> None:
         """Send what is queued by the loop's next turn in one piece; many messages are sent at once."""
         self._queued += 1
-        if self._queued >= _TOGETHER * self._server.clients:
+        if self._queued >= _BATCH_PER_CLIENT * self._server.clients:
             self._send()
         elif not self._is_woken:
             self._is_woken = True
@@ -154,7 +154,7 @@ class BridgeServer:
         self.clock_ns = clock_ns
         self._clients: set[_ClientHandler] = set()
         self._listener: Listener | None = None
-        self._watcher: asyncio.Task[None] | None = None
+        self._checker: asyncio.Task[None] | None = None
         self._upstream_client: asyncio.Task[None] | None = None
         self._port = 0
         self._ros2: Ros2Link | None = None
@@ -189,7 +189,7 @@ class BridgeServer:
         self._port = int(listener.getsockname()[1])
         start_listener = load_transport(self._profile)
         self._listener = await start_listener(self, listener, self._profile, self._tls, self.clock_ns)
-        self._watcher = asyncio.create_task(self._watch())
+        self._checker = asyncio.create_task(self._check_periodically())
         if self._profile.upstream is not None:
             upstream_client = UpstreamClient(self.console, self._profile.upstream, self.clock_ns)
             self._upstream_client = asyncio.create_task(upstream_client.run())
@@ -213,9 +213,9 @@ class BridgeServer:
             self._ros2 = None
         if self._recorder is not None:
             self._recorder.close()
-        if self._watcher is not None:
-            self._watcher.cancel()
-            self._watcher = None
+        if self._checker is not None:
+            self._checker.cancel()
+            self._checker = None
         if self._upstream_client is not None:
             self._upstream_client.cancel()
             await asyncio.gather(self._upstream_client, return_exceptions=True)
@@ -265,10 +265,10 @@ class BridgeServer:
         if self._ros2 is not None:
             self._ros2.pump(self.clock_ns())
 
-    async def _watch(self) -> None:
+    async def _check_periodically(self) -> None:
         """Check all clients, four times a second."""
         while True:
-            await asyncio.sleep(_WATCH_S)
+            await asyncio.sleep(_CHECK_S)
             self.check_clients()
 
     def check_clients(self) -> None:

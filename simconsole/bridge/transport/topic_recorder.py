@@ -62,11 +62,11 @@ class TopicRecorder:
             fits = any(fnmatchcase(name, pattern) for pattern in self._patterns)
             if fits and name not in self._session.queues:
                 self._channel(name, topic.type)
-                self._say(now_ns, op="subscribe", topic=name, compression="cbor-raw", queue_length=_QUEUE)
+                self._submit(now_ns, op="subscribe", topic=name, compression="cbor-raw", queue_length=_QUEUE)
             elif not topic.owned and name in self._session.queues and not topic.publishers:
                 others = topic.subscribers.keys() - {self._session.number}
                 if not others:  # else this recorder alone would keep it
-                    self._say(now_ns, op="unsubscribe", topic=name)
+                    self._submit(now_ns, op="unsubscribe", topic=name)
 
     def close(self) -> None:
         """Finish the file; harmless when closed."""
@@ -80,7 +80,7 @@ class TopicRecorder:
             except OSError as error:
                 _logger.warning("%s: %s", self._file.name, error)
 
-    def _say(self, now_ns: int, **operation: Any) -> None:
+    def _submit(self, now_ns: int, **operation: Any) -> None:
         self._router.receive(self._session, msgspec.json.encode(operation), now_ns)
 
     def _channel(self, name: str, type_name: str) -> int:

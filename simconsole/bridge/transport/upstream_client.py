@@ -58,7 +58,7 @@ class UpstreamClient:
     async def run(self) -> None:
         """Stay connected until cancelled."""
         chance = random.Random()
-        self._tell("connecting")
+        self._set_state("connecting")
         headers = None if self._token is None else {"Authorization": f"Bearer {self._token}"}
         while True:
             try:
@@ -75,7 +75,7 @@ class UpstreamClient:
                     logger=_logger,
                 ) as peer:
                     self._backoff.reset()
-                    await self._talk(peer)
+                    await self._exchange(peer)
                     reason = "closed by it"
             except (OSError, WebSocketException, TimeoutError) as error:
                 reason = str(error)
@@ -83,14 +83,14 @@ class UpstreamClient:
                 if self._upstream.lost(self._clock_ns()):
                     _logger.warning("%s was commanding and is gone", self._profile.url)
                 if self._console.router.upstream == "connected":
-                    self._tell("lost")
+                    self._set_state("lost")
             _logger.info("%s: not connected: %s", self._profile.url, reason)
             await asyncio.sleep(self._backoff.pause_s(chance.random()))
 
-    async def _talk(self, peer: ClientConnection) -> None:
+    async def _exchange(self, peer: ClientConnection) -> None:
         for registration in self._upstream.connected(self._clock_ns()):
             await peer.send(registration, text=True)
-        self._tell("connected")
+        self._set_state("connected")
         _logger.info("%s: connected", self._profile.url)
         sender = asyncio.create_task(self._send(peer))
         try:
@@ -119,7 +119,7 @@ class UpstreamClient:
                 wait_s = max(0, due_ns - self._clock_ns()) / NS_PER_S
                 asyncio.get_running_loop().call_later(wait_s, self._ready.set)
 
-    def _tell(self, state: Literal["connecting", "connected", "lost"]) -> None:
+    def _set_state(self, state: Literal["connecting", "connected", "lost"]) -> None:
         self._console.router.upstream = state
 
 

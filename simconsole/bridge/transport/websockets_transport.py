@@ -25,7 +25,7 @@ _logger = logging.getLogger("simconsole.bridge.transport.server")
 
 
 class WebsocketsConnection(ServerConnection):
-    """A connection that hands messages on as they are read, and knows when it last heard something (`Connection`)."""
+    """A client's connection that passes messages on as they are read (`Connection`)."""
 
     def __init__(self, profile: BridgeProfile, clock_ns: Callable[[], int], *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)
@@ -79,7 +79,7 @@ class WebsocketsConnection(ServerConnection):
         self.transport.resume_reading()
 
     def data_received(self, data: bytes) -> None:
-        """Note the time of whatever comes, pongs too."""
+        """Note the time of everything that arrives, pongs too."""
         self._checks.heard(self._clock_ns())
         super().data_received(data)
         if self.protocol.close_rcvd is not None:

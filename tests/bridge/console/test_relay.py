@@ -6,20 +6,12 @@ from typing import Any
 import pytest
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
-from simconsole.bridge.console.relay import (
-    ABORTED,
-    CANCELED,
-    MAX_NODES,
-    SUCCEEDED,
-    GraphOperation,
-    GraphPublisher,
-    GraphView,
-    Relay,
-)
+from simconsole.bridge.console.relay import MAX_NODES, GraphOperation, GraphPublisher, GraphView, Relay
 from simconsole.bridge.messages import Definition, standard_registry
 from simconsole.bridge.messages.cdr import deserialize, serialize
 from simconsole.bridge.messages.rosidl_types import definition_of
 from simconsole.bridge.protocol.access import Role
+from simconsole.bridge.protocol.operations import ABORTED, CANCELED, SUCCEEDED
 from simconsole.values.signals import Event, RemoteKind
 
 NOTHING = GraphView({}, frozenset(), {}, {}, frozenset())
@@ -68,8 +60,8 @@ class Graph:
             if operation.kind == "remark"
         ]
 
-    def hear(self, topic: str, type_name: str, plain: dict[str, Any], node: str = "/driver") -> None:
-        self.relay.hear(topic, self.cdr(type_name, plain), node, self.now_ns)
+    def receive(self, topic: str, type_name: str, plain: dict[str, Any], node: str = "/driver") -> None:
+        self.relay.receive(topic, self.cdr(type_name, plain), node, self.now_ns)
 
     def cdr(self, type_name: str, plain: dict[str, Any]) -> bytes:
         registry = self.bridge.router.registry
@@ -126,20 +118,20 @@ def test_latched_outputs_are_sent_at_once(graph: Graph, snapshot: Any) -> None:
 
 def test_a_node_commands(graph: Graph) -> None:
     graph.observe()
-    graph.hear("/cmd_vel", "geometry_msgs/Twist", {"linear": {"x": 2.0}})
+    graph.receive("/cmd_vel", "geometry_msgs/Twist", {"linear": {"x": 2.0}})
     command = graph.bridge.inputs.command
     assert (command.kind, command.speed_mps, command.sequence) == (RemoteKind.TWIST, 2.0, 1.0)
-    graph.hear("/cmd_vel", "geometry_msgs/Twist", {"linear": {"x": 3.0}}, node="/other")
+    graph.receive("/cmd_vel", "geometry_msgs/Twist", {"linear": {"x": 3.0}}, node="/other")
     assert graph.bridge.inputs.command.speed_mps == 2.0
     assert graph.remarks()[-1] == ("/other", "publish /cmd_vel: another client commands the console")
 
 
 def test_commands_are_checked(graph: Graph) -> None:
     graph.observe()
-    graph.hear("/cmd_vel", "geometry_msgs/Twist", {"linear": {"x": float("nan")}})
-    graph.hear("/cmd_vel", "geometry_msgs/Twist", {"linear": {"x": 1e6}})
-    graph.relay.hear("/cmd_vel", b"\0\1\0\0\0", "/driver", 0)
-    graph.relay.hear("/nowhere", b"", "/driver", 0)
+    graph.receive("/cmd_vel", "geometry_msgs/Twist", {"linear": {"x": float("nan")}})
+    graph.receive("/cmd_vel", "geometry_msgs/Twist", {"linear": {"x": 1e6}})
+    graph.relay.receive("/cmd_vel", b"\0\1\0\0\0", "/driver", 0)
+    graph.relay.receive("/nowhere", b"", "/driver", 0)
     assert graph.bridge.inputs.command.sequence == 0.0
     assert graph.bridge.inputs.command.refused == 2.0  # what is no message at all is nobody's command
     said = [text for _, text in graph.remarks()]
@@ -148,7 +140,7 @@ def test_commands_are_checked(graph: Graph) -> None:
 
 def test_a_commander_that_vanishes(graph: Graph) -> None:
     graph.observe(nodes=frozenset({"/driver"}))
-    graph.hear("/cmd_vel", "geometry_msgs/Twist", {"linear": {"x": 2.0}})
+    graph.receive("/cmd_vel", "geometry_msgs/Twist", {"linear": {"x": 2.0}})
     graph.observe(nodes=frozenset({"/driver"}))
     assert graph.bridge.inputs.take(1)[1].events == 0.0
     graph.observe()
@@ -159,7 +151,7 @@ def test_many_nodes_count_as_one(graph: Graph) -> None:
     graph.observe()
     before = len(graph.bridge.router.sessions)
     for number in range(MAX_NODES + 9):
-        graph.hear("/console/request", "std_msgs/String", {"data": "mark"}, node=f"/n{number}")
+        graph.receive("/console/request", "std_msgs/String", {"data": "mark"}, node=f"/n{number}")
     assert len(graph.bridge.router.sessions) == before + MAX_NODES
 
 
@@ -170,7 +162,7 @@ def test_a_viewing_graph_does_nothing(bridge: ConsoleBridge, join: Callable[...,
     entities = graph.observe(topics={"/talk": "std_msgs/msg/String"}, services={"/sum": ADD})
     assert (entities.subscriptions, entities.services) == ({}, {})
     assert bridge.router.topic("/talk") is None
-    graph.hear("/cmd_vel", "geometry_msgs/Twist", {})
+    graph.receive("/cmd_vel", "geometry_msgs/Twist", {})
     assert bridge.inputs.command.sequence == 0.0
     assert "needs the role publish" in graph.remarks()[-1][1]
 
@@ -178,7 +170,7 @@ def test_a_viewing_graph_does_nothing(bridge: ConsoleBridge, join: Callable[...,
 def test_a_publishing_graph_commands_nothing(bridge: ConsoleBridge) -> None:
     graph = Graph(bridge, Role.PUBLISH)
     assert graph.observe().subscriptions == {}
-    graph.hear("/cmd_vel", "geometry_msgs/Twist", {"linear": {"x": 1.0}})
+    graph.receive("/cmd_vel", "geometry_msgs/Twist", {"linear": {"x": 1.0}})
     assert bridge.inputs.command.sequence == 0.0
 
 
@@ -188,14 +180,14 @@ def test_topics_between_graph_and_clients(graph: Graph, join: Callable[..., Any]
     graph.observe(**view)
     peer.send(op="subscribe", topic="/grip")  # its type is known from the graph
     assert graph.observe(**view).subscriptions["/grip"] == "demo/msg/Grip"
-    graph.hear("/grip", "demo/Grip", {"force": 1.5})
+    graph.receive("/grip", "demo/Grip", {"force": 1.5})
     assert [message["msg"] for message in peer.heard()] == [{"force": 1.5}]
     assert graph.operations() == []
     peer.publish("/grip", {"force": 2.5})
     peer.send(op="advertise", topic="/grip", type="demo/Grip")
     assert graph.observe(**view).publishers["/grip"] == GraphPublisher("demo/msg/Grip", False, 100)
     peer.publish("/grip", {"force": 3.5})
-    graph.hear("/grip", "demo/Grip", {"force": 4.5})
+    graph.receive("/grip", "demo/Grip", {"force": 4.5})
     peer.publish("/grip", {"force": 5.5})
     sent = [graph.plain("demo/Grip", operation.data)["force"] for operation in graph.operations()]
     assert sent == [3.5, 5.5]  # what came from the graph does not go back
@@ -234,8 +226,8 @@ def test_clients_call_services_of_the_graph(graph: Graph, join: Callable[..., An
     assert {(operation.kind, operation.name, operation.type) for operation in operations} == {("call", "/sum", ADD)}
     assert graph.plain("example_interfaces/AddTwoInts_Request", operations[2].data) == {"a": 1, "b": 2}
     answer = graph.cdr("example_interfaces/AddTwoInts_Response", {"sum": 3})
-    graph.relay.answered(operations[2].key, "/sum", answer, "", 0)
-    graph.relay.answered(operations[0].key, "/sum", None, "it broke", 0)
+    graph.relay.service_responded(operations[2].key, "/sum", answer, "", 0)
+    graph.relay.service_responded(operations[0].key, "/sum", None, "it broke", 0)
     heard = {message["id"]: (message["result"], message["values"]) for message in peer.heard()}
     assert heard == {2: (True, {"sum": 3}), 0: (False, "it broke")}
     graph.observe()  # the third is never answered: the service is gone
@@ -248,7 +240,7 @@ def test_the_graph_calls_services_of_clients(graph: Graph, join: Callable[..., A
     assert graph.observe().services == {"/add": ADD}
     request = graph.cdr("example_interfaces/AddTwoInts_Request", {"a": 2, "b": 3})
     for key in ("one", "two", "three"):
-        graph.relay.ask(key, "/add", request, 0)
+        graph.relay.call_service(key, "/add", request, 0)
     first, second, third = peer.heard()
     assert first["args"] == {"a": 2, "b": 3}
     peer.send(op="service_response", service="/add", id=first["id"], values={"sum": 5}, result=True)
@@ -260,8 +252,8 @@ def test_the_graph_calls_services_of_clients(graph: Graph, join: Callable[..., A
     )  # fmt: skip
     assert (bad.key, bad.data, bad.text) == ("two", None, "no")
     assert (wrong.key, wrong.data) == ("three", None)
-    graph.relay.ask("four", "/add", b"", 0)
-    graph.relay.ask("five", "/none", request, 0)
+    graph.relay.call_service("four", "/add", b"", 0)
+    graph.relay.call_service("five", "/none", request, 0)
     assert [(operation.key, operation.data) for operation in graph.operations()] == [("four", None), ("five", None)]
 
 
@@ -275,9 +267,9 @@ def test_clients_pursue_goals_in_the_graph(graph: Graph, join: Callable[..., Any
     assert (goal.kind, goal.name, goal.type, cancel.kind, cancel.key) == ("goal", "/go", FIBONACCI, "cancel", other.key)
     assert graph.plain("example_interfaces/Fibonacci_Goal", goal.data) == {"order": 3}
     sequence = graph.cdr("example_interfaces/Fibonacci_Result", {"sequence": [0, 1, 1]})
-    graph.relay.progressed(goal.key, "/go", sequence, 0)
-    graph.relay.ended(goal.key, "/go", sequence, SUCCEEDED, "", 0)
-    graph.relay.ended(other.key, "/go", None, CANCELED, "gone", 0)
+    graph.relay.feedback_received(goal.key, "/go", sequence, 0)
+    graph.relay.goal_ended(goal.key, "/go", sequence, SUCCEEDED, "", 0)
+    graph.relay.goal_ended(other.key, "/go", None, CANCELED, "gone", 0)
     feedback, result, cancelled = peer.heard()
     assert feedback == {"op": "action_feedback", "action": "/go", "id": "g", "values": {"sequence": [0, 1, 1]}}
     assert (result["id"], result["status"], result["values"]) == ("g", SUCCEEDED, {"sequence": [0, 1, 1]})
@@ -289,8 +281,8 @@ def test_the_graph_pursues_goals_of_clients(graph: Graph, join: Callable[..., An
     peer.send(op="advertise_action", action="/go", type=FIBONACCI)
     assert graph.observe().actions == {"/go": FIBONACCI}
     goal = graph.cdr("example_interfaces/Fibonacci_Goal", {"order": 3})
-    graph.relay.pursue("one", "/go", goal, 0)
-    graph.relay.pursue("two", "/go", b"", 0)
+    graph.relay.send_goal("one", "/go", goal, 0)
+    graph.relay.send_goal("two", "/go", b"", 0)
     graph.relay.cancel("one", "/go", 0)
     asked, cancel = peer.heard()
     assert (asked["args"], asked["feedback"], cancel["id"]) == ({"order": 3}, True, asked["id"])
@@ -311,13 +303,13 @@ def test_a_service_that_leaves_with_a_call_on_its_way(graph: Graph, join: Callab
     graph.observe()
     (operation,) = graph.operations()
     assert (operation.kind, operation.data, operation.text) == ("call", None, "it has left the graph")
-    graph.relay.answered(operation.key, "/sum", b"\0\1\0\0", "", 0)  # nobody waits for it any more
+    graph.relay.service_responded(operation.key, "/sum", b"\0\1\0\0", "", 0)  # nobody waits for it any more
     assert [message["result"] for message in peer.heard()] == [False]
 
 
 def test_leaving(graph: Graph) -> None:
     graph.observe(nodes=frozenset({"/driver"}))
-    graph.hear("/cmd_vel", "geometry_msgs/Twist", {"linear": {"x": 2.0}})
+    graph.receive("/cmd_vel", "geometry_msgs/Twist", {"linear": {"x": 2.0}})
     graph.relay.leave(10 * MS)
     assert graph.bridge.router.sessions == ()
     assert graph.bridge.inputs.take(1)[1].events == float(Event.COMMANDER_LOST)

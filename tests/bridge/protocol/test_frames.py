@@ -10,7 +10,7 @@ from simconsole.bridge.protocol.frames import (
     TEXT,
     MessageAssembler,
     check_close,
-    frame_head,
+    framed,
 )
 from simconsole.bridge.protocol.message_decoding import Binary
 from simconsole.values.errors import FrameError
@@ -130,4 +130,6 @@ def test_close_frames_that_are_none(data: bytes, code: int) -> None:
 def test_frames_are_the_library_s_own(length: int, kind: type[bytes]) -> None:
     message = kind(b"x" * length)
     opcode = Opcode.BINARY if kind is Binary else Opcode.TEXT
-    assert frame_head(message) + message == Frame(opcode, message).serialize(mask=False)
+    frame = Frame(opcode, message).serialize(mask=False)
+    assert framed([message]) == frame
+    assert framed([message, b"{}"]) == frame + b"\x81\x02{}"

@@ -4,12 +4,14 @@ import pytest
 
 from simconsole.bridge.protocol.access import Access, Role
 from simconsole.bridge.protocol.handshake import (
+    DRIVE_HEADER,
     Admission,
     HandshakeRequest,
     Refusal,
     admit,
     check_exposure,
     dialect_of,
+    handshake_request,
     is_host_allowed,
     is_origin_allowed,
     role_at,
@@ -86,12 +88,18 @@ def test_role_from_the_first_request_on(path: str, header: str | None, role: Rol
 
 
 @pytest.mark.parametrize(("path", "header"), [("/?token=x", None), ("/", "Bearer x"), ("/", "Bearer ")])
-def test_wrong_token_is_refused_at_the_door(path: str, header: str | None) -> None:
+def test_wrong_token_is_refused_at_the_handshake(path: str, header: str | None) -> None:
     with pytest.raises(RemoteProtocolError, match="not a token"):
         role_at(path, header, ACCESS)
 
 
-OPENING = HandshakeRequest("/ros1?token=" + "c" * 16, ["localhost:9090"], [], [])
+def test_request_is_read_from_headers_of_any_library() -> None:
+    headers = {"Host": ["a", "b"], "Origin": ["c"], "Authorization": ["d"], DRIVE_HEADER: ["e"]}
+    request = handshake_request("/ros2", headers.__getitem__)
+    assert request == HandshakeRequest("/ros2", ["a", "b"], ["c"], ["d"], ["e"])
+
+
+REQUEST = HandshakeRequest("/ros1?token=" + "c" * 16, ["localhost:9090"], [], [])
 
 
 @pytest.mark.parametrize(
@@ -109,10 +117,10 @@ OPENING = HandshakeRequest("/ros1?token=" + "c" * 16, ["localhost:9090"], [], []
     ],
 )
 def test_first_requests_that_are_refused(given: dict[str, Any], is_full: bool, status: int) -> None:
-    decision = admit(OPENING._replace(**given), BridgeProfile(), ACCESS, is_full)
+    decision = admit(REQUEST._replace(**given), BridgeProfile(), ACCESS, is_full)
     assert isinstance(decision, Refusal)
     assert decision.status == status
-    assert decision.reason
+    assert decision.body == f"{decision.reason}\n"
 
 
 @pytest.mark.parametrize(
@@ -124,7 +132,7 @@ def test_first_requests_that_are_refused(given: dict[str, Any], is_full: bool, s
     ],
 )
 def test_first_requests_that_come_in(given: dict[str, Any], admission: Admission) -> None:
-    assert admit(OPENING._replace(**given), BridgeProfile(), ACCESS, False) == admission
+    assert admit(REQUEST._replace(**given), BridgeProfile(), ACCESS, False) == admission
 
 
 @pytest.mark.parametrize(
@@ -174,7 +182,7 @@ NONCE, OTHER = "a" * 32, "b" * 32
     ],
 )
 def test_a_program_of_another_drive_is_refused(shown: list[str], drive: str | None, enters: bool) -> None:
-    found = admit(OPENING._replace(drives=shown), BridgeProfile(), ACCESS, False, drive)
+    found = admit(REQUEST._replace(drives=shown), BridgeProfile(), ACCESS, False, drive)
     if enters:
         assert isinstance(found, Admission)
     else:
@@ -184,7 +192,7 @@ def test_a_program_of_another_drive_is_refused(shown: list[str], drive: str | No
 
 
 def test_the_nonce_grants_nothing() -> None:
-    opening = OPENING._replace(path="/", drives=[NONCE])
-    found = admit(opening, BridgeProfile(), ACCESS, False, NONCE)
+    request = REQUEST._replace(path="/", drives=[NONCE])
+    found = admit(request, BridgeProfile(), ACCESS, False, NONCE)
     assert isinstance(found, Admission)
     assert found.role is ACCESS.anonymous
