@@ -24,6 +24,7 @@ from simconsole.session.resolution import load_session, override
 from simconsole.values.signals import Mode, RemoteCommand, RemoteKind
 from simconsole.values.state_vector import ARBITRATION_AT, ECU_AT, VEHICLE_AT
 from tests.paths import ROOT
+from tests.patience import PATIENCE_S
 
 DRIVE_S = 5.0
 
@@ -49,7 +50,7 @@ def running(*words: str) -> Iterator["subprocess.Popen[str]"]:
 
 
 def results(process: "subprocess.Popen[str]") -> dict[str, Any]:
-    out, err = process.communicate(timeout=120)
+    out, err = process.communicate(timeout=PATIENCE_S)
     assert process.returncode == 0, err
     found: dict[str, Any] = json.loads(out.splitlines()[-1])
     return found
@@ -92,7 +93,7 @@ def test_bus_that_is_not_there_refuses_the_drive(tmp_path: Path) -> None:
     session = override(load_session("can"), outputs={"can": {"interface": "socketcan", "channel": "can97"}})
     (tmp_path / "can.yaml").write_text(to_text(session))
     with running("drive", str(tmp_path / "can.yaml"), "--out", str(tmp_path / "bundle")) as drive:
-        _, err = drive.communicate(timeout=60)
+        _, err = drive.communicate(timeout=PATIENCE_S)
     assert drive.returncode == 2
     first, *_, last = err.splitlines()
     assert first.startswith("simconsole station: CAN socketcan can97: cannot be opened")

@@ -7,7 +7,8 @@ import numpy as np
 
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.values.signals import Event, Mode
-from tests.drives.console import Running, results, simconsole, wait_until
+from tests.drives.console import Running, results, simconsole
+from tests.patience import wait_until
 
 SESSION = """schema: 1
 scenario: {vehicle: hatchback, duration_s: 4}

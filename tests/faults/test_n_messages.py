@@ -3,8 +3,8 @@
 import json
 import math
 import random
-import time
 from collections.abc import Callable
+from time import thread_time_ns
 from typing import Any
 
 import cbor2
@@ -86,9 +86,9 @@ def wreck_field(chance: random.Random) -> bytes:
 
 def sent(peer: Any, text: bytes | Binary) -> tuple[Any, float]:
     """Send a text; return what became of it and the processor time that it took, in ms."""
-    began_ns = time.thread_time_ns()
+    began_ns = thread_time_ns()
     outcome = peer.send(text)
-    return outcome, (time.thread_time_ns() - began_ns) / 1e6
+    return outcome, (thread_time_ns() - began_ns) / 1e6
 
 
 def cost_ms(bridge: ConsoleBridge, text: bytes | Binary) -> float:

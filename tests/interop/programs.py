@@ -4,8 +4,6 @@ import json
 import os
 import socket
 import subprocess
-import threading
-import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -14,11 +12,11 @@ from typing import Any
 from websockets.sync.client import ClientConnection, connect
 
 from tests.paths import ROOT
+from tests.patience import PATIENCE_S, wait_until
 
 HERE = Path(__file__).parent
 CACHE = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "simconsole-tests"
 """What was fetched once from a package index."""
-PATIENCE_S = 20.0
 
 
 def environment(**more: str) -> dict[str, str]:
@@ -46,14 +44,12 @@ def free_port() -> int:
 
 def wait_for_port(port: int) -> None:
     """Wait until somebody listens there."""
-    pause = threading.Event()
-    deadline_s = time.monotonic() + PATIENCE_S
-    while True:
+
+    def listens() -> bool:
         with socket.socket() as probe:
-            if not probe.connect_ex(("127.0.0.1", port)):
-                return
-        assert time.monotonic() < deadline_s, f"nobody listens on port {port}"
-        pause.wait(0.05)
+            return not probe.connect_ex(("127.0.0.1", port))
+
+    wait_until(listens, f"somebody who listens on port {port}")
 
 
 @contextmanager

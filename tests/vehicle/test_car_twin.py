@@ -19,7 +19,6 @@ from simconsole.values.platform import Ground, Platform
 from simconsole.values.signals import VehicleCommand
 from simconsole.values.state_vector import COMMAND_AT, PLATFORM_AT, VEHICLE_AT
 from simconsole.vehicle.car.state import CarState
-from tests.samples import Sample
 from tests.vehicle.driving import IDLE, Drive, platform
 
 SEED = 16
@@ -77,10 +76,11 @@ def rows(
         previous = row
 
 
-def test_plain_and_compiled_are_equal_to_the_last_bit(fresh: Any, sample: Sample) -> None:
+def test_plain_and_compiled_are_equal_to_the_last_bit(fresh: Any) -> None:
     vehicle = platform(ground=Ground(0.9, 0.04, -0.02))
     met = dict.fromkeys(("still", "reverse", "stalled", "automatic", "fast", "sliding"), 0)
-    for seed, speed in enumerate((0.0, 35.0, -8.0, 0.0) * sample.of(1, 4), sample.seed):
+    for seed, speed in enumerate((0.0, 35.0, -8.0, 0.0), SEED):
+        print(f"seed {seed}")
         pairs = zip(
             rows(vehicle, vehicle.step, commands(seed, 12_500), 2, speed),  # four drives of 25,000 steps
             rows(vehicle, fresh, commands(seed, 12_500), 2, speed),

@@ -3,7 +3,6 @@
 import asyncio
 import importlib.util
 import json
-import time
 from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
 from functools import partial
@@ -20,6 +19,7 @@ from simconsole.bridge.transport.server import BridgeServer
 from simconsole.bridge.transport.wire import listen
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import ProfileError
+from tests.patience import PATIENCE_S, stamp_ns, until
 
 PROFILE = BridgeProfile(port=0)
 ADMISSION = Admission(Role.CONTROL, "ros2")
@@ -140,10 +140,10 @@ async def over_sockets(
     profile = BridgeProfile(port=0, transport=library)
     listener = listen(profile.host, 0)
     home = Home(make)
-    door = await load_transport(profile)(home, listener, profile, None, time.monotonic_ns)
+    door = await load_transport(profile)(home, listener, profile, None, stamp_ns)
     async with connect(f"ws://127.0.0.1:{listener.getsockname()[1]}", max_size=None) as far:
-        while home.client is None:
-            await asyncio.sleep(0.001)
+        await until(lambda: home.client is not None)
+        assert home.client is not None
         assert home.transport is not None
         try:
             yield home.transport, home.client, OverSockets(far)
@@ -161,14 +161,9 @@ each = pytest.mark.parametrize(
 )
 
 
-async def until(holds: Callable[[], bool]) -> None:
-    while not holds():
-        await asyncio.sleep(0.001)
-
-
 def run(pair: Pair, check: Callable[[Transport, Notes, Far], Any]) -> None:
     async def main() -> None:
-        async with asyncio.timeout(20.0), pair(lambda _: Notes()) as (transport, client, far):
+        async with asyncio.timeout(PATIENCE_S), pair(lambda _: Notes()) as (transport, client, far):
             await check(transport, client, far)
 
     asyncio.run(main())
@@ -244,7 +239,7 @@ def test_a_server_drives_over_it(pair: Pair, snapshot: Callable[..., Any], contr
         def welcome(transport: Transport) -> Client:
             return server.welcome(transport, "far", ADMISSION)
 
-        async with asyncio.timeout(20.0), pair(welcome) as (_, _, far):
+        async with asyncio.timeout(PATIENCE_S), pair(welcome) as (_, _, far):
             await far.say(b'{"op":"subscribe","topic":"/odom"}')
             await until(lambda: server.console.router.wanted("/odom"))
             server.publish(snapshot(5, x_m=7.0))

@@ -15,6 +15,7 @@ from simconsole.bridge.transport.lockstep_server import LockstepBridge
 from simconsole.profiles.bridge import BridgeLimits, BridgeProfile
 from simconsole.values.errors import BridgeError
 from simconsole.values.signals import NEVER_TICKS, Event, RemoteCommand, RemoteKind
+from tests.patience import PATIENCE_S
 
 CONTROL = "/control/command/control_cmd"
 TYPE = "autoware_control_msgs/Control"
@@ -36,7 +37,7 @@ def beside(work: Callable[[], None]) -> Iterator[None]:
     try:
         yield
     finally:
-        thread.join(timeout=20.0)
+        thread.join(timeout=PATIENCE_S)
     assert not thread.is_alive()
     if failed:
         raise failed[0]
@@ -52,7 +53,7 @@ def answering(url: str, count: int, answer: Callable[[BridgeClient, Any], None])
             client.advertise("/cmd_vel", "geometry_msgs/Twist")
             client.connect()
             for _ in range(count):
-                received = client.receive(10.0)
+                received = client.receive(PATIENCE_S)
                 assert received is not None
                 answer(client, received.message)
 
@@ -192,7 +193,7 @@ def served(bridge: LockstepBridge, snapshot: Callable[..., Any]) -> Iterator[Non
 
 
 def refusal(peer: ClientConnection) -> str:
-    return str(json.loads(peer.recv(timeout=10.0))["msg"])
+    return str(json.loads(peer.recv(timeout=PATIENCE_S))["msg"])
 
 
 def test_malformed_frames_are_answered_and_the_next_command_applied(
@@ -209,7 +210,7 @@ def test_malformed_frames_are_answered_and_the_next_command_applied(
         peer.send(['{"op":"publish","topic":"%s","msg":' % CONTROL, json.dumps(BODY) + "}"])  # noqa: UP031  (braces)
         peer.send("garbage")
         refusal(peer)
-        peer.ping().wait(10.0)
+        peer.ping().wait(PATIENCE_S)
     command, _ = lockstep.take(1)
     assert (command.road_wheel_rad, command.sequence, command.refused) == (0.1, 1.0, 2.0)
     assert "refused (1)" in caplog.text
@@ -239,7 +240,7 @@ def test_message_that_is_too_long_ends_the_connection(snapshot: Callable[..., An
     ):
         peer.send("x" * 3000)
         with pytest.raises(ConnectionClosed) as caught:
-            peer.recv(timeout=10.0)
+            peer.recv(timeout=PATIENCE_S)
         assert caught.value.rcvd is not None
         assert caught.value.rcvd.code == 1009
 
@@ -263,7 +264,7 @@ def test_who_may_not_connect_is_turned_away(snapshot: Callable[..., Any]) -> Non
 def test_what_is_no_websocket_is_dropped(lockstep: LockstepBridge, snapshot: Callable[..., Any]) -> None:
     with served(lockstep, snapshot):
         for junk in (b"\x16\x03\x01 tls\r\n", b"GET / HTTP/1.0\r\n\r\n", b"x" * 100_000):
-            with socket.create_connection(("127.0.0.1", lockstep.port), timeout=10.0) as raw:
+            with socket.create_connection(("127.0.0.1", lockstep.port), timeout=PATIENCE_S) as raw:
                 raw.sendall(junk)
                 while raw.recv(1000):
                     pass
@@ -274,10 +275,10 @@ def test_who_does_not_finish_the_handshake_is_swept_out_by_the_next(
     lockstep: LockstepBridge, snapshot: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("simconsole.bridge.transport.wire.HANDSHAKE_S", 0.0)
-    with served(lockstep, snapshot), socket.create_connection(("127.0.0.1", lockstep.port), timeout=10.0) as idle:
+    with served(lockstep, snapshot), socket.create_connection(("127.0.0.1", lockstep.port), timeout=PATIENCE_S) as idle:
         idle.sendall(b"GET / HT")
         with connect(lockstep.url) as peer:
-            peer.ping().wait(10.0)
+            peer.ping().wait(PATIENCE_S)
         # Reset if the server never read what was sent, closed in order if it did: gone either way.
         with suppress(ConnectionResetError):
             assert idle.recv(10) == b""
@@ -336,7 +337,7 @@ def test_clients_are_told_good_bye_and_the_port_is_free(snapshot: Callable[..., 
             client.subscribe("/odom", "nav_msgs/Odometry")
             client.connect()
             with pytest.raises(BridgeError, match=r"closed by the server \(1001\)"):
-                client.receive(10.0)
+                client.receive(PATIENCE_S)
 
     with beside(watch):
         assert bridge.wait_for_client(10.0)
