@@ -18,6 +18,7 @@ from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.protocol.access import Access, Role
 from simconsole.bridge.protocol.documents import Binary
 from simconsole.profiles.bridge import BridgeProfile
+from tests.faults.wrecks import wreck
 from tests.samples import Measured, Sample
 
 EACH = 20_000
@@ -93,21 +94,6 @@ WORDS = [json.dumps(atom) for atom in ATOMS] + [
     "nul",
     "",
 ]
-WRECKS = [
-    b"",
-    b"\x00",
-    b"\xff\xfe",
-    b"\xef\xbb\xbf",
-    b"{",
-    b"}",
-    b"[",
-    b'"',
-    b"\\",
-    b"NaN",
-    b"1e999",
-    b"\xed\xa0\x80",
-    b",",
-]
 
 
 def cuts(value: Any) -> Iterator[tuple[str, str]]:
@@ -147,19 +133,7 @@ def mutated(chance: random.Random) -> bytes:
 
 def wrecked(chance: random.Random) -> bytes:
     """The text of a valid message with a few bytes cut, put in or turned over."""
-    text = bytearray(chance.choice(TEXTS))
-    for _ in range(chance.randint(1, 3)):
-        at = chance.randrange(len(text) + 1)
-        kind = chance.randrange(4)
-        if kind == 0:
-            del text[at:]
-        elif kind == 1:
-            text[at:at] = chance.choice(WRECKS)
-        elif kind == 2:
-            del text[at : at + chance.randint(1, 8)]
-        elif text:
-            text[min(at, len(text) - 1)] ^= 1 << chance.randrange(8)
-    return bytes(text)
+    return wreck(chance, chance.choice(TEXTS), 3)
 
 
 def packed(chance: random.Random) -> bytes:

@@ -3,7 +3,6 @@
 import gc
 import json
 import logging
-import socket
 import subprocess
 import sys
 import threading
@@ -21,6 +20,7 @@ from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.signals import Mode
 from tests.bridge.fixtures import Served
 from tests.drives.console import Running
+from tests.drives.controllers import free_port
 from tests.patience import Stopwatch
 from tests.samples import Measured, Sample
 
@@ -31,11 +31,6 @@ CONTROL = "/control/command/control_cmd"
 
 def open_files() -> int:
     return len(list(Path("/proc/self/fd").iterdir()))
-
-
-def free_port() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        return int(listener.getsockname()[1])
 
 
 def odometry(client: BridgeClient, server: Any, snapshot: Callable[..., Any]) -> None:

@@ -18,7 +18,7 @@ import pytest
 from simconsole.bridge.client.bridge_client import BridgeClient
 from simconsole.recording.bundles.bundle import verify
 from tests.drives.console import Running, results
-from tests.faults.test_n_restarts import free_port
+from tests.drives.controllers import free_port
 from tests.faults.test_whole_drives import PERSON
 from tests.patience import PATIENCE_S, wait_until
 from tests.samples import Measured, Sample

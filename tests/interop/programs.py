@@ -11,6 +11,7 @@ from typing import Any
 
 from websockets.sync.client import ClientConnection, connect
 
+from tests.drives.controllers import free_port
 from tests.paths import ROOT
 from tests.patience import PATIENCE_S, wait_until
 
@@ -35,11 +36,6 @@ def program(around: Mapping[str, str], *words: str) -> Iterator["subprocess.Pope
         finally:
             process.kill()
             print(process.communicate()[1])  # pytest shows it where a test fails
-
-
-def free_port() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        return int(listener.getsockname()[1])
 
 
 def wait_for_port(port: int) -> None:

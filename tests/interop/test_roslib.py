@@ -13,7 +13,8 @@ import pytest
 from mcap.reader import make_reader
 
 from simconsole.cli.main import main
-from tests.interop.programs import CACHE, HERE, environment, free_port, program, wait_for_port
+from tests.drives.controllers import free_port
+from tests.interop.programs import CACHE, HERE, environment, program, wait_for_port
 from tests.interop.sessions import lockstep_session
 from tests.patience import PATIENCE_S
 

@@ -84,7 +84,7 @@ def drive(bridge: LockstepBridge, snapshot: Callable[..., Any], ticks: int, peri
         if tick % period:
             bridge.publish(state)
         else:
-            assert bridge.exchange(state, 10.0)
+            assert bridge.exchange(state, PATIENCE_S)
     return commands
 
 
@@ -92,7 +92,7 @@ def test_every_control_period_gets_the_answer_to_its_own_state(
     lockstep: LockstepBridge, snapshot: Callable[..., Any]
 ) -> None:
     with beside(answering(lockstep.url, 20, steer)):
-        assert lockstep.wait_for_client(10.0)
+        assert lockstep.wait_for_client(PATIENCE_S)
         commands = drive(lockstep, snapshot, 100)
     assert commands[4].age_ticks == NEVER_TICKS
     for tick, command in enumerate(commands[5:], start=6):
@@ -106,7 +106,7 @@ def test_networked_drive_is_as_repeatable_as_a_scripted_one(snapshot: Callable[.
     drives = []
     for _ in range(3):
         with LockstepBridge(BridgeProfile(port=0)) as bridge, beside(answering(bridge.url, 40, steer)):
-            assert bridge.wait_for_client(10.0)
+            assert bridge.wait_for_client(PATIENCE_S)
             drives.append(drive(bridge, snapshot, 200))
     assert drives[0] == drives[1] == drives[2]
 
@@ -119,8 +119,8 @@ def test_other_commands_do_not_end_the_wait(lockstep: LockstepBridge, snapshot: 
         steer(client, odometry)
 
     with beside(answering(lockstep.url, 1, answer)):
-        assert lockstep.wait_for_client(10.0)
-        assert lockstep.exchange(snapshot(5, x_m=5.0), 10.0)
+        assert lockstep.wait_for_client(PATIENCE_S)
+        assert lockstep.exchange(snapshot(5, x_m=5.0), PATIENCE_S)
         command, _ = lockstep.take(6)
         assert (command.road_wheel_rad, command.sequence, command.refused) == (0.005, 2.0, 1.0)
 
@@ -133,16 +133,16 @@ def test_command_without_a_stamp_answers_by_arriving(lockstep: LockstepBridge, s
         client.publish("/cmd_vel", {"linear": {"x": 2.0}, "angular": {"z": 0.1}})
 
     with beside(answering(lockstep.url, 1, answer)):
-        assert lockstep.wait_for_client(10.0)
-        assert lockstep.exchange(snapshot(5), 10.0)
+        assert lockstep.wait_for_client(PATIENCE_S)
+        assert lockstep.exchange(snapshot(5), PATIENCE_S)
         assert lockstep.take(6)[0].speed_mps == 2.0
 
 
 def test_nobody_answers(lockstep: LockstepBridge, snapshot: Callable[..., Any]) -> None:
     assert not lockstep.wait_for_client(0.0)
-    assert not lockstep.exchange(snapshot(5), 10.0)  # nobody is there who could
+    assert not lockstep.exchange(snapshot(5), PATIENCE_S)  # nobody is there who could
     with beside(answering(lockstep.url, 1, lambda client, odometry: None)):
-        assert lockstep.wait_for_client(10.0)
+        assert lockstep.wait_for_client(PATIENCE_S)
         assert not lockstep.exchange(snapshot(10), 0.02)
         lockstep.publish(snapshot(15))
 
@@ -157,8 +157,8 @@ def test_commander_that_vanishes_ends_the_wait_at_once_and_is_an_event(
         with served(lockstep, snapshot):
             watcher.connect()
         with beside(answering(lockstep.url, 1, steer)):
-            assert lockstep.wait_for_client(10.0)
-            assert lockstep.exchange(snapshot(5), 10.0)
+            assert lockstep.wait_for_client(PATIENCE_S)
+            assert lockstep.exchange(snapshot(5), PATIENCE_S)
             assert not lockstep.exchange(snapshot(10), 100.0)
         command, events = lockstep.take(11)
         assert events.events == Event.COMMANDER_LOST
@@ -166,11 +166,11 @@ def test_commander_that_vanishes_ends_the_wait_at_once_and_is_an_event(
         assert lockstep.clients == 1
         assert not lockstep.exchange(snapshot(15), 100.0)
         with beside(answering(lockstep.url, 2, steer)):
-            assert lockstep.wait_for_client(10.0)
+            assert lockstep.wait_for_client(PATIENCE_S)
             lockstep.publish(snapshot(20, x_m=20.0))
             while lockstep.take(22)[0].sequence < 2:  # the next commander speaks first, as at the start
                 lockstep.publish(snapshot(21))
-            assert lockstep.exchange(snapshot(25, x_m=25.0), 10.0)
+            assert lockstep.exchange(snapshot(25, x_m=25.0), PATIENCE_S)
     assert "was commanding and is gone" in caplog.text
 
 
@@ -289,7 +289,7 @@ def test_slow_subscriber_costs_bounded_memory_and_the_loop_nothing(snapshot: Cal
     profile = BridgeProfile(port=0, limits=limits, rates_hz={"/odom": 250.0, "/console/arbitration": 250.0})
     with LockstepBridge(profile) as bridge:
         with beside(lambda: setups.append(subscribe(bridge.url, "/odom", 1000))):
-            assert bridge.wait_for_client(10.0)
+            assert bridge.wait_for_client(PATIENCE_S)
         with setups.pop() as stalled:
             (session,) = bridge.console.router.sessions
             for tick in range(1, 50_000):
@@ -324,7 +324,7 @@ def subscribe(url: str, topic: str, queue_length: int) -> socket.socket:
 def test_odometry_follows_the_control_rate(snapshot: Callable[..., Any]) -> None:
     with LockstepBridge(BridgeProfile(port=0), odometry_hz=10.0) as bridge:
         with beside(answering(bridge.url, 4, steer)):
-            assert bridge.wait_for_client(10.0)
+            assert bridge.wait_for_client(PATIENCE_S)
             commands = drive(bridge, snapshot, 100, period=25)
         assert commands[-1].sequence == 3.0
 
@@ -340,7 +340,7 @@ def test_clients_are_told_good_bye_and_the_port_is_free(snapshot: Callable[..., 
                 client.receive(PATIENCE_S)
 
     with beside(watch):
-        assert bridge.wait_for_client(10.0)
+        assert bridge.wait_for_client(PATIENCE_S)
         with pytest.raises(BridgeError, match="cannot listen"):
             LockstepBridge(BridgeProfile(port=bridge.port))
         port = bridge.port
