@@ -106,7 +106,8 @@ def draw() -> Iterator[str]:
     for room in rooms.values():
         yield from box(room)
     y_px = height_px - 20
-    for x_px, colour, text in ((GAP_PX, PURE, "pure"), (110, SHELL, "touches clock, file, socket, thread, window or bus")):
+    machine = "touches clock, file, socket, thread, window or bus"
+    for x_px, colour, text in ((GAP_PX, PURE, "pure"), (110, SHELL, machine)):
         yield f'<rect x="{x_px}" y="{y_px:.0f}" width="12" height="12" fill="{colour}" stroke="#8a94a0"/>'
         yield f'<text x="{x_px + 18}" y="{y_px + 10:.0f}">{text}</text>'
     yield "</svg>"

@@ -58,15 +58,18 @@ def build() -> dict[str, dict[str, str]]:
     skip = shutil.ignore_patterns("__pycache__", "messages")
     shutil.copytree(ROOT / "simconsole", HOUSE / "simconsole", ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copytree(ROOT / "tests" / "control", HOUSE / "tests" / "control", ignore=skip)
+    for name in ("paths.py", "samples.py"):
+        shutil.copy(ROOT / "tests" / name, HOUSE / "tests")
     shutil.copytree(ROOT / "docs", HOUSE / "docs", dirs_exist_ok=True)
     shutil.copy(ROOT / "scripts" / "mutation_runner.py", HOUSE)
     (HOUSE / "pyproject.toml").write_text(SETTINGS)
     mutants: dict[str, dict[str, str]] = {}
-    for path in sorted((ROOT / ROOM).glob("*.py")):
+    for path in sorted((ROOT / ROOM).rglob("*.py")):
+        place = path.relative_to(ROOT)
         source = path.read_text().replace("@kernel\n", "")
         with contextlib.chdir(HOUSE):  # mutmut reads its settings there
-            mutated = mutate_file_contents(str(ROOM / path.name), source)
-        (HOUSE / ROOM / path.name).write_text(mutated.code.replace(GENERATED_IMPORT, OWN_IMPORT))
+            mutated = mutate_file_contents(str(place), source)
+        (HOUSE / place).write_text(mutated.code.replace(GENERATED_IMPORT, OWN_IMPORT))
         lines = mutated.code.splitlines()
         bodies = {
             name: [line.replace(f"x_{name.partition('x_')[2]}(", "(") for line in lines[span.start - 1 : span.end]]

@@ -3,13 +3,12 @@
 import ast
 import graphlib
 import itertools
+import json
 import os
 import re
 import shutil
-import statistics
 import subprocess
 import sys
-import time
 import tomllib
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -19,6 +18,7 @@ import pytest
 
 from simconsole.values import signals
 from tests.paths import ROOT
+from tests.patience import Stopwatch
 
 CONTRACTS = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
 LAYERS, FORBIDDEN, INDEPENDENT = CONTRACTS
@@ -223,6 +223,19 @@ def test_planted_forbidden_imports_are_found(house: House) -> None:
         assert f"{core} -> {forbidden}" in output
 
 
+@pytest.mark.parametrize("clock", ["monotonic", "monotonic_ns", "perf_counter", "perf_counter_ns", "time", "sleep"])
+@pytest.mark.parametrize("code", ["import time\ntime.{}(1)\n", "from time import {0}\n{0}(1)\n"])
+def test_planted_clock_in_a_test_is_refused(clock: str, code: str) -> None:
+    def codes(path: str) -> set[str]:
+        words = [str(Path(sys.executable).parent / "ruff"), "check", "--output-format=json", "--stdin-filename", path]
+        done = subprocess.run([*words, "-"], cwd=ROOT, input=code.format(clock), capture_output=True, text=True)
+        return {found["code"] for found in json.loads(done.stdout)}
+
+    assert "TID251" in codes("tests/control/test_new.py")
+    assert "TID251" not in codes("tests/patience.py")
+    assert "TID251" not in codes("simconsole/session/new.py")
+
+
 def test_a_new_room_must_find_its_place(house: House) -> None:
     (house.root / "simconsole" / "annexe.py").write_text('"""A module at the root."""\n')
     code, output = house.lint()
@@ -259,14 +272,14 @@ def test_help_loads_no_heavy_library(words: list[str]) -> None:
 
 
 def test_help_is_there_and_its_time_is_printed(record_property: Callable[[str, object], None]) -> None:
-    times_s = []
+    times = Stopwatch()
     for _ in range(5):
-        began_s = time.perf_counter()
+        times.start()
         done = subprocess.run([sys.executable, "-m", "simconsole", "--help"], cwd=ROOT, capture_output=True, text=True)
-        times_s.append(time.perf_counter() - began_s)
+        times.lap()
         assert done.returncode == 0
         assert "demo" in done.stdout
-    record_property("simconsole --help, median of 5", f"{statistics.median(times_s):.2f} s (aim 0.3 s)")
+    record_property("simconsole --help, median of 5", f"{times.median} (aim 0.3 s)")
 
 
 def test_importing_every_core_loads_no_heavy_library() -> None:

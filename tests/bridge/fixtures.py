@@ -24,6 +24,7 @@ from simconsole.values.state_vector import (
     VEHICLE_AT,
     Snapshot,
 )
+from tests.patience import PATIENCE_S
 
 STAGES: dict[type[Any], int] = {
     DeviceSample: SAMPLE_AT,
@@ -118,7 +119,7 @@ class Served:
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._run, args=(profile, registry))
         self._thread.start()
-        self.port = self._port.get(timeout=10.0)
+        self.port = self._port.get(timeout=PATIENCE_S)
         self.url = f"ws://127.0.0.1:{self.port}"
 
     def _run(self, profile: BridgeProfile, registry: Registry | None) -> None:
@@ -141,11 +142,11 @@ class Served:
 
     def command(self) -> RemoteCommand:
         """The next change of the command."""
-        return self.commands.get(timeout=10.0)[0]
+        return self.commands.get(timeout=PATIENCE_S)[0]
 
     def stop(self) -> None:
         self._stop.set()
-        self._thread.join(timeout=10.0)
+        self._thread.join(timeout=PATIENCE_S)
         assert not self._thread.is_alive()
 
 

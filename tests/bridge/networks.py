@@ -8,6 +8,8 @@ import struct
 from pathlib import Path
 from typing import Any, Self
 
+from tests.patience import PATIENCE_S
+
 _SO_ATTACH_FILTER = 26
 _LOAD_RANDOM = (0x20, 0, 0, 0xFFFFF038)  # ld [SKF_AD_OFF + SKF_AD_RANDOM]
 _DROP = (0x06, 0, 0, 0)
@@ -57,7 +59,7 @@ class Raw:
         self.sock = socket.socket()
         if receive_bytes is not None:
             self.sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_bytes)
-        self.sock.settimeout(20.0)
+        self.sock.settimeout(PATIENCE_S)
         self.sock.connect(("127.0.0.1", port))
         self._buffer = b""
         self.sock.sendall(handshake(port, headers))

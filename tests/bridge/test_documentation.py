@@ -18,6 +18,7 @@ from simconsole.profiles.files.loader import parse
 from simconsole.profiles.session import Outputs as OutputsSection
 from simconsole.values.signals import RemoteKind
 from tests.paths import ROOT
+from tests.patience import PATIENCE_S
 
 PAGE = (ROOT / "docs" / "rosbridge.md").read_text()
 
@@ -60,7 +61,7 @@ def test_controller_in_ten_lines_drives(serving: Callable[..., Any], snapshot: C
             break
         except queue.Empty:
             assert tick < 1000
-    program.join(timeout=20.0)
+    program.join(timeout=PATIENCE_S)
     assert command is not None
     assert (command.kind, command.speed_mps, command.yaw_rate_radps) == (RemoteKind.TWIST, 5.0, -0.4)
 

@@ -18,6 +18,7 @@ from simconsole.bridge.transport.server import BridgeServer
 from simconsole.cli.certificate import make, write_private
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import BridgeError, ProfileError
+from tests.patience import PATIENCE_S
 
 TOKEN = "c" * 20
 
@@ -64,13 +65,13 @@ def test_stock_client_authenticates_after_connecting(serving: Callable[..., Any]
     server = serving(tokens=files["tokens"])
     with connect(server.url) as peer:
         peer.send('{"op":"subscribe","topic":"/odom"}')
-        assert "needs the role view; you have no token" in str(peer.recv(timeout=10.0))
+        assert "needs the role view; you have no token" in str(peer.recv(timeout=PATIENCE_S))
         peer.send(f'{{"op":"auth","token":"{TOKEN}"}}')
         peer.send('{"op":"publish","topic":"/console/request","msg":{"data":"mark"}}')
-        assert server.events.get(timeout=10.0)
+        assert server.events.get(timeout=PATIENCE_S)
     with connect(f"{server.url}/?token={TOKEN}") as peer:
         peer.send('{"op":"publish","topic":"/console/request","msg":{"data":"mark"}}')
-        assert server.events.get(timeout=10.0)
+        assert server.events.get(timeout=PATIENCE_S)
 
 
 def test_lockstep_asks_for_the_token_too(files: dict[str, str]) -> None:
@@ -82,7 +83,7 @@ def test_lockstep_asks_for_the_token_too(files: dict[str, str]) -> None:
             try:
                 with connect(bridge.url, additional_headers={"Authorization": f"Bearer {token}"}) as peer:
                     peer.send('{"op":"subscribe","topic":"/odom"}')
-                    peer.recv(timeout=5.0)
+                    peer.recv(timeout=PATIENCE_S)
             except InvalidStatus as error:
                 failures.append(error.response.status_code)
             except (TimeoutError, OSError, ConnectionClosed):
@@ -96,7 +97,7 @@ def test_lockstep_asks_for_the_token_too(files: dict[str, str]) -> None:
         assert bridge.wait_for_client(10.0)
         assert failures == [401]
     for thread in (stranger, friend):
-        thread.join(timeout=10.0)
+        thread.join(timeout=PATIENCE_S)
 
 
 def test_lockstep_is_encrypted_too(
@@ -116,7 +117,7 @@ def test_lockstep_is_encrypted_too(
                 client.connect()
                 echoed = 0
                 while echoed < answered:
-                    received = client.receive(10.0)
+                    received = client.receive(PATIENCE_S)
                     assert received is not None
                     if received.topic == "/echo":
                         assert received.message.data == "x" * 100_000
@@ -136,7 +137,7 @@ def test_lockstep_is_encrypted_too(
             assert bridge.take(tick + 1)[0].sequence == answered
             while bridge.clients:
                 bridge.publish(snapshot(tick))
-        program.join(timeout=10.0)
+        program.join(timeout=PATIENCE_S)
         assert not program.is_alive()
 
 

@@ -24,6 +24,7 @@ from simconsole.session.resolution import load_session, override
 from simconsole.values.signals import Mode, RemoteCommand, RemoteKind
 from simconsole.values.state_vector import ARBITRATION_AT, ECU_AT, VEHICLE_AT
 from tests.paths import ROOT
+from tests.patience import PATIENCE_S, wait_until
 
 DRIVE_S = 5.0
 
@@ -49,13 +50,25 @@ def running(*words: str) -> Iterator["subprocess.Popen[str]"]:
 
 
 def results(process: "subprocess.Popen[str]") -> dict[str, Any]:
-    out, err = process.communicate(timeout=120)
+    out, err = process.communicate(timeout=PATIENCE_S)
     assert process.returncode == 0, err
     found: dict[str, Any] = json.loads(out.splitlines()[-1])
     return found
 
 
-def test_ecu_drives_the_car_by_can_alone(port: int, tmp_path: Path) -> None:
+@contextlib.contextmanager
+def sending(port: int, codec: Codec, *words: str) -> Iterator["subprocess.Popen[str]"]:
+    """An ECU that is heard on the bus already."""
+    listening = CanPort(CanProfile(port=port, log=()), frozenset(), codec.ids(ECU))
+    try:
+        with running("can", "send", "--port", str(port), *words) as ecu:
+            wait_until(lambda: listening.receive(0.0) is not None or ecu.poll() is not None, "the first frame")
+            yield ecu
+    finally:
+        listening.close()
+
+
+def test_ecu_drives_the_car_by_can_alone(port: int, codec: Codec, tmp_path: Path) -> None:
     session = override(
         load_session("can"),
         scenario={"duration_s": DRIVE_S},
@@ -64,7 +77,7 @@ def test_ecu_drives_the_car_by_can_alone(port: int, tmp_path: Path) -> None:
     (tmp_path / "can.yaml").write_text(to_text(session))
     bundle = tmp_path / "bundle"
     with (
-        running("can", "send", "--port", str(port), "--engage", "--hold", "4", "--road-wheel-deg", "5") as ecu,
+        sending(port, codec, "--engage", "--hold", "4", "--road-wheel-deg", "5") as ecu,
         running("drive", str(tmp_path / "can.yaml"), "--out", str(bundle)) as drive,
     ):
         driven = results(drive)
@@ -92,7 +105,7 @@ def test_bus_that_is_not_there_refuses_the_drive(tmp_path: Path) -> None:
     session = override(load_session("can"), outputs={"can": {"interface": "socketcan", "channel": "can97"}})
     (tmp_path / "can.yaml").write_text(to_text(session))
     with running("drive", str(tmp_path / "can.yaml"), "--out", str(tmp_path / "bundle")) as drive:
-        _, err = drive.communicate(timeout=60)
+        _, err = drive.communicate(timeout=PATIENCE_S)
     assert drive.returncode == 2
     first, *_, last = err.splitlines()
     assert first.startswith("simconsole station: CAN socketcan can97: cannot be opened")

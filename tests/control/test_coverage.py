@@ -17,7 +17,7 @@ LEFT_OUT = tuple(f"test_{name}.py" for name in (*DRIVES, "coverage", "mutation_p
 
 
 def test_every_line_and_branch_is_taken(tmp_path: Path) -> None:
-    files = sorted(path for path in (ROOT / "tests" / "control").glob("test_*.py") if path.name not in LEFT_OUT)
+    files = sorted(path for path in (ROOT / "tests" / "control").rglob("test_*.py") if path.name not in LEFT_OUT)
     environment = {"COVERAGE_FILE": str(tmp_path / "coverage"), "PYTHONPATH": str(ROOT), "PATH": ""}
     run = [sys.executable, "-m", "coverage"]
     measure = [*run, "run", "--branch", "--source", str(ROOM), "-m", "pytest", "-q", "-p", "no:cacheprovider"]

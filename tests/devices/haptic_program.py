@@ -9,7 +9,6 @@ import json
 import os
 import signal
 import sys
-import time
 
 import msgspec
 import numpy as np
@@ -43,6 +42,7 @@ from simconsole.values.state_vector import (
     Snapshot,
 )
 from tests.devices.port_contract import CHECKS
+from tests.patience import pause, stamp_ns
 
 PAUSE_S = 0.4
 LEVELS = [0.0, 0.5, 1.0, -1.0, -0.25, 9.0, -9.0, 0.0]
@@ -69,7 +69,7 @@ def motion() -> None:
         if sample != before:
             print(json.dumps(sample._asdict()), flush=True)
         before = sample
-        time.sleep(0.004)
+        pause(0.004)
     source.close()
 
 
@@ -87,18 +87,18 @@ def main(how: str) -> None:
     if sys.argv[3:] == ["watched"]:
         watchdog = Watchdog((entry.vendor_id, entry.product_id))
         port = watched(port, watchdog)
-        time.sleep(0.5)  # until it has opened the device
+        pause(0.5)  # until it has opened the device
         print("watchdog", watchdog.process_id, flush=True)
-    motor = WheelMotor(port, FORCE, lambda snapshot: time.monotonic())
+    motor = WheelMotor(port, FORCE, lambda snapshot: stamp_ns() / 1e9)
     if how == "pause":
-        pause(motor)
+        stand(motor)
         motor.close()
         sdl_runtime.release()
         return
     for level in LEVELS:
         for _ in range(5):
             motor.publish(shot(4.0 * level))
-            time.sleep(0.004)
+            pause(0.004)
     if how == "hang":
         motor.publish(shot(4.0))
         os.kill(os.getpid(), signal.SIGSTOP)
@@ -112,7 +112,7 @@ def main(how: str) -> None:
     sdl_runtime.release()
 
 
-def pause(motor: WheelMotor) -> None:
+def stand(motor: WheelMotor) -> None:
     """A car in a bend pulls at the wheel; time stands for PAUSE_S, as `drive.run` lets it stand, and goes on."""
     console, state = assemble(resolve(load_session("demo")), plain)
     assert console.feel is not None
@@ -128,11 +128,11 @@ def pause(motor: WheelMotor) -> None:
         console.feel(before, row, console.settings, console.tick_s)
         if tick > 250:
             motor.publish(Snapshot(tick, 250, row))
-            time.sleep(0.004)
+            pause(0.004)
         if tick == 301:
-            print("stands", time.monotonic_ns(), flush=True)
-            time.sleep(PAUSE_S)
-            print("goes on", time.monotonic_ns(), flush=True)
+            print("stands", stamp_ns(), flush=True)
+            pause(PAUSE_S)
+            print("goes on", stamp_ns(), flush=True)
 
 
 def contract(entry: Found) -> None:

@@ -13,6 +13,7 @@ from simconsole.profiles.force_feedback import ForceFeedback
 from tests.devices.mocked import start
 from tests.devices.port_contract import CHECKS
 from tests.paths import ROOT
+from tests.patience import PATIENCE_S
 
 Judge = Callable[[str], str]
 """Takes the name of a check and returns what is wrong, empty where it holds."""
@@ -40,7 +41,7 @@ def mocked(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], dict[str
     @cache
     def outcome(back_end: str) -> dict[str, str]:
         program = start(tmp_path_factory.mktemp(back_end) / "calls.jsonl", "contract", back_end)
-        out, err = program.communicate(timeout=60.0)
+        out, err = program.communicate(timeout=PATIENCE_S)
         assert program.returncode == 0, out + err
         judged: dict[str, str] = json.loads(out.splitlines()[-1])
         return judged

@@ -8,6 +8,7 @@ import msgspec
 from simconsole.devices.setup.calibrate import write_profile
 from simconsole.profiles.device import CockpitProfile
 from tests.devices.mocked import calls, run_behind
+from tests.patience import PATIENCE_S
 
 FF_CONSTANT = 0x52
 STEERING = 0x4000
@@ -22,7 +23,7 @@ def test_each_force_reaches_the_kernel_gently_and_ends(t500: CockpitProfile, tmp
     log = tmp_path / "calls.jsonl"
     words = ["-m", "simconsole", "devices", "feel", "--cockpit", str(cockpit), "--strength", "20"]
     done = run_behind(log, *words)
-    out, err = done.communicate("l\ny\ny\ny\ny\ny\ny\n", timeout=120.0)
+    out, err = done.communicate("l\ny\ny\ny\ny\ny\ny\n", timeout=PATIENCE_S)
     assert done.returncode == 0, out + err
     assert out.index("sign:") < out.index("left:") < out.index("right:") < out.index("texture:"), "the sign first"
     told = calls(log)

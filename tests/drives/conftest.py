@@ -1,3 +1,4 @@
+import os
 from pathlib import Path
 from subprocess import CompletedProcess
 from typing import Any, NamedTuple
@@ -19,12 +20,16 @@ class Demo(NamedTuple):
     done: "CompletedProcess[str]"
     results: dict[str, Any]
     table: LogTable
+    cpu_s: float  # of the console and all that it started
 
 
 @pytest.fixture(scope="session")
 def demo(tmp_path_factory: pytest.TempPathFactory) -> Demo:
     """`simconsole demo`, once for all tests, as a person starts it."""
     bundle = tmp_path_factory.mktemp("demo") / "bundle"
+    before = os.times()
     done = simconsole("demo", "--out", bundle, "--json")
+    after = os.times()
+    cpu_s = sum(after[2:4]) - sum(before[2:4])
     assert done.returncode == 0, done.stderr
-    return Demo(bundle, done, results(done), open_bundle(bundle).log.table())
+    return Demo(bundle, done, results(done), open_bundle(bundle).log.table(), cpu_s)

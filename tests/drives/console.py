@@ -5,14 +5,11 @@ import os
 import signal
 import subprocess
 import sys
-import time
-from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-PATIENCE_S = 120.0
-"""A deadline against hanging, far above what anything takes."""
+from tests.patience import PATIENCE_S
 
 
 def words(*arguments: object) -> list[str]:
@@ -47,14 +44,6 @@ def complaint(done: "subprocess.CompletedProcess[str]") -> str:
     assert len(lines) == 1, done.stderr
     assert lines[0].startswith("simconsole ")
     return lines[0]
-
-
-def wait_until(condition: Callable[[], object], what: str, patience_s: float = PATIENCE_S) -> None:
-    """Look until `condition` holds."""
-    deadline_s = time.monotonic() + patience_s
-    while not condition():
-        assert time.monotonic() < deadline_s, f"{what}: not within {patience_s} s"
-        time.sleep(0.02)
 
 
 class Running:

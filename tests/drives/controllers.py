@@ -3,15 +3,15 @@
 import json
 import socket
 import threading
-import time
 from collections.abc import Callable
 from typing import Any
 
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
+from tests.patience import wait_until
+
 CONTROL = "/control/command/control_cmd"
-PATIENCE_S = 60.0
 
 
 def free_port() -> int:
@@ -55,14 +55,15 @@ class Controller(threading.Thread):
             raise
 
     def _connected(self) -> ClientConnection:
-        deadline_s = time.monotonic() + PATIENCE_S
-        while True:
+        def connected() -> ClientConnection | None:
             try:
                 return connect(self._url, compression=None, ping_interval=None)
             except OSError:
-                if time.monotonic() > deadline_s:
-                    raise
-                time.sleep(0.02)
+                return None
+
+        link = wait_until(connected, self._url)
+        assert link is not None
+        return link
 
     def _follow(self, link: ClientConnection) -> None:
         with link:

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.drives.console import complaint, environment, simconsole
+from tests.patience import PATIENCE_S
 
 SESSION = "schema: 1\noutputs: {hud: null, scene: null}\nmode: {pacing: free}\n"
 
@@ -101,7 +102,7 @@ def test_a_wheel_in_boot_mode_is_named_with_its_cure(tmp_path: Path) -> None:
     )
     out = tmp_path / "bundle"
     words = [sys.executable, "-c", program, "drive", "--headless", "--driver", "sdl", "--for", "1", "--out", str(out)]
-    done = subprocess.run(words, capture_output=True, text=True, timeout=60, env=environment(), check=False)
+    done = subprocess.run(words, capture_output=True, text=True, timeout=PATIENCE_S, env=environment(), check=False)
     line = complaint(done)
     assert "value 044f:b65d (boot mode): 044f:b65e" in line
     assert not out.exists()

@@ -15,8 +15,9 @@ from simconsole.recording.bundles.bundle import open_bundle, verify
 from simconsole.recording.bundles.log import LogTable
 from simconsole.recording.bundles.replay_bundle import replay_bundle
 from simconsole.values.signals import Mode
-from tests.drives.console import PATIENCE_S, Running, environment
+from tests.drives.console import Running, environment
 from tests.drives.controllers import free_port
+from tests.patience import PATIENCE_S
 
 EXAMPLE = Path(simconsole.__file__).parents[1] / "examples" / "roll_a_ball" / "roll_a_ball.py"
 WAYPOINTS_M = [(2.0, 0.0), (2.0, 2.0), (0.0, 2.0), (0.0, 0.0)]

@@ -11,7 +11,8 @@ import pytest
 from simconsole.devices.synthetic.trace import COLUMNS
 from simconsole.recording.bundles.bundle import open_bundle, verify
 from simconsole.values.signals import NEVER_TICKS, Mode, Validity
-from tests.drives.console import PATIENCE_S, environment, results, simconsole, words
+from tests.drives.console import environment, results, simconsole, words
+from tests.patience import PATIENCE_S
 
 PERSON = """\
 schema: 1

@@ -16,8 +16,9 @@ from simconsole.recording.bundles.replay_bundle import replay_bundle
 from simconsole.session.lifecycle import DriveResult, drive
 from simconsole.session.resolution import load_session, override, resolve
 from simconsole.values.signals import Event, Mode, Reason
-from tests.drives.console import Running, wait_until
+from tests.drives.console import Running
 from tests.drives.controllers import Controller, command, free_port
+from tests.patience import PATIENCE_S, wait_until
 
 TICK_HZ = 250
 PERIOD_TICKS = 5
@@ -57,7 +58,7 @@ def drive_with(tmp_path: Path) -> Callable[..., Driven]:
         controller = Controller(port, answer)
         controller.start()
         result = drive(resolve(session), tmp_path / name)
-        controller.join(30.0)
+        controller.join(PATIENCE_S)
         assert not controller.is_alive()
         assert controller.failure is None
         return Driven(result, open_bundle(tmp_path / name).log.table(), controller)

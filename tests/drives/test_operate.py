@@ -1,13 +1,17 @@
 """An operator at work: `simconsole operate` in a paced drive, and the bundle that is left of it."""
 
+import json
 import socket
 from pathlib import Path
 
 import numpy as np
+import pytest
 
+from simconsole.cli.main import main
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.values.signals import Event, Mode
-from tests.drives.console import Running, results, simconsole, wait_until
+from tests.drives.console import Running, results, simconsole
+from tests.patience import wait_until
 
 SESSION = """schema: 1
 scenario: {vehicle: hatchback, duration_s: 4}
@@ -18,24 +22,33 @@ mode: {pacing: realtime, start: on_request}
 """
 
 
-def test_acts_of_an_operator_are_in_the_drive_and_in_its_bundle(tmp_path: Path) -> None:
+def test_acts_of_an_operator_are_in_the_drive_and_in_its_bundle(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     session, bundle = tmp_path / "session.yaml", tmp_path / "bundle"
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     session.write_text(SESSION.replace("PORT", str(port)))
 
+    url = f"ws://127.0.0.1:{port}"
+
     def operate(*arguments: str) -> int:
-        done = simconsole("operate", *arguments, "--url", f"ws://127.0.0.1:{port}", "--json")
+        done = simconsole("operate", *arguments, "--url", url, "--json")
         return int(results(done)["tick"]) if done.returncode == 0 else -1
+
+    def at_once(*arguments: str) -> int:
+        """The same while simulated time goes on: no program has to be started, which takes seconds beside others."""
+        assert main(["operate", *arguments, "--url", url, "--json"]) == 0
+        return int(json.loads(capsys.readouterr().out.splitlines()[-1])["tick"])
 
     with Running(tmp_path / "output", "drive", session, "--out", bundle) as drive:
         wait_until(lambda: operate("mark") == 1, "the first tick")
         assert operate("start", "--participant", "P07", "--trial", "B-3") == 1, "simulated time stood until now"
-        paused = operate("pause", "--note", "phone rang")
-        assert 0 <= operate("mark", "--note", "while time stands") - paused < 100
-        operate("start")
-        operate("estop")
+        paused = at_once("pause", "--note", "phone rang")
+        assert 0 <= at_once("mark", "--note", "while time stands") - paused < 100
+        at_once("start")
+        at_once("estop")
         assert drive.end().returncode == 0, drive.end().stderr
     opened = open_bundle(bundle)
     acts = opened.manifest.summary["acts"]

@@ -4,8 +4,9 @@ import json
 import signal
 from pathlib import Path
 
-from tests.drives.console import Running, complaint, results, simconsole, wait_until
+from tests.drives.console import Running, complaint, results, simconsole
 from tests.drives.controllers import Controller, command, free_port
+from tests.patience import PATIENCE_S, wait_until
 
 
 def test_a_controller_reads_and_commands_a_standing_car(tmp_path: Path) -> None:
@@ -16,7 +17,7 @@ def test_a_controller_reads_and_commands_a_standing_car(tmp_path: Path) -> None:
         wait_until(lambda: controller.odometry > 125, "odometry of more than two seconds")
         server.process.send_signal(signal.SIGINT)
         done = server.end()
-        controller.join(30.0)
+        controller.join(PATIENCE_S)
     assert done.returncode == 130
     assert results(done)["interrupted"] is True
     counts = results(done)["bridge"]
@@ -45,7 +46,7 @@ def test_port_of_the_system_s_choice_is_said(tmp_path: Path) -> None:
         wait_until(lambda: controller.odometry > 0, "odometry")
         server.process.send_signal(signal.SIGINT)
         done = server.end()
-        controller.join(30.0)
+        controller.join(PATIENCE_S)
     assert (controller.failure, controller.statuses) == (None, [])
     assert (done.returncode, results(done)["interrupted"]) == (130, True)
 
@@ -76,7 +77,7 @@ def test_our_own_server_passes_the_check(tmp_path: Path) -> None:
         done = simconsole("bridge", "check", f"ws://127.0.0.1:{port}", "--json")
         server.process.send_signal(signal.SIGINT)
         server.end()
-        controller.join(30.0)
+        controller.join(PATIENCE_S)
     assert done.returncode == 0, done.stdout
     assert results(done)["passed"] == len(results(done)["rows"])
     assert "DEVIATION" not in done.stdout

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from tests.bridge.networks import Raw
+from tests.patience import PATIENCE_S
 
 # Answers each line of its input with what it has counted of its first client, on the clock that it limits by.
 SERVER = """
@@ -68,7 +69,7 @@ def serving_apart(transport: str) -> Iterator[Server]:
         finally:
             assert process.stdin is not None
             process.stdin.close()
-            assert process.wait(60.0) == 0
+            assert process.wait(PATIENCE_S) == 0
 
 
 def settle(client: Raw) -> list[dict[str, Any]]:

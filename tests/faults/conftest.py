@@ -8,6 +8,7 @@ from simconsole.bridge.transport.lockstep_server import LockstepBridge
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.signals import RemoteCommand
 from tests.bridge.fixtures import Served, bridge, control, join, make_snapshot, peer, serving, snapshot, transport
+from tests.patience import PATIENCE_S
 
 __all__ = ["bridge", "control", "join", "peer", "serving", "snapshot", "transport"]
 
@@ -52,7 +53,7 @@ class LockstepEdge:
 
     def stop(self) -> None:
         self._stop.set()
-        self._thread.join(timeout=10.0)
+        self._thread.join(timeout=PATIENCE_S)
         assert not self._thread.is_alive()
         self._bridge.close()
 

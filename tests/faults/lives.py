@@ -6,13 +6,13 @@ import re
 import shutil
 import signal
 import socket
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
-from tests.drives.console import Running, wait_until
+from tests.drives.console import Running
+from tests.patience import pause, wait_until
 
 MARK: Final = "SIMCONSOLE_TEST_MARK"
 TAKEN: Final = 1 << 14  # SIGTERM in a mask of /proc/PID/status
@@ -131,11 +131,9 @@ class Life:
         assert found is not None
         return found
 
-    def wait_for_nobody(self) -> float:
-        """Wait until none of its processes lives; return how long that took, in s."""
-        began_s = time.monotonic()
+    def wait_for_nobody(self) -> None:
+        """Wait until none of its processes lives."""
         wait_until(lambda: not self.family(), f"the end of {self.family()}")
-        return time.monotonic() - began_s
 
     def close(self) -> None:
         for process in self.family():
@@ -177,8 +175,8 @@ def wait_for_port(port: int) -> None:
     wait_until(is_free, f"port {port}")
 
 
-def pause(chance: random.Random, most_s: float) -> float:
+def random_pause(chance: random.Random, most_s: float) -> float:
     """Do nothing for a while that nobody knows beforehand; return how long."""
     length_s = chance.uniform(0.0, most_s)
-    time.sleep(length_s)
+    pause(length_s)
     return length_s

@@ -6,7 +6,6 @@ The drives are headless and in simulated time; only C03's flood and C02's reopen
 import errno
 import itertools
 import os
-import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
@@ -280,8 +279,8 @@ def test_c02_state_of_the_bus_stands_on_the_drivers_cluster(profile: CanProfile,
     yard = FallingYard("send", 1, down_s=20.0)
     port = CanPort(profile, codec.ids("CONSOLE"), codec.ids("ECU"), clock_s=lambda: yard.now_s, opener=yard.open)
     on_bus = OnBus(CanNode(codec, profile, 250), port)
-    file, now = tmp_path / "can.json", [time.time()]
-    watch = CanWatch(file, time.time, lambda: now[0])
+    file, now = tmp_path / "can.json", [1.8e9]
+    watch = CanWatch(file, lambda: now[0], lambda: now[0])
 
     def lamp() -> str:
         file.write_bytes(msgspec.json.encode(on_bus.status(0)))

@@ -1,6 +1,5 @@
 """P05 and P06: the wall clock jumps, the loop really stands still."""
 
-import time
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +13,7 @@ from tests.drives.console import results, simconsole
 from tests.faults.course import BY_HAND, HZ, PLACES, circuit
 from tests.faults.test_whole_drives import PERSON
 from tests.paths import ROOT
+from tests.patience import pause
 
 JUMPING = '''
 """Python runs this before anything else: whoever reads the wall clock finds it an hour ahead, then an hour back."""
@@ -84,7 +84,7 @@ class Sleeper:
 
     def publish(self, snapshot: Snapshot) -> None:
         if snapshot.tick == self._tick:
-            time.sleep(self._sleep_s)
+            pause(self._sleep_s)
 
 
 @pytest.mark.fault("P06")

@@ -9,7 +9,6 @@ import os
 import random
 import signal
 import subprocess
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -22,9 +21,19 @@ from simconsole.processes.lifetimes import DRIVE_VARIABLE
 from simconsole.recording.bundles.bundle import open_bundle, verify
 from simconsole.values.errors import OtherDriveError
 from simconsole.values.signals import Event, Mode
-from tests.drives.console import Running, environment, simconsole, wait_until, words
+from tests.drives.console import Running, environment, simconsole, words
 from tests.drives.controllers import free_port
-from tests.faults.lives import Life, holders, living, pause, standard_input, takes_signals, wait_for_port, write_session
+from tests.faults.lives import (
+    Life,
+    holders,
+    living,
+    random_pause,
+    standard_input,
+    takes_signals,
+    wait_for_port,
+    write_session,
+)
+from tests.patience import PATIENCE_S, Stopwatch, pause, wait_until
 from tests.samples import Measured, Sample
 
 PROGRAM = "--course"
@@ -122,7 +131,7 @@ def wait_for_port_taken(port: int) -> None:
 @pytest.mark.fault("P02")
 @pytest.mark.timeout(0)
 def test_no_process_of_a_killed_drive_lives_on(tmp_path: Path, sample: Sample, measured: Measured) -> None:
-    chance, port, longest_s = random.Random(sample.seed), free_port(), 0.0
+    chance, port, gone = random.Random(sample.seed), free_port(), Stopwatch()
     times = sample.of(4, 50)
     for number in range(times):
         folder, pacing = tmp_path / str(number), ("realtime", "lockstep")[number % 4 == 3]
@@ -130,19 +139,20 @@ def test_no_process_of_a_killed_drive_lives_on(tmp_path: Path, sample: Sample, m
         wait_for_port(port)
         with living(folder, f"kill{number}", "drive", session, "--out", folder / "bundle", "--for", 3) as life:
             wait_until(lambda: takes_signals(life.core), "its own code")
-            waited_s = pause(chance, 8.0)
+            waited_s = random_pause(chance, 8.0)
             spared = next((pid for pid, said in life.family().items() if PROGRAM in said), None)
             if number % 2:
                 kill_all_but(life, spared)
             else:
                 kill(life.core)
                 life.running.process.wait()
-            gone_s = life.wait_for_nobody()
-            longest_s = max(longest_s, gone_s)
-            print(f"{number}: {pacing}, killed after {waited_s:.2f} s, the last one gone {gone_s:.2f} s later")
+            gone.start()
+            life.wait_for_nobody()
+            gone.lap()
+            print(f"{number}: {pacing}, killed after {waited_s:.2f} s")
             next_drive_is_manual(folder / "next", port, temporary=life.temporary)
             assert life.left() == [], "the next start removes what was left"
-    measured("P02", f"processes of {times} killed drives", f"all gone within {longest_s:.2f} s", "1 s")
+    measured("P02", f"processes of {times} killed drives", f"all gone within {gone.longest}", "1 s")
 
 
 @pytest.mark.fault("P02")
@@ -162,28 +172,33 @@ class Ended(NamedTuple):
 
     code: int
     was_done: bool  # before the first signal: the results were printed
-    whole_s: float | None  # until its bundle was whole
-    exit_s: float
 
 
-def end_by(life: Life, bundle: Path, numbers: list[tuple[float, signal.Signals]]) -> Ended:
-    """Send signals, each after a pause, and watch the end."""
-    was_done = bool(life.running.out.read_bytes())
-    began_s, whole_s, due_s = time.monotonic(), None, 0.0
-    for pause_s, number in numbers:
-        due_s += pause_s
-        while time.monotonic() < began_s + due_s and life.running.process.poll() is None:
-            time.sleep(0.002)
-        life.running.process.send_signal(number)
+class Ends:
+    """Ends drives by signals, and tells how long that took since the last signal of each."""
 
-    def ended() -> bool:
-        nonlocal whole_s
-        if whole_s is None and is_finished(bundle):
-            whole_s = time.monotonic() - began_s
-        return life.running.process.poll() is not None
+    def __init__(self) -> None:
+        self.whole, self.exit = Stopwatch(), Stopwatch()
 
-    wait_until(ended, "the end")
-    return Ended(int(life.running.process.returncode), was_done, whole_s, time.monotonic() - began_s)
+    def end_by(self, life: Life, bundle: Path, numbers: list[tuple[float, signal.Signals]]) -> Ended:
+        """Send signals, each after a pause, and watch the end."""
+        was_done, whole = bool(life.running.out.read_bytes()), False
+        for pause_s, number in numbers:
+            pause(pause_s)
+            life.running.process.send_signal(number)
+        self.whole.start()
+        self.exit.start()
+
+        def ended() -> bool:
+            nonlocal whole
+            if not whole and is_finished(bundle):
+                whole = True
+                self.whole.lap()
+            return life.running.process.poll() is not None
+
+        wait_until(ended, "the end")
+        self.exit.lap()
+        return Ended(int(life.running.process.returncode), was_done)
 
 
 def is_finished(bundle: Path) -> bool:
@@ -199,16 +214,16 @@ def is_finished(bundle: Path) -> bool:
 def test_a_signal_at_any_moment_ends_a_drive_in_order(
     twice: bool, tmp_path: Path, sample: Sample, measured: Measured
 ) -> None:
-    chance, times, longest_s, last_s = random.Random(sample.seed), sample.of(3, 50), 0.0, 0.0
+    chance, times, ends = random.Random(sample.seed), sample.of(3, 50), Ends()
     for turn in range(times):
         folder, number = tmp_path / str(turn), SIGNALS[turn % 3]
         session = write_session(folder, free_port(), pacing=chance.choice(("realtime", "realtime", "lockstep")))
         bundle, options = folder / "bundle", ["--json", *chance.choice(([], ["--for", 2]))]
         with living(folder, f"signal{turn}-{twice}", "drive", session, "--out", bundle, *options) as life:
             wait_until(lambda: takes_signals(life.core), "its own code")
-            waited_s = pause(chance, 9.0)
+            waited_s = random_pause(chance, 9.0)
             second = [(chance.uniform(0.0, 2.0), number)] if twice else []
-            ended = end_by(life, bundle, [(0.0, number), *second])
+            ended = ends.end_by(life, bundle, [(0.0, number), *second])
             print(f"{number.name} after {waited_s:.2f} s, {second}: {ended}, {session.read_text()!r} {options}")
             life.wait_for_nobody()
             wait_until(lambda: not life.left(), f"the end of {life.left()}")
@@ -217,14 +232,10 @@ def test_a_signal_at_any_moment_ends_a_drive_in_order(
             at_end = ended.was_done and ended.code == 0 and is_finished(bundle)
             assert ended.code == 130 or at_end, said
             assert_whole_or_none(bundle, twice)
-            longest_s, last_s = (
-                max(longest_s, ended.whole_s or 0.0),
-                max(last_s, ended.exit_s - sum(s for s, _ in second)),
-            )
     if twice:
-        measured("P11", f"{times} times two signals", f"exit within {last_s:.2f} s of the second", "at once")
+        measured("P11", f"{times} times two signals", f"exit within {ends.exit.longest} of the second", "at once")
         return
-    seen = f"bundle whole within {longest_s:.2f} s, exit with report and scene within {last_s:.2f} s"
+    seen = f"bundle whole within {ends.whole.longest}, exit with report and scene within {ends.exit.longest}"
     measured("P11", f"{times} signals at random moments", seen, "2 s")
 
 
@@ -257,6 +268,6 @@ def test_a_closed_terminal_ends_a_drive_in_order(tmp_path: Path) -> None:
         wait_until(lambda: len(open_bundle(tmp_path / "bundle").log.table().ticks) > 10, "driving")
     finally:
         os.close(ours)
-    assert process.wait(60.0) == 130
+    assert process.wait(PATIENCE_S) == 130
     assert verify(tmp_path / "bundle") == []
     assert (tmp_path / "bundle" / "report.html").exists()

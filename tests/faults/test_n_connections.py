@@ -4,11 +4,11 @@ import asyncio
 import json
 import socket
 import threading
-import time
 import tracemalloc
 from collections import deque
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
+from time import process_time
 from typing import Any
 
 import pytest
@@ -20,6 +20,7 @@ from simconsole.bridge.transport.sockets import is_unacknowledged
 from simconsole.profiles.bridge import BridgeLimits, BridgeProfile
 from simconsole.values.signals import Event
 from tests.bridge.networks import CLOSE, Raw, far_end, go_deaf, lose
+from tests.patience import PATIENCE_S, pause, stamp_ns, until
 from tests.samples import Measured
 
 CONTROL = "/control/command/control_cmd"
@@ -30,9 +31,7 @@ MESSAGES = 6000
 
 
 @asynccontextmanager
-async def served(
-    profile: BridgeProfile, clock_ns: Callable[[], int] = time.monotonic_ns
-) -> AsyncIterator[BridgeServer]:
+async def served(profile: BridgeProfile, clock_ns: Callable[[], int] = stamp_ns) -> AsyncIterator[BridgeServer]:
     server = BridgeServer(profile, clock_ns=clock_ns)
     await server.start()
     try:
@@ -41,10 +40,10 @@ async def served(
         await server.close()
 
 
-async def until(holds: Callable[[], bool]) -> None:
-    """Let the loop turn until something holds; the test's own time limit ends it otherwise."""
-    while not holds():
-        await asyncio.sleep(0.001)
+def looked(server: BridgeServer) -> int:
+    """Let a server look after its clients; return how many are left."""
+    server.check_clients()
+    return server.clients
 
 
 async def raw(server: BridgeServer, **options: Any) -> Raw:
@@ -75,10 +74,10 @@ def test_n01_commander_that_closes_is_an_event_and_the_others_go_on(
                 commander.send(CLOSE, (1000).to_bytes(2))
             else:
                 commander.sock.close()
-            assert server.events.get(timeout=10.0) == Event.COMMANDER_LOST
+            assert server.events.get(timeout=PATIENCE_S) == Event.COMMANDER_LOST
         for tick in range(1, 51):
             server.snapshots.put(snapshot(tick, x_m=float(tick)))
-            received = watcher.receive(10.0)
+            received = watcher.receive(PATIENCE_S)
             assert received is not None
             assert received.message.pose.pose.position.x == tick
         assert server.commands.empty()  # the last command stays what it was and grows old
@@ -115,9 +114,8 @@ def test_n04_client_that_went_without_a_word_is_freed_after_three_seconds(
                 pong = await alive.ping()
                 await pong
                 assert server.clients == 2 or now_ns >= 3 * S
-            while server.clients == 2:  # until the kernel, whose clock is its own, has missed it for a second
-                server.check_clients()
-                await asyncio.sleep(0.01)
+            # The kernel, whose clock is its own, misses it for a second.
+            await until(lambda: looked(server) < 2)
             assert server.console.inputs.take(1)[1].events == 0.0  # its lease had ended long before
             await alive.close()
             half.sock.close()
@@ -214,12 +212,12 @@ def test_n05_stalled_subscriber_costs_the_server_no_processor_time(
         router = server.console.router
         await until(lambda: len(router.sessions) == 3 + stalled)
         await until(lambda: all("/odom" in session.queues for session in router.sessions))
-        began_s = time.process_time()
+        began_s = process_time()
         for tick in range(5, 5 * MESSAGES + 1, 5):
             server.publish(snapshot(tick))
             for peer in peers:
                 await peer.recv()
-        spent = time.process_time() - began_s
+        spent = process_time() - began_s
         for peer in peers:
             await peer.close()
         if half is not None:
@@ -298,14 +296,14 @@ class Chaos:
                 data = source.recv(1500)
             except OSError:
                 data = b""
-            waiting.append((time.monotonic() + self._delay_s, data))
+            waiting.append((stamp_ns() / 1e9 + self._delay_s, data))
             arrived.release()
 
     def _pass_on(self, source: socket.socket, sink: socket.socket, waiting: Any, arrived: threading.Semaphore) -> None:
         while True:
             arrived.acquire()
             due_s, data = waiting.popleft()
-            time.sleep(max(0.0, due_s - time.monotonic()) + len(data) / self._bytes_per_s)
+            pause(max(0.0, due_s - stamp_ns() / 1e9) + len(data) / self._bytes_per_s)
             if not data:
                 sink.close()
                 return
@@ -317,7 +315,7 @@ class Chaos:
     def stop(self) -> None:
         self._listener.close()
         for thread in self._threads:
-            thread.join(timeout=10.0)
+            thread.join(timeout=PATIENCE_S)
             assert not thread.is_alive()
         for end in self._ends:
             end.close()

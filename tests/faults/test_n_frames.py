@@ -19,6 +19,7 @@ from websockets.typing import Origin
 from simconsole.profiles.bridge import BridgeLimits
 from tests.bridge.networks import BINARY, CLOSE, PING, PONG, TEXT, Raw, frame, handshake
 from tests.faults.apart import serving_apart
+from tests.patience import PATIENCE_S
 from tests.samples import Measured, Sample
 
 CONTROL = "/control/command/control_cmd"
@@ -28,7 +29,7 @@ MIB = 1 << 20
 def settle(client: ClientConnection) -> None:
     """Return when everything sent before has been applied: a refusal is answered in order."""
     client.send('{"op":"no_such","id":"settle"}')
-    while json.loads(client.recv(timeout=20.0)).get("id") != "settle":
+    while json.loads(client.recv(timeout=PATIENCE_S)).get("id") != "settle":
         pass
 
 

@@ -3,8 +3,8 @@
 import json
 import math
 import random
-import time
 from collections.abc import Callable
+from time import thread_time_ns
 from typing import Any
 
 import cbor2
@@ -15,6 +15,7 @@ from simconsole.bridge.protocol.fragments import MAX_OPEN, TIMEOUT_NS
 from simconsole.bridge.protocol.message_decoding import Binary
 from simconsole.profiles.bridge import BridgeLimits, BridgeProfile
 from tests.bridge.fixtures import Peer
+from tests.faults.wrecks import wreck
 from tests.samples import Measured, Sample
 
 CONTROL = "/control/command/control_cmd"
@@ -25,7 +26,6 @@ ATOMS: list[Any] = [
     None, True, -1, 0, 1e308, 5e-324, 2**63, 2**64, -(2**63) - 1, 10**400, "", "x", "NaN", "\u0000", [], {}, [[]], [{}],
     {"x": 1}, "1", 1.5, "/clock", "é€𝄞",
 ]  # fmt: skip
-WRECKS = [b"", b"\x00", b"\xff\xfe", b"\xef\xbb\xbf", b"{", b"}", b"[", b'"', b"\\", b"NaN", b"1e999", b"\xed\xa0\x80"]
 
 
 def valid(number: int) -> dict[str, Any]:
@@ -51,19 +51,7 @@ def places(value: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
 
 def wreck_text(chance: random.Random) -> bytes:
     """A valid text with a few bytes cut, put in or turned over."""
-    text = bytearray(json.dumps(valid(0)).encode())
-    for _ in range(chance.randint(1, 4)):
-        at = chance.randrange(len(text) + 1)
-        kind = chance.randrange(4)
-        if kind == 0:
-            del text[at:]
-        elif kind == 1:
-            text[at:at] = chance.choice(WRECKS)
-        elif kind == 2:
-            del text[at : at + chance.randint(1, 8)]
-        elif text:
-            text[min(at, len(text) - 1)] ^= 1 << chance.randrange(8)
-    return bytes(text)
+    return wreck(chance, json.dumps(valid(0)).encode(), 4)
 
 
 def wreck_field(chance: random.Random) -> bytes:
@@ -86,9 +74,9 @@ def wreck_field(chance: random.Random) -> bytes:
 
 def sent(peer: Any, text: bytes | Binary) -> tuple[Any, float]:
     """Send a text; return what became of it and the processor time that it took, in ms."""
-    began_ns = time.thread_time_ns()
+    began_ns = thread_time_ns()
     outcome = peer.send(text)
-    return outcome, (time.thread_time_ns() - began_ns) / 1e6
+    return outcome, (thread_time_ns() - began_ns) / 1e6
 
 
 def cost_ms(bridge: ConsoleBridge, text: bytes | Binary) -> float:

@@ -3,11 +3,9 @@
 import gc
 import json
 import logging
-import socket
 import subprocess
 import sys
 import threading
-import time
 import tracemalloc
 from collections.abc import Callable
 from pathlib import Path
@@ -22,6 +20,8 @@ from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.signals import Mode
 from tests.bridge.fixtures import Served
 from tests.drives.console import Running
+from tests.drives.controllers import free_port
+from tests.patience import Stopwatch
 from tests.samples import Measured, Sample
 
 RESTARTS = 100
@@ -31,11 +31,6 @@ CONTROL = "/control/command/control_cmd"
 
 def open_files() -> int:
     return len(list(Path("/proc/self/fd").iterdir()))
-
-
-def free_port() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        return int(listener.getsockname()[1])
 
 
 def odometry(client: BridgeClient, server: Any, snapshot: Callable[..., Any]) -> None:
@@ -61,7 +56,7 @@ def test_n02_everything_is_there_again_after_each_of_many_restarts(
     # Classes that msgspec has generated are never freed; a server is restarted in a process of its own.
     port, registry = free_port(), standard_registry()
     states: list[Any] = []
-    times_s = []
+    restored = Stopwatch()
     with BridgeClient(f"ws://127.0.0.1:{port}", on_state=states.append, first_s=0.005, cap_s=0.02) as client:
         client.subscribe("/odom", "nav_msgs/Odometry")
         client.advertise(CONTROL, "autoware_control_msgs/Control")
@@ -69,9 +64,9 @@ def test_n02_everything_is_there_again_after_each_of_many_restarts(
         descriptors = 0
         for number in range(RESTARTS):
             server = Served(BridgeProfile(port=port, rates_hz={"/odom": 250.0}, transport=transport), registry)
-            began_s = time.monotonic()
+            restored.start()
             odometry(client, server, snapshot)
-            times_s.append(time.monotonic() - began_s)
+            restored.lap()
             assert client.publish(CONTROL, control(number / 1000))
             assert server.command().road_wheel_rad == number / 1000
             stopping = threading.Thread(target=server.stop)
@@ -94,7 +89,7 @@ def test_n02_everything_is_there_again_after_each_of_many_restarts(
     assert client.connections == RESTARTS
     assert states == ["connected", "connecting"] * RESTARTS
     assert client.failure
-    seen = f"median {sorted(times_s)[RESTARTS // 2]:.3f} s, longest of {RESTARTS} {max(times_s):.3f} s"
+    seen = f"median {restored.median}, longest of {RESTARTS} {restored.longest}"
     measured("N02", f"restored after a restart, {transport}", seen, "of real time, not asserted")
 
 

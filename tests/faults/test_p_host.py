@@ -17,9 +17,10 @@ import pytest
 
 from simconsole.bridge.client.bridge_client import BridgeClient
 from simconsole.recording.bundles.bundle import verify
-from tests.drives.console import Running, results, wait_until
-from tests.faults.test_n_restarts import free_port
+from tests.drives.console import Running, results
+from tests.drives.controllers import free_port
 from tests.faults.test_whole_drives import PERSON
+from tests.patience import PATIENCE_S, wait_until
 from tests.samples import Measured, Sample
 from tests.session.test_paced import TICK_HZ, drive
 
@@ -168,7 +169,7 @@ def listening(url: str, minutes: int) -> Iterator[Iterator[int]]:
         def each_minute() -> Iterator[int]:
             reached = 0
             while reached < minutes:
-                received = clock.receive(60.0)
+                received = clock.receive(PATIENCE_S)
                 assert received is not None, "the drive stands"
                 minute = received.message.clock.sec // 60
                 if minute > reached:

@@ -8,7 +8,6 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 from pathlib import Path
 
 import pytest
@@ -23,6 +22,7 @@ from simconsole.values.errors import RecordingError
 from simconsole.values.state_vector import Snapshot
 from tests.drives.console import results, simconsole
 from tests.faults.recorded import HZ, session, unfinish
+from tests.patience import PATIENCE_S, wait_until
 from tests.samples import Measured, Sample
 
 KILLED = """
@@ -71,10 +71,7 @@ def test_p02_kill_9_of_a_drive_loses_at_most_the_tick_in_work(
             drives.stdin.write(f"{turn}\n")
             drives.stdin.flush()
             child = int(drives.stdout.readline())
-            deadline_s = time.monotonic() + 60.0
-            while begun() < kill_at:
-                assert time.monotonic() < deadline_s
-                time.sleep(0.0005)
+            wait_until(lambda tick=kill_at: begun() >= tick, f"tick {kill_at}")  # type: ignore[misc]
             os.kill(child, signal.SIGKILL)
             assert drives.stdout.readline() == "dead\n"
             bundle = open_bundle(tmp_path / str(turn))
@@ -88,7 +85,7 @@ def test_p02_kill_9_of_a_drive_loses_at_most_the_tick_in_work(
             assert replayed.ticks == len(ticks)
             shutil.rmtree(bundle.folder)
         drives.stdin.close()
-        assert drives.wait(60.0) == 0
+        assert drives.wait(PATIENCE_S) == 0
     measured("P02", f"ticks lost at most, {kills} kills of a drive", str(lost), "1")
 
 

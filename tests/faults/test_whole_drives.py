@@ -26,6 +26,7 @@ from tests.bridge.networks import go_deaf
 from tests.drives.console import results, simconsole
 from tests.drives.controllers import Controller, command, free_port
 from tests.faults.course import CAR_M, HZ, LANE_M, circuit
+from tests.patience import PATIENCE_S
 
 IN_LANE_M = 0.5 * (LANE_M - CAR_M)
 SESSION = """schema: 1
@@ -163,7 +164,7 @@ def test_n04_a_real_half_open_connection_in_a_drive_is_stale_in_time(
     controller.start()
     session = override(load_session(str(tmp_path / "session.yaml")), outputs={"bridge": {"port": port}})
     drive(resolve(session), tmp_path / "bundle")
-    controller.join(30.0)
+    controller.join(PATIENCE_S)
     table = open_bundle(tmp_path / "bundle").log.table()
     modes, last = table.column("arbitration.mode"), newest(table)
     left = int(np.flatnonzero(modes[last:] != Mode.AUTONOMOUS)[0])

@@ -4,8 +4,6 @@ import json
 import os
 import socket
 import subprocess
-import threading
-import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,12 +11,13 @@ from typing import Any
 
 from websockets.sync.client import ClientConnection, connect
 
+from tests.drives.controllers import free_port
 from tests.paths import ROOT
+from tests.patience import PATIENCE_S, wait_until
 
 HERE = Path(__file__).parent
 CACHE = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "simconsole-tests"
 """What was fetched once from a package index."""
-PATIENCE_S = 20.0
 
 
 def environment(**more: str) -> dict[str, str]:
@@ -39,21 +38,14 @@ def program(around: Mapping[str, str], *words: str) -> Iterator["subprocess.Pope
             print(process.communicate()[1])  # pytest shows it where a test fails
 
 
-def free_port() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        return int(listener.getsockname()[1])
-
-
 def wait_for_port(port: int) -> None:
     """Wait until somebody listens there."""
-    pause = threading.Event()
-    deadline_s = time.monotonic() + PATIENCE_S
-    while True:
+
+    def listens() -> bool:
         with socket.socket() as probe:
-            if not probe.connect_ex(("127.0.0.1", port)):
-                return
-        assert time.monotonic() < deadline_s, f"nobody listens on port {port}"
-        pause.wait(0.05)
+            return not probe.connect_ex(("127.0.0.1", port))
+
+    wait_until(listens, f"somebody who listens on port {port}")
 
 
 @contextmanager

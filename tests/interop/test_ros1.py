@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.interop.programs import HERE, client, console, environment, free_port, program, wait_for_port
+from tests.drives.controllers import free_port
+from tests.interop.programs import HERE, client, console, environment, program, wait_for_port
 from tests.interop.ros1_packages import PYTHON, make_packages
 
 TABLE = {

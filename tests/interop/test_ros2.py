@@ -12,6 +12,7 @@ from tests.interop.programs import HERE, Client, client, console, program
 from tests.interop.ros2 import PYTHON, domain, needs_ros2
 from tests.interop.sessions import lockstep_session
 from tests.paths import ROOT
+from tests.patience import PATIENCE_S
 
 pytestmark = needs_ros2
 
@@ -33,9 +34,9 @@ def test_an_rclpy_node_drives_for_a_minute(tmp_path: Path, record_property: Call
         "--json",
     ]
     with program(around, *words) as drive, program(around, PYTHON, str(HERE / "rclpy_driver.py"), "60") as driver:
-        told, complaint = driver.communicate(timeout=60.0)
+        told, complaint = driver.communicate(timeout=PATIENCE_S)
         assert driver.returncode == 0, complaint
-        output, complaint = drive.communicate(timeout=60.0)
+        output, complaint = drive.communicate(timeout=PATIENCE_S)
         assert drive.returncode == 0, complaint
     results, seen = json.loads(output.splitlines()[-1]), json.loads(told)
     assert (results["unanswered"], results["exchanges"]) == (0, 3000)

@@ -13,8 +13,10 @@ import pytest
 from mcap.reader import make_reader
 
 from simconsole.cli.main import main
-from tests.interop.programs import CACHE, HERE, environment, free_port, program, wait_for_port
+from tests.drives.controllers import free_port
+from tests.interop.programs import CACHE, HERE, environment, program, wait_for_port
 from tests.interop.sessions import lockstep_session
+from tests.patience import PATIENCE_S
 
 VERSION = "2.1.0"
 FOLDER = CACHE / f"roslib-{VERSION}"
@@ -75,7 +77,7 @@ def test_every_kind_of_operation_and_a_restart(
                 "type": "nav_msgs/msg/Odometry",
             }
             first.terminate()
-            first.wait(20.0)
+            first.wait(PATIENCE_S)
             with program(environment(), *serve):
                 assert told(talker) == {"returned": "odometry is back"}
 
@@ -89,7 +91,7 @@ def test_roslib_drives_for_a_minute(
         wait_for_port(port)
         with program(dict(os.environ), *node("drive", f"ws://127.0.0.1:{port}", "60")) as driver:
             seen = told(driver)
-            output, complaint = drive.communicate(timeout=60.0)
+            output, complaint = drive.communicate(timeout=PATIENCE_S)
     assert drive.returncode == 0, complaint
     results = json.loads(output.splitlines()[-1])
     assert (results["unanswered"], results["exchanges"], seen["answers"]) == (0, 3000, 3000)

@@ -5,7 +5,6 @@ import os
 import subprocess
 import sys
 import threading
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -19,6 +18,7 @@ from simconsole.bridge.transport.server import serve
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.signals import RemoteCommand, RemoteKind
 from simconsole.values.state_vector import PLATFORM_AT, VEHICLE_AT, Snapshot
+from tests.patience import PATIENCE_S, stamp_ns
 
 PROGRAM = Path(__file__).with_name("roslibpy_program.py")
 ANSWERS = 20
@@ -42,7 +42,7 @@ def program(port: int, transport: str) -> Iterator["subprocess.Popen[str]"]:
 
 
 def said(process: "subprocess.Popen[str]") -> dict[str, Any]:
-    output, _ = process.communicate(timeout=60.0)
+    output, _ = process.communicate(timeout=PATIENCE_S)
     assert process.returncode == 0
     return json.loads(output.splitlines()[-1])  # type: ignore[no-any-return]  # the program prints an object
 
@@ -70,13 +70,13 @@ def test_against_the_server_of_its_own_process(transport: str) -> None:
     commands: list[RemoteCommand] = []
     ports: list[int] = []
     ready, stop = threading.Event(), threading.Event()
-    started = time.monotonic()
+    began_ns = stamp_ns()
     last_tick = 0
 
     def newest() -> Snapshot | None:
         """A drive in real time at 250 Hz."""
         nonlocal last_tick
-        tick = int((time.monotonic() - started) * 250)
+        tick = (stamp_ns() - began_ns) * 250 // 10**9
         if tick == last_tick:
             return None
         last_tick = tick
@@ -99,12 +99,12 @@ def test_against_the_server_of_its_own_process(transport: str) -> None:
     thread = threading.Thread(target=run)
     thread.start()
     try:
-        assert ready.wait(10.0)
+        assert ready.wait(PATIENCE_S)
         with program(ports[0], transport) as process:
             report = said(process)
     finally:
         stop.set()
-        thread.join(timeout=10.0)
+        thread.join(timeout=PATIENCE_S)
     assert report["finished"]
     positions = report["positions"]
     assert len(positions) >= ANSWERS

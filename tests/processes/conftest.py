@@ -1,8 +1,9 @@
-import time
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+
+from tests import patience
 
 PROGRAMS = '''
 import json, os, signal, time
@@ -61,13 +62,10 @@ def programs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
 
 @pytest.fixture
 def wait_until() -> Callable[[Callable[[], object]], None]:
-    """Poll until a condition holds; fail after a minute."""
+    """Poll until a condition holds."""
 
     def wait(condition: Callable[[], object]) -> None:
-        deadline_s = time.monotonic() + 60.0
-        while not condition():
-            assert time.monotonic() < deadline_s, "never happened"
-            time.sleep(0.005)
+        patience.wait_until(condition, "what the test waits for")
 
     return wait
 

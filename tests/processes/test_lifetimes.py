@@ -16,8 +16,8 @@ from simconsole.processes import lifetimes
 from simconsole.processes.lifetimes import ORPHAN_S, close_pipe, end, end_with_parent, handled, spawn
 from simconsole.processes.shared_memory import temporary_folder
 from simconsole.processes.supervisor import WARDEN_S
-from tests.drives.console import wait_until
 from tests.faults.lives import holders, marked, standard_input
+from tests.patience import wait_until
 
 FOREVER_S = 60.0
 CHILD = """

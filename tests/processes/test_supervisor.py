@@ -14,6 +14,7 @@ from simconsole.processes.shared_memory import Ring, make_run_folder
 from simconsole.processes.supervisor import StationSpec, Supervisor
 from simconsole.values.errors import StationError
 from simconsole.values.state_vector import Snapshot
+from tests import patience
 
 Wait = Callable[[Callable[[], object]], None]
 IsRunning = Callable[[int], bool]
@@ -57,8 +58,8 @@ def start(run_base: Path) -> Iterator[Callable[..., Supervisor]]:
     """Start stations in a run folder; ended with the test."""
     started: list[Supervisor] = []
 
-    def start(*specs: StationSpec, folder: Path | None = None) -> Supervisor:
-        started.append(Supervisor(folder or make_run_folder(), specs, PATIENCE_S))
+    def start(*specs: StationSpec, folder: Path | None = None, patience_s: float = PATIENCE_S) -> Supervisor:
+        started.append(Supervisor(folder or make_run_folder(), specs, patience_s))
         started[-1].start()
         return started[-1]
 
@@ -72,7 +73,8 @@ def test_stations_run_in_their_own_processes_and_end_in_order(
     start: Callable[..., Supervisor], programs: str, tmp_path: Path, wait_until: Wait, is_running: IsRunning
 ) -> None:
     goodbye = tmp_path / "goodbye"
-    supervisor = start(station(programs, "one", goodbye=str(goodbye)), station(programs, "two", port=9090))
+    specs = (station(programs, "one", goodbye=str(goodbye)), station(programs, "two", port=9090))
+    supervisor = start(*specs, patience_s=patience.PATIENCE_S)
     wait_until(lambda: said(supervisor.folder, "one") and said(supervisor.folder, "two"))
     one, two = said(supervisor.folder, "one"), said(supervisor.folder, "two")
     assert one is not None

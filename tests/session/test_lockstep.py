@@ -9,6 +9,7 @@ from simconsole.profiles.bridge import BridgeProfile
 from simconsole.session.lockstep import TOKEN_VARIABLE, LockstepLink, start_autopilot
 from simconsole.values.signals import NO_COMMAND, Event, EventInput, RemoteCommand
 from simconsole.values.state_vector import Snapshot
+from tests.patience import PATIENCE_S
 
 PERIOD_TICKS = 5
 
@@ -109,7 +110,7 @@ def test_an_autopilot_whose_console_is_gone_ends_by_itself() -> None:
     program = start_autopilot("ws://127.0.0.1:9", "urban", BridgeProfile(), "0" * 32)
     assert program.poll() is None
     close_pipe(program)
-    assert program.wait(60.0) == 1, "not by the ten seconds after which it gives up a server that is not there (2)"
+    assert program.wait(PATIENCE_S) == 1, "not by giving up a server that is not there (2)"
 
 
 def test_an_autopilot_with_nobody_to_drive_for_is_ended() -> None:

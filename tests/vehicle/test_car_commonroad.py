@@ -1,4 +1,4 @@
-"""Our car with the parameters of CommonRoad's BMW against their multi-body model, on inputs drawn anew each time."""
+"""Our car with the parameters of CommonRoad's BMW against their multi-body model, on random inputs."""
 
 import math
 import random

@@ -10,11 +10,10 @@ import sys
 from collections.abc import Callable, Iterator
 from typing import Any
 
-import numba
 import numpy as np
 import pytest
 
-from simconsole.values.host.jit import _twin, compiled
+from simconsole.values.host.jit import _cached, _twin, compiled
 from simconsole.values.kernels import Row, put
 from simconsole.values.platform import Ground, Platform
 from simconsole.values.signals import VehicleCommand
@@ -27,9 +26,11 @@ FUSED = re.compile(r"\bv?f?n?m(?:add|sub)\d*[sp][sd]\b|\bfmadd\b|\bfmsub\b|\bfml
 
 
 @pytest.fixture(scope="module")
-def fresh() -> Any:
-    """The compiled step, from the compiler and not from the cache, so that its assembly can be read."""
-    return numba.njit(fastmath=False)(_twin(platform().step))
+def fresh(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+    """The step as `compiled` compiles it, but from the compiler and not from the cache: its assembly can be read."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
+        yield _cached(_twin(platform().step), "fresh")
 
 
 def commands(seed: int, ticks: int, bad: bool = False) -> Iterator[VehicleCommand]:

@@ -8,8 +8,7 @@ from simconsole.profiles.world import WorldProfile
 from simconsole.values.platform import Pose
 from simconsole.world.course import CELL_M, Course
 from simconsole.world.geometry import Piece, travel
-
-SEED = 20260
+from tests.samples import Sample
 
 
 def test_cells_are_half_a_metre_or_finer(course: Course) -> None:
@@ -19,10 +18,11 @@ def test_cells_are_half_a_metre_or_finer(course: Course) -> None:
     assert course.speed_limit_mps == pytest.approx(50.0 / 3.6)
 
 
-def test_path_and_projection_agree_with_the_exact_primitives(urban: WorldProfile, course: Course) -> None:
-    print("seed", SEED)
-    dice = random.Random(SEED)
-    for _ in range(1500):
+def test_path_and_projection_agree_with_the_exact_primitives(
+    urban: WorldProfile, course: Course, sample: Sample
+) -> None:
+    dice = random.Random(sample.seed)
+    for _ in range(sample.of(1500, 50_000)):
         part = dice.choice(urban.path)
         u = dice.uniform(0.0, part.length_m)
         piece = Piece(part.length_m, part.curvature_start_1pm, part.curvature_end_1pm)

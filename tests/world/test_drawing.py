@@ -18,8 +18,12 @@ def area(polygon: np.ndarray) -> float:
 
 
 def test_everything_is_finite_pairs(drawn: Drawing) -> None:
-    for part in (*drawn[:6], (drawn.path,)):
-        for line in part:
+    assert np.isfinite(drawn.lights).all()
+    lines_of = {**drawn._asdict(), "path": (drawn.path,)}
+    del lines_of["lights"]
+    for name, lines in lines_of.items():
+        assert lines, f"the urban course has {name}"
+        for line in lines:
             assert line.ndim == 2
             assert line.shape[1] == 2
             assert len(line) >= 2

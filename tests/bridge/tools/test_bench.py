@@ -11,6 +11,7 @@ from simconsole.bridge.tools.bench import IN_FLIGHT, Case, bench
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import BridgeError
 from tests.bridge.fixtures import Served
+from tests.patience import PATIENCE_S
 
 
 @pytest.fixture(params=["websockets", "picows"])
@@ -82,7 +83,7 @@ def short_queues() -> Iterator[str]:
 
     thread = threading.Thread(target=run)
     thread.start()
-    assert ready.wait(10.0)
+    assert ready.wait(PATIENCE_S)
     yield f"ws://127.0.0.1:{ports[0]}"
     stop.set()
     thread.join()

@@ -3,7 +3,6 @@
 import asyncio
 import importlib.util
 import json
-import time
 from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
 from functools import partial
@@ -20,6 +19,7 @@ from simconsole.bridge.transport.server import BridgeServer
 from simconsole.bridge.transport.sockets import listen
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import ProfileError
+from tests.patience import PATIENCE_S, stamp_ns, until
 
 PROFILE = BridgeProfile(port=0)
 ADMISSION = Admission(Role.CONTROL, "ros2")
@@ -142,10 +142,10 @@ async def over_sockets(
     profile = BridgeProfile(port=0, transport=library)
     sock = listen(profile.host, 0)
     home = Home(make)
-    listener = await load_transport(profile)(home, sock, profile, None, time.monotonic_ns)
+    listener = await load_transport(profile)(home, sock, profile, None, stamp_ns)
     async with connect(f"ws://127.0.0.1:{sock.getsockname()[1]}", max_size=None) as far:
-        while home.client is None:
-            await asyncio.sleep(0.001)
+        await until(lambda: home.client is not None)
+        assert home.client is not None
         assert home.connection is not None
         try:
             yield home.connection, home.client, OverSockets(far)
@@ -163,14 +163,9 @@ each = pytest.mark.parametrize(
 )
 
 
-async def until(holds: Callable[[], bool]) -> None:
-    while not holds():
-        await asyncio.sleep(0.001)
-
-
 def run(pair: Pair, check: Callable[[Connection, Notes, Far], Any]) -> None:
     async def main() -> None:
-        async with asyncio.timeout(20.0), pair(lambda _: Notes()) as (connection, client, far):
+        async with asyncio.timeout(PATIENCE_S), pair(lambda _: Notes()) as (connection, client, far):
             await check(connection, client, far)
 
     asyncio.run(main())
@@ -246,7 +241,7 @@ def test_a_server_drives_over_it(pair: Pair, snapshot: Callable[..., Any], contr
         def accept(connection: Connection) -> ConnectionHandler:
             return server.accept(connection, "far", ADMISSION)
 
-        async with asyncio.timeout(20.0), pair(accept) as (_, _, far):
+        async with asyncio.timeout(PATIENCE_S), pair(accept) as (_, _, far):
             await far.say(b'{"op":"subscribe","topic":"/odom"}')
             await until(lambda: server.console.router.has_subscribers("/odom"))
             server.publish(snapshot(5, x_m=7.0))

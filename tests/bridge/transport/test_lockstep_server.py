@@ -15,6 +15,7 @@ from simconsole.bridge.transport.lockstep_server import LockstepBridge
 from simconsole.profiles.bridge import BridgeLimits, BridgeProfile
 from simconsole.values.errors import BridgeError
 from simconsole.values.signals import NEVER_TICKS, Event, RemoteCommand, RemoteKind
+from tests.patience import PATIENCE_S
 
 CONTROL = "/control/command/control_cmd"
 TYPE = "autoware_control_msgs/Control"
@@ -36,7 +37,7 @@ def beside(work: Callable[[], None]) -> Iterator[None]:
     try:
         yield
     finally:
-        thread.join(timeout=20.0)
+        thread.join(timeout=PATIENCE_S)
     assert not thread.is_alive()
     if failed:
         raise failed[0]
@@ -52,7 +53,7 @@ def answering(url: str, count: int, answer: Callable[[BridgeClient, Any], None])
             client.advertise("/cmd_vel", "geometry_msgs/Twist")
             client.connect()
             for _ in range(count):
-                received = client.receive(10.0)
+                received = client.receive(PATIENCE_S)
                 assert received is not None
                 answer(client, received.message)
 
@@ -83,7 +84,7 @@ def drive(bridge: LockstepBridge, snapshot: Callable[..., Any], ticks: int, peri
         if tick % period:
             bridge.publish(state)
         else:
-            assert bridge.exchange(state, 10.0)
+            assert bridge.exchange(state, PATIENCE_S)
     return commands
 
 
@@ -91,7 +92,7 @@ def test_every_control_period_gets_the_answer_to_its_own_state(
     lockstep: LockstepBridge, snapshot: Callable[..., Any]
 ) -> None:
     with beside(answering(lockstep.url, 20, steer)):
-        assert lockstep.wait_for_client(10.0)
+        assert lockstep.wait_for_client(PATIENCE_S)
         commands = drive(lockstep, snapshot, 100)
     assert commands[4].age_ticks == NEVER_TICKS
     for tick, command in enumerate(commands[5:], start=6):
@@ -105,7 +106,7 @@ def test_networked_drive_is_as_repeatable_as_a_scripted_one(snapshot: Callable[.
     drives = []
     for _ in range(3):
         with LockstepBridge(BridgeProfile(port=0)) as bridge, beside(answering(bridge.url, 40, steer)):
-            assert bridge.wait_for_client(10.0)
+            assert bridge.wait_for_client(PATIENCE_S)
             drives.append(drive(bridge, snapshot, 200))
     assert drives[0] == drives[1] == drives[2]
 
@@ -118,8 +119,8 @@ def test_other_commands_do_not_end_the_wait(lockstep: LockstepBridge, snapshot: 
         steer(client, odometry)
 
     with beside(answering(lockstep.url, 1, answer)):
-        assert lockstep.wait_for_client(10.0)
-        assert lockstep.exchange(snapshot(5, x_m=5.0), 10.0)
+        assert lockstep.wait_for_client(PATIENCE_S)
+        assert lockstep.exchange(snapshot(5, x_m=5.0), PATIENCE_S)
         command, _ = lockstep.take(6)
         assert (command.road_wheel_rad, command.sequence, command.refused) == (0.005, 2.0, 1.0)
 
@@ -132,16 +133,16 @@ def test_command_without_a_stamp_answers_by_arriving(lockstep: LockstepBridge, s
         client.publish("/cmd_vel", {"linear": {"x": 2.0}, "angular": {"z": 0.1}})
 
     with beside(answering(lockstep.url, 1, answer)):
-        assert lockstep.wait_for_client(10.0)
-        assert lockstep.exchange(snapshot(5), 10.0)
+        assert lockstep.wait_for_client(PATIENCE_S)
+        assert lockstep.exchange(snapshot(5), PATIENCE_S)
         assert lockstep.take(6)[0].speed_mps == 2.0
 
 
 def test_nobody_answers(lockstep: LockstepBridge, snapshot: Callable[..., Any]) -> None:
     assert not lockstep.wait_for_client(0.0)
-    assert not lockstep.exchange(snapshot(5), 10.0)  # nobody is there who could
+    assert not lockstep.exchange(snapshot(5), PATIENCE_S)  # nobody is there who could
     with beside(answering(lockstep.url, 1, lambda client, odometry: None)):
-        assert lockstep.wait_for_client(10.0)
+        assert lockstep.wait_for_client(PATIENCE_S)
         assert not lockstep.exchange(snapshot(10), 0.02)
         lockstep.publish(snapshot(15))
 
@@ -156,8 +157,8 @@ def test_commander_that_vanishes_ends_the_wait_at_once_and_is_an_event(
         with served(lockstep, snapshot):
             watcher.connect()
         with beside(answering(lockstep.url, 1, steer)):
-            assert lockstep.wait_for_client(10.0)
-            assert lockstep.exchange(snapshot(5), 10.0)
+            assert lockstep.wait_for_client(PATIENCE_S)
+            assert lockstep.exchange(snapshot(5), PATIENCE_S)
             assert not lockstep.exchange(snapshot(10), 100.0)
         command, events = lockstep.take(11)
         assert events.events == Event.COMMANDER_LOST
@@ -165,11 +166,11 @@ def test_commander_that_vanishes_ends_the_wait_at_once_and_is_an_event(
         assert lockstep.clients == 1
         assert not lockstep.exchange(snapshot(15), 100.0)
         with beside(answering(lockstep.url, 2, steer)):
-            assert lockstep.wait_for_client(10.0)
+            assert lockstep.wait_for_client(PATIENCE_S)
             lockstep.publish(snapshot(20, x_m=20.0))
             while lockstep.take(22)[0].sequence < 2:  # the next commander speaks first, as at the start
                 lockstep.publish(snapshot(21))
-            assert lockstep.exchange(snapshot(25, x_m=25.0), 10.0)
+            assert lockstep.exchange(snapshot(25, x_m=25.0), PATIENCE_S)
     assert "was commanding and is gone" in caplog.text
 
 
@@ -192,7 +193,7 @@ def served(bridge: LockstepBridge, snapshot: Callable[..., Any]) -> Iterator[Non
 
 
 def refusal(peer: ClientConnection) -> str:
-    return str(json.loads(peer.recv(timeout=10.0))["msg"])
+    return str(json.loads(peer.recv(timeout=PATIENCE_S))["msg"])
 
 
 def test_malformed_frames_are_answered_and_the_next_command_applied(
@@ -209,7 +210,7 @@ def test_malformed_frames_are_answered_and_the_next_command_applied(
         peer.send(['{"op":"publish","topic":"%s","msg":' % CONTROL, json.dumps(BODY) + "}"])  # noqa: UP031  (braces)
         peer.send("garbage")
         refusal(peer)
-        peer.ping().wait(10.0)
+        peer.ping().wait(PATIENCE_S)
     command, _ = lockstep.take(1)
     assert (command.road_wheel_rad, command.sequence, command.refused) == (0.1, 1.0, 2.0)
     assert "refused (1)" in caplog.text
@@ -239,7 +240,7 @@ def test_message_that_is_too_long_ends_the_connection(snapshot: Callable[..., An
     ):
         peer.send("x" * 3000)
         with pytest.raises(ConnectionClosed) as caught:
-            peer.recv(timeout=10.0)
+            peer.recv(timeout=PATIENCE_S)
         assert caught.value.rcvd is not None
         assert caught.value.rcvd.code == 1009
 
@@ -263,7 +264,7 @@ def test_who_may_not_connect_is_turned_away(snapshot: Callable[..., Any]) -> Non
 def test_what_is_no_websocket_is_dropped(lockstep: LockstepBridge, snapshot: Callable[..., Any]) -> None:
     with served(lockstep, snapshot):
         for junk in (b"\x16\x03\x01 tls\r\n", b"GET / HTTP/1.0\r\n\r\n", b"x" * 100_000):
-            with socket.create_connection(("127.0.0.1", lockstep.port), timeout=10.0) as raw:
+            with socket.create_connection(("127.0.0.1", lockstep.port), timeout=PATIENCE_S) as raw:
                 raw.sendall(junk)
                 while raw.recv(1000):
                     pass
@@ -274,10 +275,10 @@ def test_who_does_not_finish_the_handshake_is_swept_out_by_the_next(
     lockstep: LockstepBridge, snapshot: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("simconsole.bridge.transport.sockets.HANDSHAKE_S", 0.0)
-    with served(lockstep, snapshot), socket.create_connection(("127.0.0.1", lockstep.port), timeout=10.0) as idle:
+    with served(lockstep, snapshot), socket.create_connection(("127.0.0.1", lockstep.port), timeout=PATIENCE_S) as idle:
         idle.sendall(b"GET / HT")
         with connect(lockstep.url) as peer:
-            peer.ping().wait(10.0)
+            peer.ping().wait(PATIENCE_S)
         # Reset if the server never read what was sent, closed in order if it did: gone either way.
         with suppress(ConnectionResetError):
             assert idle.recv(10) == b""
@@ -288,7 +289,7 @@ def test_slow_subscriber_costs_bounded_memory_and_the_loop_nothing(snapshot: Cal
     profile = BridgeProfile(port=0, limits=limits, rates_hz={"/odom": 250.0, "/console/arbitration": 250.0})
     with LockstepBridge(profile) as bridge:
         with beside(lambda: setups.append(subscribe(bridge.url, "/odom", 1000))):
-            assert bridge.wait_for_client(10.0)
+            assert bridge.wait_for_client(PATIENCE_S)
         with setups.pop() as stalled:
             (session,) = bridge.console.router.sessions
             for tick in range(1, 50_000):
@@ -323,7 +324,7 @@ def subscribe(url: str, topic: str, queue_length: int) -> socket.socket:
 def test_odometry_follows_the_control_rate(snapshot: Callable[..., Any]) -> None:
     with LockstepBridge(BridgeProfile(port=0), odometry_hz=10.0) as bridge:
         with beside(answering(bridge.url, 4, steer)):
-            assert bridge.wait_for_client(10.0)
+            assert bridge.wait_for_client(PATIENCE_S)
             commands = drive(bridge, snapshot, 100, period=25)
         assert commands[-1].sequence == 3.0
 
@@ -336,10 +337,10 @@ def test_clients_are_told_good_bye_and_the_port_is_free(snapshot: Callable[..., 
             client.subscribe("/odom", "nav_msgs/Odometry")
             client.connect()
             with pytest.raises(BridgeError, match=r"closed by the server \(1001\)"):
-                client.receive(10.0)
+                client.receive(PATIENCE_S)
 
     with beside(watch):
-        assert bridge.wait_for_client(10.0)
+        assert bridge.wait_for_client(PATIENCE_S)
         with pytest.raises(BridgeError, match="cannot listen"):
             LockstepBridge(BridgeProfile(port=bridge.port))
         port = bridge.port

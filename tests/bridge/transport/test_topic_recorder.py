@@ -17,6 +17,7 @@ from simconsole.bridge.transport.lockstep_server import LockstepBridge
 from simconsole.bridge.transport.topic_recorder import TopicRecorder, open_recorder
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import BridgeError
+from tests.patience import PATIENCE_S
 
 GRIP = {"force": [1.5, 2.5], "state": 2, "name": "left"}
 
@@ -75,11 +76,11 @@ def test_a_user_type_through_the_bridge_into_mcap_and_back(tmp_path: Path, snaps
                 ask = {"op": "subscribe", "topic": "/grip", "type": "own_msgs/Grip", "compression": form}
                 peer.send(json.dumps(ask))
                 peer.send(json.dumps({"op": "call_service", "id": 1, "service": "/rosapi/get_time"}))
-                peer.recv(timeout=10.0)  # the answer: the subscription before it is made
+                peer.recv(timeout=PATIENCE_S)  # the answer: the subscription before it is made
             web.send(json.dumps({"op": "publish", "topic": "/grip", "msg": {**GRIP, "name": "much too long"}}))
-            heard.append(json.loads(web.recv(timeout=10.0)))
+            heard.append(json.loads(web.recv(timeout=PATIENCE_S)))
             web.send(json.dumps({"op": "publish", "topic": "/grip", "msg": GRIP}))
-            heard.extend(cbor2.loads(peer.recv(timeout=10.0, decode=False)) for peer in (web, other))
+            heard.extend(cbor2.loads(peer.recv(timeout=PATIENCE_S, decode=False)) for peer in (web, other))
 
     with LockstepBridge(profile, folder=tmp_path) as bridge:
         client = threading.Thread(target=talk, args=(bridge.url,))

@@ -17,6 +17,7 @@ from simconsole.bridge.transport.server import BridgeServer
 from simconsole.bridge.transport.upstream_client import UpstreamClient
 from simconsole.profiles.bridge import BridgeProfile, UpstreamProfile
 from simconsole.values.errors import ProfileError
+from tests.patience import until
 
 CONTROL = "/control/command/control_cmd"
 
@@ -50,11 +51,6 @@ async def joined(double: Double, port: int = 0, **profile: Any) -> AsyncIterator
             yield server
         finally:
             await server.close()
-
-
-async def until(holds: Callable[[], bool]) -> None:
-    while not holds():
-        await asyncio.sleep(0.001)
 
 
 def test_state_goes_there_and_commands_come_back(

@@ -1,7 +1,6 @@
 """The station's loop and the inline node, on a virtual bus with an ECU beside them."""
 
 import threading
-import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -16,6 +15,7 @@ from simconsole.canbus.protection import Check
 from simconsole.profiles.can import CanProfile
 from simconsole.values.signals import NEVER_TICKS, Event, RemoteCommand
 from simconsole.values.state_vector import Snapshot
+from tests.patience import pause, stamp_ns, wait_until
 
 Snapshots = Callable[[int], Snapshot]
 
@@ -104,30 +104,23 @@ class Station:
         self._thread.join()
 
 
-def until(condition: Callable[[], bool], seconds: float = 20.0) -> None:
-    end_s = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end_s, "nothing happened"
-        time.sleep(0.002)
-
-
 def test_station_sends_takes_commands_and_reports(
     on_bus: OnBus, ecu_port: CanPort, codec: Codec, snapshot: Snapshots
 ) -> None:
     station, ecu = Station(on_bus), Ecu(codec, Wish(accel_mps2=1.0, request=5))
     try:
-        began_ns = time.monotonic_ns()
+        began_ns = stamp_ns()
         station.snapshots.append(snapshot(0))
-        until(lambda: ecu_port.receive(0.0) is not None)
+        wait_until(lambda: ecu_port.receive(0.0) is not None, "a frame")
         for _ in range(15):
             ecu_port.send(ecu.command())
-        until(lambda: len(station.commands) == 14 and station.events != 0)
+        wait_until(lambda: len(station.commands) == 14 and station.events != 0, "every command")
     finally:
         station.end()
     command, receipt_ns = station.commands[-1]
     assert command.sequence == 14
     assert receipt_ns is not None
-    assert began_ns < receipt_ns < time.monotonic_ns()
+    assert began_ns < receipt_ns < stamp_ns()
     assert station.events == Event.EMERGENCY_STOP
     assert station.statuses[0]["up"] is True
     assert station.statuses[-1]["node"]["accepted"] == 14
@@ -140,10 +133,10 @@ def test_station_tells_at_once_when_the_bus_goes_off(
     station = Station(on_bus)
     try:
         station.snapshots.append(snapshot(0))
-        until(lambda: len(station.statuses) == 1)
+        wait_until(lambda: len(station.statuses) == 1, "the first status")
         monkeypatch.setattr("simconsole.canbus.bus.worker._STATUS_S", 1e6)  # never again by its turn
         on_bus.port._down("a test")
-        until(lambda: len(station.statuses) == 2)
+        wait_until(lambda: len(station.statuses) == 2, "the second status")
     finally:
         station.end()
     assert [status["up"] for status in station.statuses[:2]] == [True, False]
@@ -154,8 +147,8 @@ def test_station_without_new_ticks_is_silent(on_bus: OnBus, ecu_port: CanPort, s
     station = Station(on_bus)
     try:
         station.snapshots.append(snapshot(0))
-        until(lambda: on_bus.node.counters().sent == 6)
-        time.sleep(0.1)
+        wait_until(lambda: on_bus.node.counters().sent == 6, "the frames of a tick")
+        pause(0.1)
         assert on_bus.node.counters().sent == 6
     finally:
         station.end()

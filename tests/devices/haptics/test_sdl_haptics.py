@@ -21,6 +21,7 @@ from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.values.signals import Button, DeviceSample
 from tests.devices.mocked import calls, start
 from tests.devices.people import Seat
+from tests.patience import PATIENCE_S
 
 FF_CONSTANT, FF_DAMPER = 0x52, 0x55
 STEERING = 0x4000
@@ -32,7 +33,7 @@ def driven(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFact
     """The calls of one drive: levels 0, 0.5, 1, -1, -0.25, 9, -9, 0, then closed twice."""
     log = tmp_path_factory.mktemp("mock") / "calls.jsonl"
     done = start(log, "drive", request.param)
-    out, err = done.communicate(timeout=60.0)
+    out, err = done.communicate(timeout=PATIENCE_S)
     assert done.returncode == 0, out + err
     assert "vendor_id=1103, product_id=46686, name='Thrustmaster TRS Racing wheel'" in out
     assert "constant=True, gain=True, autocentre=True, damper=True" in out
@@ -92,7 +93,7 @@ def test_after_closing_nothing_plays(driven: list[dict[str, Any]]) -> None:
 def test_recorded_motion_of_a_t500_arrives_as_a_person(tmp_path: Path, t500: CockpitProfile) -> None:
     """The kernel's events of a wheel, a pedal and a paddle, through SDL's own evdev driver, calibrated."""
     done = start(tmp_path / "calls.jsonl", "motion", motion=Path(__file__).with_name("t500_motion.txt"))
-    out, err = done.communicate(timeout=60.0)
+    out, err = done.communicate(timeout=PATIENCE_S)
     assert done.returncode == 0, out + err
     seat = Seat(settings(t500, 250))
     drivers = [seat.feel(DeviceSample(**json.loads(line))) for line in out.splitlines() if line.startswith("{")]
@@ -179,7 +180,7 @@ def test_in_a_pause_there_is_no_force_and_after_it_force_comes_slowly(back_end: 
     """The car's pull through the console's own kernel and motor to the device's driver, paused and started again."""
     log = tmp_path / "calls.jsonl"
     done = start(log, "pause", back_end)
-    out, err = done.communicate(timeout=60.0)
+    out, err = done.communicate(timeout=PATIENCE_S)
     assert done.returncode == 0, out + err
     said = {line.rpartition(" ")[0]: line.rpartition(" ")[2] for line in out.splitlines()}
     stands_ns, on_ns = int(said["stands"]), int(said["goes on"])

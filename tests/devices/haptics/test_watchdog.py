@@ -6,7 +6,6 @@ What it does to a wheel is shown on the kernel's interface in tests/faults/test_
 import os
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -18,6 +17,7 @@ from simconsole.devices.haptics.watchdog import BEATS, FORCE, STALL_S, Stall
 from simconsole.devices.haptics.watched import Watchdog, WatchedPort, open_watchdog, watched
 from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.values.errors import DeviceError
+from tests.patience import wait_until
 
 NOBODY = (0xFFFF, 0xFFFF)
 
@@ -98,14 +98,9 @@ def test_killed_console_leaves_neither_process_nor_memory() -> None:
     console = subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     assert console.stdout is not None
     process_id, path = console.stdout.readline().split()
-    deadline_s = time.monotonic() + 30.0
-    while Path(path).exists() and time.monotonic() < deadline_s:
-        time.sleep(0.01)  # the watchdog unlinks it once it has it
+    wait_until(lambda: not Path(path).exists(), "the watchdog to unlink its memory, once it has it")
     console.communicate("x")
-    while Path(f"/proc/{process_id}").exists() and time.monotonic() < deadline_s:
-        time.sleep(0.01)
-    assert not Path(f"/proc/{process_id}").exists()
-    assert not Path(path).exists()
+    wait_until(lambda: not Path(f"/proc/{process_id}").exists(), "the end of the watchdog")
 
 
 def test_watchdog_loads_nothing_large() -> None:

@@ -16,6 +16,7 @@ from simconsole.profiles.device import Buttons, CockpitProfile
 from simconsole.profiles.files.loader import load
 from simconsole.values.errors import DeviceError
 from tests.paths import ROOT
+from tests.patience import PATIENCE_S
 
 
 def at_once(tick_hz: int) -> Pace:
@@ -155,7 +156,7 @@ def terminal(*words: str, folder: Path, answer: Callable[[str], str | None]) -> 
             pending = ""
             os.write(ours, typed.encode())
     os.close(ours)
-    return process.wait(timeout=60.0), seen
+    return process.wait(timeout=PATIENCE_S), seen
 
 
 def test_whole_calibration_in_a_terminal(tmp_path: Path) -> None:

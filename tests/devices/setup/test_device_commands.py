@@ -111,14 +111,22 @@ def test_interrupted_recording_is_whole(t500: CockpitProfile, tmp_path: Path) ->
     source.close()
 
 
-def test_real_time_pace_does_not_run_ahead() -> None:
-    import time
+@pytest.mark.parametrize("late_s", [0.0, 0.3])
+def test_real_time_pace_sleeps_until_each_ticks_deadline(late_s: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    now_s, slept_s = 50.0, list[float]()
 
+    def sleep(length_s: float) -> None:
+        nonlocal now_s
+        slept_s.append(round(length_s, 9))
+        now_s += length_s + 0.001
+
+    monkeypatch.setattr("simconsole.devices.setup.device_commands.time.monotonic", lambda: now_s)
+    monkeypatch.setattr("simconsole.devices.setup.device_commands.time.sleep", sleep)
     wait = realtime(100)
-    start = time.monotonic()
-    for tick in range(1, 6):
+    now_s += late_s
+    for tick in range(1, 5):
         wait(tick)
-        assert time.monotonic() - start >= tick / 100 - 0.005
+    assert slept_s == ([0.01, 0.009, 0.009, 0.009] if late_s == 0.0 else []), "a late one waits for nothing"
 
 
 def test_check_refuses_a_wheel_that_is_not_straight(t500: CockpitProfile, t500_settings: CockpitSettings) -> None:

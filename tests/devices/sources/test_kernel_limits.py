@@ -16,11 +16,12 @@ from simconsole.devices.sources.kernel_limits import (
 )
 from simconsole.profiles.device import CockpitProfile
 from tests.devices.mocked import start
+from tests.patience import PATIENCE_S
 
 
 def test_dead_zone_and_range_of_a_wheel_are_read_and_said(tmp_path: Path) -> None:
     done = start(tmp_path / "calls.jsonl", "limits")
-    out, err = done.communicate(timeout=60.0)
+    out, err = done.communicate(timeout=PATIENCE_S)
     assert done.returncode == 0, out + err
     found, wrong, said = json.loads(out)
     assert found["axes"] == [[0, 0, 65535, 255, 128], [1, 0, 1023, 0, 0], [2, 0, 1023, 0, 0], [3, 0, 1023, 0, 0]]

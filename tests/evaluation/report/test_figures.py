@@ -1,8 +1,10 @@
+import re
 from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from simconsole.evaluation.metrics.drive_metrics import mode_changes, track
 from simconsole.evaluation.metrics.table import drive_of
@@ -39,11 +41,33 @@ def test_map_has_both_paths_and_both_ends(svgs: tuple[str, str]) -> None:
         assert colour in svgs[0]
 
 
+def lines(svg: str, colour: str) -> list[NDArray[np.float64]]:
+    """Return each line of a colour, but those of legend and labels, by points close together; y upwards."""
+    drawn = (each.attrib for each in ElementTree.fromstring(svg).iter())
+    texts = (each["d"] for each in drawn if f"stroke: {colour}" in each.get("style", ""))
+    points = (np.array(re.findall(r"[ML] (\S+) (\S+)", text), dtype=float) * (1.0, -1.0) for text in texts)
+    return [dense(each) for each in points if len(each) > 3]
+
+
+def dense(line: NDArray[np.float64]) -> NDArray[np.float64]:
+    lengths = np.concatenate(([0.0], np.hypot(*np.diff(line, axis=0).T).cumsum()))
+    at = np.linspace(0.0, lengths[-1], 1000)
+    return np.column_stack([np.interp(at, lengths, each) for each in line.T])
+
+
 def test_map_shows_the_driven_path_where_it_was(known: Any, course: Course, svgs: tuple[str, str]) -> None:
-    moved = known.rows.copy()
-    moved[:, known.columns.index("vehicle.y_m")] += 5.0
-    other, _ = drawn(known._replace(rows=moved), course)
-    assert other != svgs[0]
+    theory = course.offset(0.0, 0.0, course.length_m, 1.0)
+    (ruler,) = lines(svgs[0], THEORY)
+    unit_m = np.ptp(theory, axis=0) / np.ptp(ruler, axis=0)
+    assert unit_m[0] == pytest.approx(unit_m[1], rel=0.01), "as long in x as in y"
+    driven = known.rows[:, [known.columns.index(f"vehicle.{name}") for name in ("x_m", "y_m")]]
+    for colour, parts in ((PERSON, [driven[:251], driven[1250:]]), (REMOTE, [driven[250:1251]])):
+        shown = [theory.min(axis=0) + (line - ruler.min(axis=0)) * unit_m for line in lines(svgs[0], colour)]
+        assert len(shown) == len(parts)
+        for line, part in zip(shown, parts, strict=True):
+            gaps_m = np.hypot(*(line[:, None, :] - part[None, :, :]).transpose(2, 0, 1))
+            assert gaps_m.min(axis=1).max() < 0.5, "nothing is drawn where the car was not"
+            assert gaps_m.min(axis=0).max() < 0.5, "and wherever it was something is drawn"
 
 
 @pytest.mark.parametrize("with_course", [True, False])

@@ -8,9 +8,9 @@ import pytest
 
 from simconsole.values.host.jit import compiled, plain
 from simconsole.values.platform import Ground, Pose
+from tests.samples import Sample
 from tests.vehicle.driving import IDLE, LEVEL, TICK_S, Drive, platform
 
-SEED = 11
 LEVEL_POSE = Pose(0.0, 0.0, 0.0)
 
 
@@ -79,13 +79,12 @@ def test_a_slope_moves_it_with_five_sevenths_of_gravity() -> None:
     assert seen.vx_mps == pytest.approx(expected, rel=0.01)
 
 
-def test_both_executions_have_equal_bits_and_stay_finite() -> None:
-    rng = random.Random(SEED)
-    print(f"seed {SEED}")
+def test_both_executions_have_equal_bits_and_stay_finite(sample: Sample) -> None:
+    rng = random.Random(sample.seed)
     vehicle = platform("ball", Ground(0.9, 0.03, -0.05))
     slow, fast = Drive(vehicle, plain), Drive(vehicle, compiled)
     command = IDLE
-    for tick in range(5000):
+    for tick in range(sample.of(5000, 100_000)):
         if tick % 50 == 0:
             command = IDLE._replace(
                 throttle=rng.random(),
