@@ -13,8 +13,8 @@ import time
 from collections.abc import Callable
 
 from simconsole.devices.calibration.calibrator import NOBODY, calibrate, settings
-from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate
-from simconsole.devices.sources.sdl import SdlSource
+from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate
+from simconsole.devices.sources.sdl_source import SdlSource
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load

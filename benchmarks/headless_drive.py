@@ -17,7 +17,7 @@ import numpy as np
 
 from simconsole.devices.calibration.calibration_settings import settings
 from simconsole.devices.synthetic.script import ScriptSource
-from simconsole.drivers.scripted import ScriptedCommands
+from simconsole.drivers.scripted_controller import ScriptedCommands
 from simconsole.recording.bundles.log import LogWriter
 from simconsole.recording.framing import LogHeader
 from simconsole.session.lifecycle import LogRecorder, warm_up

@@ -26,12 +26,12 @@ def devices(words: Namespace) -> Outcome:
         results = check_devices(cockpit, say=print, duration_s=words.duration_s, virtual=words.virtual, show=show)
         return Outcome(0 if results["ok"] else 1, results)
     if words.action == "calibrate":
-        from simconsole.devices.setup.calibrate import calibrate_devices
+        from simconsole.devices.setup.calibration_dialogue import calibrate_devices
 
         path = Path(words.out or "cockpit.yaml")
         return Outcome(0, calibrate_devices(cockpit, path, say=_say, virtual=cockpit if words.virtual else None))
     if words.action == "feel":
-        from simconsole.devices.setup.force_feedback_setup import feel_devices
+        from simconsole.devices.setup.force_feedback_check import feel_devices
 
         results = feel_devices(cockpit, say=_say, strength=words.strength / 100.0, virtual=words.virtual)
         return Outcome(0 if results["ok"] else 1, results)

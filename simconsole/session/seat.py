@@ -50,7 +50,7 @@ def open_seating(
         return _open_person(resolved, console, stack)
     if driver == "keyboard" and keys is None:
         raise ProfileError("devices.driver: value keyboard: needs a window, so not with --headless or hud: false")
-    from simconsole.devices.sources.driver_source import open_source
+    from simconsole.devices.sources.source_registry import open_source
 
     devices = open_source(driver, resolved.cockpit, tick_hz=console.tick_hz, keys=keys)
     stack.callback(devices.close)
@@ -70,9 +70,9 @@ def _with_motor(devices: DeviceSource, cockpit: CockpitProfile, force: ForceFeed
     """Add the wheel's motor; without one everything else works, and the person is told."""
     from simconsole.devices.force_feedback.motor import MotorisedSource, NoHaptics, WheelMotor
     from simconsole.devices.haptics.back_ends import open_motor
-    from simconsole.devices.haptics.watched import open_watchdog, watched
+    from simconsole.devices.haptics.watchdog_client import open_watchdog, watched
     from simconsole.devices.sources.kernel_limits import notes, problems, wheel_limits
-    from simconsole.devices.sources.sdl import SdlSource
+    from simconsole.devices.sources.sdl_source import SdlSource
 
     assert isinstance(devices, SdlSource)
     wheel = {"id": devices.instance_id("wheel")}
@@ -106,9 +106,9 @@ def _open_person(resolved: ResolvedSession, console: Console, stack: ExitStack) 
     from simconsole.devices.calibration.calibration_settings import settings
     from simconsole.devices.force_feedback.motor import MotorisedSource, SimulatedWheelPort, WheelMotor
     from simconsole.devices.force_feedback.simulated_wheel import SimulatedWheel, step_wheel
-    from simconsole.devices.sources.sdl import SdlSource
+    from simconsole.devices.sources.sdl_source import SdlSource
     from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
-    from simconsole.drivers.seated.simulated_person import SimulatedPerson
+    from simconsole.drivers.cockpit.simulated_person import SimulatedPerson
 
     plan = resolved.session.devices.person
     if plan is None:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from simconsole.profiles.world import Primitive, WorldProfile
 from simconsole.values.platform import Pose
 from simconsole.values.units import MPS_PER_KMH
-from simconsole.world.geometry import Piece, travel
+from simconsole.world.path_geometry import Piece, travel
 
 Array = NDArray[np.float64]
 Number = TypeVar("Number", float, Array)

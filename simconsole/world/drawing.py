@@ -7,9 +7,9 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from simconsole.world.course import Course
-from simconsole.world.junction import add_intersection, clear_m, opening_m
-from simconsole.world.ring import add_roundabout
-from simconsole.world.sheet import STEP_M, Array, Light, Sheet, add_crossing
+from simconsole.world.drawing_layers import STEP_M, Array, Light, Sheet, add_crossing
+from simconsole.world.intersection import add_intersection, clear_m, opening_m
+from simconsole.world.roundabout import add_roundabout
 
 _CHUNK_M: Final = 12.0  # length of one asphalt polygon: nearly convex on every curve
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from simconsole.profiles.world import Intersection
 from simconsole.world.course import Course
-from simconsole.world.sheet import Frame, Light, Sheet, add_zebra, arc, axis_frame, box
+from simconsole.world.drawing_layers import Frame, Light, Sheet, add_zebra, arc, axis_frame, box
 
 CORNER_M: Final = 6.0  # kerb radius where the two roads meet
 _ZEBRA_M: Final = 4.0

@@ -11,7 +11,7 @@ from simconsole.profiles.world import Crossing, Intersection, Primitive, Roundab
 from simconsole.values.errors import ProfileError
 from simconsole.values.platform import Pose
 from simconsole.values.units import RAD_PER_DEG
-from simconsole.world.geometry import Piece, centre, travel, travel_all
+from simconsole.world.path_geometry import Piece, centre, travel, travel_all
 
 ORIGIN: Final = Pose(0.0, 0.0, 0.0)
 PLACES_M: Final = 10

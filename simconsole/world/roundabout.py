@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from simconsole.profiles.world import Roundabout
 from simconsole.world.course import Course
-from simconsole.world.sheet import Array, Frame, Sheet, arc, axis_frame, box
+from simconsole.world.drawing_layers import Array, Frame, Sheet, arc, axis_frame, box
 
 _STEP_M: Final = 0.25
 _STUB_M: Final = 45.0  # roads that the course does not use end this far from the centre

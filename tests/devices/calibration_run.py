@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from simconsole.devices.calibration.calibrator import NOBODY, CockpitSettings, calibrate
-from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate
+from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate
 from simconsole.values.signals import NO_SAMPLE, DeviceSample, DriverInput
 
 TICK_S = 0.004

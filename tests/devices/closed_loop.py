@@ -5,7 +5,7 @@ import math
 import msgspec
 
 from simconsole.devices.calibration.calibration_settings import settings
-from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate, wheel_raw
+from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate, wheel_raw
 from simconsole.devices.force_feedback.motor import SimulatedWheelPort, WheelMotor
 from simconsole.devices.force_feedback.simulated_wheel import RELAXED, Arm, SimulatedWheel, step_wheel
 from simconsole.profiles.force_feedback import Motor

@@ -6,9 +6,9 @@ import pytest
 
 from simconsole.devices.calibration.calibrator import CockpitSettings, settings
 from simconsole.devices.sources import sdl_runtime
-from simconsole.devices.sources.sdl import SdlSource
+from simconsole.devices.sources.sdl_source import SdlSource
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
-from simconsole.devices.sources.virtual_sdl import VirtualDevice, VirtualSpec
+from simconsole.devices.sources.virtual_joystick import VirtualDevice, VirtualSpec
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load
 

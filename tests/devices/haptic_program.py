@@ -16,10 +16,10 @@ import numpy as np
 from simconsole.devices.calibration.cockpit_settings import NOBODY
 from simconsole.devices.force_feedback.motor import WheelMotor
 from simconsole.devices.haptics.back_ends import open_motor
-from simconsole.devices.haptics.watched import Watchdog, watched
+from simconsole.devices.haptics.watchdog_client import Watchdog, watched
 from simconsole.devices.sources import sdl_runtime
 from simconsole.devices.sources.kernel_limits import notes, problems, read_limits
-from simconsole.devices.sources.sdl import Found, SdlSource, found
+from simconsole.devices.sources.sdl_source import Found, SdlSource, found
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load
 from simconsole.profiles.force_feedback import ForceFeedback

@@ -8,7 +8,7 @@ import pytest
 
 from simconsole.devices.force_feedback.motor import HapticPort, NoHaptics, SimulatedWheelPort
 from simconsole.devices.force_feedback.simulated_wheel import SimulatedWheel
-from simconsole.devices.haptics.watched import Watchdog, WatchedPort
+from simconsole.devices.haptics.watchdog_client import Watchdog, WatchedPort
 from simconsole.profiles.force_feedback import ForceFeedback
 from tests.devices.mocked import start
 from tests.devices.port_contract import CHECKS

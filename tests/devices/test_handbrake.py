@@ -9,12 +9,12 @@ import pytest
 from msgspec.structs import replace
 
 from simconsole.devices.calibration.calibration_settings import settings
-from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate
+from simconsole.devices.calibration.cockpit_check import Watch
+from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate
 from simconsole.devices.calibration.validity import LIVE, LOST, STALE, UNKNOWN
-from simconsole.devices.calibration.watch import Watch
-from simconsole.devices.setup.calibrate import calibrate_devices
+from simconsole.devices.setup.calibration_dialogue import calibrate_devices
 from simconsole.devices.setup.device_commands import Pace, check_devices, list_devices
-from simconsole.devices.sources.sdl import SdlSource
+from simconsole.devices.sources.sdl_source import SdlSource
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.faults.cockpit_faults import effect
 from simconsole.profiles.device import CockpitProfile, PedalAxis, RoleBinding
@@ -22,8 +22,8 @@ from simconsole.profiles.faults import Unplug
 from simconsole.profiles.files.loader import load, parse, to_text
 from simconsole.values.errors import DeviceNotFound, ProfileError
 from simconsole.values.signals import NEVER_TICKS, DeviceSample, DriverInput
+from tests.devices.calibration_run import Seat
 from tests.devices.conftest import TICK_HZ
-from tests.devices.people import Seat
 
 LEVER = RoleBinding(role="handbrake", vendor_id=0x10C4, product_id=0x82C0, name="USB handbrake", axes=1, buttons=0)
 

@@ -2,7 +2,7 @@ from typing import get_args
 
 import pytest
 
-from simconsole.drivers.scripted import ScriptedCommands
+from simconsole.drivers.scripted_controller import ScriptedCommands
 from simconsole.profiles.files.loader import load
 from simconsole.profiles.scenario import EventName, EventStep, RemoteStep
 from simconsole.profiles.session import SessionProfile

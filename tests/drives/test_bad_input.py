@@ -94,7 +94,7 @@ def test_a_wheel_in_boot_mode_is_named_with_its_cure(tmp_path: Path) -> None:
     program = (
         "import sys\n"
         "from simconsole.cli.main import main\n"
-        "from simconsole.devices.sources.virtual_sdl import VirtualDevice, VirtualSpec\n"
+        "from simconsole.devices.sources.virtual_joystick import VirtualDevice, VirtualSpec\n"
         'wheel = VirtualDevice(VirtualSpec("Thrustmaster FFB Wheel", 0x044F, 0xB65D, 2, 13, 1))\n'
         "code = main(sys.argv[1:])\n"
         "wheel.close()\n"

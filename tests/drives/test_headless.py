@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from simconsole.devices.synthetic.trace import COLUMNS
+from simconsole.devices.synthetic.trace_format import COLUMNS
 from simconsole.recording.bundles.bundle import open_bundle, verify
 from simconsole.values.signals import NEVER_TICKS, Mode, Validity
 from tests.drives.console import environment, results, simconsole, words

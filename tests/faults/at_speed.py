@@ -6,7 +6,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from simconsole.devices.calibration.calibration_settings import settings
-from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate
+from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate
 from simconsole.evaluation.checks.row_table import MemoryRecorder
 from simconsole.profiles.files.loader import parse
 from simconsole.profiles.session import SessionProfile

@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 
 from simconsole.devices.calibration.calibration_settings import settings
-from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate
+from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate
 from simconsole.drivers.path_tracker.tracker import Sighting, Tracker
 from simconsole.evaluation.checks.row_table import MemoryRecorder
 from simconsole.faults.schedule import with_faults

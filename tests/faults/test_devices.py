@@ -14,9 +14,9 @@ import pytest
 from msgspec.structs import replace
 from numpy.typing import NDArray
 
-from simconsole.devices.sources.sdl import SdlSource
+from simconsole.devices.sources.sdl_source import SdlSource
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
-from simconsole.devices.synthetic.trace import COLUMNS, read_rows, row_text
+from simconsole.devices.synthetic.trace_format import COLUMNS, read_rows, row_text
 from simconsole.hud.banner import ALERT_WORDS, alert_of
 from simconsole.hud.view import HudMemory, HudSettings, view
 from simconsole.profiles.device import CockpitProfile

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from simconsole.devices.calibration.calibration_settings import settings
-from simconsole.devices.sources.trace_recorder import TraceWriter
+from simconsole.devices.sources.trace_files import TraceWriter
 from simconsole.devices.synthetic.script import ScriptSource
-from simconsole.devices.synthetic.trace import TraceHeader
+from simconsole.devices.synthetic.trace_format import TraceHeader
 from simconsole.evaluation.metrics.fault_metrics import fault_spans
 from simconsole.evaluation.metrics.table import drive_of
 from simconsole.faults.schedule import SERVES, FaultClock

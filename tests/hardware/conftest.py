@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterator
 import pytest
 
 from simconsole.devices.calibration.calibrator import settings
-from simconsole.devices.sources.sdl import SdlSource
+from simconsole.devices.sources.sdl_source import SdlSource
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load
 from simconsole.values.signals import DeviceSample, DriverInput
-from tests.devices.people import Seat
+from tests.devices.calibration_run import Seat
 
 HZ = 250
 

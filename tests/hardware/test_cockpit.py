@@ -12,7 +12,7 @@ from itertools import pairwise
 import pytest
 
 from simconsole.devices.haptics.back_ends import open_motor
-from simconsole.devices.setup.force_feedback_setup import feel_devices
+from simconsole.devices.setup.force_feedback_check import feel_devices
 from simconsole.profiles.device import CockpitProfile
 from simconsole.values.signals import NEVER_TICKS
 from tests.hardware.conftest import HZ, Bench
@@ -23,7 +23,7 @@ PUSH = """
 import sys, time
 from simconsole.devices import sdl_runtime
 from simconsole.devices.haptics.back_ends import open_motor
-from simconsole.devices.sources.sdl import SdlSource
+from simconsole.devices.sources.sdl_source import SdlSource
 from simconsole.profiles.files.loader import load
 from simconsole.profiles.device import CockpitProfile
 cockpit = load("devices", sys.argv[1], CockpitProfile)

@@ -10,7 +10,7 @@ from simconsole.values.platform import Pose
 from simconsole.values.signals import Event, Mode, Reason
 from simconsole.values.state_vector import columns
 from simconsole.world.drawing import Drawing
-from simconsole.world.sheet import Light
+from simconsole.world.drawing_layers import Light
 
 COLUMNS = columns(Pose)
 TICK_HZ = 250

@@ -20,7 +20,7 @@ from simconsole.scene.entities import (
 )
 from simconsole.values.signals import Mode
 from simconsole.world.drawing import Drawing
-from simconsole.world.sheet import Light
+from simconsole.world.drawing_layers import Light
 
 SQUARE = np.array(((0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (0.0, 3.0)))
 

@@ -7,7 +7,7 @@ import pytest
 from simconsole.profiles.world import WorldProfile
 from simconsole.values.platform import Pose
 from simconsole.world.course import CELL_M, Course
-from simconsole.world.geometry import Piece, travel
+from simconsole.world.path_geometry import Piece, travel
 from tests.samples import Sample
 
 

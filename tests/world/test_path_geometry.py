@@ -3,7 +3,7 @@ import math
 import pytest
 
 from simconsole.values.platform import Pose
-from simconsole.world.geometry import Piece, centre, travel, travel_all
+from simconsole.world.path_geometry import Piece, centre, travel, travel_all
 
 
 def test_line_goes_straight_on() -> None:

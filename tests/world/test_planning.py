@@ -5,7 +5,7 @@ import pytest
 
 from simconsole.profiles.course_plan import CoursePlan
 from simconsole.values.errors import ProfileError
-from simconsole.world.geometry import Piece, travel
+from simconsole.world.path_geometry import Piece, travel
 from simconsole.world.planning import ORIGIN, solve
 
 CORNER = {"element": "curve", "radius_m": 20, "angle_deg": 90}

@@ -8,7 +8,7 @@ from typing import Any, Final, Literal, TypeVar
 
 import msgspec
 
-from simconsole.devices.calibration.learning import (
+from simconsole.devices.calibration.input_detection import (
     BUTTONS,
     HATS,
     AxisAt,

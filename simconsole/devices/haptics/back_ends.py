@@ -3,7 +3,7 @@
 import os
 
 from simconsole.devices.force_feedback.motor import HapticPort
-from simconsole.devices.haptics.driver_files import Restoring, settings
+from simconsole.devices.haptics.driver_settings import Restoring, settings
 from simconsole.devices.haptics.evdev_haptics import open_evdev
 from simconsole.devices.haptics.sdl_haptics import open_haptics
 from simconsole.devices.sources.event_nodes import effect_slots, open_node, stop_effects

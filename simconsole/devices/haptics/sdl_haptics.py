@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from simconsole.devices.force_feedback.motor import EFFECT_S, Capability, HapticPort, NoHaptics
 from simconsole.devices.sources import sdl_runtime
-from simconsole.devices.sources.virtual_sdl import mapped_sdl
+from simconsole.devices.sources.virtual_joystick import mapped_sdl
 from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.values.errors import DeviceError
 

@@ -10,11 +10,11 @@ import msgspec
 import yaml
 
 from simconsole.devices.calibration.calibration_settings import settings
-from simconsole.devices.calibration.learning import Moment, hold
-from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate
+from simconsole.devices.calibration.input_detection import Moment, hold
+from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate
 from simconsole.devices.calibration.wizard import Entry, Wizard
 from simconsole.devices.setup.device_commands import Pace, Say, answer, realtime
-from simconsole.devices.sources.raw_sdl import RawDevices
+from simconsole.devices.sources.raw_joysticks import RawDevices
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.profiles.device import CockpitProfile
 from simconsole.values.errors import DeviceError

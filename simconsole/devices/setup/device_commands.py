@@ -6,16 +6,16 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any, Final, Self
 
-from simconsole.devices.calibration.bars import lines
 from simconsole.devices.calibration.calibration_settings import settings
-from simconsole.devices.calibration.watch import Watch
+from simconsole.devices.calibration.cockpit_check import Watch
+from simconsole.devices.calibration.cockpit_text import lines
 from simconsole.devices.sources import kernel_limits, sdl_runtime
 from simconsole.devices.sources.kernel_limits import KernelLimits, wheel_limits
-from simconsole.devices.sources.sdl import SdlSource, found
-from simconsole.devices.sources.trace_recorder import TraceWriter
+from simconsole.devices.sources.sdl_source import SdlSource, found
+from simconsole.devices.sources.trace_files import TraceWriter
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.devices.synthetic.script import ScriptSource
-from simconsole.devices.synthetic.trace import TraceHeader
+from simconsole.devices.synthetic.trace_format import TraceHeader
 from simconsole.profiles.device import Buttons, CockpitProfile, ScriptPoint, ScriptProfile
 from simconsole.values.errors import DeviceError
 from simconsole.values.signals import DeviceSample

@@ -8,13 +8,13 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from simconsole.devices.calibration.calibration_settings import settings
-from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate
+from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate
 from simconsole.devices.force_feedback.motor import HapticPort, SimulatedWheelPort, WheelMotor
 from simconsole.devices.force_feedback.simulated_wheel import HANDS_OFF, SimulatedWheel
 from simconsole.devices.haptics.back_ends import open_motor
-from simconsole.devices.haptics.watched import open_watchdog, watched
+from simconsole.devices.haptics.watchdog_client import open_watchdog, watched
 from simconsole.devices.setup.device_commands import Pace, Say, answer, realtime
-from simconsole.devices.sources.sdl import SdlSource
+from simconsole.devices.sources.sdl_source import SdlSource
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.force_feedback import ForceFeedback

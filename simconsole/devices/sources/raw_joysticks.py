@@ -2,10 +2,10 @@
 
 from typing import Self
 
-from simconsole.devices.calibration.learning import BUTTONS, DeviceKey, Reading
+from simconsole.devices.calibration.input_detection import BUTTONS, DeviceKey, Reading
 from simconsole.devices.calibration.lever import hat_mask
 from simconsole.devices.sources import sdl_runtime
-from simconsole.devices.sources.sdl import Found, found
+from simconsole.devices.sources.sdl_source import Found, found
 from simconsole.values.errors import DeviceError
 
 

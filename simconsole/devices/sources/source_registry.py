@@ -28,11 +28,11 @@ def open_source(driver: str, cockpit: CockpitProfile, *, tick_hz: int, keys: Key
     """
     kind, _, name = driver.partition(":")
     if kind == "sdl" and not name:
-        from simconsole.devices.sources.sdl import SdlSource
+        from simconsole.devices.sources.sdl_source import SdlSource
 
         return SdlSource(cockpit)
     if kind == "trace" and name:
-        from simconsole.devices.sources.trace_recorder import TraceSource
+        from simconsole.devices.sources.trace_files import TraceSource
 
         return TraceSource(Path(name), tick_hz=tick_hz)
     if kind == "script" and name:

@@ -5,7 +5,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO
 
-from simconsole.devices.synthetic.trace import (
+from simconsole.devices.synthetic.trace_format import (
     MAX_LINE,
     TraceHeader,
     TracePlayer,

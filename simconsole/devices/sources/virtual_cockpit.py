@@ -1,6 +1,6 @@
 """A profile's cockpit made of virtual devices: written in raw terms, read back by pygame as any other."""
 
-from simconsole.devices.sources.virtual_sdl import VirtualDevice, VirtualSpec, specs
+from simconsole.devices.sources.virtual_joystick import VirtualDevice, VirtualSpec, specs
 from simconsole.profiles.device import CockpitProfile, RoleName
 from simconsole.values.errors import DeviceError
 from simconsole.values.signals import DeviceSample

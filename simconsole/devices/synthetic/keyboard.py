@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Final
 
 from simconsole.devices.calibration.cockpit_settings import CockpitSettings
-from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate
+from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate
 from simconsole.values.key_codes import Key
 from simconsole.values.signals import Button, DeviceSample
 from simconsole.values.units import RAD_PER_DEG

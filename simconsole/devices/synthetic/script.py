@@ -3,7 +3,7 @@
 from typing import Final
 
 from simconsole.devices.calibration.cockpit_settings import CockpitSettings
-from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate
+from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate
 from simconsole.profiles.device import ScriptProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.signals import Button, DeviceSample

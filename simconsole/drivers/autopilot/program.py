@@ -10,8 +10,8 @@ from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 from simconsole.bridge.client.bridge_client import BridgeClient
-from simconsole.drivers.path_tracker.tally import Tally
 from simconsole.drivers.path_tracker.tracker import Sighting, Steering, Tracker
+from simconsole.drivers.path_tracker.tracking_statistics import Tally
 from simconsole.profiles.files.loader import MAX_DATA_BYTES, load
 from simconsole.profiles.world import WorldProfile
 from simconsole.values.errors import BridgeError, OtherDriveError

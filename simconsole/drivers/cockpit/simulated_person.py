@@ -1,11 +1,11 @@
 """The simulated person in the seat: works virtual devices by what the last tick showed, never past the joystick."""
 
 from simconsole.devices.calibration.cockpit_settings import CockpitSettings
-from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate
+from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate
 from simconsole.devices.force_feedback.simulated_wheel import RELAXED, STEERING, SimulatedWheel
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
-from simconsole.drivers.person.mind import Person
-from simconsole.drivers.person.skills import look
+from simconsole.drivers.simulated_person.behaviour import Person
+from simconsole.drivers.simulated_person.launch import look
 from simconsole.profiles.person import PersonPlan
 from simconsole.values.state_vector import Snapshot
 

@@ -1,8 +1,8 @@
 """The test driver in the seat: a pilot's hands and feet as the axes of the cockpit."""
 
 from simconsole.devices.calibration.cockpit_settings import CockpitSettings
-from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate
-from simconsole.evaluation.manoeuvres.attempt import Pilot
+from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate
+from simconsole.drivers.manoeuvre_driver.run_up import Pilot
 from simconsole.values.signals import DeviceSample
 from simconsole.values.state_vector import Snapshot
 

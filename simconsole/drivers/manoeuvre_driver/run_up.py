@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Final
 
-from simconsole.devices.calibration.uncalibrate import Intent
+from simconsole.devices.calibration.inverse_calibration import Intent
 from simconsole.values.signals import Mode
 from simconsole.values.state_vector import Snapshot
 from simconsole.values.units import MPS_PER_KMH
@@ -24,6 +24,8 @@ HEADING_GAIN: Final = 0.9
 YAW_RATE_GAIN_S: Final = 0.25
 MOST_ROAD_WHEEL_RAD: Final = 0.5
 
+Pilot = Callable[[Snapshot], Intent | None]
+"""Looks at the last tick and says what hands and feet do now; None ends the drive."""
 Steps = Callable[[Snapshot, float], Intent | None]
 """The test itself, after the run-up: the last tick, and the time in s since the test began."""
 

@@ -5,8 +5,8 @@ from collections.abc import Callable
 from enum import Enum, auto
 from typing import Final, NamedTuple
 
-from simconsole.devices.calibration.uncalibrate import Intent
-from simconsole.drivers.person.skills import (
+from simconsole.devices.calibration.inverse_calibration import Intent
+from simconsole.drivers.simulated_person.launch import (
     Line,
     View,
     clutch_through_bite,

@@ -7,10 +7,10 @@ from msgspec.structs import replace
 
 from simconsole.devices.calibration.calibration_settings import settings
 from simconsole.devices.synthetic.script import ScriptSource
+from simconsole.drivers.manoeuvre_driver.pilot_devices import PilotSeat
 from simconsole.evaluation.checks.row_table import MemoryRecorder
 from simconsole.evaluation.manoeuvres.attempt import Attempt, Result
 from simconsole.evaluation.manoeuvres.library import drive_manoeuvre
-from simconsole.evaluation.manoeuvres.manoeuvre_seat import PilotSeat
 from simconsole.evaluation.metrics.table import drive_of
 from simconsole.profiles.manoeuvre import Limit, Manoeuvre
 from simconsole.profiles.scenario import ScenarioProfile

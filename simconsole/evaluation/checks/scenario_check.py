@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, Self, TextIO, TypeVar
 
 from simconsole.devices.calibration.calibration_settings import settings
 from simconsole.devices.synthetic.script import ScriptSource
-from simconsole.drivers.scripted import ScriptedCommands
+from simconsole.drivers.scripted_controller import ScriptedCommands
 from simconsole.evaluation.checks import golden
 from simconsole.evaluation.checks.manoeuvre_check import drive, judge_limit
 from simconsole.evaluation.manoeuvres.attempt import Result

@@ -1,16 +1,12 @@
 """One drive of a manoeuvre, and what a manoeuvre yields: the words that drivers, evaluation and report share."""
 
-from collections.abc import Callable, Generator
+from collections.abc import Generator
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from simconsole.devices.calibration.uncalibrate import Intent
+from simconsole.drivers.manoeuvre_driver.run_up import Pilot
 from simconsole.evaluation.metrics.table import Array, Drive
-from simconsole.values.state_vector import Snapshot
-
-Pilot: TypeAlias = Callable[[Snapshot], Intent | None]
-"""Looks at the last tick and says what hands and feet do now; None ends the drive."""
 
 
 class Attempt(NamedTuple):

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from simconsole.devices.calibration.uncalibrate import Intent
-from simconsole.drivers.manoeuvre_pilot import RunUp, Steps
+from simconsole.devices.calibration.inverse_calibration import Intent
+from simconsole.drivers.manoeuvre_driver.run_up import RunUp, Steps
 from simconsole.evaluation.manoeuvres.attempt import Attempt, Driving, Result, part, traces, undriven
 from simconsole.evaluation.metrics.table import Array, Drive
 from simconsole.profiles.manoeuvre import SineWithDwell

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from simconsole.devices.calibration.uncalibrate import Intent
-from simconsole.drivers.manoeuvre_pilot import HoldSpeed, RunUp
+from simconsole.devices.calibration.inverse_calibration import Intent
+from simconsole.drivers.manoeuvre_driver.run_up import HoldSpeed, RunUp
 from simconsole.evaluation.manoeuvres.attempt import Attempt, Driving, Line, Panel, Result, part, traces, undriven
 from simconsole.evaluation.metrics.table import Array, Drive
 from simconsole.profiles.manoeuvre import SteadyCircle, StepSteer

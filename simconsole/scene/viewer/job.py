@@ -12,7 +12,7 @@ from simconsole.scene.entities import Array, Dimensions
 from simconsole.scene.timeline import NEEDED, Ticks
 from simconsole.values.errors import StationError
 from simconsole.world.drawing import Drawing
-from simconsole.world.sheet import Light
+from simconsole.world.drawing_layers import Light
 
 _LINES: Final = ("surfaces", "islands", "edges", "centre_lines", "zebras", "stop_lines")
 

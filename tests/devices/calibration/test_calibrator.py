@@ -16,13 +16,13 @@ from simconsole.devices.calibration.calibrator import (
     pressed_share,
     settings,
 )
-from simconsole.devices.calibration.uncalibrate import Intent, pedal_raw, uncalibrate, wheel_raw
+from simconsole.devices.calibration.inverse_calibration import Intent, pedal_raw, uncalibrate, wheel_raw
 from simconsole.devices.calibration.validity import ARMED, LIVE, LOST, STALE, UNKNOWN
 from simconsole.profiles.device import MIN_TRAVEL_RAW, ButtonBinding, CockpitProfile
 from simconsole.profiles.files.loader import load
 from simconsole.values.host.jit import compiled
 from simconsole.values.signals import NEVER_TICKS, NO_SAMPLE, Button, DeviceSample
-from tests.devices.people import TICK_S, Seat
+from tests.devices.calibration_run import TICK_S, Seat
 
 PROFILE = load("devices", "t500rs_th8rs", CockpitProfile)
 SETTINGS = settings(PROFILE, 250)

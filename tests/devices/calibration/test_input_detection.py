@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from simconsole.devices.calibration.calibrator import pressed_share
-from simconsole.devices.calibration.learning import (
+from simconsole.devices.calibration.input_detection import (
     AxisAt,
     ButtonAt,
     Held,

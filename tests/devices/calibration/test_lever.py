@@ -3,10 +3,10 @@
 import pytest
 
 from simconsole.devices.calibration.calibrator import CockpitSettings
-from simconsole.devices.calibration.uncalibrate import Intent
+from simconsole.devices.calibration.inverse_calibration import Intent
 from simconsole.devices.calibration.validity import LIVE, UNKNOWN
 from simconsole.values.signals import NEVER_TICKS, Button
-from tests.devices.people import Seat
+from tests.devices.calibration_run import Seat
 
 DWELL = 25
 

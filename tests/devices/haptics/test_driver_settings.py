@@ -6,8 +6,9 @@ import pytest
 
 from simconsole.devices.force_feedback.motor import SimulatedWheelPort
 from simconsole.devices.force_feedback.simulated_wheel import SimulatedWheel
-from simconsole.devices.haptics import back_ends, driver_files
-from simconsole.devices.haptics.driver_files import Restoring, driver_folder, settings
+from simconsole.devices.haptics import back_ends
+from simconsole.devices.haptics import driver_settings as driver_files
+from simconsole.devices.haptics.driver_settings import Restoring, driver_folder, settings
 from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.values.errors import DeviceError
 from tests.devices.port_contract import closes_twice_and_then_has_no_force, takes_every_level_in_any_order

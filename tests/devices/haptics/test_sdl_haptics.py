@@ -14,13 +14,13 @@ from simconsole.devices.haptics import back_ends
 from simconsole.devices.haptics.evdev_haptics import open_evdev
 from simconsole.devices.haptics.sdl_haptics import _Condition, _Constant, _Effect, open_haptics
 from simconsole.devices.sources import event_nodes
-from simconsole.devices.sources.sdl import SdlSource
+from simconsole.devices.sources.sdl_source import SdlSource
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.values.signals import Button, DeviceSample
+from tests.devices.calibration_run import Seat
 from tests.devices.mocked import calls, start
-from tests.devices.people import Seat
 from tests.patience import PATIENCE_S
 
 FF_CONSTANT, FF_DAMPER = 0x52, 0x55

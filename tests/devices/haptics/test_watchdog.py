@@ -12,9 +12,9 @@ import pytest
 
 from simconsole.devices.force_feedback.motor import NoHaptics, SimulatedWheelPort
 from simconsole.devices.force_feedback.simulated_wheel import SimulatedWheel
-from simconsole.devices.haptics import watched as parent
+from simconsole.devices.haptics import watchdog_client as parent
 from simconsole.devices.haptics.watchdog import BEATS, FORCE, STALL_S, Stall
-from simconsole.devices.haptics.watched import Watchdog, WatchedPort, open_watchdog, watched
+from simconsole.devices.haptics.watchdog_client import Watchdog, WatchedPort, open_watchdog, watched
 from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.values.errors import DeviceError
 from tests.patience import wait_until
@@ -91,7 +91,7 @@ def test_process_comes_and_goes_with_its_console() -> None:
 
 def test_killed_console_leaves_neither_process_nor_memory() -> None:
     code = (
-        "import os, signal, sys\nfrom simconsole.devices.haptics.watched import Watchdog\n"
+        "import os, signal, sys\nfrom simconsole.devices.haptics.watchdog_client import Watchdog\n"
         "w = Watchdog((65535, 65535))\nw.beat(True)\nprint(w.process_id, w._path, flush=True)\nsys.stdin.read(1)\n"
         "os.kill(os.getpid(), signal.SIGKILL)"
     )

@@ -10,7 +10,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from simconsole.devices.setup.calibrate import calibrate_devices
+from simconsole.devices.setup.calibration_dialogue import calibrate_devices
 from simconsole.devices.setup.device_commands import Pace
 from simconsole.profiles.device import Buttons, CockpitProfile
 from simconsole.profiles.files.loader import load

@@ -4,14 +4,14 @@ from pathlib import Path
 
 import pytest
 
+from simconsole.devices.calibration.cockpit_check import Watch
 from simconsole.devices.calibration.cockpit_settings import CockpitSettings
-from simconsole.devices.calibration.uncalibrate import Intent
-from simconsole.devices.calibration.watch import Watch
+from simconsole.devices.calibration.inverse_calibration import Intent
 from simconsole.devices.setup.device_commands import check_devices, list_devices, realtime, record_devices
-from simconsole.devices.sources.trace_recorder import TraceSource
+from simconsole.devices.sources.trace_files import TraceSource
 from simconsole.profiles.device import CockpitProfile
 from simconsole.values.errors import DeviceNotFound
-from tests.devices.people import Seat
+from tests.devices.calibration_run import Seat
 
 pytestmark = pytest.mark.usefixtures("sdl")
 

@@ -5,7 +5,7 @@ import pytest
 
 from simconsole.devices.force_feedback.motor import SimulatedWheelPort
 from simconsole.devices.setup.device_commands import Pace
-from simconsole.devices.setup.force_feedback_setup import FORCES, feel_devices
+from simconsole.devices.setup.force_feedback_check import FORCES, feel_devices
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load
 from simconsole.values.errors import DeviceError

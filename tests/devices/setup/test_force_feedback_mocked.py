@@ -5,7 +5,7 @@ from pathlib import Path
 
 import msgspec
 
-from simconsole.devices.setup.calibrate import write_profile
+from simconsole.devices.setup.calibration_dialogue import write_profile
 from simconsole.profiles.device import CockpitProfile
 from tests.devices.mocked import calls, run_behind
 from tests.patience import PATIENCE_S

@@ -8,18 +8,18 @@ import pytest
 from msgspec.structs import replace
 
 from simconsole.devices.calibration.calibrator import CockpitSettings, settings, travel
-from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate
+from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate
 from simconsole.devices.calibration.validity import LIVE, LOST, UNKNOWN
-from simconsole.devices.sources import sdl as sdl_module
 from simconsole.devices.sources import sdl_runtime
-from simconsole.devices.sources.sdl import SdlSource, identity
+from simconsole.devices.sources import sdl_source as sdl_module
+from simconsole.devices.sources.sdl_source import SdlSource, identity
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
-from simconsole.devices.sources.virtual_sdl import VirtualDevice, VirtualSpec, specs
+from simconsole.devices.sources.virtual_joystick import VirtualDevice, VirtualSpec, specs
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load
 from simconsole.values.errors import DeviceError, DeviceModeError, DeviceNotFound
 from simconsole.values.signals import NEVER_TICKS, Button, DriverInput
-from tests.devices.people import Seat
+from tests.devices.calibration_run import Seat
 
 Plug = Callable[[VirtualSpec], VirtualDevice]
 

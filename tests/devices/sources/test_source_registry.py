@@ -9,15 +9,15 @@ from pathlib import Path
 import pytest
 
 from simconsole.devices.calibration.calibrator import CockpitSettings, settings
-from simconsole.devices.calibration.uncalibrate import Intent, uncalibrate
+from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate
 from simconsole.devices.calibration.validity import LIVE, axis_good, mask_good
 from simconsole.devices.force_feedback.motor import MotorisedSource, SimulatedWheelPort, WheelMotor
 from simconsole.devices.force_feedback.simulated_wheel import SimulatedWheel
 from simconsole.devices.sources import sdl_runtime
-from simconsole.devices.sources.driver_source import open_source
-from simconsole.devices.sources.sdl import SdlSource
-from simconsole.devices.sources.trace_recorder import TraceWriter
-from simconsole.devices.synthetic.trace import TraceHeader
+from simconsole.devices.sources.sdl_source import SdlSource
+from simconsole.devices.sources.source_registry import open_source
+from simconsole.devices.sources.trace_files import TraceWriter
+from simconsole.devices.synthetic.trace_format import TraceHeader
 from simconsole.faults.cockpit_faults import FaultyDevices
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.faults import Stuck
@@ -26,7 +26,7 @@ from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.values.errors import DeviceNotFound, ProfileError
 from simconsole.values.key_codes import Key
 from simconsole.values.protocols import DeviceSource
-from tests.devices.people import Seat
+from tests.devices.calibration_run import Seat
 from tests.paths import ROOT
 
 HZ = 250
@@ -167,7 +167,7 @@ def test_a_script_loads_no_pygame(tmp_path: Path) -> None:
     path.write_text(SCRIPT)
     program = (
         "import sys\n"
-        "from simconsole.devices.sources.driver_source import open_source\n"
+        "from simconsole.devices.sources.source_registry import open_source\n"
         "from simconsole.profiles.files.loader import load\n"
         "from simconsole.profiles.device import CockpitProfile\n"
         f"open_source('script:{path}', load('devices', 't500rs_th8rs', CockpitProfile), tick_hz=250).poll(1)\n"

@@ -5,9 +5,9 @@ from collections.abc import Callable
 import pytest
 
 from simconsole.devices.sources import sdl_runtime
-from simconsole.devices.sources.sdl import found
+from simconsole.devices.sources.sdl_source import found
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
-from simconsole.devices.sources.virtual_sdl import VirtualDevice, VirtualSpec, specs
+from simconsole.devices.sources.virtual_joystick import VirtualDevice, VirtualSpec, specs
 from simconsole.profiles.device import CockpitProfile
 from simconsole.values.errors import DeviceError
 

@@ -9,7 +9,7 @@ from simconsole.devices.calibration.validity import STALE
 from simconsole.devices.synthetic.keyboard import STEER_MAX_RAD, KeyboardSource
 from simconsole.values.key_codes import Key
 from simconsole.values.signals import Button, DriverInput
-from tests.devices.people import Seat
+from tests.devices.calibration_run import Seat
 
 
 class Board:

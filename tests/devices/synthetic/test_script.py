@@ -10,7 +10,7 @@ from simconsole.devices.synthetic.script import ScriptSource
 from simconsole.profiles.device import ScriptPoint, ScriptProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.signals import Button, DriverInput
-from tests.devices.people import Seat
+from tests.devices.calibration_run import Seat
 
 HZ = 250
 

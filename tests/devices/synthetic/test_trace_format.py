@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from simconsole.devices.sources.trace_recorder import TraceSource, TraceWriter
-from simconsole.devices.synthetic.trace import COLUMNS, TraceHeader, row_text
+from simconsole.devices.sources.trace_files import TraceSource, TraceWriter
+from simconsole.devices.synthetic.trace_format import COLUMNS, TraceHeader, row_text
 from simconsole.values.errors import DeviceError, ProfileError
 from simconsole.values.signals import NEVER_TICKS, DeviceSample
 

@@ -9,10 +9,10 @@ import pytest
 
 from simconsole.control.requests.control_settings import settings as control_settings
 from simconsole.devices.calibration.calibration_settings import settings as cockpit_settings
-from simconsole.devices.sources.sdl import SdlSource
+from simconsole.devices.sources.sdl_source import SdlSource
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
-from simconsole.drivers.person.mind import Phase
-from simconsole.drivers.seated.simulated_person import SimulatedPerson
+from simconsole.drivers.cockpit.simulated_person import SimulatedPerson
+from simconsole.drivers.simulated_person.behaviour import Phase
 from simconsole.profiles.control import ControlProfile
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load

@@ -4,9 +4,16 @@ import math
 
 import pytest
 
-from simconsole.devices.calibration.uncalibrate import Intent
-from simconsole.drivers.person.mind import Person, Phase
-from simconsole.drivers.person.skills import Line, View, clutch_through_bite, hold_speed, launch_throttle, steer_along
+from simconsole.devices.calibration.inverse_calibration import Intent
+from simconsole.drivers.simulated_person.behaviour import Person, Phase
+from simconsole.drivers.simulated_person.launch import (
+    Line,
+    View,
+    clutch_through_bite,
+    hold_speed,
+    launch_throttle,
+    steer_along,
+)
 from simconsole.profiles.files.loader import parse
 from simconsole.profiles.person import Habits, PersonPlan, When
 from simconsole.values.errors import ProfileError

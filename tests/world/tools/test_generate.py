@@ -5,7 +5,7 @@ import pytest
 from simconsole.profiles.files.loader import find
 from simconsole.profiles.world import WorldProfile
 from simconsole.values.platform import Pose
-from simconsole.world.geometry import Piece, travel
+from simconsole.world.path_geometry import Piece, travel
 from simconsole.world.tools.generate import main
 
 PLAN = Path(find("worlds", "urban")).with_name("urban.plan.yaml")
