@@ -12,8 +12,9 @@ import statistics
 import time
 from collections.abc import Callable
 
-from simconsole.devices.calibration.calibrator import NOBODY, calibrate, settings
-from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate
+from simconsole.devices.calibration.calibrator import calibrate
+from simconsole.devices.calibration.cockpit_settings import NOBODY, cockpit_settings
+from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
 from simconsole.devices.sources.sdl_source import SdlSource
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.profiles.device import CockpitProfile
@@ -46,7 +47,7 @@ def main() -> None:
     words.add_argument("--ticks", type=int, default=5000)
     ticks = words.parse_args().ticks
     cockpit = load("devices", "t500rs_th8rs", CockpitProfile)
-    numbers = settings(cockpit, TICK_HZ)
+    numbers = cockpit_settings(cockpit, TICK_HZ)
     plugged = VirtualCockpit(cockpit)
     source = SdlSource(cockpit)
 
@@ -57,7 +58,7 @@ def main() -> None:
         wave = tick % 100 / 100.0
         gear = float(tick // 50 % 7)
         plugged.write(
-            uncalibrate(Intent(4.0 * wave - 2.0, wave, 1.0 - wave, wave, 0.0, gear, tick // 25 % 512), numbers)
+            raw_sample(Intent(4.0 * wave - 2.0, wave, 1.0 - wave, wave, 0.0, gear, tick // 25 % 512), numbers)
         )
 
     twin = compiled(calibrate)

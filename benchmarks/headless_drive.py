@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.synthetic.script import ScriptSource
 from simconsole.drivers.scripted_controller import ScriptedCommands
 from simconsole.recording.bundles.log import LogWriter
@@ -51,7 +51,7 @@ def main() -> None:
     console, start = assemble(resolved, compiled)
     warm_up(console, start)
     ticks = round(given.seconds * console.tick_hz)
-    cockpit = settings(resolved.cockpit, console.tick_hz)
+    cockpit = cockpit_settings(resolved.cockpit, console.tick_hz)
     assert scenario.script is not None
     factors, baselines = [], []
     for number in range(given.rounds):

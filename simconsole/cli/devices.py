@@ -31,9 +31,9 @@ def devices(words: Namespace) -> Outcome:
         path = Path(words.out or "cockpit.yaml")
         return Outcome(0, calibrate_devices(cockpit, path, say=_say, virtual=cockpit if words.virtual else None))
     if words.action == "feel":
-        from simconsole.devices.setup.force_feedback_check import feel_devices
+        from simconsole.devices.setup.force_feedback_check import check_force_feedback
 
-        results = feel_devices(cockpit, say=_say, strength=words.strength / 100.0, virtual=words.virtual)
+        results = check_force_feedback(cockpit, say=_say, strength=words.strength / 100.0, virtual=words.virtual)
         return Outcome(0 if results["ok"] else 1, results)
     results = record_devices(
         cockpit,

@@ -7,9 +7,8 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from typing import Any, Final, Protocol, TypeAlias
 
-from simconsole.devices.calibration.cockpit_settings import CockpitSettings
+from simconsole.devices.calibration.cockpit_settings import SHIFTER_SHIFT, CockpitSettings
 from simconsole.devices.calibration.inverse_calibration import WHEEL_MASK, button_masks
-from simconsole.devices.calibration.lever import SHIFTER_SHIFT
 from simconsole.devices.force_feedback.motor import Source
 from simconsole.profiles.device import CockpitProfile, RoleName
 from simconsole.profiles.faults import (

@@ -8,7 +8,7 @@ needs no faults; the row tells which were on (`events.faults`, a bit for each pl
 from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple, get_args
 
-from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.faults.cockpit_faults import FaultyDevices, Switched
 from simconsole.faults.command_faults import FaultyCommands
 from simconsole.faults.process_faults import RaisingCommands, RaisingDevices, RaisingStation, StallingPace
@@ -89,7 +89,7 @@ Layer = Callable[[Cast, Sequence[Armed], Setting], Cast]
 def devices(cast: Cast, armed: Sequence[Armed], setting: Setting) -> Cast:
     """Put device faults between the devices and the console."""
     cockpit, tick_hz = setting.resolved.cockpit, setting.tick_hz
-    faulty = FaultyDevices(cast.devices, armed, cockpit, settings(cockpit, tick_hz), tick_hz)
+    faulty = FaultyDevices(cast.devices, armed, cockpit, cockpit_settings(cockpit, tick_hz), tick_hz)
     return cast._replace(devices=faulty)
 
 

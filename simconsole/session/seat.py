@@ -70,7 +70,7 @@ def _with_motor(devices: DeviceSource, cockpit: CockpitProfile, force: ForceFeed
     """Add the wheel's motor; without one everything else works, and the person is told."""
     from simconsole.devices.force_feedback.motor import MotorisedSource, NoHaptics, WheelMotor
     from simconsole.devices.haptics.back_ends import open_motor
-    from simconsole.devices.haptics.watchdog_client import open_watchdog, watched
+    from simconsole.devices.haptics.watchdog_client import open_watchdog, with_watchdog
     from simconsole.devices.sources.kernel_limits import notes, problems, wheel_limits
     from simconsole.devices.sources.sdl_source import SdlSource
 
@@ -88,7 +88,7 @@ def _with_motor(devices: DeviceSource, cockpit: CockpitProfile, force: ForceFeed
         number = wheel["id"]
         if number is None:
             return NoHaptics("the wheel is unplugged")
-        return watched(open_motor(number, identity, force), watchdog)
+        return with_watchdog(open_motor(number, identity, force), watchdog)
 
     def replugged() -> "HapticPort | None":
         now = devices.instance_id("wheel")
@@ -103,7 +103,7 @@ def _with_motor(devices: DeviceSource, cockpit: CockpitProfile, force: ForceFeed
 
 
 def _open_person(resolved: ResolvedSession, console: Console, stack: ExitStack) -> Seating:
-    from simconsole.devices.calibration.calibration_settings import settings
+    from simconsole.devices.calibration.cockpit_settings import cockpit_settings
     from simconsole.devices.force_feedback.motor import MotorisedSource, SimulatedWheelPort, WheelMotor
     from simconsole.devices.force_feedback.simulated_wheel import SimulatedWheel, step_wheel
     from simconsole.devices.sources.sdl_source import SdlSource
@@ -117,13 +117,13 @@ def _open_person(resolved: ResolvedSession, console: Console, stack: ExitStack) 
     stack.callback(cockpit.close)
     devices = SdlSource(resolved.cockpit)
     stack.callback(devices.close)
-    cockpit_settings, tick_hz = settings(resolved.cockpit, console.tick_hz), console.tick_hz
+    numbers, tick_hz = cockpit_settings(resolved.cockpit, console.tick_hz), console.tick_hz
     force = resolved.cockpit.force_feedback
     if force is None:
-        person = SimulatedPerson(plan, cockpit, cockpit_settings, tick_hz=tick_hz)
+        person = SimulatedPerson(plan, cockpit, numbers, tick_hz=tick_hz)
         return Seating(devices, person, finished=lambda snapshot: person.finished)
     wheel = SimulatedWheel(force, resolved.cockpit.wheel.lock_to_lock_deg, tick_hz=tick_hz, step=compiled(step_wheel))
-    person = SimulatedPerson(plan, cockpit, cockpit_settings, tick_hz=tick_hz, wheel=wheel)
+    person = SimulatedPerson(plan, cockpit, numbers, tick_hz=tick_hz, wheel=wheel)
     motor = WheelMotor(SimulatedWheelPort(wheel), force, lambda snapshot: snapshot.t_s)
     stack.callback(motor.close)
     return Seating(

@@ -95,7 +95,7 @@ class Console(NamedTuple):
     platform: Platform
     decide: Callable[[Row, Row, Row, float], None]
     step: Callable[[Row, Row, Row, int], None]
-    feel: Callable[[Row, Row, Row, float], None] | None  # None: the wheel has no motor
+    force_feedback: Callable[[Row, Row, Row, float], None] | None  # None: the wheel has no motor
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -134,7 +134,7 @@ def build_console(
         platform=platform,
         decide=execution(decide),
         step=execution(platform.step),
-        feel=execution(feel) if force.max_torque_nm > 0.0 else None,
+        force_feedback=execution(force_feedback) if force.max_torque_nm > 0.0 else None,
     )
 
 
@@ -170,11 +170,11 @@ def advance_row(previous: Row, inputs: Row | tuple[float, ...], console: Console
     mark(Hop.DECIDE)
     console.step(previous, row, console.platform.parameters, console.substeps)
     mark(Hop.STEP)
-    if console.feel is None:
+    if console.force_feedback is None:
         row[TORQUE_AT:PLATFORM_AT] = 0.0
     else:
-        console.feel(previous, row, console.settings, console.tick_s)
-        mark(Hop.FEEL)
+        console.force_feedback(previous, row, console.settings, console.tick_s)
+        mark(Hop.FORCE_FEEDBACK)
     return row
 
 
@@ -236,7 +236,7 @@ def decide(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
 
 
 @kernel
-def feel(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
+def force_feedback(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
     """Turn what the vehicle does into the torque of the wheel's motor, for the coming tick."""
     sample = DeviceSample(*take(row, SAMPLE_AT, SAMPLE_WIDTH))
     arbitration = Arbitration(*take(row, ARBITRATION_AT, ARBITRATION_WIDTH))

@@ -5,7 +5,7 @@ import math
 from msgspec import Struct, structs
 
 from simconsole.control.requests.control_settings import settings as control_settings
-from simconsole.devices.calibration.calibrator import settings as cockpit_settings
+from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.force_feedback.force_settings import force_settings
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.session import Aids, Environment, SessionProfile

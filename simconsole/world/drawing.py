@@ -7,7 +7,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from simconsole.world.course import Course
-from simconsole.world.drawing_layers import STEP_M, Array, Light, Sheet, add_crossing
+from simconsole.world.drawing_layers import STEP_M, Array, DrawingLayers, Light, add_crossing
 from simconsole.world.intersection import add_intersection, clear_m, opening_m
 from simconsole.world.roundabout import add_roundabout
 
@@ -31,32 +31,32 @@ class Drawing(NamedTuple):
 
 def draw(course: Course) -> Drawing:
     """Return everything there is to draw of a course: a two-lane road whose right lane is driven."""
-    world, sheet = course.world, Sheet()
+    world, layers = course.world, DrawingLayers()
     half = 0.5 * world.lane_width_m
     rings = [(ring.s_m, ring.end_s_m) for ring in world.roundabouts]
     open_ = opening_m(world.lane_width_m)
     corners = [(spot.s_m - open_, spot.s_m + open_) for spot in world.intersections]
     clear = [(s.s_m - c, s.s_m + c) for s in world.intersections for c in (clear_m(s, world.lane_width_m),)]
     for start, end in _rest(course.length_m, rings):
-        sheet.surfaces += _strip(course, start, end, -half, 3.0 * half)
+        layers.surfaces += _strip(course, start, end, -half, 3.0 * half)
     for start, end in _rest(course.length_m, rings + corners):
-        sheet.edges += [course.offset(side, start, end, STEP_M) for side in (-half, 3.0 * half)]
+        layers.edges += [course.offset(side, start, end, STEP_M) for side in (-half, 3.0 * half)]
     for start, end in _rest(course.length_m, rings + clear):
-        sheet.centre_lines.append(course.offset(half, start, end, STEP_M))
+        layers.centre_lines.append(course.offset(half, start, end, STEP_M))
     for ring in world.roundabouts:
-        add_roundabout(sheet, course, ring)
+        add_roundabout(layers, course, ring)
     for spot in world.intersections:
-        add_intersection(sheet, course, spot)
+        add_intersection(layers, course, spot)
     for crossing in world.crossings:
-        add_crossing(sheet, course, crossing)
+        add_crossing(layers, course, crossing)
     return Drawing(
-        tuple(sheet.surfaces),
-        tuple(sheet.islands),
-        tuple(sheet.edges),
-        tuple(sheet.centre_lines),
-        tuple(sheet.zebras),
-        tuple(sheet.stop_lines),
-        tuple(sheet.lights),
+        tuple(layers.surfaces),
+        tuple(layers.islands),
+        tuple(layers.edges),
+        tuple(layers.centre_lines),
+        tuple(layers.zebras),
+        tuple(layers.stop_lines),
+        tuple(layers.lights),
         course.offset(0.0, 0.0, course.length_m, STEP_M),
     )
 

@@ -1,4 +1,4 @@
-"""The sheet on which a course is drawn, and the few shapes that all its parts share."""
+"""The layers on which a course is drawn, and the few shapes that all its parts share."""
 
 from dataclasses import dataclass, field
 from typing import Final, NamedTuple
@@ -24,7 +24,7 @@ class Light(NamedTuple):
 
 
 @dataclass
-class Sheet:
+class DrawingLayers:
     """Polylines and polygons, each float64 [N, 2] in metres of `map`, in the order in which they were drawn."""
 
     surfaces: list[Array] = field(default_factory=list)
@@ -71,19 +71,19 @@ def box(forward_from: float, forward_to: float, left_from: float, left_to: float
     )
 
 
-def add_crossing(sheet: Sheet, course: Course, crossing: Crossing) -> None:
+def add_crossing(layers: DrawingLayers, course: Course, crossing: Crossing) -> None:
     """Draw a zebra over both lanes."""
     frame = axis_frame(course, crossing.s_m)
-    add_zebra(sheet, frame, -0.5 * crossing.width_m, 0.5 * crossing.width_m, course.world.lane_width_m)
+    add_zebra(layers, frame, -0.5 * crossing.width_m, 0.5 * crossing.width_m, course.world.lane_width_m)
 
 
-def add_zebra(sheet: Sheet, frame: Frame, forward_from: float, forward_to: float, half_road_m: float) -> None:
+def add_zebra(layers: DrawingLayers, frame: Frame, forward_from: float, forward_to: float, half_road_m: float) -> None:
     """Draw stripes along the road from one distance of the frame to another, symmetric to its axis."""
     pairs = int(half_road_m / (2.0 * ZEBRA_STRIPE_M) - 0.5)
     for index in range(-pairs, pairs + 1):
         middle = 2.0 * ZEBRA_STRIPE_M * index
         stripe = box(forward_from, forward_to, middle - 0.5 * ZEBRA_STRIPE_M, middle + 0.5 * ZEBRA_STRIPE_M)
-        sheet.zebras.append(frame.out(stripe))
+        layers.zebras.append(frame.out(stripe))
 
 
 def arc(x: float, y: float, radius: float, start_rad: float, end_rad: float, count: int) -> Array:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from simconsole.profiles.world import Roundabout
 from simconsole.world.course import Course
-from simconsole.world.drawing_layers import Array, Frame, Sheet, arc, axis_frame, box
+from simconsole.world.drawing_layers import Array, DrawingLayers, Frame, arc, axis_frame, box
 
 _STEP_M: Final = 0.25
 _STUB_M: Final = 45.0  # roads that the course does not use end this far from the centre
@@ -35,7 +35,7 @@ class Shape(NamedTuple):
         return np.asarray((gaps**2).sum(axis=2).min(axis=1) < (self.radius_m - _TOUCH_M) ** 2)
 
 
-def add_roundabout(sheet: Sheet, course: Course, ring: Roundabout) -> None:
+def add_roundabout(layers: DrawingLayers, course: Course, ring: Roundabout) -> None:
     """Draw one roundabout; the course's road ends at its `s_m` and begins again at its `end_s_m`."""
     half = 0.5 * course.world.lane_width_m
     entry, leave = axis_frame(course, ring.s_m), axis_frame(course, ring.end_s_m)
@@ -47,28 +47,28 @@ def add_roundabout(sheet: Sheet, course: Course, ring: Roundabout) -> None:
     for index, arm in enumerate(arms):
         frame = Frame(ring.x_m, ring.y_m, arm.yaw_rad)
         reach = math.hypot(arm.x_m - ring.x_m, arm.y_m - ring.y_m)
-        sheet.surfaces.append(frame.out(box(0.0, reach, -2.0 * half, 2.0 * half)))
+        layers.surfaces.append(frame.out(box(0.0, reach, -2.0 * half, 2.0 * half)))
         if index < 2:
             pocket = disc.radius_m + _POCKET_M
-            sheet.surfaces.append(frame.out(box(ring.radius_m, pocket, -3.0 * half, 3.0 * half)))
+            layers.surfaces.append(frame.out(box(ring.radius_m, pocket, -3.0 * half, 3.0 * half)))
         steps = np.arange(0.0, reach + _STEP_M, _STEP_M)
         sides = (np.full_like(steps, -2.0 * half), np.full_like(steps, 2.0 * half))
         outlines += [(1 + index, frame.out(np.stack((steps, side), axis=1))) for side in sides]
-        sheet.centre_lines.append(frame.out(np.array(((ring.radius_m + 4.0 * half, 0.0), (reach, 0.0)))))
+        layers.centre_lines.append(frame.out(np.array(((ring.radius_m + 4.0 * half, 0.0), (reach, 0.0)))))
     for axis, start, end in ((entry, ring.s_m, middle), (leave, middle, ring.end_s_m)):
         for image in (_same, _mirrored):
             lane = Shape(image(course.offset(0.0, start, end, _STEP_M), axis), half)
             kerb = image(course.offset(-half, start, end, _STEP_M), axis)
             inner = image(course.offset(half, start, end, _STEP_M), axis)
-            sheet.surfaces.append(np.vstack((kerb, inner[::-1])))
+            layers.surfaces.append(np.vstack((kerb, inner[::-1])))
             outlines.append((len(shapes), kerb))
             shapes.append(lane)
     for own, line in outlines:
         others = [shape for index, shape in enumerate(shapes) if index != own]
-        sheet.edges += _visible(line, others)
-    sheet.surfaces.append(arc(ring.x_m, ring.y_m, disc.radius_m, 0.0, math.tau, 120))
-    sheet.islands.append(arc(ring.x_m, ring.y_m, ring.radius_m - half, 0.0, math.tau, 120))
-    sheet.edges.append(sheet.islands[-1])
+        layers.edges += _visible(line, others)
+    layers.surfaces.append(arc(ring.x_m, ring.y_m, disc.radius_m, 0.0, math.tau, 120))
+    layers.islands.append(arc(ring.x_m, ring.y_m, ring.radius_m - half, 0.0, math.tau, 120))
+    layers.edges.append(layers.islands[-1])
 
 
 def _arms(ring: Roundabout, entry: Frame, leave: Frame) -> list[Frame]:

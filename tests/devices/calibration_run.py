@@ -2,14 +2,15 @@
 
 from collections.abc import Iterable
 
-from simconsole.devices.calibration.calibrator import NOBODY, CockpitSettings, calibrate
-from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate
+from simconsole.devices.calibration.calibrator import calibrate
+from simconsole.devices.calibration.cockpit_settings import NOBODY, CockpitSettings
+from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
 from simconsole.values.signals import NO_SAMPLE, DeviceSample, DriverInput
 
 TICK_S = 0.004
 
 
-class Seat:
+class CalibrationRun:
     """Feeds samples through `calibrate` and remembers what it must."""
 
     def __init__(self, settings: CockpitSettings) -> None:
@@ -18,17 +19,17 @@ class Seat:
         self.driver = NOBODY
         self.model_rad = 0.0
 
-    def feel(self, sample: DeviceSample, ticks: int = 1) -> DriverInput:
+    def calibrate(self, sample: DeviceSample, ticks: int = 1) -> DriverInput:
         for _ in range(ticks):
             self.driver = calibrate(sample, self.before, self.driver, self.model_rad, self.settings, TICK_S)
             self.before = sample
         return self.driver
 
     def do(self, intent: Intent = Intent(), ticks: int = 1, **raw: float) -> DriverInput:  # noqa: B008  # immutable
-        return self.feel(self.raw(intent, **raw), ticks)
+        return self.calibrate(self.raw(intent, **raw), ticks)
 
     def raw(self, intent: Intent = Intent(), **raw: float) -> DeviceSample:  # noqa: B008  # immutable
-        return uncalibrate(intent, self.settings)._replace(**raw)
+        return raw_sample(intent, self.settings)._replace(**raw)
 
     def all(self, samples: Iterable[DeviceSample]) -> list[DriverInput]:
-        return [self.feel(sample) for sample in samples]
+        return [self.calibrate(sample) for sample in samples]

@@ -4,8 +4,8 @@ import math
 
 import msgspec
 
-from simconsole.devices.calibration.calibration_settings import settings
-from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate, wheel_raw
+from simconsole.devices.calibration.cockpit_settings import cockpit_settings
+from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample, wheel_raw
 from simconsole.devices.force_feedback.motor import SimulatedWheelPort, WheelMotor
 from simconsole.devices.force_feedback.simulated_wheel import RELAXED, Arm, SimulatedWheel, step_wheel
 from simconsole.profiles.force_feedback import Motor
@@ -89,11 +89,11 @@ class Loop:
         cockpit = self.session.cockpit
         assert cockpit.force_feedback is not None
         self.force = cockpit.force_feedback
-        self.settings = settings(cockpit, tick_hz)
+        self.settings = cockpit_settings(cockpit, tick_hz)
         true = self.force if motor is None else msgspec.structs.replace(self.force, motor=motor)
         self.wheel = SimulatedWheel(true, cockpit.wheel.lock_to_lock_deg, tick_hz=tick_hz, step=compiled(step_wheel))
         self.motor = WheelMotor(SimulatedWheelPort(self.wheel), self.force, lambda shot: shot.t_s)
-        self.rest = uncalibrate(Intent(), self.settings)._replace(wheel_motor=1.0)
+        self.rest = raw_sample(Intent(), self.settings)._replace(wheel_motor=1.0)
         self.snapshot = Snapshot(0, tick_hz, state.row)
         self.controller = Controller(self.session, tick_hz, grid_m)
 

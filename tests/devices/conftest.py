@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from simconsole.devices.calibration.calibrator import CockpitSettings, settings
+from simconsole.devices.calibration.cockpit_settings import CockpitSettings, cockpit_settings
 from simconsole.devices.sources import sdl_runtime
 from simconsole.devices.sources.sdl_source import SdlSource
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
@@ -22,12 +22,12 @@ def t500() -> CockpitProfile:
 
 @pytest.fixture(scope="session")
 def t500_settings(t500: CockpitProfile) -> CockpitSettings:
-    return settings(t500, TICK_HZ)
+    return cockpit_settings(t500, TICK_HZ)
 
 
 @pytest.fixture(scope="session")
 def keyboard_settings() -> CockpitSettings:
-    return settings(load("devices", "keyboard", CockpitProfile), TICK_HZ)
+    return cockpit_settings(load("devices", "keyboard", CockpitProfile), TICK_HZ)
 
 
 @pytest.fixture

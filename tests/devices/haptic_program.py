@@ -16,10 +16,10 @@ import numpy as np
 from simconsole.devices.calibration.cockpit_settings import NOBODY
 from simconsole.devices.force_feedback.motor import WheelMotor
 from simconsole.devices.haptics.back_ends import open_motor
-from simconsole.devices.haptics.watchdog_client import Watchdog, watched
+from simconsole.devices.haptics.watchdog_client import Watchdog, with_watchdog
 from simconsole.devices.sources import sdl_runtime
 from simconsole.devices.sources.kernel_limits import notes, problems, read_limits
-from simconsole.devices.sources.sdl_source import Found, SdlSource, found
+from simconsole.devices.sources.sdl_source import JoystickInfo, SdlSource, connected_joysticks
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load
 from simconsole.profiles.force_feedback import ForceFeedback
@@ -76,7 +76,7 @@ def motion() -> None:
 def main(how: str) -> None:
     pygame = sdl_runtime.acquire()
     pygame.event.get()
-    ((entry, joystick),) = found(pygame)
+    ((entry, joystick),) = connected_joysticks(pygame)
     print(entry, joystick.get_instance_id(), flush=True)
     if how == "contract":
         contract(entry)
@@ -86,7 +86,7 @@ def main(how: str) -> None:
     watchdog = None
     if sys.argv[3:] == ["watched"]:
         watchdog = Watchdog((entry.vendor_id, entry.product_id))
-        port = watched(port, watchdog)
+        port = with_watchdog(port, watchdog)
         pause(0.5)  # until it has opened the device
         print("watchdog", watchdog.process_id, flush=True)
     motor = WheelMotor(port, FORCE, lambda snapshot: stamp_ns() / 1e9)
@@ -115,7 +115,7 @@ def main(how: str) -> None:
 def stand(motor: WheelMotor) -> None:
     """A car in a bend pulls at the wheel; time stands for PAUSE_S, as `drive.run` lets it stand, and goes on."""
     console, state = assemble(resolve(load_session("demo")), plain)
-    assert console.feel is not None
+    assert console.force_feedback is not None
     row = state.row
     for tick in range(1, 401):
         before, row = row, row.copy()
@@ -125,7 +125,7 @@ def stand(motor: WheelMotor) -> None:
         row[DRIVER_AT:MEMORY_AT] = NOBODY._replace(wheel_validity=float(Validity.LIVE))
         row[ARBITRATION_AT] = float(Mode.MANUAL)
         row[VEHICLE_AT:TORQUE_AT] = console.platform.initial_vehicle._replace(vx_mps=20.0, hand_wheel_torque_nm=3.0)
-        console.feel(before, row, console.settings, console.tick_s)
+        console.force_feedback(before, row, console.settings, console.tick_s)
         if tick > 250:
             motor.publish(Snapshot(tick, 250, row))
             pause(0.004)
@@ -135,7 +135,7 @@ def stand(motor: WheelMotor) -> None:
             print("goes on", stamp_ns(), flush=True)
 
 
-def contract(entry: Found) -> None:
+def contract(entry: JoystickInfo) -> None:
     """Print what came of each check, each on a motor just opened: empty where it holds."""
     outcome = {}
     for name, check in CHECKS.items():

@@ -8,7 +8,7 @@ import pytest
 
 from simconsole.devices.force_feedback.motor import HapticPort, NoHaptics, SimulatedWheelPort
 from simconsole.devices.force_feedback.simulated_wheel import SimulatedWheel
-from simconsole.devices.haptics.watchdog_client import Watchdog, WatchedPort
+from simconsole.devices.haptics.watchdog_client import Watchdog, WatchdogPort
 from simconsole.profiles.force_feedback import ForceFeedback
 from tests.devices.mocked import start
 from tests.devices.port_contract import CHECKS
@@ -62,7 +62,7 @@ def judge(request: pytest.FixtureRequest) -> Judge:
         judged = request.getfixturevalue("mocked")(request.param)
         return lambda name: str(judged[name])
     if request.param == "watched":
-        return _here(WatchedPort(simulated(), request.getfixturevalue("watchdog")))
+        return _here(WatchdogPort(simulated(), request.getfixturevalue("watchdog")))
     return _here(NoHaptics() if request.param == "none" else simulated())
 
 

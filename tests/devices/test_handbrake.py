@@ -8,9 +8,9 @@ import msgspec
 import pytest
 from msgspec.structs import replace
 
-from simconsole.devices.calibration.calibration_settings import settings
-from simconsole.devices.calibration.cockpit_check import Watch
-from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate
+from simconsole.devices.calibration.cockpit_check import CockpitCheck
+from simconsole.devices.calibration.cockpit_settings import cockpit_settings
+from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
 from simconsole.devices.calibration.validity import LIVE, LOST, STALE, UNKNOWN
 from simconsole.devices.setup.calibration_dialogue import calibrate_devices
 from simconsole.devices.setup.device_commands import Pace, check_devices, list_devices
@@ -22,7 +22,7 @@ from simconsole.profiles.faults import Unplug
 from simconsole.profiles.files.loader import load, parse, to_text
 from simconsole.values.errors import DeviceNotFound, ProfileError
 from simconsole.values.signals import NEVER_TICKS, DeviceSample, DriverInput
-from tests.devices.calibration_run import Seat
+from tests.devices.calibration_run import CalibrationRun
 from tests.devices.conftest import TICK_HZ
 
 LEVER = RoleBinding(role="handbrake", vendor_id=0x10C4, product_id=0x82C0, name="USB handbrake", axes=1, buttons=0)
@@ -39,19 +39,19 @@ class Drive:
 
     def __init__(self, cockpit: CockpitProfile, *, reverse_order: bool = False) -> None:
         self.plugged = VirtualCockpit(cockpit, reverse_order=reverse_order)
-        self.seat = Seat(settings(cockpit, TICK_HZ))
+        self.seat = CalibrationRun(cockpit_settings(cockpit, TICK_HZ))
         self.source: SdlSource | None = None
         self.tick = 0
 
     def do(self, intent: Intent, ticks: int = 1) -> DriverInput:
-        self.plugged.write(uncalibrate(intent, self.seat.settings))
+        self.plugged.write(raw_sample(intent, self.seat.settings))
         return self.poll(ticks)
 
     def poll(self, ticks: int = 1) -> DriverInput:
         assert self.source is not None
         for _ in range(ticks):
             self.tick += 1
-            driver = self.seat.feel(self.source.poll(self.tick))
+            driver = self.seat.calibrate(self.source.poll(self.tick))
         return driver
 
     def close(self) -> None:
@@ -121,7 +121,7 @@ def test_lost_pedals_leave_the_handbrake(drive: Drive) -> None:
 
 
 def test_pulled_at_the_start_counts_only_after_it_was_let_go(cockpit: CockpitProfile) -> None:
-    seat = Seat(settings(cockpit, TICK_HZ))
+    seat = CalibrationRun(cockpit_settings(cockpit, TICK_HZ))
     driver = seat.do(Intent(handbrake=1.0), ticks=10)
     assert (driver.handbrake, driver.handbrake_validity, driver.brake_validity) == (0.0, UNKNOWN, LIVE)
     seat.do(Intent())
@@ -129,7 +129,7 @@ def test_pulled_at_the_start_counts_only_after_it_was_let_go(cockpit: CockpitPro
 
 
 def test_silent_handbrake_is_held_for_the_limit_and_then_released(cockpit: CockpitProfile) -> None:
-    seat = Seat(settings(cockpit, TICK_HZ))
+    seat = CalibrationRun(cockpit_settings(cockpit, TICK_HZ))
     seat.do(ticks=2)
     held = seat.do(Intent(handbrake=0.8), handbrake_age_ticks=25.0)
     assert held.handbrake == pytest.approx(0.8)
@@ -142,9 +142,9 @@ def test_fault_on_the_handbrake_takes_what_hangs_on_its_plug(
     own: bool, gone: list[float], cockpit: CockpitProfile, t500: CockpitProfile
 ) -> None:
     seated = cockpit if own else t500
-    numbers = settings(seated, TICK_HZ)
+    numbers = cockpit_settings(seated, TICK_HZ)
     act = effect(Unplug(at_s=0.0, device="handbrake"), seated, numbers, TICK_HZ)
-    sample = act(uncalibrate(Intent(), numbers), 1, 1)
+    sample = act(raw_sample(Intent(), numbers), 1, 1)
     assert [sample.pedals_age_ticks, sample.shifter_age_ticks, sample.handbrake_age_ticks] == gone
 
 
@@ -201,15 +201,15 @@ def test_calibration_learns_a_handbrake_of_its_own_and_check_tries_it(
 
 def test_check_tells_a_lost_handbrake_from_a_pulled_one(cockpit: CockpitProfile) -> None:
     def problems(*samples: DeviceSample) -> list[str]:
-        watch = Watch(cockpit, TICK_HZ)
+        check = CockpitCheck(cockpit, TICK_HZ)
         for sample in samples:
-            watch.see(sample)
-        return watch.problems()
+            check.add(sample)
+        return check.problems()
 
-    numbers = settings(cockpit, TICK_HZ)
-    rest = uncalibrate(Intent(), numbers)
+    numbers = cockpit_settings(cockpit, TICK_HZ)
+    rest = raw_sample(Intent(), numbers)
     assert problems(rest) == []
     lost = problems(rest, rest._replace(handbrake_age_ticks=NEVER_TICKS))
     assert lost == ["pedals.handbrake: value no reading: a device that answers"]
-    (pulled,) = problems(uncalibrate(Intent(handbrake=1.0), numbers))
+    (pulled,) = problems(raw_sample(Intent(handbrake=1.0), numbers))
     assert pulled.startswith("pedals.handbrake: value 100% pressed at least: at most 5% at rest")

@@ -6,7 +6,7 @@ from typing import Any
 import msgspec
 import pytest
 
-from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.profiles.device import CockpitProfile, ScriptProfile
 from simconsole.profiles.files.loader import load, parse, profiles_folder, to_text
 from simconsole.values.errors import ProfileError
@@ -108,10 +108,10 @@ def test_role_bound_twice_is_refused(t500: CockpitProfile) -> None:
 
 
 def test_limits_in_time_never_grow_when_they_become_ticks(t500: CockpitProfile) -> None:
-    assert settings(t500, 250).stale_ticks == 25.0
-    assert settings(t500, 125).stale_ticks == 12.0
-    assert settings(t500, 1000).stale_ticks == 100.0
-    assert settings(t500, 50).neutral_dwell_ticks == 5.0
+    assert cockpit_settings(t500, 250).stale_ticks == 25.0
+    assert cockpit_settings(t500, 125).stale_ticks == 12.0
+    assert cockpit_settings(t500, 1000).stale_ticks == 100.0
+    assert cockpit_settings(t500, 50).neutral_dwell_ticks == 5.0
 
 
 def test_script_whose_time_goes_back_is_refused(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from simconsole.drivers.path_tracker.tracker import Sighting, Tracker
+from simconsole.drivers.path_tracker.tracker import Tracker, VehicleMotion
 from simconsole.drivers.path_tracker.tracker_settings import HATCHBACK, CarModel
 from simconsole.profiles.files.loader import load
 from simconsole.profiles.world import WorldProfile
@@ -40,7 +40,7 @@ def axle_n(stiffness: float, slip: float, limit: float) -> float:
     return limit * math.tanh(stiffness * slip / limit)
 
 
-def drive(tracker: Tracker, plant: Plant, distance_m: float, start: Sighting | None = None) -> Trace:
+def drive(tracker: Tracker, plant: Plant, distance_m: float, start: VehicleMotion | None = None) -> Trace:
     car, h = plant.car, STEP_S
     x, y, yaw, vx, vy, r = start or (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     wheel = accel = wanted_wheel = wanted_accel = 0.0
@@ -49,7 +49,7 @@ def drive(tracker: Tracker, plant: Plant, distance_m: float, start: Sighting | N
     rows: list[tuple[float, ...]] = []
     for t_ms in range(0, 400_000, round(1000 * h)):
         if t_ms % 20 == 0:
-            answer = tracker.step(Sighting(x, y, yaw, vx, vy, r))
+            answer = tracker.step(VehicleMotion(x, y, yaw, vx, vy, r))
             pending.append((t_ms + plant.delay_ms, answer.road_wheel_rad, answer.accel_mps2))
             assert tracker.s_m is not None
             rows.append((t_ms / 1000, tracker.s_m, tracker.lateral_m, vx, accel, vx * r))

@@ -5,8 +5,8 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from simconsole.devices.calibration.calibration_settings import settings
-from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate
+from simconsole.devices.calibration.cockpit_settings import cockpit_settings
+from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
 from simconsole.evaluation.checks.row_table import MemoryRecorder
 from simconsole.profiles.files.loader import parse
 from simconsole.profiles.session import SessionProfile
@@ -43,7 +43,7 @@ class Seated:
     """A person with hands and feet at rest."""
 
     def __init__(self, resolved: ResolvedSession, tick_hz: int) -> None:
-        self._rest = uncalibrate(Intent(), settings(resolved.cockpit, tick_hz))
+        self._rest = raw_sample(Intent(), cockpit_settings(resolved.cockpit, tick_hz))
 
     def poll(self, tick: int) -> DeviceSample:
         return self._rest

@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 import msgspec
 import numpy as np
 
-from simconsole.devices.calibration.calibration_settings import settings
-from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate
-from simconsole.drivers.path_tracker.tracker import Sighting, Tracker
+from simconsole.devices.calibration.cockpit_settings import cockpit_settings
+from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
+from simconsole.drivers.path_tracker.tracker import Tracker, VehicleMotion
 from simconsole.evaluation.checks.row_table import MemoryRecorder
 from simconsole.faults.schedule import with_faults
 from simconsole.profiles.faults import Fault
@@ -77,8 +77,8 @@ class Person:
     """
 
     def __init__(self, resolved: ResolvedSession, tracker: Tracker | None, ratio: float) -> None:
-        self._settings = settings(resolved.cockpit, HZ)
-        self._rest = uncalibrate(Intent(), self._settings)
+        self._settings = cockpit_settings(resolved.cockpit, HZ)
+        self._rest = raw_sample(Intent(), self._settings)
         self._sample = self._rest
         self._tracker = tracker
         self._ratio = ratio
@@ -89,13 +89,13 @@ class Person:
             return
         v, mode = snapshot.vehicle, snapshot.arbitration.mode
         taken = self._alarmed >= REACTION_S * HZ
-        answer = self._tracker.step(Sighting(v.x_m, v.y_m, v.yaw_rad, v.vx_mps, v.vy_mps, v.yaw_rate_radps), taken)
+        answer = self._tracker.step(VehicleMotion(v.x_m, v.y_m, v.yaw_rad, v.vx_mps, v.vy_mps, v.yaw_rate_radps), taken)
         astray = abs(self._tracker.lateral_m) > ASTRAY_M
         if taken or mode == Mode.MINIMAL_RISK or astray:
             self._alarmed += PERIOD_TICKS
         if taken:
             intent = Intent(brake=BRAKE, hand_wheel_rad=self._ratio * answer.road_wheel_rad)
-            self._sample = uncalibrate(intent, self._settings)
+            self._sample = raw_sample(intent, self._settings)
 
     def poll(self, tick: int) -> DeviceSample:
         return self._sample
@@ -113,7 +113,7 @@ class PersonAtTheWheel:
     def __init__(
         self, resolved: ResolvedSession, tracker: Tracker, ratio: float, start: Snapshot, attentive: bool
     ) -> None:
-        self._settings = settings(resolved.cockpit, HZ)
+        self._settings = cockpit_settings(resolved.cockpit, HZ)
         self._tracker = tracker
         self._ratio = ratio
         self._attentive = attentive
@@ -125,7 +125,7 @@ class PersonAtTheWheel:
         if snapshot.tick % PERIOD_TICKS:
             return
         v = snapshot.vehicle
-        answer = self._tracker.step(Sighting(v.x_m, v.y_m, v.yaw_rad, v.vx_mps, v.vy_mps, v.yaw_rate_radps))
+        answer = self._tracker.step(VehicleMotion(v.x_m, v.y_m, v.yaw_rad, v.vx_mps, v.vy_mps, v.yaw_rate_radps))
         stopping = snapshot.arbitration.mode == Mode.MINIMAL_RISK
         self._alarmed += PERIOD_TICKS if stopping or self._alarmed else 0
         throttle = 0.0 if self._alarmed else min(1.0, max(0.0, CRUISING + self._speed_mps - v.vx_mps))
@@ -134,7 +134,7 @@ class PersonAtTheWheel:
         self._intent = Intent(throttle=throttle, brake=brake, hand_wheel_rad=self._ratio * angle)
 
     def poll(self, tick: int) -> DeviceSample:
-        return uncalibrate(self._intent, self._settings)
+        return raw_sample(self._intent, self._settings)
 
     def close(self) -> None:
         pass
@@ -157,7 +157,9 @@ class InlineTracker:
             return
         v = snapshot.vehicle
         engaged = snapshot.arbitration.mode in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED)
-        answer = self._tracker.step(Sighting(v.x_m, v.y_m, v.yaw_rad, v.vx_mps, v.vy_mps, v.yaw_rate_radps), engaged)
+        answer = self._tracker.step(
+            VehicleMotion(v.x_m, v.y_m, v.yaw_rad, v.vx_mps, v.vy_mps, v.yaw_rate_radps), engaged
+        )
         self._sequence += 1.0
         self._received = snapshot.tick + 1
         self._command = NO_COMMAND._replace(

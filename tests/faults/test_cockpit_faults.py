@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import pytest
 
-from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.faults.cockpit_faults import FaultyDevices, drawn
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.faults import (
@@ -58,7 +58,9 @@ class Window:
 def driven(cockpit: CockpitProfile, *faults: Fault) -> list[DeviceSample]:
     """Samples of ticks 0 to 30; all faults are on from 11 to 20."""
     window = Window()
-    source = FaultyDevices(Ramp(), [(fault, window) for fault in faults], cockpit, settings(cockpit, TICK_HZ), TICK_HZ)
+    source = FaultyDevices(
+        Ramp(), [(fault, window) for fault in faults], cockpit, cockpit_settings(cockpit, TICK_HZ), TICK_HZ
+    )
     samples = []
     for tick in range(31):
         window.turn(tick)
@@ -157,7 +159,7 @@ def test_a_device_that_is_late_from_its_first_tick_on_is_not_there_yet(cockpit: 
     always = Window()
     always.ticks = 1
     late = Late(at_s=0.0, device="shifter", by_ms=20.0)
-    source = FaultyDevices(Ramp(), [(late, always)], cockpit, settings(cockpit, TICK_HZ), TICK_HZ)
+    source = FaultyDevices(Ramp(), [(late, always)], cockpit, cockpit_settings(cockpit, TICK_HZ), TICK_HZ)
     assert [source.poll(tick).shifter_age_ticks for tick in range(7)] == [NEVER_TICKS] * 5 + [5.0, 5.0]
 
 
@@ -198,5 +200,5 @@ def test_faults_act_one_after_the_other(cockpit: CockpitProfile) -> None:
 
 def test_the_devices_are_closed_through_the_faults(cockpit: CockpitProfile) -> None:
     source = Ramp()
-    FaultyDevices(source, [], cockpit, settings(cockpit, TICK_HZ), TICK_HZ).close()
+    FaultyDevices(source, [], cockpit, cockpit_settings(cockpit, TICK_HZ), TICK_HZ).close()
     assert source.closed

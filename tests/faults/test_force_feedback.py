@@ -207,7 +207,7 @@ def test_d13_nonsense_from_the_vehicle_never_reaches_the_motor(field: str, value
         loop.tick(RELAXED)
         if tick % 3 == 0:
             loop.snapshot.row[VEHICLE_AT + VehicleState._fields.index(field)] = value
-            loop.console.feel(row, loop.snapshot.row, loop.console.settings, loop.console.tick_s)  # type: ignore[misc]
+            loop.console.force_feedback(row, loop.snapshot.row, loop.console.settings, loop.console.tick_s)  # type: ignore[misc]
             loop.snapshot.row[VEHICLE_AT + VehicleState._fields.index(field)] = 0.0
         torque = loop.snapshot.torque
         assert math.isfinite(torque.torque_nm)
@@ -227,7 +227,7 @@ def test_d13_sign_that_flips_every_tick_stays_within_the_slew_limit() -> None:
         row = loop.snapshot.row.copy()
         loop.tick(RELAXED)
         loop.snapshot.row[field] = 0.5 if tick % 2 else -0.5
-        loop.console.feel(row, loop.snapshot.row, loop.console.settings, loop.console.tick_s)  # type: ignore[misc]
+        loop.console.force_feedback(row, loop.snapshot.row, loop.console.settings, loop.console.tick_s)  # type: ignore[misc]
         torques.append(loop.snapshot.torque.torque_nm)
     assert np.abs(np.diff(torques)).max() <= 150.0 / 250.0 + 1e-9
     assert np.abs(torques).max() <= 4.0

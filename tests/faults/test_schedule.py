@@ -6,7 +6,7 @@ from typing import Any, Final, NamedTuple, get_args
 import numpy as np
 import pytest
 
-from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.sources.trace_files import TraceWriter
 from simconsole.devices.synthetic.script import ScriptSource
 from simconsole.devices.synthetic.trace_format import TraceHeader
@@ -200,7 +200,7 @@ def seated(driver: str, folder: Path) -> dict[str, Any]:
         path.write_text(to_text(SCRIPT))
     else:
         source = ScriptSource(
-            SCRIPT, settings(load("devices", "t500rs_th8rs", CockpitProfile), TICK_HZ), tick_hz=TICK_HZ
+            SCRIPT, cockpit_settings(load("devices", "t500rs_th8rs", CockpitProfile), TICK_HZ), tick_hz=TICK_HZ
         )
         with TraceWriter(path, TraceHeader(TICK_HZ, "test")) as writer:
             for tick in range(1, 251):

@@ -5,12 +5,12 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from simconsole.devices.calibration.calibrator import settings
+from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.sources.sdl_source import SdlSource
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load
 from simconsole.values.signals import DeviceSample, DriverInput
-from tests.devices.calibration_run import Seat
+from tests.devices.calibration_run import CalibrationRun
 
 HZ = 250
 
@@ -21,7 +21,7 @@ class Bench:
     def __init__(self, cockpit: CockpitProfile, source: SdlSource) -> None:
         self.cockpit = cockpit
         self.source = source
-        self.seat = Seat(settings(cockpit, HZ))
+        self.seat = CalibrationRun(cockpit_settings(cockpit, HZ))
         self.tick = 0
 
     def watch(self, duration_s: float) -> list[tuple[DeviceSample, DriverInput]]:
@@ -31,7 +31,7 @@ class Bench:
             time.sleep(max(0.0, start_s + number / HZ - time.monotonic()))
             self.tick += 1
             sample = self.source.poll(self.tick)
-            seen.append((sample, self.seat.feel(sample)))
+            seen.append((sample, self.seat.calibrate(sample)))
         return seen
 
 

@@ -12,7 +12,7 @@ from itertools import pairwise
 import pytest
 
 from simconsole.devices.haptics.back_ends import open_motor
-from simconsole.devices.setup.force_feedback_check import feel_devices
+from simconsole.devices.setup.force_feedback_check import check_force_feedback
 from simconsole.profiles.device import CockpitProfile
 from simconsole.values.signals import NEVER_TICKS
 from tests.hardware.conftest import HZ, Bench
@@ -109,7 +109,7 @@ def test_h07_every_force_is_felt_the_sign_first(cockpit: CockpitProfile, ask: As
     assert cockpit.force_feedback is not None, "a profile with force feedback"
     force = msgspec.structs.replace(cockpit.force_feedback, back_end=back_end)
     chosen = msgspec.structs.replace(cockpit, force_feedback=force)
-    assert feel_devices(chosen, say=lambda line: None, ask=ask)["ok"]
+    assert check_force_feedback(chosen, say=lambda line: None, ask=ask)["ok"]
 
 
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGSTOP, signal.SIGTERM])

@@ -42,7 +42,7 @@ def test_cockpit_without_the_section_has_no_motor_station() -> None:
         console, _ = assemble(bare, plain)
         seating = open_seating(bare, console, stack)
         assert seating.stations == ()
-        assert console.feel is None
+        assert console.force_feedback is None
 
 
 def test_simulated_person_sits_at_a_wheel_with_a_motor() -> None:

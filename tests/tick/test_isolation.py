@@ -7,7 +7,7 @@ from typing import NoReturn
 import numpy as np
 import pytest
 
-from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.synthetic.script import ScriptSource
 from simconsole.evaluation.checks.row_table import MemoryRecorder
 from simconsole.profiles.device import ScriptProfile
@@ -135,7 +135,7 @@ class Person:
         resolved = resolve(parse(SESSION, SessionProfile, "session"))
         self.console, self.state = assemble(resolved, compiled)
         script = parse(LAUNCH, ScriptProfile, "script")
-        self.devices = ScriptSource(script, settings(resolved.cockpit, HZ), tick_hz=HZ)
+        self.devices = ScriptSource(script, cockpit_settings(resolved.cockpit, HZ), tick_hz=HZ)
         self.recorder = MemoryRecorder(round(2 * SECONDS * HZ), self.console.width)
         self.stood: list[Snapshot] = []
 

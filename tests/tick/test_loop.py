@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.synthetic.script import ScriptSource
 from simconsole.evaluation.checks.row_table import MemoryRecorder
 from simconsole.profiles.device import ScriptProfile
@@ -79,7 +79,7 @@ def go() -> Callable[..., Driven]:
         plan: dict[tuple[int, int], Event], points: str = "", seconds: float = 8.0, on_request: bool = False
     ) -> Driven:
         script = parse(f"points:\n  - {REST}\n{points}", ScriptProfile, "script")
-        devices = ScriptSource(script, settings(resolved.cockpit, HZ), tick_hz=HZ)
+        devices = ScriptSource(script, cockpit_settings(resolved.cockpit, HZ), tick_hz=HZ)
         recorder, operator = MemoryRecorder(round(seconds * HZ), console.width), Operator(plan)
         stood: list[Snapshot] = []
         cast = Cast(devices, operator, recorder, (), UnpacedPacer(), standby=(stood.append,))

@@ -29,7 +29,7 @@ USUAL_NS = {
     Hop.TAKE: 3_000,
     Hop.DECIDE: 5_000,
     Hop.STEP: 9_000,
-    Hop.FEEL: 2_000,
+    Hop.FORCE_FEEDBACK: 2_000,
     Hop.RECORD: 4_000,
     Hop.TORQUE: 50_000,
     Hop.PUBLISH: 1_000,
@@ -121,7 +121,9 @@ def driven(
     console = console._replace(
         decide=late(console.decide, Hop.DECIDE),
         step=late(console.step, Hop.STEP),
-        feel=late(lambda previous, row, settings, tick_s: row[TORQUE_AT:PLATFORM_AT].fill(0.0), Hop.FEEL),
+        force_feedback=late(
+            lambda previous, row, settings, tick_s: row[TORQUE_AT:PLATFORM_AT].fill(0.0), Hop.FORCE_FEEDBACK
+        ),
     )
     ledger = Ledger(clock.read, console.tick_hz, every)
     readers = (Named(clock, Hop.TORQUE), Named(clock, Hop.PUBLISH), Reader(clock, Hop.OTHERS))

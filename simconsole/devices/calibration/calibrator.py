@@ -6,8 +6,7 @@ seen at rest (else unknown), and only then scaled.
 
 from typing import NamedTuple
 
-from simconsole.devices.calibration.calibration_settings import settings
-from simconsole.devices.calibration.cockpit_settings import NOBODY, CockpitSettings
+from simconsole.devices.calibration.cockpit_settings import CockpitSettings
 from simconsole.devices.calibration.lever import (
     HANDBRAKE,
     TWO_GEARS,
@@ -19,9 +18,7 @@ from simconsole.devices.calibration.lever import (
 )
 from simconsole.devices.calibration.validity import LOST, axis_good, heard, mask_good, next_validity, trusted
 from simconsole.values.kernels import clip, is_finite, kernel
-from simconsole.values.signals import NO_SAMPLE, DeviceSample, DriverInput
-
-__all__ = ["NOBODY", "NO_SAMPLE", "CockpitSettings", "calibrate", "settings"]
+from simconsole.values.signals import DeviceSample, DriverInput
 
 
 class Axis(NamedTuple):

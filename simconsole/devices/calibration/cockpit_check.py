@@ -2,9 +2,8 @@
 
 from typing import Any, Final
 
-from simconsole.devices.calibration.calibration_settings import settings
 from simconsole.devices.calibration.calibrator import calibrate, travel
-from simconsole.devices.calibration.cockpit_settings import NOBODY, CockpitSettings
+from simconsole.devices.calibration.cockpit_settings import NOBODY, CockpitSettings, cockpit_settings
 from simconsole.devices.calibration.validity import LOST, STALE, trusted
 from simconsole.profiles.device import CockpitProfile, PedalAxis
 from simconsole.values.signals import NO_SAMPLE, Button, DeviceSample, DriverInput
@@ -18,12 +17,12 @@ STRAIGHT_DEG: Final = 30.0
 """A car that starts with its wheel turned further than this drives off to the side."""
 
 
-class Watch:
+class CockpitCheck:
     """Collects what the samples of some seconds show."""
 
     def __init__(self, profile: CockpitProfile, tick_hz: int) -> None:
         self._profile = profile
-        self._settings: CockpitSettings = settings(profile, tick_hz)
+        self._settings: CockpitSettings = cockpit_settings(profile, tick_hz)
         self._tick_s = 1.0 / tick_hz
         self._before = NO_SAMPLE
         self.driver: DriverInput = NOBODY
@@ -34,7 +33,7 @@ class Watch:
         self._buttons: set[str] = set()
         self._raw_buttons = {"wheel": 0, "shifter": 0}
 
-    def see(self, sample: DeviceSample) -> DriverInput:
+    def add(self, sample: DeviceSample) -> DriverInput:
         """Take one sample; return it calibrated."""
         self.driver = calibrate(sample, self._before, self.driver, 0.0, self._settings, self._tick_s)
         self._before = sample

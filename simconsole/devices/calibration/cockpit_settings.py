@@ -1,12 +1,26 @@
-"""A device profile as plain numbers for the kernels, and the values before anything was read."""
+"""A cockpit profile as plain numbers for the kernels, and the values before anything was read. Pure."""
 
+import math
 from typing import Final, NamedTuple
 
+from simconsole.profiles.device import ButtonBinding, Buttons, CockpitProfile, PedalAxis
 from simconsole.values.signals import DriverInput
+from simconsole.values.units import RAD_PER_DEG
+
+SHIFTER_SHIFT: Final = 24
+"""In a role's mask the shifter's buttons lie above the wheel's: `wheel | shifter << 24`."""
+HAT_SHIFT: Final = 48
+"""Above both lie the four directions of the wheel's hat: left 1, right 2, up 4, down 8."""
+HAT_LEFT: Final = 1
+HAT_RIGHT: Final = 2
+HAT_UP: Final = 4
+HAT_DOWN: Final = 8
+GEARS: Final = 7
+HATS: Final = {"left": HAT_LEFT, "right": HAT_RIGHT, "up": HAT_UP, "down": HAT_DOWN}
 
 
 class CockpitSettings(NamedTuple):
-    """A device profile as plain numbers; `settings.py` makes it. Masks: `wheel | shifter << 24 | hat << 48`."""
+    """A device profile as plain numbers. Masks: `wheel | shifter << 24 | hat << 48`."""
 
     wheel_centre_raw: float
     wheel_dead_raw: float
@@ -63,3 +77,48 @@ class CockpitSettings(NamedTuple):
 
 NOBODY: Final = DriverInput(*(0.0,) * len(DriverInput._fields))
 """The person before the first tick: nothing seen (`Validity.UNKNOWN` is 0), nothing pressed."""
+
+
+def cockpit_settings(profile: CockpitProfile, tick_hz: int) -> CockpitSettings:
+    """Return the profile as plain numbers; limits in time become whole ticks, never longer than stated."""
+    pedals, shifter, wheel = profile.pedals, profile.shifter, profile.wheel
+    sign = -1.0 if wheel.grows_to == "right" else 1.0
+    gears = [_mask(shifter.on, button) for button in shifter.gears]
+    gears += [0.0] * (GEARS - len(gears))
+    sequential = shifter.pattern == "sequential"
+    return CockpitSettings(
+        wheel.centre_raw,
+        wheel.dead_zone,
+        wheel.curve,
+        sign * 0.5 * wheel.lock_to_lock_deg * RAD_PER_DEG,
+        wheel.rate_filter_s,
+        profile.limits.rearm_deg * RAD_PER_DEG,
+        *_ends(pedals.throttle),
+        *_ends(pedals.brake),
+        *_ends(pedals.clutch),
+        *_ends(pedals.handbrake),
+        profile.limits.arming,
+        math.floor(profile.limits.stale_s * tick_hz + 1e-9) * 1.0,
+        round(shifter.neutral_dwell_s * tick_hz) * 1.0,
+        1.0 if sequential else 0.0,
+        float(shifter.top_gear if sequential else len(shifter.gears)),
+        0.0 if shifter.reverse is None else _mask(shifter.on, shifter.reverse),
+        *gears,
+        *(_role_mask(getattr(profile.buttons, name)) for name in Buttons.__struct_fields__),
+    )
+
+
+def _ends(pedal: PedalAxis | None) -> tuple[float, float, float, float]:
+    return (0.0, 0.0, 0.0, 1.0) if pedal is None else (pedal.rest_raw, pedal.full_raw, pedal.dead_zone, pedal.curve)
+
+
+def _role_mask(binding: ButtonBinding | None) -> float:
+    if binding is None:
+        return 0.0
+    if binding.button is not None:
+        return _mask(binding.on, binding.button)
+    return float(HATS[str(binding.hat)] << HAT_SHIFT)
+
+
+def _mask(on: str, button: int) -> float:
+    return float(1 << (button + (SHIFTER_SHIFT if on == "shifter" else 0)))

@@ -24,7 +24,7 @@ def needle(share: float, width: int = WIDTH) -> str:
     return f"[{''.join(cells)}]"
 
 
-def lines(driver: DriverInput, lock_rad: float) -> list[str]:
+def cockpit_lines(driver: DriverInput, lock_rad: float) -> list[str]:
     """Return the cockpit, always as many lines.
 
     Args:

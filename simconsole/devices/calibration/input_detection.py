@@ -33,7 +33,7 @@ class Reading(NamedTuple):
     buttons: int  # mask, from bit `BUTTONS` on that of the hat
 
 
-class Held(NamedTuple):
+class SteadyReading(NamedTuple):
     """One device, held still for a moment."""
 
     mean: tuple[float, ...]
@@ -56,10 +56,10 @@ class ButtonAt(NamedTuple):
     button: int
 
 
-Moment = dict[DeviceKey, Held]
+SteadyReadings = dict[DeviceKey, SteadyReading]
 
 
-def hold(readings: Sequence[dict[DeviceKey, Reading]]) -> Moment:
+def steady_readings(readings: Sequence[dict[DeviceKey, Reading]]) -> SteadyReadings:
     """Return what was held over some readings; a device that is missing in one of them is left out.
 
     Raises:
@@ -74,7 +74,7 @@ def hold(readings: Sequence[dict[DeviceKey, Reading]]) -> Moment:
         mask = ~0
         for reading in readings:
             mask &= reading[key].buttons
-        found[key] = Held(
+        found[key] = SteadyReading(
             tuple(sum(column) / len(column) for column in columns),
             tuple(max(column) - min(column) for column in columns),
             mask,
@@ -82,7 +82,7 @@ def hold(readings: Sequence[dict[DeviceKey, Reading]]) -> Moment:
     return found
 
 
-def moved_axis(rest: Moment, now: Moment, taken: Sequence[tuple[DeviceKey, int]] = ()) -> AxisAt:
+def moved_axis(rest: SteadyReadings, now: SteadyReadings, taken: Sequence[tuple[DeviceKey, int]] = ()) -> AxisAt:
     """Return the one axis that is held away from its rest.
 
     Args:
@@ -107,7 +107,7 @@ def moved_axis(rest: Moment, now: Moment, taken: Sequence[tuple[DeviceKey, int]]
 
 
 def pressed_button(
-    rest: Moment, now: Moment, taken: Sequence[ButtonAt] = (), buttons: int = BUTTONS + len(HATS)
+    rest: SteadyReadings, now: SteadyReadings, taken: Sequence[ButtonAt] = (), buttons: int = BUTTONS + len(HATS)
 ) -> ButtonAt:
     """Return the one of the first `buttons` that is held and was not at rest.
 
@@ -129,7 +129,7 @@ def pressed_button(
     return found[0]
 
 
-def learnt_pedal(rest: Moment, pressed: AxisAt) -> PedalAxis:
+def pedal_axis_of(rest: SteadyReadings, pressed: AxisAt) -> PedalAxis:
     """Return a pedal from its rest and from where it was held fully pressed.
 
     The dead zone covers twice the noise at rest; the last percent of the travel is left out.
@@ -148,7 +148,7 @@ def learnt_pedal(rest: Moment, pressed: AxisAt) -> PedalAxis:
     )
 
 
-def learnt_wheel(left: AxisAt, right: AxisAt, centre: Moment, lock_to_lock_deg: float) -> WheelAxis:
+def wheel_axis_of(left: AxisAt, right: AxisAt, centre: SteadyReadings, lock_to_lock_deg: float) -> WheelAxis:
     """Return the wheel from both locks and the middle.
 
     Args:

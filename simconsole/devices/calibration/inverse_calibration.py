@@ -3,8 +3,15 @@
 from typing import Final, NamedTuple
 
 from simconsole.devices.calibration.calibrator import curved
-from simconsole.devices.calibration.cockpit_settings import CockpitSettings
-from simconsole.devices.calibration.lever import HAT_DOWN, HAT_LEFT, HAT_RIGHT, HAT_SHIFT, HAT_UP, SHIFTER_SHIFT
+from simconsole.devices.calibration.cockpit_settings import (
+    HAT_DOWN,
+    HAT_LEFT,
+    HAT_RIGHT,
+    HAT_SHIFT,
+    HAT_UP,
+    SHIFTER_SHIFT,
+    CockpitSettings,
+)
 from simconsole.values.signals import DeviceSample
 
 WHEEL_MASK: Final = (1 << SHIFTER_SHIFT) - 1
@@ -51,7 +58,7 @@ def button_masks(gear: float, pressed: int, settings: CockpitSettings) -> tuple[
     return mask & WHEEL_MASK, mask >> SHIFTER_SHIFT & WHEEL_MASK, mask >> HAT_SHIFT
 
 
-def uncalibrate(intent: Intent, settings: CockpitSettings) -> DeviceSample:
+def raw_sample(intent: Intent, settings: CockpitSettings) -> DeviceSample:
     """Return the raw sample, of age 0, from which `calibrate` reads `intent` back."""
     wheel_buttons, shifter_buttons, hat = button_masks(intent.gear, intent.pressed, settings)
     s = settings

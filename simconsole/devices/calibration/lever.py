@@ -2,21 +2,21 @@
 
 from typing import Final
 
-from simconsole.devices.calibration.cockpit_settings import CockpitSettings
+from simconsole.devices.calibration.cockpit_settings import (
+    HAT_DOWN,
+    HAT_LEFT,
+    HAT_RIGHT,
+    HAT_SHIFT,
+    HAT_UP,
+    SHIFTER_SHIFT,
+    CockpitSettings,
+)
 from simconsole.values.kernels import kernel
 from simconsole.values.signals import Button
 
 SHIFT_UP: Final = int(Button.SHIFT_UP)
 SHIFT_DOWN: Final = int(Button.SHIFT_DOWN)
 HANDBRAKE: Final = int(Button.HANDBRAKE_BUTTON)
-SHIFTER_SHIFT: Final = 24
-"""In a role's mask the shifter's buttons lie above the wheel's: `wheel | shifter << 24`."""
-HAT_SHIFT: Final = 48
-"""Above both lie the four directions of the wheel's hat: left 1, right 2, up 4, down 8."""
-HAT_LEFT: Final = 1
-HAT_RIGHT: Final = 2
-HAT_UP: Final = 4
-HAT_DOWN: Final = 8
 TWO_GEARS: Final = 99.0
 """What `shown_gear` answers when the lever shows two gears at once: a fault, the last gear is kept."""
 

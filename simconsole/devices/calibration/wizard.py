@@ -14,11 +14,11 @@ from simconsole.devices.calibration.input_detection import (
     AxisAt,
     ButtonAt,
     DeviceKey,
-    Moment,
-    learnt_pedal,
-    learnt_wheel,
+    SteadyReadings,
     moved_axis,
+    pedal_axis_of,
     pressed_button,
+    wheel_axis_of,
 )
 from simconsole.profiles.device import (
     ButtonBinding,
@@ -35,7 +35,7 @@ from simconsole.values.errors import DeviceError
 
 Ask = Callable[[str, str], str]
 """Puts a question about a step (`throttle`, `gear 3`, ...) and returns what was typed: nothing means go on."""
-Look = Callable[[], Moment]
+Look = Callable[[], SteadyReadings]
 Say = Callable[[str], None]
 Learnt = TypeVar("Learnt")
 
@@ -120,7 +120,7 @@ class Wizard:
             right = self._moved("right", "Turn the wheel fully to the RIGHT and hold it.")
             self._question("centre", "Turn the wheel straight ahead and hold it.")
             centre = self._look()
-            return left.device, learnt_wheel(left, right, centre, self._degrees())
+            return left.device, wheel_axis_of(left, right, centre, self._degrees())
 
         key, wheel = self._tried(learn)
         self._axes.append((key, wheel.axis))
@@ -148,7 +148,7 @@ class Wizard:
                 at = self._moved(name, f"Press the {name.upper()} fully and hold it{skip}.", name not in NEEDED)
                 if name != "handbrake" and at.device != keys.get("throttle", at.device):
                     raise DeviceError(f"{name}: value on another device: all pedals on one device")
-                return at, learnt_pedal(self._rest, at)
+                return at, pedal_axis_of(self._rest, at)
 
             try:
                 at, found[name] = self._tried(learn)

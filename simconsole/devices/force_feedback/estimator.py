@@ -18,7 +18,7 @@ HANDS_S: Final = 0.12
 HANDS_OFF_SHARE: Final = 0.6
 
 
-class Felt(NamedTuple):
+class WheelEstimate(NamedTuple):
     """The wheel as estimated after this tick."""
 
     rad: float
@@ -29,13 +29,15 @@ class Felt(NamedTuple):
 
 
 @kernel
-def at_rest(hand_wheel_rad: float) -> Felt:
+def at_rest(hand_wheel_rad: float) -> WheelEstimate:
     """Return the estimate to start with, where nothing is known but the angle."""
-    return Felt(hand_wheel_rad, 0.0, 0.0, 0.0, 0.0)
+    return WheelEstimate(hand_wheel_rad, 0.0, 0.0, 0.0, 0.0)
 
 
 @kernel
-def observe(before: Felt, hand_wheel_rad: float, motor_nm: float, force: ForceSettings, tick_s: float) -> Felt:
+def observe(
+    before: WheelEstimate, hand_wheel_rad: float, motor_nm: float, force: ForceSettings, tick_s: float
+) -> WheelEstimate:
     """Return the estimate after a tick.
 
     Args:
@@ -62,7 +64,7 @@ def observe(before: Felt, hand_wheel_rad: float, motor_nm: float, force: ForceSe
     )
     hands_nm = before.hands_nm + (abs(human_nm) - before.hands_nm) * (tick_s / (tick_s + HANDS_S))
     limit_nm = force.hands_on_nm * HANDS_OFF_SHARE if before.hands_on > 0.0 else force.hands_on_nm
-    return Felt(
+    return WheelEstimate(
         rim.rad + force.observer_angle * miss_rad,
         rim.radps + force.observer_rate_per_s * miss_rad,
         human_nm,

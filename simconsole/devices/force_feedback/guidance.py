@@ -16,7 +16,7 @@ from simconsole.values.signals import Mode
 _SHARED: Final = float(Mode.SHARED)
 
 
-class Wanted(NamedTuple):
+class GuidanceReference(NamedTuple):
     """What the controller asks of the hand wheel."""
 
     rad: float
@@ -24,7 +24,9 @@ class Wanted(NamedTuple):
 
 
 @kernel
-def wanted(road_wheel_rad: float, slow_before_rad: float, mode: float, force: ForceSettings, tick_s: float) -> Wanted:
+def guidance_reference(
+    road_wheel_rad: float, slow_before_rad: float, mode: float, force: ForceSettings, tick_s: float
+) -> GuidanceReference:
     """Return the controller's reference, its slow part through a first-order filter that begins at the reference.
 
     Args:
@@ -36,12 +38,12 @@ def wanted(road_wheel_rad: float, slow_before_rad: float, mode: float, force: Fo
     """
     rad = clip(road_wheel_rad * force.hand_wheel_per_road_wheel, -force.end_stop_rad, force.end_stop_rad)
     if mode != _SHARED:
-        return Wanted(rad, rad)
-    return Wanted(rad, slow_before_rad + (rad - slow_before_rad) * (tick_s / (tick_s + force.guide_slow_s)))
+        return GuidanceReference(rad, rad)
+    return GuidanceReference(rad, slow_before_rad + (rad - slow_before_rad) * (tick_s / (tick_s + force.guide_slow_s)))
 
 
 @kernel
-def guidance(now: Wanted, rim: Rim, rolling: float, share: float, force: ForceSettings) -> float:
+def guidance(now: GuidanceReference, rim: Rim, rolling: float, share: float, force: ForceSettings) -> float:
     """Return the guidance in N m, left-positive, bounded so that a person's hands always win.
 
     share * (LoHS k slow + SoHF k (ref - slow) + LoHA (ref - angle) - b rate), k the car's own stiffness.

@@ -7,9 +7,9 @@ which nobody is driven, the loop has stood still, or any part is not a number.
 from typing import Final, NamedTuple
 
 from simconsole.devices.calibration.validity import trusted
-from simconsole.devices.force_feedback.estimator import Felt, at_rest, observe
+from simconsole.devices.force_feedback.estimator import WheelEstimate, at_rest, observe
 from simconsole.devices.force_feedback.force_settings import ForceSettings
-from simconsole.devices.force_feedback.guidance import Wanted, guidance, wanted
+from simconsole.devices.force_feedback.guidance import GuidanceReference, guidance, guidance_reference
 from simconsole.devices.force_feedback.rim import Rim, turn
 from simconsole.values.kernels import approach, clip, is_finite, kernel
 from simconsole.values.signals import (
@@ -46,24 +46,24 @@ SHORT_WAVE_RADPM: Final = 9.97
 """Two waves of rough road, 1.7 m and 0.63 m long: 6 to 32 Hz between 36 and 72 km/h, incommensurable."""
 
 
-class Parts(NamedTuple):
+class TorqueParts(NamedTuple):
     """What the torque is made of."""
 
     car_nm: float
     servo_nm: float
     guide_nm: float
-    feel_nm: float  # damping, friction, end stop, road
+    effects_nm: float  # damping, friction, end stop, road
 
 
-class Aim(NamedTuple):
+class WheelTarget(NamedTuple):
     """Where the wheel is to be."""
 
     known: bool  # all that it and the torque are made of is finite
     rim: Rim  # where the road wheels are: the servo goes there
-    asked: Wanted  # where the controller would have the person's hands
+    asked: GuidanceReference  # where the controller would have the person's hands
 
 
-class Alone(NamedTuple):
+class UnattendedWheel(NamedTuple):
     """The wheel as the motor alone would have it."""
 
     rad: float
@@ -114,9 +114,15 @@ def road(vehicle: VehicleState, rolling: float, force: ForceSettings) -> float:
 
 
 @kernel
-def compose(
-    follows: bool, target: Rim, rim: Rim, vehicle: VehicleState, asked: Wanted, share: float, force: ForceSettings
-) -> Parts:
+def torque_parts(
+    follows: bool,
+    target: Rim,
+    rim: Rim,
+    vehicle: VehicleState,
+    asked: GuidanceReference,
+    share: float,
+    force: ForceSettings,
+) -> TorqueParts:
     """Return the parts of the torque, unlimited.
 
     Args:
@@ -132,12 +138,12 @@ def compose(
     rolling = speed / (speed + force.fade_mps)
     texture = road(vehicle, rolling, force)
     if follows:
-        return Parts(0.0, servo(target, rim, force), 0.0, texture)
+        return TorqueParts(0.0, servo(target, rim, force), 0.0, texture)
     friction = force.friction_nm + (1.0 - rolling) * force.standstill_friction_nm
     drag = -force.damping_nms * rim.radps - friction * rim.radps / (abs(rim.radps) + FRICTION_RADPS)
     car = force.car_share * rolling * vehicle.hand_wheel_torque_nm
     guide = guidance(asked, rim, rolling, share, force)
-    return Parts(car, 0.0, guide, drag + end_stop(rim, force) + texture)
+    return TorqueParts(car, 0.0, guide, drag + end_stop(rim, force) + texture)
 
 
 @kernel
@@ -149,11 +155,11 @@ def estimate(
     memory: WheelMemory,
     force: ForceSettings,
     tick_s: float,
-) -> Felt:
+) -> WheelEstimate:
     """Return the wheel's motion and the person's torque; a wheel whose motor comes back starts at rest, hands off."""
     if not live or memory.live <= 0.0:
         return at_rest(driver.hand_wheel_rad)
-    known = Felt(memory.wheel_rad, memory.wheel_radps, before.human_nm, memory.hands_nm, before.hands_on)
+    known = WheelEstimate(memory.wheel_rad, memory.wheel_radps, before.human_nm, memory.hands_nm, before.hands_on)
     return observe(known, driver.hand_wheel_rad, motor_nm, force, tick_s)
 
 
@@ -164,36 +170,38 @@ def centring(arbitration: Arbitration) -> bool:
 
 
 @kernel
-def aim(
+def wheel_target(
     arbitration: Arbitration,
     vehicle: VehicleState,
-    felt: Felt,
+    estimated: WheelEstimate,
     memory: WheelMemory,
     force: ForceSettings,
     tick_s: float,
-) -> Aim:
+) -> WheelTarget:
     """Return where the wheel is to be; where something is not a number, it is to stay, and this is not known."""
     lock = force.end_stop_rad
     wanted_rad = vehicle.road_wheel_rad * force.hand_wheel_per_road_wheel
     known = is_finite(wanted_rad) and is_finite(vehicle.hand_wheel_torque_nm) and is_finite(vehicle.vx_mps)
-    known = known and is_finite(vehicle.distance_m) and is_finite(felt.rad) and is_finite(felt.radps)
+    known = known and is_finite(vehicle.distance_m) and is_finite(estimated.rad) and is_finite(estimated.radps)
     known = known and is_finite(arbitration.remote_road_wheel_rad)
     if not known:
-        return Aim(False, Rim(memory.target_rad, 0.0), Wanted(0.0, 0.0))
-    asked = wanted(arbitration.remote_road_wheel_rad, memory.guide_rad, arbitration.mode, force, tick_s)
+        return WheelTarget(False, Rim(memory.target_rad, 0.0), GuidanceReference(0.0, 0.0))
+    asked = guidance_reference(arbitration.remote_road_wheel_rad, memory.guide_rad, arbitration.mode, force, tick_s)
     if centring(arbitration):
-        start = clip(memory.target_rad, felt.rad - CENTRING_LEAD_RAD, felt.rad + CENTRING_LEAD_RAD)
+        start = clip(memory.target_rad, estimated.rad - CENTRING_LEAD_RAD, estimated.rad + CENTRING_LEAD_RAD)
         centred = approach(start, 0.0, CENTRING_RADPS * tick_s)
-        return Aim(True, Rim(centred, (centred - start) / tick_s), asked)
+        return WheelTarget(True, Rim(centred, (centred - start) / tick_s), asked)
     target_rad = clip(wanted_rad, -lock, lock)
     radps = (target_rad - memory.target_rad) / tick_s if memory.live > 0.0 else 0.0
-    return Aim(True, Rim(target_rad, radps), asked)
+    return WheelTarget(True, Rim(target_rad, radps), asked)
 
 
 @kernel
-def limited(parts: Parts, ramp: float, felt: Felt, before: WheelTorque, force: ForceSettings) -> WheelTorque:
+def limited_torque(
+    parts: TorqueParts, ramp: float, estimated: WheelEstimate, before: WheelTorque, force: ForceSettings
+) -> WheelTorque:
     """Return the torque that the motor is asked for: within its limit, coming in slowly and never in steps."""
-    raw_nm = parts.car_nm + parts.servo_nm + parts.guide_nm + parts.feel_nm
+    raw_nm = parts.car_nm + parts.servo_nm + parts.guide_nm + parts.effects_nm
     wished_nm = ramp * soft_clip(raw_nm, force)
     return WheelTorque(
         approach(before.torque_nm, wished_nm, force.slew_nm),
@@ -203,15 +211,15 @@ def limited(parts: Parts, ramp: float, felt: Felt, before: WheelTorque, force: F
         ramp,
         1.0 if abs(raw_nm) > force.max_torque_nm else 0.0,
         1.0,
-        felt.human_nm,
-        felt.hands_on,
+        estimated.human_nm,
+        estimated.hands_on,
     )
 
 
 @kernel
-def motion_alone(
+def unattended_motion(
     driver: DriverInput,
-    felt: Felt,
+    estimated: WheelEstimate,
     target: Rim,
     share: float,
     watching: bool,
@@ -220,7 +228,7 @@ def motion_alone(
     force: ForceSettings,
     rate_filter_s: float,
     tick_s: float,
-) -> Alone:
+) -> UnattendedWheel:
     """Return where the motor alone would have the wheel: the rim under a servo of its own, with nobody at it.
 
     Hands that only rest on the rim drag and add inertia: while they do no more than that against the servo, the model
@@ -228,7 +236,7 @@ def motion_alone(
 
     Args:
         driver: Angle and rate read now.
-        felt: Rate and the person's torque, estimated.
+        estimated: Rate and the person's torque, estimated.
         target: Where the servo goes.
         share: How far the servo is in force, 0 (let go) to 1.
         watching: Whether it matters; if not, the model follows the wheel and explains nothing.
@@ -239,20 +247,20 @@ def motion_alone(
         tick_s: Length of a tick.
     """
     if not watching:
-        return Alone(driver.hand_wheel_rad, felt.radps, 0.0, 0.0, 0.0)
+        return UnattendedWheel(driver.hand_wheel_rad, estimated.radps, 0.0, 0.0, 0.0)
     if not live:
-        return Alone(driver.hand_wheel_rad, 0.0, 0.0, before.explained_rad, 0.0)
+        return UnattendedWheel(driver.hand_wheel_rad, 0.0, 0.0, before.explained_rad, 0.0)
     start = Rim(before.model_rad, before.model_radps) if before.live > 0.0 else Rim(driver.hand_wheel_rad, 0.0)
     asked_nm = share * soft_clip(servo(target, start, force), force)
     motor_nm = before.model_nm + force.motor_lag_share * (asked_nm - before.model_nm)
     rim = turn(start, motor_nm, force.inertia_kgm2, force.motor_damping_nms, force.motor_friction_nm, tick_s)
     smooth = tick_s / (tick_s + rate_filter_s)
     explained_radps = before.explained_radps + smooth * (rim.radps - before.explained_radps)
-    if abs(felt.human_nm) < share * force.resting_hands_nm:
+    if abs(estimated.human_nm) < share * force.resting_hands_nm:
         go = tick_s / (tick_s + RESTING_S)
-        rim = Rim(rim.rad + go * (felt.rad - rim.rad), rim.radps + go * (felt.radps - rim.radps))
+        rim = Rim(rim.rad + go * (estimated.rad - rim.rad), rim.radps + go * (estimated.radps - rim.radps))
         explained_radps = driver.hand_wheel_radps
-    return Alone(rim.rad, rim.radps, motor_nm, before.explained_rad + (rim.rad - start.rad), explained_radps)
+    return UnattendedWheel(rim.rad, rim.radps, motor_nm, before.explained_rad + (rim.rad - start.rad), explained_radps)
 
 
 @kernel
@@ -287,31 +295,33 @@ def wheel_torque(
     mode = arbitration.mode
     live = wheel_motor > 0.0 and trusted(driver.wheel_validity)
     motor_nm = memory.motor_nm + force.motor_lag_share * (before.torque_nm - memory.motor_nm)
-    felt = estimate(driver, live, motor_nm, before, memory, force, tick_s)
-    rim = Rim(felt.rad, felt.radps)
+    estimated = estimate(driver, live, motor_nm, before, memory, force, tick_s)
+    rim = Rim(estimated.rad, estimated.radps)
     follows = mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED) or centring(arbitration)
-    target = aim(arbitration, vehicle, felt, memory, force, tick_s)
+    target = wheel_target(arbitration, vehicle, estimated, memory, force, tick_s)
     driven = follows or mode in (_MANUAL, _SHARED)
     enabled = live and target.known and driven and int(events) & _STANDING == 0
     ramp = approach(before.ramp, 1.0, force.ramp_per_tick) if enabled else 0.0
-    torque = WheelTorque(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, felt.human_nm, felt.hands_on)
+    torque = WheelTorque(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, estimated.human_nm, estimated.hands_on)
     if enabled:
         guided = arbitration.remote_guidance if mode == _SHARED else 0.0
-        parts = compose(follows, target.rim, rim, vehicle, target.asked, guided, force)
-        torque = limited(parts, ramp, felt, before, force)
+        parts = torque_parts(follows, target.rim, rim, vehicle, target.asked, guided, force)
+        torque = limited_torque(parts, ramp, estimated, before, force)
     share = ramp if follows else 0.0
-    alone = motion_alone(driver, felt, target.rim, share, watching, live, memory, force, rate_filter_s, tick_s)
+    unattended = unattended_motion(
+        driver, estimated, target.rim, share, watching, live, memory, force, rate_filter_s, tick_s
+    )
     return torque, WheelMemory(
         1.0 if live else 0.0,
-        felt.rad,
-        felt.radps,
+        estimated.rad,
+        estimated.radps,
         motor_nm,
-        felt.hands_nm,
+        estimated.hands_nm,
         target.rim.rad,
-        alone.rad,
-        alone.radps,
-        alone.motor_nm,
-        alone.explained_rad,
-        alone.explained_radps,
+        unattended.rad,
+        unattended.radps,
+        unattended.motor_nm,
+        unattended.explained_rad,
+        unattended.explained_radps,
         target.asked.slow_rad,
     )

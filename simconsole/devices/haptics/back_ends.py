@@ -3,7 +3,7 @@
 import os
 
 from simconsole.devices.force_feedback.motor import HapticPort
-from simconsole.devices.haptics.driver_settings import Restoring, settings
+from simconsole.devices.haptics.driver_settings import RestoringPort, read_settings
 from simconsole.devices.haptics.evdev_haptics import open_evdev
 from simconsole.devices.haptics.sdl_haptics import open_haptics
 from simconsole.devices.sources.event_nodes import effect_slots, open_node, stop_effects
@@ -22,13 +22,13 @@ def open_motor(instance_id: int, identity: tuple[int, int], force: ForceFeedback
         identity: Its USB vendor and product id.
         force: The cockpit's; its `back_end` may name one.
     """
-    stop_what_was_left(identity)
-    before = settings(identity)
+    stop_leftover_effects(identity)
+    before = read_settings(identity)
     port = _opened(instance_id, identity, force)
-    return Restoring(port, before) if before and port.capability.constant else port
+    return RestoringPort(port, before) if before and port.capability.constant else port
 
 
-def stop_what_was_left(identity: tuple[int, int]) -> None:
+def stop_leftover_effects(identity: tuple[int, int]) -> None:
     """Stop every effect of a wheel; SDL's own StopAll knows only those of its process.
 
     Nothing where there is no access: the kernel takes away the effects of a process that ends, however it does.

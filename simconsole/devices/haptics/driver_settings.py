@@ -28,7 +28,7 @@ def driver_folder(identity: tuple[int, int]) -> Path | None:
     return None
 
 
-def settings(identity: tuple[int, int]) -> dict[Path, int]:
+def read_settings(identity: tuple[int, int]) -> dict[Path, int]:
     """Return the driver's settings by their files; empty where it has none that may be read."""
     folder = driver_folder(identity)
     if folder is None:
@@ -37,7 +37,7 @@ def settings(identity: tuple[int, int]) -> dict[Path, int]:
     return {path: value for path, value in values.items() if value is not None and 0 <= value <= _MOST}
 
 
-class Restoring:
+class RestoringPort:
     """A motor that leaves its driver's settings as they were."""
 
     def __init__(self, port: HapticPort, before: dict[Path, int]) -> None:

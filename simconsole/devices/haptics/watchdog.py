@@ -1,9 +1,9 @@
 """A small process beside the console that ends every force when the console no longer says that it lives.
 
-The console counts a beat in shared memory whenever it starts its effects again (every 50 ms; watched.py). A hundred
-milliseconds without one while force is on, or the end of the console, and the watchdog stops every effect of the wheel:
-only its owner may change an effect, but any process may stop it (`input_ff_event`, drivers/input/ff-core.c). Effects of
-200 ms are the second line, where there is no watchdog or it is late.
+The console counts a beat in shared memory whenever it starts its effects again (every 50 ms; watchdog_client.py). When
+100 ms pass without one while force is on, or when the console ends, the watchdog stops every effect of the wheel: only
+its owner may change an effect, but any process may stop it (`input_ff_event`, drivers/input/ff-core.c). Effects last
+200 ms at most, so that force also ends where there is no watchdog or it is late.
 
 Run as `python -m simconsole.devices.haptics.watchdog`, told what to watch by a line of JSON on standard input, whose
 end is the end of the console. Loads neither numpy nor anything else that is large.
@@ -31,7 +31,7 @@ BEATS, FORCE = 0, 1
 MEMORY_BYTES: Final = 16
 
 
-class Stall:
+class StallDetector:
     """When silence is a stall. Pure: time comes in."""
 
     def __init__(self) -> None:
@@ -50,7 +50,7 @@ class Stall:
         self._done = True
 
 
-class Brake:
+class EffectStopper:
     """The wheel's event device, opened as soon as it is there, so that nothing has to be found when it counts."""
 
     def __init__(self, identity: tuple[int, int]) -> None:
@@ -88,19 +88,19 @@ class Brake:
         self._descriptor = None
 
 
-def watch(memory: "memoryview[int]", brake: Brake, pipe: int) -> None:
+def watch(memory: "memoryview[int]", stopper: EffectStopper, pipe: int) -> None:
     """Watch until `pipe` ends; where force is on then, stop it."""
-    stall = Stall()
+    stall = StallDetector()
     while True:
         ended = bool(select.select([pipe], [], [], POLL_S)[0])
         now_s = time.monotonic()
-        brake.ready(now_s)
+        stopper.ready(now_s)
         beats, force = memory[BEATS], memory[FORCE] != 0
         if ended:
             if force:
-                brake.stop_all()
+                stopper.stop_all()
             return
-        if stall.look(beats, force, now_s) and brake.stop_all():
+        if stall.look(beats, force, now_s) and stopper.stop_all():
             stall.stopped()
 
 
@@ -115,7 +115,7 @@ def main() -> int:
     memory = mmap.mmap(descriptor, MEMORY_BYTES, access=mmap.ACCESS_READ)
     os.close(descriptor)
     Path(told["memory"]).unlink(missing_ok=True)  # both sides have it now: nothing is left behind, whoever is killed
-    watch(memoryview(memory).cast("q"), Brake((told["vendor_id"], told["product_id"])), sys.stdin.fileno())
+    watch(memoryview(memory).cast("q"), EffectStopper((told["vendor_id"], told["product_id"])), sys.stdin.fileno())
     return 0
 
 

@@ -69,7 +69,7 @@ class Watchdog:
         self._process = spawn(["-m", "simconsole.devices.haptics.watchdog"], told=json.dumps(told).encode() + b"\n")
 
 
-class WatchedPort:
+class WatchdogPort:
     """A motor whose every start is a beat. A `HapticPort`."""
 
     def __init__(self, port: HapticPort, watchdog: Watchdog) -> None:
@@ -110,6 +110,6 @@ def open_watchdog(identity: tuple[int, int], say: Callable[[str], None]) -> Watc
         return None
 
 
-def watched(port: HapticPort, watchdog: Watchdog | None) -> HapticPort:
+def with_watchdog(port: HapticPort, watchdog: Watchdog | None) -> HapticPort:
     """Return the motor with its watchdog; one without force, or without a watchdog, as it is."""
-    return port if watchdog is None or not port.capability.constant else WatchedPort(port, watchdog)
+    return port if watchdog is None or not port.capability.constant else WatchdogPort(port, watchdog)

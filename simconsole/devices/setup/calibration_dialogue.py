@@ -9,12 +9,12 @@ from typing import Any, Final
 import msgspec
 import yaml
 
-from simconsole.devices.calibration.calibration_settings import settings
-from simconsole.devices.calibration.input_detection import Moment, hold
-from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate
+from simconsole.devices.calibration.cockpit_settings import cockpit_settings
+from simconsole.devices.calibration.input_detection import SteadyReadings, steady_readings
+from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
 from simconsole.devices.calibration.wizard import Entry, Wizard
 from simconsole.devices.setup.device_commands import Pace, Say, answer, realtime
-from simconsole.devices.sources.raw_joysticks import RawDevices
+from simconsole.devices.sources.raw_joysticks import RawJoysticks
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.profiles.device import CockpitProfile
 from simconsole.values.errors import DeviceError
@@ -55,7 +55,7 @@ def calibrate_devices(
         if virtual is not None:
             hands = _Hands(virtual)
             stack.callback(hands.close)
-        devices = stack.enter_context(RawDevices())
+        devices = stack.enter_context(RawJoysticks())
         entries = {
             key: Entry(found.name, found.axes, found.buttons, found.hats) for key, found in devices.entries.items()
         }
@@ -68,13 +68,13 @@ def calibrate_devices(
                 hands.do(step)
             return answer(ask, f"{text} ")
 
-        def look() -> Moment:
+        def look() -> SteadyReadings:
             wait = pace(LOOK_HZ)
             readings = []
             for tick in range(1, round(LOOK_S * LOOK_HZ) + 1):
                 wait(tick)
                 readings.append(devices.read())
-            return hold(readings)
+            return steady_readings(readings)
 
         profile = Wizard(base, entries, ask=put, say=say, look=look).run(
             f"simconsole devices calibrate, {time.strftime('%Y-%m-%d')}"
@@ -103,12 +103,12 @@ class _Hands:
 
     def __init__(self, cockpit: CockpitProfile) -> None:
         self._cockpit = VirtualCockpit(cockpit)
-        self._settings = settings(cockpit, LOOK_HZ)
+        self._settings = cockpit_settings(cockpit, LOOK_HZ)
         self._lock_rad = 0.5 * cockpit.wheel.lock_to_lock_deg * RAD_PER_DEG
         self.close = self._cockpit.close
 
     def do(self, step: str) -> None:
-        self._cockpit.write(uncalibrate(self._intent(step), self._settings))
+        self._cockpit.write(raw_sample(self._intent(step), self._settings))
 
     def _intent(self, step: str) -> Intent:
         if step in ("left", "right"):

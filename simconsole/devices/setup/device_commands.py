@@ -6,12 +6,12 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any, Final, Self
 
-from simconsole.devices.calibration.calibration_settings import settings
-from simconsole.devices.calibration.cockpit_check import Watch
-from simconsole.devices.calibration.cockpit_text import lines
+from simconsole.devices.calibration.cockpit_check import CockpitCheck
+from simconsole.devices.calibration.cockpit_settings import cockpit_settings
+from simconsole.devices.calibration.cockpit_text import cockpit_lines
 from simconsole.devices.sources import kernel_limits, sdl_runtime
 from simconsole.devices.sources.kernel_limits import KernelLimits, wheel_limits
-from simconsole.devices.sources.sdl_source import SdlSource, found
+from simconsole.devices.sources.sdl_source import SdlSource, connected_joysticks
 from simconsole.devices.sources.trace_files import TraceWriter
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.devices.synthetic.script import ScriptSource
@@ -66,7 +66,7 @@ def list_devices(cockpit: CockpitProfile, *, say: Say, virtual: bool = False) ->
         stack.callback(sdl_runtime.release)
         pygame.event.get()
         devices = []
-        for entry, _ in found(pygame):
+        for entry, _ in connected_joysticks(pygame):
             ids = (entry.vendor_id, entry.product_id)
             roles = [
                 binding.role
@@ -108,7 +108,7 @@ def check_devices(
         DeviceError: a device is missing or cannot drive.
     """
     limits = KernelLimits() if virtual else wheel_limits(cockpit)
-    watch = Watch(cockpit, tick_hz)
+    check = CockpitCheck(cockpit, tick_hz)
     lock_rad = 0.5 * cockpit.wheel.lock_to_lock_deg * RAD_PER_DEG
     with _Cockpit(cockpit, virtual, tick_hz) as opened:
         say(f"{cockpit.title}: turn the wheel to both sides, press every pedal, move the lever ({duration_s:g} s)")
@@ -116,12 +116,12 @@ def check_devices(
         every = max(1, tick_hz // SHOW_HZ)
 
         def take(tick: int, sample: DeviceSample) -> None:
-            driver = watch.see(sample)
+            driver = check.add(sample)
             if show is not None and tick % every == 0:
-                show(lines(driver, lock_rad))
+                show(cockpit_lines(driver, lock_rad))
 
         opened.poll(ticks, pace or realtime(tick_hz), take)
-    results = watch.results()
+    results = check.results()
     if not virtual:
         results["problems"] += kernel_limits.problems(limits, cockpit)
         results["notes"] += kernel_limits.notes(limits)
@@ -179,7 +179,7 @@ class _Cockpit:
             if virtual:
                 self._plugged = VirtualCockpit(cockpit)
                 self._stack.callback(self._plugged.close)
-                self._hands = ScriptSource(exercise(cockpit), settings(cockpit, tick_hz), tick_hz=tick_hz)
+                self._hands = ScriptSource(exercise(cockpit), cockpit_settings(cockpit, tick_hz), tick_hz=tick_hz)
             self._source = SdlSource(cockpit)
             self._stack.callback(self._source.close)
             self._stack = self._stack.pop_all()

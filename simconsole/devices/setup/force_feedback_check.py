@@ -7,12 +7,12 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from simconsole.devices.calibration.calibration_settings import settings
-from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate
+from simconsole.devices.calibration.cockpit_settings import cockpit_settings
+from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
 from simconsole.devices.force_feedback.motor import HapticPort, SimulatedWheelPort, WheelMotor
 from simconsole.devices.force_feedback.simulated_wheel import HANDS_OFF, SimulatedWheel
 from simconsole.devices.haptics.back_ends import open_motor
-from simconsole.devices.haptics.watchdog_client import open_watchdog, watched
+from simconsole.devices.haptics.watchdog_client import open_watchdog, with_watchdog
 from simconsole.devices.setup.device_commands import Pace, Say, answer, realtime
 from simconsole.devices.sources.sdl_source import SdlSource
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
@@ -53,7 +53,7 @@ FORCES: Final = (
 )
 
 
-def feel_devices(
+def check_force_feedback(
     cockpit: CockpitProfile,
     *,
     say: Say,
@@ -136,7 +136,7 @@ class _Bench:
         self, cockpit: CockpitProfile, force: ForceFeedback, virtual: bool, tick_hz: int, say: Say, stack: ExitStack
     ) -> None:
         self._tick_hz = tick_hz
-        self._settings = settings(cockpit, tick_hz)
+        self._settings = cockpit_settings(cockpit, tick_hz)
         self._identity = next((at.vendor_id, at.product_id) for at in cockpit.roles if at.role == "wheel")
         self._plugged: VirtualCockpit | None = None
         self._wheel: SimulatedWheel | None = None
@@ -199,7 +199,7 @@ class _Bench:
         self._ticks += 1
         if self._wheel is not None and self._plugged is not None:
             self._wheel.turn(HANDS_OFF)
-            self._plugged.write(uncalibrate(Intent(hand_wheel_rad=self._wheel.state.rad), self._settings))
+            self._plugged.write(raw_sample(Intent(hand_wheel_rad=self._wheel.state.rad), self._settings))
         before, self._rad = self._rad, self._angle()
         self._radps += 0.2 * ((self._rad - before) * self._tick_hz - self._radps)
 
@@ -212,4 +212,4 @@ class _Bench:
             return SimulatedWheelPort(self._wheel)
         number = self._source.instance_id("wheel")
         assert number is not None  # the source refuses a cockpit without one
-        return watched(open_motor(number, self._identity, force), self._watchdog)
+        return with_watchdog(open_motor(number, self._identity, force), self._watchdog)

@@ -5,11 +5,11 @@ from typing import Self
 from simconsole.devices.calibration.input_detection import BUTTONS, DeviceKey, Reading
 from simconsole.devices.calibration.lever import hat_mask
 from simconsole.devices.sources import sdl_runtime
-from simconsole.devices.sources.sdl_source import Found, found
+from simconsole.devices.sources.sdl_source import JoystickInfo, connected_joysticks
 from simconsole.values.errors import DeviceError
 
 
-class RawDevices:
+class RawJoysticks:
     """All plugged-in joysticks, read together; a context manager."""
 
     def __init__(self) -> None:
@@ -21,8 +21,8 @@ class RawDevices:
         self._pygame = sdl_runtime.acquire()
         try:
             self._pygame.event.get()
-            pairs = found(self._pygame)
-            self.entries: dict[DeviceKey, Found] = {}
+            pairs = connected_joysticks(self._pygame)
+            self.entries: dict[DeviceKey, JoystickInfo] = {}
             for entry, _ in pairs:
                 key = (entry.vendor_id, entry.product_id)
                 if key in self.entries:

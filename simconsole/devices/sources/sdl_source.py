@@ -20,7 +20,7 @@ Brake and clutch are no sign: people start with a foot on either.
 """
 
 
-class Found(NamedTuple):
+class JoystickInfo(NamedTuple):
     """A joystick that is plugged in."""
 
     vendor_id: int
@@ -52,12 +52,12 @@ def identity(guid: str) -> tuple[int, int]:
     )
 
 
-def found(pygame: Any) -> list[tuple[Found, Any]]:
+def connected_joysticks(pygame: Any) -> list[tuple[JoystickInfo, Any]]:
     """Return every plugged-in joystick with its open pygame object."""
     joysticks = []
     for index in range(pygame.joystick.get_count()):
         joystick = pygame.joystick.Joystick(index)
-        entry = Found(
+        entry = JoystickInfo(
             *identity(joystick.get_guid()),
             joystick.get_name(),
             joystick.get_instance_id(),
@@ -176,7 +176,7 @@ class SdlSource:
         count = pygame.joystick.get_count()
         if count != self._count:  # also where someone else in this process has emptied the queue
             self._count, arrived = count, True
-            present = {entry.instance_id for entry, _ in found(pygame)}
+            present = {entry.instance_id for entry, _ in connected_joysticks(pygame)}
             self._bound = {k: bound for k, bound in self._bound.items() if bound.instance_id in present}
         for bound in self._bound.values():
             for instance_id, button in presses:
@@ -186,7 +186,7 @@ class SdlSource:
 
     def _bind(self) -> None:
         wanted = {(binding.vendor_id, binding.product_id): binding for binding in self._cockpit.roles}
-        for entry, joystick in found(self._pygame):
+        for entry, joystick in connected_joysticks(self._pygame):
             key = (entry.vendor_id, entry.product_id)
             if key in wanted and key not in self._bound and _fits(entry, wanted[key]):
                 self._bound[key] = _Bound(joystick)
@@ -195,7 +195,7 @@ class SdlSource:
                 self._bind_other(key, other)
 
     def _bind_other(self, key: tuple[int, int], other: OtherDevice) -> None:
-        for entry, joystick in found(self._pygame):
+        for entry, joystick in connected_joysticks(self._pygame):
             same = (entry.vendor_id, entry.product_id) == (other.vendor_id, other.product_id)
             if same and key not in self._bound and _fits(entry, other):
                 self._bound[key] = _Bound(joystick)
@@ -214,7 +214,7 @@ class SdlSource:
 
     def _missing(self, binding: RoleBinding) -> DeviceError:
         wanted = f"{binding.vendor_id:04x}:{binding.product_id:04x}"
-        present = [entry for entry, _ in found(self._pygame)]
+        present = [entry for entry, _ in connected_joysticks(self._pygame)]
         for mode in self._cockpit.boot_modes:
             if any((entry.vendor_id, entry.product_id) == (mode.vendor_id, mode.product_id) for entry in present):
                 boot = f"{mode.vendor_id:04x}:{mode.product_id:04x}"
@@ -241,7 +241,7 @@ class SdlSource:
             )
 
 
-def _fits(entry: Found, binding: RoleBinding | OtherDevice) -> bool:
+def _fits(entry: JoystickInfo, binding: RoleBinding | OtherDevice) -> bool:
     return entry.axes >= binding.axes and entry.buttons >= binding.buttons
 
 

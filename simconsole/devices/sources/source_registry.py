@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.synthetic.keyboard import KeyboardSource, Keys
 from simconsole.devices.synthetic.script import ScriptSource
 from simconsole.profiles.device import CockpitProfile, ScriptProfile
@@ -38,9 +38,9 @@ def open_source(driver: str, cockpit: CockpitProfile, *, tick_hz: int, keys: Key
     if kind == "script" and name:
         script = load("devices", name, ScriptProfile)
         origin = str(find("devices", name))
-        return ScriptSource(script, settings(cockpit, tick_hz), tick_hz=tick_hz, name=origin)
+        return ScriptSource(script, cockpit_settings(cockpit, tick_hz), tick_hz=tick_hz, name=origin)
     if kind == "keyboard" and not name:
         if keys is None:
             raise ProfileError("driver: value keyboard: a drive with a window, which owns the keyboard")
-        return KeyboardSource(keys, settings(cockpit, tick_hz), tick_hz=tick_hz)
+        return KeyboardSource(keys, cockpit_settings(cockpit, tick_hz), tick_hz=tick_hz)
     raise ProfileError(f"driver: value {driver!r}: {DRIVERS}")

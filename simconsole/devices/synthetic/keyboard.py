@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Final
 
 from simconsole.devices.calibration.cockpit_settings import CockpitSettings
-from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate
+from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
 from simconsole.values.key_codes import Key
 from simconsole.values.signals import Button, DeviceSample
 from simconsole.values.units import RAD_PER_DEG
@@ -66,7 +66,7 @@ class KeyboardSource:
         if age_ticks <= self._fresh_ticks:
             self._intent = self._moved(Key(mask))
         age = float(age_ticks)
-        return uncalibrate(self._intent, self._settings)._replace(
+        return raw_sample(self._intent, self._settings)._replace(
             wheel_age_ticks=age, pedals_age_ticks=age, shifter_age_ticks=age, handbrake_age_ticks=age
         )
 

@@ -3,7 +3,7 @@
 from typing import Final
 
 from simconsole.devices.calibration.cockpit_settings import CockpitSettings
-from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate
+from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
 from simconsole.profiles.device import ScriptProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.signals import Button, DeviceSample
@@ -14,7 +14,7 @@ PRESS_S: Final = 0.2
 CHANNELS: Final = ("throttle", "brake", "clutch", "handbrake", "hand_wheel_deg")
 
 
-class _Line:
+class _Channel:
     """One channel: straight from knot to knot, 0 before the first, held after the last. Time only goes forward."""
 
     def __init__(self, knots: list[tuple[float, float]]) -> None:
@@ -51,7 +51,7 @@ class ScriptSource:
         """
         self._settings = settings
         self._tick_hz = tick_hz
-        self._lines = {channel: _Line(_knots(script, channel)) for channel in CHANNELS}
+        self._lines = {channel: _Channel(_knots(script, channel)) for channel in CHANNELS}
         self._gears = [(point.time_s, float(point.gear)) for point in script.points if point.gear is not None]
         self._presses = [
             (point.time_s, point.time_s + PRESS_S, int(Button[press.upper()]))
@@ -71,7 +71,7 @@ class ScriptSource:
         for start_s, end_s, button in self._presses:
             if start_s <= time_s < end_s:
                 pressed |= button
-        return uncalibrate(
+        return raw_sample(
             Intent(
                 hand_wheel_rad=value["hand_wheel_deg"] * RAD_PER_DEG,
                 throttle=value["throttle"],

@@ -10,8 +10,8 @@ from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 from simconsole.bridge.client.bridge_client import BridgeClient
-from simconsole.drivers.path_tracker.tracker import Sighting, Steering, Tracker
-from simconsole.drivers.path_tracker.tracking_statistics import Tally
+from simconsole.drivers.path_tracker.tracker import Tracker, TrackerCommand, VehicleMotion
+from simconsole.drivers.path_tracker.tracking_statistics import TrackingStatistics
 from simconsole.profiles.files.loader import MAX_DATA_BYTES, load
 from simconsole.profiles.world import WorldProfile
 from simconsole.values.errors import BridgeError, OtherDriveError
@@ -60,7 +60,7 @@ def run(
         OtherDriveError: the server there belongs to another drive.
     """
     tracker = Tracker(Course(load("worlds", course_name, WorldProfile, max_bytes=MAX_DATA_BYTES)))
-    tally = Tally()
+    statistics = TrackingStatistics()
     with BridgeClient(url, token=token, certificate=certificate, drive=drive, until_good_bye=True) as client:
         odometry, arbitration, command = (
             (rename or {}).get(topic, namespace + topic) for topic in (ODOMETRY, ARBITRATION, COMMAND)
@@ -70,19 +70,19 @@ def run(
         client.subscribe(arbitration, "simconsole_msgs/Arbitration")
         client.connect(patience_s)
         try:
-            ended = _answer(client, tracker, tally, (odometry, command), stop or _never, patience_s)
+            ended = _answer(client, tracker, statistics, (odometry, command), stop or _never, patience_s)
         except OtherDriveError:
             raise
         except BridgeError as error:
             ended = str(error)
         results = {"url": url, "course": course_name, "ended": ended, "connections": client.connections}
-    return {**results, **tally.results()}
+    return {**results, **statistics.results()}
 
 
 def _answer(
     client: BridgeClient,
     tracker: Tracker,
-    tally: Tally,
+    statistics: TrackingStatistics,
     topics: tuple[str, str],
     stop: Callable[[], bool],
     patience_s: float,
@@ -111,27 +111,27 @@ def _answer(
         if topic != odometry_topic:
             engaged = message.mode in _DRIVING
             continue
-        seen = sighting(message)
+        seen = motion_of(message)
         if seen is None:
-            tally.skipped += 1
+            statistics.skipped += 1
             continue
         answer = tracker.step(seen, engaged)
-        fill(command, message.header.stamp, answer)
+        fill_command(command, message.header.stamp, answer)
         client.publish(command_topic, command)
-        tally.add(engaged, tracker.s_m or 0.0, tracker.lateral_m, seen.vx_mps)
+        statistics.add(engaged, tracker.s_m or 0.0, tracker.lateral_m, seen.vx_mps)
     return "stopped"
 
 
-def sighting(odometry: Any) -> Sighting | None:
+def motion_of(odometry: Any) -> VehicleMotion | None:
     """Return what a nav_msgs/Odometry says of base_link, None if a value is not finite."""
     pose, twist = odometry.pose.pose, odometry.twist.twist
     q = pose.orientation
     yaw = math.atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z))
-    seen = Sighting(pose.position.x, pose.position.y, yaw, twist.linear.x, twist.linear.y, twist.angular.z)
+    seen = VehicleMotion(pose.position.x, pose.position.y, yaw, twist.linear.x, twist.linear.y, twist.angular.z)
     return seen if all(map(math.isfinite, seen)) else None
 
 
-def fill(command: Any, stamp: Any, answer: Steering) -> None:
+def fill_command(command: Any, stamp: Any, answer: TrackerCommand) -> None:
     """Write an answer into an autoware_control_msgs/Control; all its stamps are the odometry's."""
     lateral, longitudinal = command.lateral, command.longitudinal
     command.stamp = lateral.stamp = longitudinal.stamp = stamp

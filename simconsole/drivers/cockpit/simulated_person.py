@@ -1,11 +1,11 @@
 """The simulated person in the seat: works virtual devices by what the last tick showed, never past the joystick."""
 
 from simconsole.devices.calibration.cockpit_settings import CockpitSettings
-from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate
+from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
 from simconsole.devices.force_feedback.simulated_wheel import RELAXED, STEERING, SimulatedWheel
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
-from simconsole.drivers.simulated_person.behaviour import Person
-from simconsole.drivers.simulated_person.launch import look
+from simconsole.drivers.simulated_person.behaviour import PersonBehaviour
+from simconsole.drivers.simulated_person.launch import view_of
 from simconsole.profiles.person import PersonPlan
 from simconsole.values.state_vector import Snapshot
 
@@ -32,7 +32,7 @@ class SimulatedPerson:
             wheel: The wheel between the hands and the axis, with its motor; None: the axis is where the hands are.
         """
         self._wheel = wheel
-        self.person = Person(plan, tick_hz)
+        self.person = PersonBehaviour(plan, tick_hz)
         self._cockpit = cockpit
         self._settings = settings
         self._written: tuple[Intent, int] | None = None
@@ -48,12 +48,12 @@ class SimulatedPerson:
         Raises:
             DeviceError: SDL refuses.
         """
-        intent = self.person.decide(look(snapshot))
+        intent = self.person.decide(view_of(snapshot))
         if self._wheel is not None:
             intent = intent._replace(hand_wheel_rad=self._turn(self._wheel, intent.hand_wheel_rad))
         now = (intent, self._cockpit.plugged)
         if now != self._written:
-            self._cockpit.write(uncalibrate(now[0], self._settings))
+            self._cockpit.write(raw_sample(now[0], self._settings))
             self._written = now
 
     def _turn(self, wheel: SimulatedWheel, hands_rad: float) -> float:

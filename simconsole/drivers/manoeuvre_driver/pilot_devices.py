@@ -1,13 +1,13 @@
 """The test driver in the seat: a pilot's hands and feet as the axes of the cockpit."""
 
 from simconsole.devices.calibration.cockpit_settings import CockpitSettings
-from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate
+from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
 from simconsole.drivers.manoeuvre_driver.run_up import Pilot
 from simconsole.values.signals import DeviceSample
 from simconsole.values.state_vector import Snapshot
 
 
-class PilotSeat:
+class PilotDevices:
     """Seat and cockpit in one (ports.py): `act` sees the last tick, `poll` gives the coming one its sample."""
 
     def __init__(self, pilot: Pilot, settings: CockpitSettings) -> None:
@@ -26,7 +26,7 @@ class PilotSeat:
 
     def poll(self, tick: int) -> DeviceSample:
         """Return what the axes read, age 0."""
-        return uncalibrate(self._intent, self._settings)
+        return raw_sample(self._intent, self._settings)
 
     def close(self) -> None:
         """Nothing to release."""

@@ -41,7 +41,7 @@ _BRAKE_MPS2: Final = -3.5
 _STEERING_RATE_RADPS: Final = 0.8
 
 
-class Sighting(NamedTuple):
+class VehicleMotion(NamedTuple):
     """What the tracker is told: pose and body velocities of base_link."""
 
     x_m: float
@@ -52,7 +52,7 @@ class Sighting(NamedTuple):
     yaw_rate_radps: float
 
 
-class Steering(NamedTuple):
+class TrackerCommand(NamedTuple):
     """What the tracker asks for."""
 
     road_wheel_rad: float
@@ -90,7 +90,7 @@ class Tracker:
         self._accel = 0.0
         self._line = ON_PATH
 
-    def step(self, seen: Sighting, engaged: bool = True) -> Steering:
+    def step(self, seen: VehicleMotion, engaged: bool = True) -> TrackerCommand:
         """Return the command for the coming period.
 
         While not `engaged` the command stays the one that would be right to begin with: the memory of steering and
@@ -115,9 +115,9 @@ class Tracker:
         period = self._timing.period_s
         change = (math.atan(self._command) - math.atan(before)) / period
         jerk, self._accel = (accel - self._accel) / period, accel
-        return Steering(math.atan(self._command), change, target, accel, jerk)
+        return TrackerCommand(math.atan(self._command), change, target, accel, jerk)
 
-    def _steer(self, seen: Sighting, s_m: float, lateral_m: float, heading_rad: float, speed: float) -> float:
+    def _steer(self, seen: VehicleMotion, s_m: float, lateral_m: float, heading_rad: float, speed: float) -> float:
         index, share = _between(speed)
         feedback = self._feedback[index] * (1.0 - share) + self._feedback[index + 1] * share
         preview = self._preview[index] * (1.0 - share) + self._preview[index + 1] * share
@@ -137,7 +137,7 @@ class Tracker:
         rest = self._timing.period_s - delay
         self._wheel = self._command + (self._wheel - self._command) * math.exp(-rest / lag)
 
-    def _follow(self, seen: Sighting, speed: float) -> None:
+    def _follow(self, seen: VehicleMotion, speed: float) -> None:
         """Take steering and acceleration from the car's motion: someone else drives it."""
         if speed > _SPEEDS_MPS[0]:
             needed = self._car.wheelbase_m + self._car.understeer_radps2pm * speed * speed

@@ -6,7 +6,7 @@ from typing import Any
 
 
 @dataclass
-class Tally:
+class TrackingStatistics:
     """Commands given and, while the autopilot had the car, how well it followed."""
 
     commands: int = 0

@@ -52,7 +52,7 @@ class Phase(Enum):
     DONE = auto()
 
 
-class _Target(NamedTuple):
+class _PedalTarget(NamedTuple):
     """Where feet should go; they get there at their own speed."""
 
     throttle: float
@@ -60,10 +60,10 @@ class _Target(NamedTuple):
     clutch: float
 
 
-NO_FEET: Final = _Target(0.0, 0.0, 0.0)
+PEDALS_RELEASED: Final = _PedalTarget(0.0, 0.0, 0.0)
 
 
-class Person:
+class PersonBehaviour:
     """One simulated person. `decide` once per tick; `finished` once they have stopped."""
 
     def __init__(self, plan: PersonPlan, tick_hz: int) -> None:
@@ -78,7 +78,7 @@ class Person:
         self._pressed_s = -PRESS_AGAIN_S
         self._has_driven_itself = False
         self._steady_rad = 0.0
-        self._feet: dict[Phase, Callable[[View], _Target]] = {
+        self._feet: dict[Phase, Callable[[View], _PedalTarget]] = {
             Phase.SIT: self._sit,
             Phase.CLUTCH_DOWN: self._clutch_down,
             Phase.BITE: self._bite,
@@ -130,22 +130,22 @@ class Person:
 
     # What the feet want, and when one phase ends and the next begins.
 
-    def _sit(self, view: View) -> _Target:
+    def _sit(self, view: View) -> _PedalTarget:
         if self._in_phase_s(view) >= self._plan.sit_s and view.mode == Mode.MANUAL:
             self._go(Phase.CLUTCH_DOWN, view)
-        return NO_FEET
+        return PEDALS_RELEASED
 
-    def _clutch_down(self, view: View) -> _Target:
+    def _clutch_down(self, view: View) -> _PedalTarget:
         if self._intent.clutch >= 1.0:
             self._lever(1.0)
             if view.engine_running and view.gear == 1.0:
                 self._go(Phase.BITE, view)
-        return _Target(0.0, 0.0, 1.0)
+        return _PedalTarget(0.0, 0.0, 1.0)
 
-    def _bite(self, view: View) -> _Target:
+    def _bite(self, view: View) -> _PedalTarget:
         if not view.engine_running:
             self._go(Phase.CLUTCH_DOWN, view)
-            return _Target(0.0, 0.0, 1.0)
+            return _PedalTarget(0.0, 0.0, 1.0)
         habits, foot = self._plan.habits, self._intent.clutch
         if view.speed_mps > ROLLING_MPS:
             foot = max(0.0, foot - habits.foot_per_s * self._tick_s)
@@ -153,26 +153,26 @@ class Person:
             foot = clutch_through_bite(foot, view, habits, self._tick_s)
         if foot == 0.0:
             self._go(Phase.DRIVE, view)
-        return _Target(launch_throttle(view, habits), 0.0, foot)
+        return _PedalTarget(launch_throttle(view, habits), 0.0, foot)
 
-    def _drive(self, view: View) -> _Target:
+    def _drive(self, view: View) -> _PedalTarget:
         if not view.engine_running or view.mode not in (Mode.MANUAL, Mode.AUTONOMOUS, Mode.SHARED):
             return self._give_up(view)
         plan = self._plan
         if self._may_stop(view):
             self._go(Phase.BRAKE, view)
-            return NO_FEET
+            return PEDALS_RELEASED
         if not self._has_driven_itself and _reached(plan.autonomy, view):
             if view.mode == Mode.AUTONOMOUS:
                 self._has_driven_itself = True
                 self._go(Phase.WATCH, view)
-                return NO_FEET
+                return PEDALS_RELEASED
             if view.time_s - self._pressed_s >= PRESS_AGAIN_S:
                 self._pressed_s = view.time_s
         if view.time_s - self._pressed_s >= ANSWER_S and self._wants_next_gear(view):
             self._next_gear = self._intent.gear + 1.0
             self._go(Phase.SHIFT_OPEN, view)
-        return _Target(self._cruise(view), 0.0, 0.0)
+        return _PedalTarget(self._cruise(view), 0.0, 0.0)
 
     def _wants_next_gear(self, view: View) -> bool:
         fast = view.engine_radps > self._plan.habits.shift_up_rpm * RADPS_PER_RPM
@@ -185,39 +185,39 @@ class Person:
         )
         return throttle
 
-    def _shift_open(self, view: View) -> _Target:
+    def _shift_open(self, view: View) -> _PedalTarget:
         if self._intent.clutch >= 1.0:
             self._lever(0.0)
             self._go(Phase.SHIFT_GATE, view)
-        return _Target(0.0, 0.0, 1.0)
+        return _PedalTarget(0.0, 0.0, 1.0)
 
-    def _shift_gate(self, view: View) -> _Target:
+    def _shift_gate(self, view: View) -> _PedalTarget:
         if self._in_phase_s(view) >= GATE_S:
             self._lever(self._next_gear)
             self._go(Phase.SHIFT_MESH, view)
-        return _Target(0.0, 0.0, 1.0)
+        return _PedalTarget(0.0, 0.0, 1.0)
 
-    def _shift_mesh(self, view: View) -> _Target:
+    def _shift_mesh(self, view: View) -> _PedalTarget:
         if view.gear == self._intent.gear or self._in_phase_s(view) > MESH_S:
             self._go(Phase.SHIFT_CLOSE, view)
-        return _Target(0.0, 0.0, 1.0)
+        return _PedalTarget(0.0, 0.0, 1.0)
 
-    def _shift_close(self, view: View) -> _Target:
+    def _shift_close(self, view: View) -> _PedalTarget:
         foot = max(0.0, self._intent.clutch - 0.5 * self._plan.habits.foot_per_s * self._tick_s)
         if foot == 0.0:
             self._go(Phase.DRIVE, view)
-        return _Target(self._cruise(view) if foot < 0.5 else 0.0, 0.0, foot)
+        return _PedalTarget(self._cruise(view) if foot < 0.5 else 0.0, 0.0, foot)
 
-    def _watch(self, view: View) -> _Target:
+    def _watch(self, view: View) -> _PedalTarget:
         if view.mode in (Mode.STOPPED, Mode.EMERGENCY_STOP, Mode.PARKED):
             self._go(Phase.STAND, view)
         elif view.mode != Mode.AUTONOMOUS or _reached(self._plan.take_back, view):
             self._line = Line(view.x_m, view.y_m, view.yaw_rad)
             self._steady_rad = self._intent.hand_wheel_rad
             self._go(Phase.TAKE_BACK, view)
-        return NO_FEET
+        return PEDALS_RELEASED
 
-    def _take_back(self, view: View) -> _Target:
+    def _take_back(self, view: View) -> _PedalTarget:
         if view.mode == Mode.MANUAL:
             self._line = Line(view.x_m, view.y_m, view.yaw_rad)
             if self._may_stop(view):
@@ -227,29 +227,29 @@ class Person:
                 self._go(Phase.SHIFT_OPEN, view)
         elif view.mode in (Mode.STOPPED, Mode.EMERGENCY_STOP, Mode.PARKED):
             self._go(Phase.STAND, view)
-        return NO_FEET
+        return PEDALS_RELEASED
 
-    def _brake(self, view: View) -> _Target:
+    def _brake(self, view: View) -> _PedalTarget:
         if abs(view.speed_mps) < STANDING_MPS:
             self._go(Phase.STAND, view)
         clutch = 1.0 if view.speed_mps < CLUTCH_BY_MPS or self._intent.clutch > 0.0 else 0.0
         if view.gear != self._intent.gear:
             clutch = 1.0  # the automatic has left another gear in: clutch first, then the lever counts again
-        return _Target(0.0, self._plan.habits.brake, clutch)
+        return _PedalTarget(0.0, self._plan.habits.brake, clutch)
 
-    def _stand(self, view: View) -> _Target:
+    def _stand(self, view: View) -> _PedalTarget:
         if self._intent.clutch >= 1.0:
             self._lever(0.0)
         if self._intent.gear == 0.0 and self._in_phase_s(view) >= STAND_S and abs(view.speed_mps) < STANDING_MPS:
             self._go(Phase.DONE, view)
-        return _Target(0.0, HOLD_BRAKE, 1.0)
+        return _PedalTarget(0.0, HOLD_BRAKE, 1.0)
 
-    def _done(self, view: View) -> _Target:
-        return _Target(0.0, HOLD_BRAKE, 0.0)
+    def _done(self, view: View) -> _PedalTarget:
+        return _PedalTarget(0.0, HOLD_BRAKE, 0.0)
 
-    def _give_up(self, view: View) -> _Target:
+    def _give_up(self, view: View) -> _PedalTarget:
         self._go(Phase.BRAKE, view)
-        return _Target(0.0, self._plan.habits.brake, 1.0)
+        return _PedalTarget(0.0, self._plan.habits.brake, 1.0)
 
     def _may_stop(self, view: View) -> bool:
         """After everything else in the plan; without a moment of its own, as soon as the person has taken back."""
@@ -275,7 +275,7 @@ class Person:
     def _lever(self, gear: float) -> None:
         self._intent = self._intent._replace(gear=gear)
 
-    def _move(self, feet: _Target, hand_wheel_rad: float, view: View) -> None:
+    def _move(self, feet: _PedalTarget, hand_wheel_rad: float, view: View) -> None:
         now, habits = self._intent, self._plan.habits
         foot = habits.foot_per_s * self._tick_s
         hand = habits.hand_degps * RAD_PER_DEG * self._tick_s

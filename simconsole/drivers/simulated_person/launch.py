@@ -46,7 +46,7 @@ class Line(NamedTuple):
     yaw_rad: float
 
 
-def look(snapshot: Snapshot) -> View:
+def view_of(snapshot: Snapshot) -> View:
     """Return what a snapshot shows."""
     vehicle = snapshot.vehicle
     return View(

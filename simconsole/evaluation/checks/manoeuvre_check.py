@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 from msgspec.structs import replace
 
-from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.synthetic.script import ScriptSource
-from simconsole.drivers.manoeuvre_driver.pilot_devices import PilotSeat
+from simconsole.drivers.manoeuvre_driver.pilot_devices import PilotDevices
 from simconsole.evaluation.checks.row_table import MemoryRecorder
 from simconsole.evaluation.manoeuvres.attempt import Attempt, Result
 from simconsole.evaluation.manoeuvres.library import drive_manoeuvre
@@ -78,7 +78,7 @@ def _drive(scenario: ScenarioProfile, resolved: ResolvedSession, attempt: Attemp
     if attempt.pilot is None:
         run(console, state, _scripted(scenario, resolved, recorder, console), ticks)
         return recorder
-    seat = PilotSeat(attempt.pilot, settings(resolved.cockpit, console.tick_hz))
+    seat = PilotDevices(attempt.pilot, cockpit_settings(resolved.cockpit, console.tick_hz))
     cast = Cast(seat, NobodyCommands(), recorder, (), UnpacedPacer(), seat)
     run(console, state, cast, ticks, lambda snapshot: seat.finished)
     return recorder
@@ -87,5 +87,5 @@ def _drive(scenario: ScenarioProfile, resolved: ResolvedSession, attempt: Attemp
 def _scripted(scenario: ScenarioProfile, resolved: ResolvedSession, recorder: MemoryRecorder, console: Console) -> Cast:
     if scenario.script is None:
         raise ProfileError(f"{scenario.title}: script: value missing: a script that the manoeuvre can watch")
-    source = ScriptSource(scenario.script, settings(resolved.cockpit, console.tick_hz), tick_hz=console.tick_hz)
+    source = ScriptSource(scenario.script, cockpit_settings(resolved.cockpit, console.tick_hz), tick_hz=console.tick_hz)
     return Cast(source, NobodyCommands(), recorder, (), UnpacedPacer())

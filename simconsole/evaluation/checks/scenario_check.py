@@ -9,7 +9,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, NamedTuple, Self, TextIO, TypeVar
 
-from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.synthetic.script import ScriptSource
 from simconsole.drivers.scripted_controller import ScriptedCommands
 from simconsole.evaluation.checks import golden
@@ -100,7 +100,7 @@ def drive_scenario(scenario: ScenarioProfile, recorder_of: Callable[[Console], R
     tick_hz = console.tick_hz
     devices: DeviceSource = NobodySeated()
     if scenario.script is not None:
-        devices = ScriptSource(scenario.script, settings(resolved.cockpit, tick_hz), tick_hz=tick_hz)
+        devices = ScriptSource(scenario.script, cockpit_settings(resolved.cockpit, tick_hz), tick_hz=tick_hz)
     recorder = recorder_of(console)
     commands = ScriptedCommands(scenario.remote, scenario.events, tick_hz)
     ecu = ScriptedCommands(scenario.ecu, scenario.ecu_events, tick_hz)

@@ -8,37 +8,31 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from simconsole.devices.calibration.calibrator import (
-    NOBODY,
-    CockpitSettings,
-    calibrate,
-    curved,
-    pressed_share,
-    settings,
-)
-from simconsole.devices.calibration.inverse_calibration import Intent, pedal_raw, uncalibrate, wheel_raw
+from simconsole.devices.calibration.calibrator import calibrate, curved, pressed_share
+from simconsole.devices.calibration.cockpit_settings import NOBODY, CockpitSettings, cockpit_settings
+from simconsole.devices.calibration.inverse_calibration import Intent, pedal_raw, raw_sample, wheel_raw
 from simconsole.devices.calibration.validity import ARMED, LIVE, LOST, STALE, UNKNOWN
 from simconsole.profiles.device import MIN_TRAVEL_RAW, ButtonBinding, CockpitProfile
 from simconsole.profiles.files.loader import load
 from simconsole.values.host.jit import compiled
 from simconsole.values.signals import NEVER_TICKS, NO_SAMPLE, Button, DeviceSample
-from tests.devices.calibration_run import TICK_S, Seat
+from tests.devices.calibration_run import TICK_S, CalibrationRun
 
 PROFILE = load("devices", "t500rs_th8rs", CockpitProfile)
-SETTINGS = settings(PROFILE, 250)
+SETTINGS = cockpit_settings(PROFILE, 250)
 PEDALS = ("throttle", "brake", "clutch")
 STALE_TICKS = int(SETTINGS.stale_ticks)
 
 
 @pytest.fixture
-def seat() -> Seat:
+def seat() -> CalibrationRun:
     """A seat whose every input has been armed."""
-    armed = Seat(SETTINGS)
+    armed = CalibrationRun(SETTINGS)
     armed.do(ticks=2)
     return armed
 
 
-def validities(seat: Seat) -> set[float]:
+def validities(seat: CalibrationRun) -> set[float]:
     driver = seat.driver
     return {
         driver.wheel_validity,
@@ -50,13 +44,13 @@ def validities(seat: Seat) -> set[float]:
 
 
 def test_nothing_is_known_before_the_first_sample() -> None:
-    seat = Seat(SETTINGS)
-    assert seat.feel(NO_SAMPLE)[:9] == (0.0,) * 9
+    seat = CalibrationRun(SETTINGS)
+    assert seat.calibrate(NO_SAMPLE)[:9] == (0.0,) * 9
     assert validities(seat) == {UNKNOWN}
 
 
 def test_rest_arms_and_the_next_tick_is_live() -> None:
-    seat = Seat(SETTINGS)
+    seat = CalibrationRun(SETTINGS)
     seat.do()
     assert validities(seat) == {ARMED}
     seat.do()
@@ -67,7 +61,7 @@ def test_rest_arms_and_the_next_tick_is_live() -> None:
 @pytest.mark.parametrize("pedal", PEDALS)
 def test_pedal_pressed_at_start_reads_zero_until_released(pedal: str) -> None:
     """D05: a pedal stuck at 100 % commands nothing; one released to 5 % or less does from then on."""
-    seat = Seat(SETTINGS)
+    seat = CalibrationRun(SETTINGS)
     for pressed in (1.0, 0.5, 0.06):
         driver = seat.do(Intent(**{pedal: pressed}))  # type: ignore[arg-type]  # a field by its name
         assert getattr(driver, pedal) == 0.0
@@ -78,24 +72,24 @@ def test_pedal_pressed_at_start_reads_zero_until_released(pedal: str) -> None:
 
 def test_axes_at_zero_before_their_first_report_are_no_half_throttle() -> None:
     """SDL reads 0.0 until the device reports: half the travel of a pedal that rests at 1.0."""
-    seat = Seat(SETTINGS)
+    seat = CalibrationRun(SETTINGS)
     driver = seat.do(throttle_axis=0.0, brake_axis=0.0, clutch_axis=0.0)
     assert (driver.throttle, driver.brake, driver.clutch) == (0.0, 0.0, 0.0)
     assert driver.throttle_validity == UNKNOWN
 
 
-def test_dead_zone_is_silent_and_the_pedal_begins_at_its_end(seat: Seat) -> None:
+def test_dead_zone_is_silent_and_the_pedal_begins_at_its_end(seat: CalibrationRun) -> None:
     assert seat.do(throttle_axis=1.0 - 2.0 * 0.0199).throttle == 0.0
     assert 0.0 < seat.do(throttle_axis=1.0 - 2.0 * 0.021).throttle < 0.002
     assert seat.do(throttle_axis=-1.0).throttle == 1.0
 
 
-def test_wheel_is_left_positive_and_spans_its_lock(seat: Seat) -> None:
+def test_wheel_is_left_positive_and_spans_its_lock(seat: CalibrationRun) -> None:
     assert seat.do(wheel_axis=-1.0).hand_wheel_rad == pytest.approx(math.radians(540))
     assert seat.do(wheel_axis=1.0).hand_wheel_rad == pytest.approx(-math.radians(540))
 
 
-def test_wheel_rate_settles_at_the_true_rate(seat: Seat) -> None:
+def test_wheel_rate_settles_at_the_true_rate(seat: CalibrationRun) -> None:
     for tick in range(60):
         driver = seat.do(Intent(hand_wheel_rad=0.01 * tick))
     assert driver.hand_wheel_radps == pytest.approx(2.5, rel=1e-3)
@@ -103,7 +97,7 @@ def test_wheel_rate_settles_at_the_true_rate(seat: Seat) -> None:
 
 
 def test_first_wheel_position_is_no_motion() -> None:
-    seat = Seat(SETTINGS)
+    seat = CalibrationRun(SETTINGS)
     driver = seat.do(Intent(hand_wheel_rad=3.0))
     assert driver.hand_wheel_rad == pytest.approx(3.0)
     assert driver.hand_wheel_radps == 0.0
@@ -111,7 +105,7 @@ def test_first_wheel_position_is_no_motion() -> None:
 
 @pytest.mark.parametrize("tick_hz", [50, 250, 1000])
 def test_silence_counts_from_the_first_tick_after_100_ms_at_every_rate(tick_hz: int) -> None:
-    seat = Seat(settings(PROFILE, tick_hz))
+    seat = CalibrationRun(cockpit_settings(PROFILE, tick_hz))
     seat.do(ticks=2)
     for age in range(1, tick_hz):
         seat.do(wheel_age_ticks=age, pedals_age_ticks=age, shifter_age_ticks=age)
@@ -122,7 +116,7 @@ def test_silence_counts_from_the_first_tick_after_100_ms_at_every_rate(tick_hz: 
 
 
 @pytest.mark.fault("D03")
-def test_silent_device_is_held_then_stale_and_returns_without_arming_again(seat: Seat) -> None:
+def test_silent_device_is_held_then_stale_and_returns_without_arming_again(seat: CalibrationRun) -> None:
     """D03: 100 ms."""
     pressed = Intent(throttle=0.6, hand_wheel_rad=1.0, gear=3)
     seat.do(pressed, ticks=3)
@@ -138,7 +132,7 @@ def test_silent_device_is_held_then_stale_and_returns_without_arming_again(seat:
     assert seat.do(pressed).throttle == pytest.approx(0.6)
 
 
-def test_lost_pedals_must_be_seen_at_rest_again(seat: Seat) -> None:
+def test_lost_pedals_must_be_seen_at_rest_again(seat: CalibrationRun) -> None:
     seat.do(Intent(throttle=0.8))
     lost = seat.do(Intent(throttle=0.8), pedals_age_ticks=NEVER_TICKS)
     assert (lost.throttle, lost.throttle_validity) == (0.0, LOST)
@@ -151,7 +145,7 @@ def test_lost_pedals_must_be_seen_at_rest_again(seat: Seat) -> None:
 
 @pytest.mark.fault("D04")
 @pytest.mark.parametrize("off_deg", [-6.0, -5.1, 5.1, 400.0])
-def test_lost_wheel_stays_lost_until_it_stands_as_the_car_steers(off_deg: float, seat: Seat) -> None:
+def test_lost_wheel_stays_lost_until_it_stands_as_the_car_steers(off_deg: float, seat: CalibrationRun) -> None:
     """D04: 5 degrees. The road wheels keep what they were told until then."""
     model_deg = 40.0
     seat.do(Intent(hand_wheel_rad=1.0), ticks=3)
@@ -166,14 +160,14 @@ def test_lost_wheel_stays_lost_until_it_stands_as_the_car_steers(off_deg: float,
     assert seat.do(Intent(hand_wheel_rad=-2.0)).hand_wheel_rad == pytest.approx(-2.0), "and then it obeys everywhere"
 
 
-def test_lost_wheel_that_reads_nonsense_or_a_car_whose_angle_is_none_stays_lost(seat: Seat) -> None:
+def test_lost_wheel_that_reads_nonsense_or_a_car_whose_angle_is_none_stays_lost(seat: CalibrationRun) -> None:
     seat.do(wheel_age_ticks=NEVER_TICKS)
     assert seat.do(wheel_axis=math.nan, ticks=60).wheel_validity == LOST
     seat.model_rad = math.nan
     assert seat.do().wheel_validity == LOST
 
 
-def test_emergency_button_of_a_wheel_that_is_not_armed_works(seat: Seat) -> None:
+def test_emergency_button_of_a_wheel_that_is_not_armed_works(seat: CalibrationRun) -> None:
     seat.do(wheel_age_ticks=NEVER_TICKS)
     seat.model_rad = 2.0
     seat.do()
@@ -183,7 +177,7 @@ def test_emergency_button_of_a_wheel_that_is_not_armed_works(seat: Seat) -> None
 
 def test_shifter_buttons_work_while_the_wheel_is_gone() -> None:
     buttons = msgspec.structs.replace(PROFILE.buttons, mark=ButtonBinding(on="shifter", button=9))
-    seat = Seat(settings(msgspec.structs.replace(PROFILE, buttons=buttons), 250))
+    seat = CalibrationRun(cockpit_settings(msgspec.structs.replace(PROFILE, buttons=buttons), 250))
     seat.do(ticks=2)
     seat.do(wheel_age_ticks=NEVER_TICKS)
     assert seat.do(Intent(pressed=int(Button.MARK)), wheel_age_ticks=NEVER_TICKS).edges == float(Button.MARK)
@@ -193,7 +187,7 @@ def test_shifter_buttons_work_while_the_wheel_is_gone() -> None:
 @pytest.mark.fault("D07")
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 1.5, -1e308])
 @pytest.mark.parametrize("field", ["wheel_axis", "throttle_axis", "brake_axis", "clutch_axis"])
-def test_bad_axis_is_refused_held_and_stale_after_100_ms(field: str, value: float, seat: Seat) -> None:
+def test_bad_axis_is_refused_held_and_stale_after_100_ms(field: str, value: float, seat: CalibrationRun) -> None:
     """D07, for every axis."""
     good = Intent(hand_wheel_rad=0.5, throttle=0.4, brake=0.3, clutch=0.2)
     before = seat.do(good, ticks=200)
@@ -214,7 +208,7 @@ def test_bad_axis_is_refused_held_and_stale_after_100_ms(field: str, value: floa
 
 @pytest.mark.parametrize("mask", [math.nan, -1.0, 0.5, 2.0**24, math.inf])
 @pytest.mark.parametrize("field", ["wheel_buttons", "shifter_buttons"])
-def test_bad_button_mask_is_refused_and_the_last_kept(field: str, mask: float, seat: Seat) -> None:
+def test_bad_button_mask_is_refused_and_the_last_kept(field: str, mask: float, seat: CalibrationRun) -> None:
     held = Intent(gear=2, pressed=int(Button.MARK))
     seat.do(held, ticks=2)
     driver = seat.do(held, **{field: mask})  # type: ignore[arg-type]  # a field by its name
@@ -223,7 +217,7 @@ def test_bad_button_mask_is_refused_and_the_last_kept(field: str, mask: float, s
     assert (driver.gear, driver.pressed, driver.edges) == (2.0, float(Button.MARK), 0.0)
 
 
-def test_button_is_an_edge_once(seat: Seat) -> None:
+def test_button_is_an_edge_once(seat: CalibrationRun) -> None:
     pressed = Intent(pressed=int(Button.AUTONOMOUS | Button.INDICATOR_LEFT))
     first, second = seat.do(pressed), seat.do(pressed)
     assert first.edges == first.pressed == float(Button.AUTONOMOUS | Button.INDICATOR_LEFT)
@@ -242,7 +236,7 @@ def test_button_is_an_edge_once(seat: Seat) -> None:
         ({"hat_y": 1.0, "wheel_age_ticks": NEVER_TICKS}, Button(0)),
     ],
 )
-def test_the_hat_of_the_wheel_has_buttons_too(hat: dict[str, float], roles: Button, seat: Seat) -> None:
+def test_the_hat_of_the_wheel_has_buttons_too(hat: dict[str, float], roles: Button, seat: CalibrationRun) -> None:
     first, second = seat.do(**hat), seat.do(**hat)  # type: ignore[arg-type]  # fields by their name
     assert (first.pressed, first.edges) == (float(roles), float(roles))
     assert (second.pressed, second.edges) == (float(roles), 0.0)
@@ -250,7 +244,9 @@ def test_the_hat_of_the_wheel_has_buttons_too(hat: dict[str, float], roles: Butt
 
 def test_a_handbrake_may_be_a_button_or_a_direction_of_the_hat() -> None:
     for mask in (float(1 << 5), float(8 << 48)):
-        seat = Seat(SETTINGS._replace(handbrake_button_mask=mask, handbrake_rest_raw=0.0, handbrake_full_raw=0.0))
+        seat = CalibrationRun(
+            SETTINGS._replace(handbrake_button_mask=mask, handbrake_rest_raw=0.0, handbrake_full_raw=0.0)
+        )
         seat.do(ticks=2)
         assert seat.do().handbrake == 0.0
         held = seat.do(Intent(pressed=int(Button.HANDBRAKE_BUTTON)))
@@ -259,12 +255,12 @@ def test_a_handbrake_may_be_a_button_or_a_direction_of_the_hat() -> None:
 
 
 def test_button_held_while_the_wheel_arrives_is_no_edge() -> None:
-    seat = Seat(SETTINGS)
+    seat = CalibrationRun(SETTINGS)
     held = Intent(pressed=int(Button.AUTONOMOUS))
     assert [driver.edges for driver in (seat.do(held), seat.do(held))] == [0.0, 0.0]
 
 
-def test_lost_wheel_presses_nothing(seat: Seat) -> None:
+def test_lost_wheel_presses_nothing(seat: CalibrationRun) -> None:
     pressed = Intent(pressed=int(Button.RESET))
     seat.do(pressed)
     assert seat.do(pressed, wheel_age_ticks=NEVER_TICKS).pressed == 0.0
@@ -273,7 +269,7 @@ def test_lost_wheel_presses_nothing(seat: Seat) -> None:
 @given(st.lists(st.floats(0.0, 1.0), min_size=2, max_size=40))
 def test_pedal_is_monotone_bounded_and_the_inverse_of_uncalibrate(shares: list[float]) -> None:
     shares.sort()
-    seat = Seat(SETTINGS)
+    seat = CalibrationRun(SETTINGS)
     seat.do(ticks=2)
     pressed = [seat.do(Intent(brake=share)).brake for share in shares]
     assert pressed == sorted(pressed)
@@ -311,13 +307,13 @@ def test_any_wheel_is_monotone_bounded_and_invertible(
     reach = side * math.radians(540.0)
     wheel = SETTINGS._replace(wheel_centre_raw=centre, wheel_dead_raw=dead, wheel_curve=curve, wheel_rad_per_raw=reach)
     low, high = sorted((one, other))
-    angles = [Seat(wheel).do(wheel_axis=raw).hand_wheel_rad * side for raw in (low, centre, high)]
+    angles = [CalibrationRun(wheel).do(wheel_axis=raw).hand_wheel_rad * side for raw in (low, centre, high)]
     assert angles[0] <= angles[2]
     assert angles[1] == 0.0
     assert max(map(abs, angles)) <= abs(reach) * (1.0 + abs(centre)) + 1e-9
     raw = wheel_raw(share * reach, wheel)
     if abs(raw) < 1.0:
-        assert Seat(wheel).do(wheel_axis=raw).hand_wheel_rad == pytest.approx(share * reach, abs=1e-9)
+        assert CalibrationRun(wheel).do(wheel_axis=raw).hand_wheel_rad == pytest.approx(share * reach, abs=1e-9)
 
 
 def test_straight_curve_changes_no_bit() -> None:
@@ -332,7 +328,7 @@ def test_curve_above_one_is_gentle_first_and_below_one_quick() -> None:
 @given(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
 def test_wheel_is_monotone(one: float, other: float) -> None:
     low, high = sorted((one, other))
-    seat = Seat(SETTINGS)
+    seat = CalibrationRun(SETTINGS)
     right, left = seat.do(wheel_axis=high).hand_wheel_rad, seat.do(wheel_axis=low).hand_wheel_rad
     assert right <= left
     assert max(abs(right), abs(left)) <= math.radians(540.0) * (1 + 1e-12)
@@ -343,7 +339,7 @@ NUMBERS = st.one_of(st.floats(), st.floats(-1.1, 1.1), st.sampled_from([0.0, 1.0
 
 @given(st.lists(st.lists(NUMBERS, min_size=13, max_size=13), max_size=20))
 def test_no_sample_whatever_makes_anything_not_finite(rows: list[list[float]]) -> None:
-    seat = Seat(SETTINGS)
+    seat = CalibrationRun(SETTINGS)
     for driver in seat.all(DeviceSample(*row) for row in rows):
         assert all(math.isfinite(number) for number in driver)
         assert all(0.0 <= getattr(driver, pedal) <= 1.0 for pedal in (*PEDALS, "handbrake"))
@@ -362,7 +358,7 @@ def random_samples(seed: int, count: int, cockpit: CockpitSettings) -> list[Devi
             intent = Intent._make((dice.uniform(-9, 9), *feet, gear, dice.getrandbits(9)))
         if dice.random() < 0.1:
             intent = Intent()
-        sample = uncalibrate(intent, cockpit)
+        sample = raw_sample(intent, cockpit)
         if dice.random() < 0.1:
             field = dice.choice(DeviceSample._fields)
             value = dice.choice([math.nan, math.inf, -math.inf, 0.5, -2.0, 5.0, 26.0, NEVER_TICKS, 2.0**24])
@@ -375,7 +371,7 @@ def random_samples(seed: int, count: int, cockpit: CockpitSettings) -> list[Devi
 def test_compiled_twin_gives_equal_bits(name: str) -> None:
     seed = 20261120
     print("seed", seed)
-    cockpit = settings(load("devices", name, CockpitProfile), 250)
+    cockpit = cockpit_settings(load("devices", name, CockpitProfile), 250)
     twin = compiled(calibrate)
     before, plain, fast = NO_SAMPLE, NOBODY, NOBODY
     for sample in random_samples(seed, 4000, cockpit):

@@ -10,14 +10,14 @@ from simconsole.devices.calibration.calibrator import pressed_share
 from simconsole.devices.calibration.input_detection import (
     AxisAt,
     ButtonAt,
-    Held,
-    Moment,
     Reading,
-    hold,
-    learnt_pedal,
-    learnt_wheel,
+    SteadyReading,
+    SteadyReadings,
     moved_axis,
+    pedal_axis_of,
     pressed_button,
+    steady_readings,
+    wheel_axis_of,
 )
 from simconsole.profiles.device import MIN_TRAVEL_RAW
 from simconsole.values.errors import DeviceError
@@ -25,28 +25,28 @@ from simconsole.values.errors import DeviceError
 A, B = (1, 2), (3, 4)
 
 
-def held(*axes: float, buttons: int = 0, spread: float = 0.0) -> Held:
-    return Held(axes, (spread,) * len(axes), buttons)
+def held(*axes: float, buttons: int = 0, spread: float = 0.0) -> SteadyReading:
+    return SteadyReading(axes, (spread,) * len(axes), buttons)
 
 
-def at(moment: Moment, key: tuple[int, int], axis: int) -> AxisAt:
+def at(moment: SteadyReadings, key: tuple[int, int], axis: int) -> AxisAt:
     return AxisAt(key, axis, moment[key].mean[axis])
 
 
 def test_hold_averages_keeps_the_noise_and_only_buttons_held_throughout() -> None:
-    moment = hold([{A: Reading((0.5, 1.0), 0b110)}, {A: Reading((0.7, 1.0), 0b010)}])
+    moment = steady_readings([{A: Reading((0.5, 1.0), 0b110)}, {A: Reading((0.7, 1.0), 0b010)}])
     assert moment[A].mean == pytest.approx((0.6, 1.0))
     assert moment[A].spread == pytest.approx((0.2, 0.0))
     assert moment[A].buttons == 0b010
 
 
 def test_device_that_came_late_is_left_out() -> None:
-    assert set(hold([{A: Reading((0.0,), 0)}, {A: Reading((0.0,), 0), B: Reading((0.0,), 0)}])) == {A}
+    assert set(steady_readings([{A: Reading((0.0,), 0)}, {A: Reading((0.0,), 0), B: Reading((0.0,), 0)}])) == {A}
 
 
 def test_axis_that_is_no_number_is_refused() -> None:
     with pytest.raises(DeviceError, match="not finite"):
-        hold([{A: Reading((math.nan,), 0)}])
+        steady_readings([{A: Reading((math.nan,), 0)}])
 
 
 def test_the_axis_that_moved_is_found_on_any_device() -> None:
@@ -84,7 +84,7 @@ def test_learnt_pedal_is_monotone_bounded_quiet_at_rest_and_full_at_its_end(
 ) -> None:
     if abs(full - rest) < MIN_TRAVEL_RAW + 0.01:
         return
-    pedal = learnt_pedal({A: held(rest, spread=noise)}, AxisAt(A, 0, full))
+    pedal = pedal_axis_of({A: held(rest, spread=noise)}, AxisAt(A, 0, full))
     curve = (pedal.rest_raw, pedal.full_raw, pedal.dead_zone, pedal.curve)
     assert pressed_share(rest + noise, *curve) == 0.0
     assert pressed_share(rest - noise, *curve) == 0.0
@@ -97,14 +97,14 @@ def test_learnt_pedal_is_monotone_bounded_quiet_at_rest_and_full_at_its_end(
 
 def test_noisy_pedal_is_refused() -> None:
     with pytest.raises(DeviceError, match="noise at rest"):
-        learnt_pedal({A: held(0.0, spread=0.2)}, AxisAt(A, 0, 0.5))
+        pedal_axis_of({A: held(0.0, spread=0.2)}, AxisAt(A, 0, 0.5))
 
 
 @given(st.floats(0.25, 1.0), st.floats(-0.04, 0.04), st.sampled_from([-1.0, 1.0]), st.floats(180.0, 1080.0))
 def test_learnt_wheel_turns_left_to_the_left_by_the_true_degrees(
     reach: float, middle: float, side: float, degrees: float
 ) -> None:
-    wheel = learnt_wheel(AxisAt(A, 0, side * reach), AxisAt(A, 0, -side * reach), {A: held(middle)}, degrees)
+    wheel = wheel_axis_of(AxisAt(A, 0, side * reach), AxisAt(A, 0, -side * reach), {A: held(middle)}, degrees)
     assert wheel.grows_to == ("left" if side > 0.0 else "right")
     assert wheel.centre_raw == pytest.approx(middle, abs=1e-5)
     assert wheel.lock_to_lock_deg * reach == pytest.approx(degrees, abs=0.06)
@@ -120,4 +120,4 @@ def test_learnt_wheel_turns_left_to_the_left_by_the_true_degrees(
 )
 def test_wheel_that_makes_no_sense_is_refused(left: AxisAt, right: AxisAt, middle: float, complaint: str) -> None:
     with pytest.raises(DeviceError, match=complaint):
-        learnt_wheel(left, right, {A: held(middle, 0.0)}, 900.0)
+        wheel_axis_of(left, right, {A: held(middle, 0.0)}, 900.0)

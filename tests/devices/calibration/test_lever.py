@@ -2,39 +2,39 @@
 
 import pytest
 
-from simconsole.devices.calibration.calibrator import CockpitSettings
+from simconsole.devices.calibration.cockpit_settings import CockpitSettings
 from simconsole.devices.calibration.inverse_calibration import Intent
 from simconsole.devices.calibration.validity import LIVE, UNKNOWN
 from simconsole.values.signals import NEVER_TICKS, Button
-from tests.devices.calibration_run import Seat
+from tests.devices.calibration_run import CalibrationRun
 
 DWELL = 25
 
 
 @pytest.fixture
-def seat(t500_settings: CockpitSettings) -> Seat:
-    armed = Seat(t500_settings)
+def seat(t500_settings: CockpitSettings) -> CalibrationRun:
+    armed = CalibrationRun(t500_settings)
     armed.do(ticks=2)
     return armed
 
 
 @pytest.mark.parametrize("gear", [-1, 1, 2, 3, 4, 5, 6, 7])
-def test_each_gear_is_its_own_button(gear: int, seat: Seat) -> None:
+def test_each_gear_is_its_own_button(gear: int, seat: CalibrationRun) -> None:
     assert seat.do(Intent(gear=gear)).gear == gear
 
 
-def test_reverse_is_the_eighth_button_of_the_shifter(seat: Seat) -> None:
+def test_reverse_is_the_eighth_button_of_the_shifter(seat: CalibrationRun) -> None:
     assert seat.do(shifter_buttons=float(1 << 7)).gear == -1.0
     assert seat.do(shifter_buttons=float(1 << 0)).gear == 1.0
 
 
-def test_neutral_only_after_its_dwell(seat: Seat) -> None:
+def test_neutral_only_after_its_dwell(seat: CalibrationRun) -> None:
     seat.do(Intent(gear=2))
     gears = [seat.do().gear for _ in range(DWELL + 1)]
     assert gears == [2.0] * (DWELL - 1) + [0.0, 0.0]
 
 
-def test_shift_through_the_gate_is_never_neutral(seat: Seat) -> None:
+def test_shift_through_the_gate_is_never_neutral(seat: CalibrationRun) -> None:
     seat.do(Intent(gear=2))
     gears = [seat.do().gear for _ in range(DWELL - 1)]
     gears.append(seat.do(Intent(gear=3)).gear)
@@ -44,7 +44,7 @@ def test_shift_through_the_gate_is_never_neutral(seat: Seat) -> None:
 
 @pytest.mark.fault("D08")
 @pytest.mark.parametrize("mask", [0b11, 0b10000001, 0b1111111])
-def test_two_gears_at_once_keep_the_last(mask: int, seat: Seat) -> None:
+def test_two_gears_at_once_keep_the_last(mask: int, seat: CalibrationRun) -> None:
     """D08."""
     seat.do(Intent(gear=4))
     both = seat.do(ticks=50, shifter_buttons=float(mask))
@@ -54,14 +54,14 @@ def test_two_gears_at_once_keep_the_last(mask: int, seat: Seat) -> None:
 
 
 def test_lever_in_gear_at_the_start_counts_only_after_neutral(t500_settings: CockpitSettings) -> None:
-    seat = Seat(t500_settings)
+    seat = CalibrationRun(t500_settings)
     driver = seat.do(Intent(gear=1), ticks=10)
     assert (driver.gear, driver.shifter_validity) == (0.0, UNKNOWN)
     seat.do()
     assert seat.do(Intent(gear=1)).gear == 1.0
 
 
-def test_lost_shifter_keeps_the_gear_until_neutral_was_seen_again(seat: Seat) -> None:
+def test_lost_shifter_keeps_the_gear_until_neutral_was_seen_again(seat: CalibrationRun) -> None:
     seat.do(Intent(gear=3))
     assert seat.do(ticks=100, shifter_age_ticks=NEVER_TICKS).gear == 3.0
     assert seat.do(Intent(gear=5)).gear == 3.0
@@ -71,7 +71,7 @@ def test_lost_shifter_keeps_the_gear_until_neutral_was_seen_again(seat: Seat) ->
 
 
 def test_sequential_lever_steps_once_per_press_from_reverse_to_the_top(keyboard_settings: CockpitSettings) -> None:
-    seat = Seat(keyboard_settings)
+    seat = CalibrationRun(keyboard_settings)
     seat.do(ticks=2)
 
     def press(button: Button) -> float:

@@ -10,7 +10,7 @@ from hypothesis import settings as settings_of_test
 from hypothesis import strategies as st
 
 from simconsole.devices.force_feedback.force_settings import ForceSettings, force_settings
-from simconsole.devices.force_feedback.guidance import Wanted, guidance, wanted
+from simconsole.devices.force_feedback.guidance import GuidanceReference, guidance, guidance_reference
 from simconsole.devices.force_feedback.rim import Rim
 from simconsole.devices.force_feedback.simulated_wheel import FIRM, HANDS_OFF, RELAXED, Arm
 from simconsole.profiles.device import CockpitProfile
@@ -34,7 +34,7 @@ def settings(**changes: float) -> ForceSettings:
 
 def test_torque_is_the_law_of_four_design_choices() -> None:
     force = settings(support=0.5, feedback=2.0, authority_nm_per_rad=3.0, stiffness_nm_per_rad=1.5, damping_nms=0.0)
-    now, rim = Wanted(0.30, 0.20), Rim(0.25, 0.7)
+    now, rim = GuidanceReference(0.30, 0.20), Rim(0.25, 0.7)
     want = 0.5 * 1.5 * 0.20 + 2.0 * 1.5 * 0.10 + 3.0 * (0.30 - 0.25)
     assert guidance(now, rim, 1.0, 1.0, force) == pytest.approx(want)
     assert guidance(now, rim, 1.0, 0.4, force) == pytest.approx(0.4 * want), "in step with its authority"
@@ -44,8 +44,8 @@ def test_torque_is_the_law_of_four_design_choices() -> None:
 
 def test_no_gain_no_torque_and_no_authority_no_guidance() -> None:
     mute = settings(support=0.0, feedback=0.0, authority_nm_per_rad=0.0, damping_nms=0.0)
-    assert guidance(Wanted(1.0, 0.5), Rim(0.0, 0.0), 1.0, 1.0, mute) == 0.0
-    assert guidance(Wanted(1.0, 0.5), Rim(0.0, 0.0), 1.0, 0.0, settings()) == 0.0
+    assert guidance(GuidanceReference(1.0, 0.5), Rim(0.0, 0.0), 1.0, 1.0, mute) == 0.0
+    assert guidance(GuidanceReference(1.0, 0.5), Rim(0.0, 0.0), 1.0, 0.0, settings()) == 0.0
 
 
 FAST = compiled(guidance)
@@ -57,18 +57,18 @@ def test_guidance_is_bounded_odd_and_equal_in_both_executions(
     rad: float, slow: float, at: float, rate: float, rolling: float, share: float
 ) -> None:
     force = settings()
-    torque = guidance(Wanted(rad, slow), Rim(at, rate), rolling, share, force)
+    torque = guidance(GuidanceReference(rad, slow), Rim(at, rate), rolling, share, force)
     assert abs(torque) <= share * force.guide_most_nm
-    assert torque == -guidance(Wanted(-rad, -slow), Rim(-at, -rate), rolling, share, force)
-    assert torque == FAST(Wanted(rad, slow), Rim(at, rate), rolling, share, force)
+    assert torque == -guidance(GuidanceReference(-rad, -slow), Rim(-at, -rate), rolling, share, force)
+    assert torque == FAST(GuidanceReference(rad, slow), Rim(at, rate), rolling, share, force)
 
 
 def test_slow_part_begins_at_the_reference_and_takes_its_time() -> None:
     force, shared = settings(slow_s=0.8), float(Mode.SHARED)
-    now = wanted(0.02, 5.0, float(Mode.MANUAL), force, 0.004)
+    now = guidance_reference(0.02, 5.0, float(Mode.MANUAL), force, 0.004)
     assert now.rad == now.slow_rad == pytest.approx(0.31)
     for _ in range(200):
-        now = wanted(0.03, now.slow_rad, shared, force, 0.004)
+        now = guidance_reference(0.03, now.slow_rad, shared, force, 0.004)
     assert now.slow_rad == pytest.approx(0.31 + 0.155 * (1.0 - math.exp(-1.0)), rel=0.01)
 
 

@@ -8,16 +8,16 @@ from typing import Any
 import pytest
 
 from simconsole.devices.force_feedback.force_settings import NO_FORCE, ForceSettings, force_settings
-from simconsole.devices.force_feedback.guidance import Wanted
+from simconsole.devices.force_feedback.guidance import GuidanceReference
 from simconsole.devices.force_feedback.rim import Rim, turn
 from simconsole.devices.force_feedback.torque import (
     CENTRING_LEAD_RAD,
     CENTRING_RADPS,
-    Parts,
-    compose,
+    TorqueParts,
     end_stop,
     servo,
     soft_clip,
+    torque_parts,
     wheel_torque,
 )
 from simconsole.profiles.device import CockpitProfile
@@ -86,9 +86,9 @@ class Motor:
         return self.torque
 
 
-def alone(force: ForceSettings, target: Rim, rim: Rim, vehicle: VehicleState) -> Parts:
+def alone(force: ForceSettings, target: Rim, rim: Rim, vehicle: VehicleState) -> TorqueParts:
     """The parts in MANUAL."""
-    return compose(False, target, rim, vehicle, Wanted(0.0, 0.0), 0.0, force)
+    return torque_parts(False, target, rim, vehicle, GuidanceReference(0.0, 0.0), 0.0, force)
 
 
 @pytest.fixture
@@ -149,16 +149,16 @@ def test_car_torque_fades_and_friction_grows_towards_standstill(force: ForceSett
     assert at[0] == 0.0
     assert at == sorted(at, reverse=True)
     turning = Rim(0.0, 1.0)
-    drags = [alone(force, STRAIGHT, turning, CAR._replace(vx_mps=v)).feel_nm for v in (0.0, 1.0, 20.0)]
+    drags = [alone(force, STRAIGHT, turning, CAR._replace(vx_mps=v)).effects_nm for v in (0.0, 1.0, 20.0)]
     assert drags[0] < drags[1] < drags[2] < 0.0
 
 
 def test_road_is_felt_over_distance_alone(force: ForceSettings) -> None:
-    felt = [alone(force, STRAIGHT, STRAIGHT, CAR._replace(distance_m=0.1 * k)).feel_nm for k in range(400)]
-    assert 0.02 < max(felt) <= force.texture_nm
-    assert abs(sum(felt) / len(felt)) < 0.005
+    texture = [alone(force, STRAIGHT, STRAIGHT, CAR._replace(distance_m=0.1 * k)).effects_nm for k in range(400)]
+    assert 0.02 < max(texture) <= force.texture_nm
+    assert abs(sum(texture) / len(texture)) < 0.005
     standing = CAR._replace(vx_mps=0.0, distance_m=3.3)
-    assert alone(force, STRAIGHT, STRAIGHT, standing).feel_nm == 0.0
+    assert alone(force, STRAIGHT, STRAIGHT, standing).effects_nm == 0.0
 
 
 def test_end_stop_pushes_back_only_beyond_the_lock(force: ForceSettings) -> None:

@@ -8,7 +8,7 @@ from simconsole.devices.force_feedback.motor import SimulatedWheelPort
 from simconsole.devices.force_feedback.simulated_wheel import SimulatedWheel
 from simconsole.devices.haptics import back_ends
 from simconsole.devices.haptics import driver_settings as driver_files
-from simconsole.devices.haptics.driver_settings import Restoring, driver_folder, settings
+from simconsole.devices.haptics.driver_settings import RestoringPort, driver_folder, read_settings
 from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.values.errors import DeviceError
 from tests.devices.port_contract import closes_twice_and_then_has_no_force, takes_every_level_in_any_order
@@ -52,7 +52,7 @@ def motor() -> NotedMotor:
 def test_folder_is_found_by_identity(sysfs: Path) -> None:
     assert driver_folder(WHEEL) == sysfs
     assert driver_folder((1, 2)) is None
-    assert settings(OTHER) == {}
+    assert read_settings(OTHER) == {}
 
 
 def test_settings_are_put_back_however_the_drive_changed_them(sysfs: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -73,26 +73,26 @@ def test_wheel_without_such_files_is_left_as_the_profile_says(
     monkeypatch.setattr(back_ends, "open_haptics", lambda *_: motor())
     (sysfs / "gain").write_text("many\n")
     (sysfs / "autocenter").write_text("70000\n")
-    assert not isinstance(back_ends.open_motor(0, WHEEL, FORCE), Restoring)
+    assert not isinstance(back_ends.open_motor(0, WHEEL, FORCE), RestoringPort)
     monkeypatch.setattr(driver_files, "CLASS", tmp_path / "nowhere")
-    assert settings(WHEEL) == {}
+    assert read_settings(WHEEL) == {}
 
 
 def test_motor_that_keeps_them_honours_the_contract(sysfs: Path) -> None:
     alone, kept = motor(), motor()
     takes_every_level_in_any_order(alone)
-    takes_every_level_in_any_order(Restoring(kept, settings(WHEEL)))
+    takes_every_level_in_any_order(RestoringPort(kept, read_settings(WHEEL)))
     assert kept.levels == alone.levels != []
-    assert Restoring(kept, settings(WHEEL)).capability == alone.capability
-    closes_twice_and_then_has_no_force(Restoring(kept, settings(WHEEL)))
+    assert RestoringPort(kept, read_settings(WHEEL)).capability == alone.capability
+    closes_twice_and_then_has_no_force(RestoringPort(kept, read_settings(WHEEL)))
     assert not kept.capability.constant
 
 
 def test_wheel_that_is_gone_meanwhile_is_no_error(sysfs: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    port, before = motor(), settings(WHEEL)
+    port, before = motor(), read_settings(WHEEL)
     (sysfs / "gain").unlink()
     (sysfs / "gain").mkdir()  # as if it could not be written
-    Restoring(port, before).close()
+    RestoringPort(port, before).close()
 
     def gone() -> None:
         raise DeviceError("gone")
@@ -100,5 +100,5 @@ def test_wheel_that_is_gone_meanwhile_is_no_error(sysfs: Path, monkeypatch: pyte
     monkeypatch.setattr(port, "close", gone)
     (sysfs / "autocenter").write_text("0\n")
     with pytest.raises(DeviceError):
-        Restoring(port, before).close()
+        RestoringPort(port, before).close()
     assert (sysfs / "autocenter").read_text() == "12000\n"

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from simconsole.devices.calibration.calibration_settings import settings
+from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.force_feedback.motor import Capability, NoHaptics
 from simconsole.devices.haptics import back_ends
 from simconsole.devices.haptics.evdev_haptics import open_evdev
@@ -19,7 +19,7 @@ from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.values.signals import Button, DeviceSample
-from tests.devices.calibration_run import Seat
+from tests.devices.calibration_run import CalibrationRun
 from tests.devices.mocked import calls, start
 from tests.patience import PATIENCE_S
 
@@ -95,8 +95,8 @@ def test_recorded_motion_of_a_t500_arrives_as_a_person(tmp_path: Path, t500: Coc
     done = start(tmp_path / "calls.jsonl", "motion", motion=Path(__file__).with_name("t500_motion.txt"))
     out, err = done.communicate(timeout=PATIENCE_S)
     assert done.returncode == 0, out + err
-    seat = Seat(settings(t500, 250))
-    drivers = [seat.feel(DeviceSample(**json.loads(line))) for line in out.splitlines() if line.startswith("{")]
+    seat = CalibrationRun(cockpit_settings(t500, 250))
+    drivers = [seat.calibrate(DeviceSample(**json.loads(line))) for line in out.splitlines() if line.startswith("{")]
     assert len(drivers) >= 40
     first, last = drivers[1], drivers[-1]
     assert (first.throttle, first.brake, first.clutch) == (0.0, 0.0, 0.0), "at rest before the first report"

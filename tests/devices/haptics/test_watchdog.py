@@ -13,8 +13,8 @@ import pytest
 from simconsole.devices.force_feedback.motor import NoHaptics, SimulatedWheelPort
 from simconsole.devices.force_feedback.simulated_wheel import SimulatedWheel
 from simconsole.devices.haptics import watchdog_client as parent
-from simconsole.devices.haptics.watchdog import BEATS, FORCE, STALL_S, Stall
-from simconsole.devices.haptics.watchdog_client import Watchdog, WatchedPort, open_watchdog, watched
+from simconsole.devices.haptics.watchdog import BEATS, FORCE, STALL_S, StallDetector
+from simconsole.devices.haptics.watchdog_client import Watchdog, WatchdogPort, open_watchdog, with_watchdog
 from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.values.errors import DeviceError
 from tests.patience import wait_until
@@ -23,7 +23,7 @@ NOBODY = (0xFFFF, 0xFFFF)
 
 
 def test_silence_is_a_stall_after_100_ms_and_once() -> None:
-    stall = Stall()
+    stall = StallDetector()
     assert not stall.look(1, True, 10.0)
     assert not stall.look(1, True, 10.0 + STALL_S)
     assert stall.look(1, True, 10.001 + STALL_S)
@@ -35,7 +35,7 @@ def test_silence_is_a_stall_after_100_ms_and_once() -> None:
 
 
 def test_beats_in_time_and_silence_without_force_are_none() -> None:
-    stall = Stall()
+    stall = StallDetector()
     assert not any(stall.look(beat, True, 0.05 * beat) for beat in range(100))
     assert not stall.look(99, False, 100.0)
 
@@ -50,10 +50,10 @@ class Words:
         self.beats.append(force)
 
 
-def port(words: Words) -> WatchedPort:
+def port(words: Words) -> WatchdogPort:
     force = ForceFeedback(max_torque_nm=4.0)
     wheel = SimulatedWheel(force, 1080.0, tick_hz=250)
-    return WatchedPort(SimulatedWheelPort(wheel), words)  # type: ignore[arg-type]  # as far as a port needs it
+    return WatchdogPort(SimulatedWheelPort(wheel), words)  # type: ignore[arg-type]  # as far as a port needs it
 
 
 def test_every_start_is_a_beat_and_stop_and_close_say_that_nothing_is_left() -> None:
@@ -69,8 +69,8 @@ def test_every_start_is_a_beat_and_stop_and_close_say_that_nothing_is_left() -> 
 
 def test_motor_without_force_is_not_watched() -> None:
     none = NoHaptics("none")
-    assert watched(none, Words()) is none  # type: ignore[arg-type]  # as far as a port needs it
-    assert watched(none, None) is none
+    assert with_watchdog(none, Words()) is none  # type: ignore[arg-type]  # as far as a port needs it
+    assert with_watchdog(none, None) is none
 
 
 def test_process_comes_and_goes_with_its_console() -> None:

@@ -4,14 +4,14 @@ from pathlib import Path
 
 import pytest
 
-from simconsole.devices.calibration.cockpit_check import Watch
+from simconsole.devices.calibration.cockpit_check import CockpitCheck
 from simconsole.devices.calibration.cockpit_settings import CockpitSettings
 from simconsole.devices.calibration.inverse_calibration import Intent
 from simconsole.devices.setup.device_commands import check_devices, list_devices, realtime, record_devices
 from simconsole.devices.sources.trace_files import TraceSource
 from simconsole.profiles.device import CockpitProfile
 from simconsole.values.errors import DeviceNotFound
-from tests.devices.calibration_run import Seat
+from tests.devices.calibration_run import CalibrationRun
 
 pytestmark = pytest.mark.usefixtures("sdl")
 
@@ -67,13 +67,13 @@ def test_check_says_what_was_not_tried(t500: CockpitProfile) -> None:
 @pytest.mark.fault("D09")
 def test_check_names_a_pedal_that_was_never_released(t500: CockpitProfile) -> None:
     """D09, one pedal: the others work."""
-    watch = Watch(t500, 250)
+    check = CockpitCheck(t500, 250)
     for _ in range(5):
-        watch.see(Seat(watch._settings).raw(brake_axis=-1.0))
-    problems = watch.problems()
+        check.add(CalibrationRun(check._settings).raw(brake_axis=-1.0))
+    problems = check.problems()
     assert len(problems) == 1
     assert problems[0].startswith("pedals.brake: value 100% pressed at least: at most 5% at rest")
-    assert not watch.results()["ok"]
+    assert not check.results()["ok"]
 
 
 def test_missing_devices_stop_check_and_record_and_spare_the_old_trace(t500: CockpitProfile, tmp_path: Path) -> None:
@@ -91,8 +91,8 @@ def test_recorded_trace_plays_what_the_devices_showed(t500: CockpitProfile, tmp_
     results = record_devices(t500, path, say=Paper(), duration_s=2.0, virtual=True, pace=at_once, name="t500rs_th8rs")
     assert results["ticks"] == 500
     source = TraceSource(path, tick_hz=250)
-    seat = Seat(Watch(t500, 250)._settings)
-    throttle = [seat.feel(source.poll(tick)).throttle for tick in range(1, 501)]
+    seat = CalibrationRun(CockpitCheck(t500, 250)._settings)
+    throttle = [seat.calibrate(source.poll(tick)).throttle for tick in range(1, 501)]
     source.close()
     assert max(throttle) == pytest.approx(1.0, abs=0.02)
     assert source.header.cockpit == "t500rs_th8rs"
@@ -130,11 +130,11 @@ def test_real_time_pace_sleeps_until_each_ticks_deadline(late_s: float, monkeypa
 
 
 def test_check_refuses_a_wheel_that_is_not_straight(t500: CockpitProfile, t500_settings: CockpitSettings) -> None:
-    watch = Watch(t500, 250)
-    seat = Seat(t500_settings)
+    check = CockpitCheck(t500, 250)
+    seat = CalibrationRun(t500_settings)
     for angle_rad in (0.0, 0.2, 0.8):
-        watch.see(seat.raw(Intent(hand_wheel_rad=angle_rad)))
-    assert watch.problems() == [
+        check.add(seat.raw(Intent(hand_wheel_rad=angle_rad)))
+    assert check.problems() == [
         "wheel: value 46 deg at the end: within 30 deg of straight ahead; centre_raw is wrong, "
         "or the wheel was not let go"
     ]

@@ -5,7 +5,7 @@ import pytest
 
 from simconsole.devices.force_feedback.motor import SimulatedWheelPort
 from simconsole.devices.setup.device_commands import Pace
-from simconsole.devices.setup.force_feedback_check import FORCES, feel_devices
+from simconsole.devices.setup.force_feedback_check import FORCES, check_force_feedback
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load
 from simconsole.values.errors import DeviceError
@@ -33,7 +33,7 @@ def quiet(line: str) -> None:
 
 def test_good_wheel_passes_and_pushes_are_measured_not_asked(t500: CockpitProfile) -> None:
     person = Person()
-    found = feel_devices(t500, say=quiet, ask=person, virtual=True, pace=at_once)
+    found = check_force_feedback(t500, say=quiet, ask=person, virtual=True, pace=at_once)
     assert found["ok"]
     assert set(found["forces"]) == {*(force.name for force in FORCES), "let go"}
     assert person.asked == ["texture", "damping", "friction", "centre"]
@@ -42,7 +42,7 @@ def test_good_wheel_passes_and_pushes_are_measured_not_asked(t500: CockpitProfil
 
 
 def test_force_that_is_not_felt_fails(t500: CockpitProfile) -> None:
-    found = feel_devices(t500, say=quiet, ask=Person("n"), virtual=True, pace=at_once)
+    found = check_force_feedback(t500, say=quiet, ask=Person("n"), virtual=True, pace=at_once)
     assert not found["ok"]
     assert found["forces"]["sign"]["ok"]
     assert not found["forces"]["texture"]["ok"]
@@ -54,7 +54,7 @@ def test_wrong_sign_is_found_first_named_and_nothing_else_is_tried(
     write = SimulatedWheelPort.write
     monkeypatch.setattr(SimulatedWheelPort, "write", lambda port, level: write(port, -level))
     said: list[str] = []
-    found = feel_devices(t500, say=said.append, ask=Person(), virtual=True, pace=at_once)
+    found = check_force_feedback(t500, say=said.append, ask=Person(), virtual=True, pace=at_once)
     assert not found["ok"]
     assert list(found["forces"]) == ["sign", "let go"]
     assert "force_feedback.level_pushes: value left: right; this motor pushes the other way" in said
@@ -64,21 +64,21 @@ def test_profile_of_a_motor_that_pushes_the_other_way_passes(t500: CockpitProfil
     assert t500.force_feedback is not None
     force = msgspec.structs.replace(t500.force_feedback, level_pushes="right")
     cockpit = msgspec.structs.replace(t500, force_feedback=force)
-    assert feel_devices(cockpit, say=quiet, ask=Person(), virtual=True, pace=at_once)["ok"]
+    assert check_force_feedback(cockpit, say=quiet, ask=Person(), virtual=True, pace=at_once)["ok"]
 
 
 def test_effect_that_does_not_end_by_itself_is_found(t500: CockpitProfile, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(SimulatedWheelPort, "start", lambda port: port._wheel.run(3600.0))
-    found = feel_devices(t500, say=quiet, ask=Person(), virtual=True, pace=at_once)
+    found = check_force_feedback(t500, say=quiet, ask=Person(), virtual=True, pace=at_once)
     assert not found["forces"]["let go"]["ok"]
     assert not found["ok"]
 
 
 def test_wheel_without_a_motor_is_said(t500: CockpitProfile) -> None:
     with pytest.raises(DeviceError, match="force_feedback: value missing"):
-        feel_devices(load("devices", "gamepad", CockpitProfile), say=quiet, virtual=True)
+        check_force_feedback(load("devices", "gamepad", CockpitProfile), say=quiet, virtual=True)
     with pytest.raises(DeviceError, match=r"0\.05 to 0\.6"):
-        feel_devices(t500, say=quiet, virtual=True, strength=0.9)
+        check_force_feedback(t500, say=quiet, virtual=True, strength=0.9)
 
 
 def test_nobody_there_to_answer_is_one_line_and_leaves_no_force(t500: CockpitProfile) -> None:
@@ -86,4 +86,4 @@ def test_nobody_there_to_answer_is_one_line_and_leaves_no_force(t500: CockpitPro
         raise EOFError
 
     with pytest.raises(DeviceError, match="an answer to every question"):
-        feel_devices(t500, say=quiet, ask=nobody, virtual=True, pace=at_once)
+        check_force_feedback(t500, say=quiet, ask=nobody, virtual=True, pace=at_once)

@@ -7,8 +7,9 @@ from typing import Any
 import pytest
 from msgspec.structs import replace
 
-from simconsole.devices.calibration.calibrator import CockpitSettings, settings, travel
-from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate
+from simconsole.devices.calibration.calibrator import travel
+from simconsole.devices.calibration.cockpit_settings import CockpitSettings, cockpit_settings
+from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
 from simconsole.devices.calibration.validity import LIVE, LOST, UNKNOWN
 from simconsole.devices.sources import sdl_runtime
 from simconsole.devices.sources import sdl_source as sdl_module
@@ -19,7 +20,7 @@ from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load
 from simconsole.values.errors import DeviceError, DeviceModeError, DeviceNotFound
 from simconsole.values.signals import NEVER_TICKS, Button, DriverInput
-from tests.devices.calibration_run import Seat
+from tests.devices.calibration_run import CalibrationRun
 
 Plug = Callable[[VirtualSpec], VirtualDevice]
 
@@ -35,17 +36,17 @@ class Drive:
     def __init__(self, plugged: VirtualCockpit, source: SdlSource, settings: CockpitSettings) -> None:
         self.plugged = plugged
         self.source = source
-        self.seat = Seat(settings)
+        self.seat = CalibrationRun(settings)
         self.tick = 0
 
     def do(self, intent: Intent = Intent(), ticks: int = 1) -> DriverInput:  # noqa: B008  # immutable
-        self.plugged.write(uncalibrate(intent, self.seat.settings))
+        self.plugged.write(raw_sample(intent, self.seat.settings))
         return self.poll(ticks)
 
     def poll(self, ticks: int = 1) -> DriverInput:
         for _ in range(ticks):
             self.tick += 1
-            driver = self.seat.feel(self.source.poll(self.tick))
+            driver = self.seat.calibrate(self.source.poll(self.tick))
         return driver
 
 
@@ -80,7 +81,7 @@ def test_roles_are_the_same_in_a_thousand_shuffled_enumerations(
     """Among other joysticks, some of which look like a wheel or a shifter; in any order of enumeration."""
     seed = 20261121
     print("seed", seed)
-    dice, real = random.Random(seed), sdl_module.found
+    dice, real = random.Random(seed), sdl_module.connected_joysticks
     others = [
         spec for name in ("g29", "t300rs_th8a", "gamepad") for spec in specs(load("devices", name, CockpitProfile))
     ]
@@ -93,7 +94,7 @@ def test_roles_are_the_same_in_a_thousand_shuffled_enumerations(
         dice.shuffle(joysticks)
         return joysticks
 
-    monkeypatch.setattr(sdl_module, "found", shuffled)
+    monkeypatch.setattr(sdl_module, "connected_joysticks", shuffled)
     bound, orders = set(), set()
     for _ in range(1000):
         orders.add(tuple(entry.instance_id for entry, _ in shuffled(sdl_runtime.acquire())))
@@ -116,7 +117,7 @@ def test_every_shipped_cockpit_works_as_virtual_devices(name: str, sdl: None) ->
     plugged = VirtualCockpit(cockpit)
     opened = SdlSource(cockpit)
     try:
-        drive = Drive(plugged, opened, settings(cockpit, 250))
+        drive = Drive(plugged, opened, cockpit_settings(cockpit, 250))
         drive.do(ticks=2)
         driver = drive.do(Intent(hand_wheel_rad=1.5, throttle=0.2, brake=0.4, clutch=0.6), ticks=2)
         assert driver.hand_wheel_rad == pytest.approx(1.5, abs=1e-3)
@@ -218,7 +219,7 @@ def test_device_that_comes_back_pressed_must_be_released_first(drive: Drive) -> 
     drive.plugged.unplug("pedals")
     drive.poll(3)
     drive.plugged.plug("pedals")
-    drive.plugged.write(uncalibrate(Intent(throttle=0.9, brake=0.5), drive.seat.settings))
+    drive.plugged.write(raw_sample(Intent(throttle=0.9, brake=0.5), drive.seat.settings))
     drivers = [drive.poll() for _ in range(10)]
     assert {driver.throttle for driver in drivers} == {0.0}
     assert (drivers[-1].throttle_validity, drivers[-1].wheel_validity) == (UNKNOWN, LIVE)

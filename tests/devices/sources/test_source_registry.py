@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from simconsole.devices.calibration.calibrator import CockpitSettings, settings
-from simconsole.devices.calibration.inverse_calibration import Intent, uncalibrate
+from simconsole.devices.calibration.cockpit_settings import CockpitSettings, cockpit_settings
+from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
 from simconsole.devices.calibration.validity import LIVE, axis_good, mask_good
 from simconsole.devices.force_feedback.motor import MotorisedSource, SimulatedWheelPort, WheelMotor
 from simconsole.devices.force_feedback.simulated_wheel import SimulatedWheel
@@ -26,7 +26,7 @@ from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.values.errors import DeviceNotFound, ProfileError
 from simconsole.values.key_codes import Key
 from simconsole.values.protocols import DeviceSource
-from tests.devices.calibration_run import Seat
+from tests.devices.calibration_run import CalibrationRun
 from tests.paths import ROOT
 
 HZ = 250
@@ -38,7 +38,7 @@ class Opened:
 
     def __init__(self, source: DeviceSource, profile: CockpitProfile, before: Callable[[int], None]) -> None:
         self.source = source
-        self.settings = settings(profile, HZ)
+        self.settings = cockpit_settings(profile, HZ)
         self.before = before
 
 
@@ -46,7 +46,7 @@ def _trace(path: Path, cockpit: CockpitSettings) -> str:
     with TraceWriter(path, TraceHeader(HZ, "t500rs_th8rs")) as writer:
         for tick in range(1, 301):
             pressed = Intent(throttle=0.8, gear=1) if tick > 100 else Intent()
-            writer.write(tick, uncalibrate(pressed, cockpit))
+            writer.write(tick, raw_sample(pressed, cockpit))
     return f"trace:{path}"
 
 
@@ -62,7 +62,7 @@ def opened(
 
         def work(tick: int) -> None:
             pressed = Intent(throttle=0.8, gear=1) if tick > 100 else Intent()
-            plugged.write(uncalibrate(pressed, t500_settings))
+            plugged.write(raw_sample(pressed, t500_settings))
 
         return Opened(open_source("sdl", t500, tick_hz=HZ), t500, work)
     if request.param == "trace":
@@ -110,7 +110,7 @@ class TestEverySource:
         opened.before(1)
         sample = opened.source.poll(1)
         assert all(math.isfinite(value) for value in sample)
-        driver = Seat(opened.settings).feel(sample)
+        driver = CalibrationRun(opened.settings).calibrate(sample)
         assert (driver.throttle, driver.brake, driver.gear, driver.pressed, driver.edges) == (0.0,) * 5
         opened.source.close()
 
@@ -123,14 +123,14 @@ class TestEverySource:
         opened.source.close()
 
     def test_samples_are_raw_fresh_and_drive_the_person(self, opened: Opened) -> None:
-        seat = Seat(opened.settings)
+        seat = CalibrationRun(opened.settings)
         for tick in range(1, 250):
             opened.before(tick)
             sample = opened.source.poll(tick)
             assert all(axis_good(raw) for raw in sample[:5])
             assert all(mask_good(mask) for mask in sample[5:7])
             assert sample[9:12] == (0.0, 0.0, 0.0)
-            driver = seat.feel(sample)
+            driver = seat.calibrate(sample)
             if tick <= 100:
                 assert (driver.throttle, driver.gear) == (0.0, 0.0)
         assert driver.throttle > 0.7

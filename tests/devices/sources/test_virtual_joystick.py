@@ -5,7 +5,7 @@ from collections.abc import Callable
 import pytest
 
 from simconsole.devices.sources import sdl_runtime
-from simconsole.devices.sources.sdl_source import found
+from simconsole.devices.sources.sdl_source import connected_joysticks
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.devices.sources.virtual_joystick import VirtualDevice, VirtualSpec, specs
 from simconsole.profiles.device import CockpitProfile
@@ -18,7 +18,7 @@ PAD = VirtualSpec("Pad", 0x1234, 0x5678, 2, 3, 1)
 def test_pygame_sees_the_real_ids_names_and_counts(plugged: VirtualCockpit) -> None:
     pygame = sdl_runtime.acquire()
     pygame.event.get()
-    seen = {entry[:3] + entry[4:] for entry, _ in found(pygame)}
+    seen = {entry[:3] + entry[4:] for entry, _ in connected_joysticks(pygame)}
     sdl_runtime.release()
     assert seen == {
         (0x044F, 0xB65E, "Thrustmaster TRS Racing wheel", 4, 13, 1),

@@ -4,12 +4,12 @@ import math
 
 import pytest
 
-from simconsole.devices.calibration.calibrator import CockpitSettings
+from simconsole.devices.calibration.cockpit_settings import CockpitSettings
 from simconsole.devices.calibration.validity import STALE
 from simconsole.devices.synthetic.keyboard import STEER_MAX_RAD, KeyboardSource
 from simconsole.values.key_codes import Key
 from simconsole.values.signals import Button, DriverInput
-from tests.devices.calibration_run import Seat
+from tests.devices.calibration_run import CalibrationRun
 
 
 class Board:
@@ -19,14 +19,14 @@ class Board:
         self.held = Key(0)
         self.age = 0
         self.source = KeyboardSource(lambda: (int(self.held), self.age), settings, tick_hz=250)
-        self.seat = Seat(settings)
+        self.seat = CalibrationRun(settings)
         self.tick = 0
 
     def hold(self, held: Key, seconds: float) -> DriverInput:
         self.held = held
         for _ in range(round(seconds * 250)):
             self.tick += 1
-            driver = self.seat.feel(self.source.poll(self.tick))
+            driver = self.seat.calibrate(self.source.poll(self.tick))
         return driver
 
 

@@ -5,12 +5,12 @@ from typing import Any
 
 import pytest
 
-from simconsole.devices.calibration.calibrator import CockpitSettings
+from simconsole.devices.calibration.cockpit_settings import CockpitSettings
 from simconsole.devices.synthetic.script import ScriptSource
 from simconsole.profiles.device import ScriptPoint, ScriptProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.signals import Button, DriverInput
-from tests.devices.calibration_run import Seat
+from tests.devices.calibration_run import CalibrationRun
 
 HZ = 250
 
@@ -18,8 +18,8 @@ HZ = 250
 def driven(settings: CockpitSettings, seconds: float, *points: dict[str, Any]) -> list[DriverInput]:
     script = ScriptProfile(points=[ScriptPoint(**point) for point in points])
     source = ScriptSource(script, settings, tick_hz=HZ)
-    seat = Seat(settings)
-    return [seat.feel(source.poll(tick)) for tick in range(1, round(seconds * HZ) + 1)]
+    seat = CalibrationRun(settings)
+    return [seat.calibrate(source.poll(tick)) for tick in range(1, round(seconds * HZ) + 1)]
 
 
 def at(drivers: list[DriverInput], time_s: float) -> DriverInput:

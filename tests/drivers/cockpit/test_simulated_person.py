@@ -8,7 +8,7 @@ from typing import NamedTuple
 import pytest
 
 from simconsole.control.requests.control_settings import settings as control_settings
-from simconsole.devices.calibration.calibration_settings import settings as cockpit_settings
+from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.sources.sdl_source import SdlSource
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.drivers.cockpit.simulated_person import SimulatedPerson

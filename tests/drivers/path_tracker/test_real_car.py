@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from simconsole.drivers.path_tracker.tracker import Sighting, Tracker
+from simconsole.drivers.path_tracker.tracker import Tracker, VehicleMotion
 from simconsole.profiles.files.loader import load
 from simconsole.profiles.vehicle import VehicleProfile
 from simconsole.values.host.jit import compiled
@@ -38,7 +38,7 @@ def test_a_lap_in_the_hatchback_keeps_the_bars(course: Course) -> None:
         vehicle = VehicleState(*row[VEHICLE_AT:TORQUE_AT].tolist())
         if tick % TICKS_PER_COMMAND == 0:
             motion = (vehicle.vx_mps, vehicle.vy_mps, vehicle.yaw_rate_radps)
-            answer = tracker.step(Sighting(vehicle.x_m, vehicle.y_m, vehicle.yaw_rad, *motion))
+            answer = tracker.step(VehicleMotion(vehicle.x_m, vehicle.y_m, vehicle.yaw_rad, *motion))
             wheel, accel = answer.road_wheel_rad, answer.accel_mps2
             lateral.append(tracker.lateral_m)
         throttle, brake = pedals(accel, vehicle)

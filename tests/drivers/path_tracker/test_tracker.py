@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from simconsole.drivers.path_tracker.tracker import Sighting, Tracker
+from simconsole.drivers.path_tracker.tracker import Tracker, VehicleMotion
 from simconsole.drivers.path_tracker.tracker_settings import COMFORT, HATCHBACK
 from simconsole.world.course import Course
 
@@ -47,7 +47,7 @@ def test_corner_and_roundabout_with_another_car_than_the_model(
         tracker,
         nominal._replace(**changes),
         1200.0,
-        Sighting(start.x_m, start.y_m, start.yaw_rad, 7.0, 0.0, 0.0),
+        VehicleMotion(start.x_m, start.y_m, start.yaw_rad, 7.0, 0.0, 0.0),
     )
     assert trace.s_m[-1] > 1200.0
     assert rms(trace.lateral_m) < 0.02
@@ -58,7 +58,7 @@ def test_corner_and_roundabout_with_another_car_than_the_model(
 def test_offset_at_engagement_is_led_back_without_overshoot(
     course: Course, laps: Drive, nominal: Any, offset_m: float, speed_mps: float
 ) -> None:
-    trace = laps(Tracker(course), nominal, 180.0, Sighting(50.0, offset_m, 0.0, speed_mps, 0.0, 0.0))
+    trace = laps(Tracker(course), nominal, 180.0, VehicleMotion(50.0, offset_m, 0.0, speed_mps, 0.0, 0.0))
     assert abs(trace.lateral_m[-1]) < 0.001
     assert (trace.lateral_m * math.copysign(1.0, offset_m)).min() > -0.02
     assert np.abs(trace.lateral_m).max() < abs(offset_m) + 0.01
@@ -68,10 +68,10 @@ def test_offset_at_engagement_is_led_back_without_overshoot(
 def test_command_stays_ready_while_a_person_drives(course: Course) -> None:
     tracker = Tracker(course)
     for step in range(200):  # the person drives beside the path, which must not wind anything up
-        answer = tracker.step(Sighting(0.2 * step, 0.5, 0.0, 10.0, 0.0, 0.0), engaged=False)
+        answer = tracker.step(VehicleMotion(0.2 * step, 0.5, 0.0, 10.0, 0.0, 0.0), engaged=False)
         assert abs(answer.road_wheel_rad) < 0.03
         assert -0.1 <= answer.accel_mps2 <= 0.1
-    first = tracker.step(Sighting(40.0, 0.5, 0.0, 10.0, 0.0, 0.0), engaged=True)
+    first = tracker.step(VehicleMotion(40.0, 0.5, 0.0, 10.0, 0.0, 0.0), engaged=True)
     assert abs(first.road_wheel_rad - answer.road_wheel_rad) < 0.01
 
 
@@ -82,7 +82,7 @@ def test_engagement_in_a_bend_begins_with_the_bends_angle(course: Course) -> Non
     car, speed = HATCHBACK, 8.0
     push_mps2 = speed * speed * point.curvature_1pm
     slip_rad = -push_mps2 * car.mass_kg * car.front_m / car.wheelbase_m / car.rear_stiffness_nprad
-    steady = Sighting(
+    steady = VehicleMotion(
         *(point.x_m, point.y_m, point.yaw_rad - slip_rad),
         *(speed, speed * slip_rad, speed * point.curvature_1pm),
     )
@@ -94,7 +94,7 @@ def test_command_is_limited_however_wrong_the_pose(course: Course) -> None:
     tracker = Tracker(course)
     before = 0.0
     for _ in range(200):
-        answer = tracker.step(Sighting(30.0, 8.0, 2.0, 14.0, 0.0, 0.0))
+        answer = tracker.step(VehicleMotion(30.0, 8.0, 2.0, 14.0, 0.0, 0.0))
         assert abs(answer.road_wheel_rad) <= HATCHBACK.max_road_wheel_rad + 1e-12
         assert abs(math.tan(answer.road_wheel_rad) - math.tan(before)) <= 0.8 * 0.02 + 1e-12
         before = answer.road_wheel_rad
@@ -103,7 +103,7 @@ def test_command_is_limited_however_wrong_the_pose(course: Course) -> None:
 
 def test_standing_car_is_asked_to_drive_off(course: Course) -> None:
     tracker = Tracker(course)
-    answer = tracker.step(Sighting(10.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+    answer = tracker.step(VehicleMotion(10.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     assert 0.0 < answer.accel_mps2 <= COMFORT.accelerate_mps2
     assert answer.speed_mps > 10.0
 

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from simconsole.devices.calibration.inverse_calibration import Intent
-from simconsole.drivers.simulated_person.behaviour import Person, Phase
+from simconsole.drivers.simulated_person.behaviour import PersonBehaviour, Phase
 from simconsole.drivers.simulated_person.launch import (
     Line,
     View,
@@ -27,7 +27,7 @@ class Watched:
     """A person before a world that the test makes up."""
 
     def __init__(self, **plan: object) -> None:
-        self.person = Person(PersonPlan(**plan), HZ)  # type: ignore[arg-type]  # tests name what they need
+        self.person = PersonBehaviour(PersonPlan(**plan), HZ)  # type: ignore[arg-type]  # tests name what they need
         self.view = STANDING
 
     def live(self, seconds: float, **seen: float) -> Intent:
