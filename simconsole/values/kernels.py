@@ -50,6 +50,7 @@ def rebound(function: F, places: Mapping[int, Any]) -> F:
     copy = FunctionType(function.__code__, namespace, function.__name__, function.__defaults__)
     copy.__module__ = function.__module__
     copy.__qualname__ = function.__qualname__
+    copy.__annotations__ = function.__annotations__
     return kernel(copy)  # type: ignore[return-value]  # a function of the same type
 
 

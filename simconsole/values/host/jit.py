@@ -57,6 +57,7 @@ def digest(function: Callable[..., Any]) -> str:
     text = hashlib.sha256(f"{function.__module__}.{function.__qualname__}{sys.version}".encode())
     text.update(Path(__file__).read_bytes())
     text.update(repr(function.__defaults__).encode())
+    text.update(repr([(name, _type_stamp(kind)) for name, kind in function.__annotations__.items()]).encode())
     for code in _codes(function.__code__):
         text.update(code.co_code)
         text.update(repr([c for c in code.co_consts if not isinstance(c, types.CodeType)]).encode())
@@ -92,10 +93,18 @@ def _stamp(value: object, user: Callable[..., Any]) -> str:
     if isinstance(value, np.ndarray):
         return f"{value.dtype}{value.shape}{hashlib.sha256(value.tobytes()).hexdigest()}"
     if isinstance(value, type):
-        return f"{value.__module__}.{value.__qualname__}{getattr(value, '_fields', ())}"
+        return _type_stamp(value)
     if isinstance(value, types.ModuleType | types.BuiltinFunctionType):
         return value.__name__
     raise TypeError(f"{user.__qualname__} uses {value!r}, which is neither a kernel nor a constant")
+
+
+def _type_stamp(kind: Any) -> str:
+    """Return text that identifies a type; a record's has the fields, whose places are in the machine code."""
+    if not isinstance(kind, type):
+        return repr(kind)
+    fields = [(name, _type_stamp(kind.__annotations__[name])) for name in getattr(kind, "_fields", ())]
+    return f"{kind.__module__}.{kind.__qualname__}{fields}"
 
 
 @cache

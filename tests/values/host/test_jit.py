@@ -5,6 +5,7 @@ import subprocess
 import sys
 import types
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -29,6 +30,21 @@ def summed(row: Row, start: int) -> float:
     return scaled(a) + b * TABLE[1] + c
 
 
+class Point(NamedTuple):
+    x: float
+    y: float
+
+
+class Placed(NamedTuple):
+    place: Point
+    size: float
+
+
+@kernel
+def reach(placed: Placed) -> float:
+    return placed.place.x + placed.size
+
+
 @pytest.fixture(autouse=True)
 def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
@@ -42,6 +58,7 @@ def altered(function: types.FunctionType, **replaced: object) -> types.FunctionT
     copy = types.FunctionType(function.__code__, {**function.__globals__, **replaced}, function.__name__)
     copy.__qualname__ = function.__qualname__
     copy.__module__ = function.__module__
+    copy.__annotations__ = function.__annotations__
     return kernel(copy)
 
 
@@ -77,6 +94,31 @@ def test_digest_follows_callees_and_constants() -> None:
     assert digest(altered(summed, scaled=other_scaled)) != before, "a constant of a kernel that it calls"
     assert digest(altered(summed, TABLE=(1.0, 2.5, 4.0))) != before
     assert digest(altered(summed, WIDTH=2)) != before
+
+
+def test_digest_follows_records_that_a_kernel_is_only_given() -> None:
+    """Machine code holds the places of their fields, and its index their names."""
+    assert isinstance(reach, types.FunctionType)
+    before = digest(reach)
+    assert digest(altered(reach)) == before
+
+    class Swapped(NamedTuple):
+        y: float
+        x: float
+
+    class Edited(NamedTuple):
+        place: Swapped
+        size: float
+
+    class Renamed(NamedTuple):
+        place: Point
+        size: float
+
+    Swapped.__qualname__, Edited.__qualname__ = Point.__qualname__, Placed.__qualname__
+    for record in (Edited, Renamed):
+        edited = altered(reach)
+        edited.__annotations__ = {**reach.__annotations__, "placed": record}
+        assert digest(edited) != before
 
 
 def test_digest_is_the_same_in_another_process() -> None:
