@@ -25,6 +25,7 @@ from simconsole.hud.view import HudView
 from simconsole.values.labels import LINK_CONNECTING, LINK_DOWN, LINK_LOST, LINK_NOBODY, LINK_RETRYING, validity_words
 from simconsole.values.signals import Validity
 from simconsole.values.units import DEG_PER_RAD
+from simconsole.values.validity import is_trusted
 
 FULL_STEERING_DEG: Final = 40.0
 """Road-wheel angle at the end of the steering scale."""
@@ -192,8 +193,7 @@ def status(view: HudView, box: Box) -> list[DrawItem]:
 
 def _device(validity: float) -> tuple[str, str]:
     bad = validity in (Validity.STALE, Validity.LOST)
-    good = validity in (Validity.LIVE, Validity.ARMED)
-    return validity_words(validity), "warn" if bad else ("good" if good else "plain")
+    return validity_words(validity), "warn" if bad else ("good" if is_trusted(validity) else "plain")
 
 
 def _hand_brake(view: HudView) -> tuple[str, str]:
@@ -203,7 +203,7 @@ def _hand_brake(view: HudView) -> tuple[str, str]:
     """
     if view.handbrake_validity in (Validity.STALE, Validity.LOST):
         return _device(view.handbrake_validity)
-    if view.handbrake_validity == Validity.UNKNOWN and view.wheel_validity in (Validity.ARMED, Validity.LIVE):
+    if view.handbrake_validity == Validity.UNKNOWN and is_trusted(view.wheel_validity):
         return "let go", "warn"
     return ("on", "warn") if view.handbrake > 0.05 else ("off", "plain")
 

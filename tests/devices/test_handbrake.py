@@ -11,7 +11,6 @@ from msgspec.structs import replace
 from simconsole.devices.calibration.cockpit_check import CockpitCheck
 from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
-from simconsole.devices.calibration.validity import LIVE, LOST, STALE, UNKNOWN
 from simconsole.devices.setup.calibration_dialogue import calibrate_devices
 from simconsole.devices.setup.device_commands import Pace, check_devices, list_devices
 from simconsole.devices.sources.sdl_source import SdlSource
@@ -22,6 +21,7 @@ from simconsole.profiles.faults import Unplug
 from simconsole.profiles.files.loader import load, parse, to_text
 from simconsole.values.errors import DeviceNotFound, ProfileError
 from simconsole.values.signals import NEVER_TICKS, DeviceSample, DriverInput
+from simconsole.values.validity import LIVE, LOST, STALE, UNKNOWN
 from tests.devices.calibration_run import CalibrationRun
 from tests.devices.conftest import TICK_HZ
 

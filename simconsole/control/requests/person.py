@@ -4,10 +4,9 @@ from typing import Final, NamedTuple
 
 from simconsole.control.requests.control_settings import ControlSettings
 from simconsole.values.kernels import clip, is_finite, kernel
-from simconsole.values.signals import DriverInput, Validity
+from simconsole.values.signals import DriverInput
+from simconsole.values.validity import is_trusted
 
-_ARMED: Final = float(Validity.ARMED)
-_LIVE: Final = float(Validity.LIVE)
 _MOST_MASK: Final = 2147483647.0
 
 
@@ -29,16 +28,10 @@ def mask(value: float) -> int:
 
 
 @kernel
-def armed(validity: float) -> bool:
-    """Return whether an input with this `Validity` may command."""
-    return validity in (_ARMED, _LIVE)
-
-
-@kernel
 def person_of(driver: DriverInput, held_road_wheel_rad: float, settings: ControlSettings) -> Person:
     """Return the person's request: brake over throttle, and nothing from what is not finite."""
-    wheel_trusted = armed(driver.wheel_validity) and is_finite(driver.hand_wheel_rad)
-    pedals_trusted = armed(driver.throttle_validity) and armed(driver.brake_validity)
+    wheel_trusted = is_trusted(driver.wheel_validity) and is_finite(driver.hand_wheel_rad)
+    pedals_trusted = is_trusted(driver.throttle_validity) and is_trusted(driver.brake_validity)
     finite = is_finite(driver.throttle) and is_finite(driver.brake)
     road_wheel_rad = held_road_wheel_rad
     if wheel_trusted:

@@ -16,9 +16,10 @@ from simconsole.devices.calibration.lever import (
     shown_gear,
     stepped_gear,
 )
-from simconsole.devices.calibration.validity import LOST, axis_good, heard, mask_good, next_validity, trusted
+from simconsole.devices.calibration.validity import axis_good, heard, mask_good, next_validity
 from simconsole.values.kernels import clip, is_finite, kernel
 from simconsole.values.signals import DeviceSample, DriverInput
+from simconsole.values.validity import LOST, is_trusted
 
 
 class Axis(NamedTuple):
@@ -102,7 +103,7 @@ def pedal(
     good = axis_good(raw)
     at_rest = good and travel(raw, axis.rest_raw, axis.full_raw) <= settings.arming_limit
     validity = next_validity(before.validity, age_ticks, 0.0 if good else refused_ticks, settings.stale_ticks, at_rest)
-    if not trusted(validity):
+    if not is_trusted(validity):
         return Pedal(0.0, validity)
     if not good:
         return Pedal(before.pressed, validity)
@@ -159,12 +160,12 @@ def wheel(
         if not good:
             return Wheel(before.rad, 0.0, LOST)
     validity = next_validity(before.validity, age_ticks, 0.0 if good else refused_ticks, settings.stale_ticks, True)
-    if not trusted(validity):
+    if not is_trusted(validity):
         return Wheel(before.rad, 0.0, validity)
     if not good:
         return Wheel(before.rad, before.radps, validity)
     rad = wheel_angle(raw, settings)
-    if not trusted(before.validity) or tick_s <= 0.0:
+    if not is_trusted(before.validity) or tick_s <= 0.0:
         return Wheel(rad, 0.0, validity)
     share = tick_s / (tick_s + settings.wheel_rate_filter_s)
     return Wheel(rad, before.radps + share * ((rad - before.rad) / tick_s - before.radps), validity)
@@ -195,7 +196,7 @@ def lever(sample: DeviceSample, edges: int, refused_ticks: float, before: Lever,
     validity = next_validity(
         before.validity, sample.shifter_age_ticks, 0.0 if good else refused_ticks, settings.stale_ticks, at_rest
     )
-    if not trusted(validity) or not good:
+    if not is_trusted(validity) or not good:
         return Lever(before.gear, validity, before.neutral_ticks, 0.0)
     fault = 1.0 if shown == TWO_GEARS and settings.sequential == 0.0 else 0.0
     if settings.sequential > 0.0:

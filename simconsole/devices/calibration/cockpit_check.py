@@ -4,10 +4,10 @@ from typing import Any, Final
 
 from simconsole.devices.calibration.calibrator import calibrate, travel
 from simconsole.devices.calibration.cockpit_settings import NOBODY, CockpitSettings, cockpit_settings
-from simconsole.devices.calibration.validity import LOST, STALE, trusted
 from simconsole.profiles.device import CockpitProfile, PedalAxis
 from simconsole.values.signals import NO_SAMPLE, Button, DeviceSample, DriverInput
 from simconsole.values.units import DEG_PER_RAD
+from simconsole.values.validity import LOST, STALE, is_trusted
 
 PEDALS: Final = ("throttle", "brake", "clutch", "handbrake")
 MOVED: Final = 0.9
@@ -56,19 +56,19 @@ class CockpitCheck:
             validity = getattr(driver, f"{name}_validity")
             if validity in (STALE, LOST):
                 found.append(f"pedals.{name}: value no reading: a device that answers")
-            elif not trusted(validity):
+            elif not is_trusted(validity):
                 found.append(
                     f"pedals.{name}: value {self._least[name]:.0%} pressed at least: at most "
                     f"{self._profile.limits.arming:.0%} at rest; foot off, or rest_raw and full_raw are swapped"
                 )
-        if not trusted(driver.wheel_validity):
+        if not is_trusted(driver.wheel_validity):
             found.append("wheel: value no reading: a wheel that answers")
         elif abs(driver.hand_wheel_rad) * DEG_PER_RAD > STRAIGHT_DEG:
             found.append(
                 f"wheel: value {driver.hand_wheel_rad * DEG_PER_RAD:.0f} deg at the end: within {STRAIGHT_DEG:g} deg "
                 "of straight ahead; centre_raw is wrong, or the wheel was not let go"
             )
-        if not trusted(driver.shifter_validity):
+        if not is_trusted(driver.shifter_validity):
             found.append("shifter: value no neutral seen: the lever in neutral")
         return found
 

@@ -3,13 +3,8 @@
 from typing import Final
 
 from simconsole.values.kernels import is_finite, kernel
-from simconsole.values.signals import NEVER_TICKS, Validity
-
-UNKNOWN: Final = float(Validity.UNKNOWN)
-ARMED: Final = float(Validity.ARMED)
-LIVE: Final = float(Validity.LIVE)
-STALE: Final = float(Validity.STALE)
-LOST: Final = float(Validity.LOST)
+from simconsole.values.signals import NEVER_TICKS
+from simconsole.values.validity import ARMED, LIVE, LOST, STALE, UNKNOWN
 
 RAW_LIMIT: Final = 1.01
 """Largest |raw axis| that is taken: pygame's event scale overshoots to 1.00003 (pygame 2.6.1, measured)."""
@@ -67,9 +62,3 @@ def next_validity(previous: float, age_ticks: float, refused_ticks: float, stale
     if usable:
         return LIVE
     return ARMED if at_rest else UNKNOWN
-
-
-@kernel
-def trusted(validity: float) -> bool:
-    """Return whether an input with this validity may command anything: armed or live."""
-    return validity in (ARMED, LIVE)

@@ -6,7 +6,6 @@ which nobody is driven, the loop has stood still, or any part is not a number.
 
 from typing import Final, NamedTuple
 
-from simconsole.devices.calibration.validity import trusted
 from simconsole.devices.force_feedback.estimator import WheelEstimate, at_rest, observe
 from simconsole.devices.force_feedback.force_settings import ForceSettings
 from simconsole.devices.force_feedback.guidance import GuidanceReference, guidance, guidance_reference
@@ -23,6 +22,7 @@ from simconsole.values.signals import (
     WheelTorque,
 )
 from simconsole.values.trigonometry import sin
+from simconsole.values.validity import is_trusted
 
 _MANUAL: Final = float(Mode.MANUAL)
 _SHARED: Final = float(Mode.SHARED)
@@ -293,7 +293,7 @@ def wheel_torque(
         tick_s: Length of a tick.
     """
     mode = arbitration.mode
-    live = wheel_motor > 0.0 and trusted(driver.wheel_validity)
+    live = wheel_motor > 0.0 and is_trusted(driver.wheel_validity)
     motor_nm = memory.motor_nm + force.motor_lag_share * (before.torque_nm - memory.motor_nm)
     estimated = estimate(driver, live, motor_nm, before, memory, force, tick_s)
     rim = Rim(estimated.rad, estimated.radps)

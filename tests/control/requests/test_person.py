@@ -3,18 +3,13 @@ import math
 import pytest
 
 from simconsole.control.requests.control_settings import ControlSettings
-from simconsole.control.requests.person import armed, mask, person_of
+from simconsole.control.requests.person import mask, person_of
 from simconsole.values.signals import DriverInput, Validity
 
 LIVE = float(Validity.LIVE)
 DRIVER = DriverInput(*(0.0,) * len(DriverInput._fields))._replace(
     wheel_validity=LIVE, throttle_validity=LIVE, brake_validity=LIVE, hand_wheel_rad=1.5, throttle=0.3
 )
-
-
-def test_only_armed_and_live_inputs_command() -> None:
-    assert [armed(float(validity)) for validity in Validity] == [False, True, True, False, False]
-    assert not armed(1.5)
 
 
 def test_the_persons_request(control: ControlSettings) -> None:

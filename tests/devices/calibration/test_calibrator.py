@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 from simconsole.devices.calibration.calibrator import calibrate, curved, pressed_share
 from simconsole.devices.calibration.cockpit_settings import NOBODY, CockpitSettings, cockpit_settings
 from simconsole.devices.calibration.inverse_calibration import Intent, pedal_raw, raw_sample, wheel_raw
-from simconsole.devices.calibration.validity import ARMED, LIVE, LOST, STALE, UNKNOWN
 from simconsole.profiles.device import MIN_TRAVEL_RAW, ButtonBinding, CockpitProfile
 from simconsole.profiles.files.loader import load
 from simconsole.values.host.jit import compiled
 from simconsole.values.signals import NEVER_TICKS, NO_SAMPLE, Button, DeviceSample
+from simconsole.values.validity import ARMED, LIVE, LOST, STALE, UNKNOWN
 from tests.devices.calibration_run import TICK_S, CalibrationRun
 
 PROFILE = load("devices", "t500rs_th8rs", CockpitProfile)

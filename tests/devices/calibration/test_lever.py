@@ -4,8 +4,8 @@ import pytest
 
 from simconsole.devices.calibration.cockpit_settings import CockpitSettings
 from simconsole.devices.calibration.inverse_calibration import Intent
-from simconsole.devices.calibration.validity import LIVE, UNKNOWN
 from simconsole.values.signals import NEVER_TICKS, Button
+from simconsole.values.validity import LIVE, UNKNOWN
 from tests.devices.calibration_run import CalibrationRun
 
 DWELL = 25

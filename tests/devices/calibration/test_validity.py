@@ -4,18 +4,9 @@ import math
 
 import pytest
 
-from simconsole.devices.calibration.validity import (
-    ARMED,
-    LIVE,
-    LOST,
-    STALE,
-    UNKNOWN,
-    axis_good,
-    mask_good,
-    next_validity,
-    trusted,
-)
+from simconsole.devices.calibration.validity import axis_good, mask_good, next_validity
 from simconsole.values.signals import NEVER_TICKS
+from simconsole.values.validity import ARMED, LIVE, LOST, STALE, UNKNOWN
 
 LIMIT = 25.0
 
@@ -73,7 +64,3 @@ def test_gone_device_or_impossible_age_is_lost(age: float) -> None:
     for before in (ARMED, LIVE, STALE, LOST):
         assert after(before, age=age, at_rest=True) == LOST
     assert after(UNKNOWN, age=age, at_rest=True) == UNKNOWN
-
-
-def test_only_armed_and_live_are_trusted() -> None:
-    assert [trusted(v) for v in (UNKNOWN, ARMED, LIVE, STALE, LOST)] == [False, True, True, False, False]

@@ -10,7 +10,6 @@ from msgspec.structs import replace
 from simconsole.devices.calibration.calibrator import travel
 from simconsole.devices.calibration.cockpit_settings import CockpitSettings, cockpit_settings
 from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
-from simconsole.devices.calibration.validity import LIVE, LOST, UNKNOWN
 from simconsole.devices.sources import sdl_runtime
 from simconsole.devices.sources import sdl_source as sdl_module
 from simconsole.devices.sources.sdl_source import SdlSource, identity
@@ -20,6 +19,7 @@ from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load
 from simconsole.values.errors import DeviceError, DeviceModeError, DeviceNotFound
 from simconsole.values.signals import NEVER_TICKS, Button, DriverInput
+from simconsole.values.validity import LIVE, LOST, UNKNOWN
 from tests.devices.calibration_run import CalibrationRun
 
 Plug = Callable[[VirtualSpec], VirtualDevice]

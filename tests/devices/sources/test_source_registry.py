@@ -10,7 +10,7 @@ import pytest
 
 from simconsole.devices.calibration.cockpit_settings import CockpitSettings, cockpit_settings
 from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
-from simconsole.devices.calibration.validity import LIVE, axis_good, mask_good
+from simconsole.devices.calibration.validity import axis_good, mask_good
 from simconsole.devices.force_feedback.motor import MotorisedSource, SimulatedWheelPort, WheelMotor
 from simconsole.devices.force_feedback.simulated_wheel import SimulatedWheel
 from simconsole.devices.sources import sdl_runtime
@@ -26,6 +26,7 @@ from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.values.errors import DeviceNotFound, ProfileError
 from simconsole.values.key_codes import Key
 from simconsole.values.protocols import DeviceSource
+from simconsole.values.validity import LIVE
 from tests.devices.calibration_run import CalibrationRun
 from tests.paths import ROOT
 

@@ -5,10 +5,10 @@ import math
 import pytest
 
 from simconsole.devices.calibration.cockpit_settings import CockpitSettings
-from simconsole.devices.calibration.validity import STALE
 from simconsole.devices.synthetic.keyboard import STEER_MAX_RAD, KeyboardSource
 from simconsole.values.key_codes import Key
 from simconsole.values.signals import Button, DriverInput
+from simconsole.values.validity import STALE
 from tests.devices.calibration_run import CalibrationRun
 
 
