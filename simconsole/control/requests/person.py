@@ -37,8 +37,8 @@ def person_of(driver: DriverInput, held_road_wheel_rad: float, settings: Control
     if wheel_trusted:
         lock = settings.max_road_wheel_rad
         road_wheel_rad = clip(driver.hand_wheel_rad * settings.road_wheel_per_hand_wheel, -lock, lock)
-    brake = clip(driver.brake, 0.0, 1.0) if is_finite(driver.brake) else 0.0
-    accelerator = clip(driver.throttle, 0.0, 1.0) if is_finite(driver.throttle) else 0.0
+    brake = driver.brake if is_finite(driver.brake) else 0.0
+    accelerator = driver.throttle if is_finite(driver.throttle) else 0.0
     throttle = 0.0 if brake >= settings.brake_override else accelerator
     trusted = wheel_trusted and pedals_trusted and finite
     return Person(1.0 if trusted else 0.0, 1.0 if wheel_trusted else 0.0, road_wheel_rad, throttle, brake, accelerator)

@@ -33,7 +33,7 @@ class Intent(NamedTuple):
 
 def pedal_raw(pressed: float, rest_raw: float, full_raw: float, dead: float, curve: float) -> float:
     """Return the raw axis of a pedal pressed by this share; 0 is the rest position itself, not the dead zone's end."""
-    share = curved(min(1.0, max(0.0, pressed)), 1.0 / curve)
+    share = curved(pressed, 1.0 / curve)
     return rest_raw if share == 0.0 else rest_raw + (dead + share * (1.0 - dead)) * (full_raw - rest_raw)
 
 

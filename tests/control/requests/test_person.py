@@ -17,8 +17,8 @@ def test_the_persons_request(control: ControlSettings) -> None:
     assert person_of(DRIVER._replace(brake=0.05), 0.2, control)[3:] == (0.0, 0.05, 0.3)
     assert person_of(DRIVER._replace(brake=0.049), 0.2, control)[3:] == (0.3, 0.049, 0.3)
     assert person_of(DRIVER._replace(hand_wheel_rad=-99.0), 0.2, control).road_wheel_rad == -0.6
-    assert person_of(DRIVER._replace(throttle=3.0, brake=-1.0), 0.2, control)[3:] == (1.0, 0.0, 1.0)
-    assert person_of(DRIVER._replace(brake=3.0), 0.2, control)[3:] == (0.0, 1.0, 0.3)
+    assert person_of(DRIVER._replace(throttle=1.0), 0.2, control)[3:] == (1.0, 0.0, 1.0)
+    assert person_of(DRIVER._replace(brake=1.0), 0.2, control)[3:] == (0.0, 1.0, 0.3)
 
 
 @pytest.mark.parametrize("name", ["wheel_validity", "throttle_validity", "brake_validity"])

@@ -4,6 +4,8 @@ import math
 from typing import Any
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from simconsole.devices.calibration.cockpit_settings import CockpitSettings
 from simconsole.devices.synthetic.script import ScriptSource
@@ -72,3 +74,21 @@ def test_script_for_another_cockpit_is_refused(
     reset = ScriptProfile(points=[ScriptPoint(time_s=0.0, press=["reset"])])
     with pytest.raises(ProfileError, match=r"points\[0\].press: value reset"):
         ScriptSource(reset, t500_settings._replace(reset_mask=0.0), tick_hz=HZ)
+
+
+SHARES = st.one_of(st.floats(0.0, 1.0), st.sampled_from([0.0, 1.0]))
+
+
+@given(st.lists(st.tuples(st.floats(0.001, 1.0), SHARES), min_size=1, max_size=8))
+def test_no_line_leaves_the_travel_of_its_pedal(
+    t500_settings: CockpitSettings, knots: list[tuple[float, float]]
+) -> None:
+    """No pedal of a scripted cockpit is clamped: between two shares of its travel lie only such."""
+    points, time_s = [], 0.0
+    for gap_s, share in knots:
+        time_s += gap_s
+        points.append(ScriptPoint(time_s=time_s, throttle=share))
+    source = ScriptSource(ScriptProfile(points=points), t500_settings, tick_hz=HZ)
+    ends = sorted((t500_settings.throttle_rest_raw, t500_settings.throttle_full_raw))
+    for tick in range(1, round(time_s * HZ) + 2):
+        assert ends[0] <= source.poll(tick).throttle_axis <= ends[1]

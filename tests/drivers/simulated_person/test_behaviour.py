@@ -1,6 +1,7 @@
 """What the simulated person decides, seen from outside: views in, intents out. No car."""
 
 import math
+import random
 
 import pytest
 
@@ -176,3 +177,26 @@ def test_foot_feels_for_the_bite() -> None:
 def test_plan_that_cannot_be_meant_is_refused(text: str, message: str) -> None:
     with pytest.raises(ProfileError, match=message):
         parse(text, PersonPlan, "plan.yaml")
+
+
+@pytest.mark.parametrize(
+    "habits", [Habits(), Habits(foot_per_s=20.0, bite_release_per_s=2.0, throttle_max=1.0, brake=1.0)]
+)
+@pytest.mark.parametrize("tick_hz", [50, 250])
+def test_feet_never_press_a_pedal_further_than_it_goes(habits: Habits, tick_hz: int) -> None:
+    """No pedal of the simulated cockpit is clamped: nobody asks for more than all or less than nothing."""
+    dice = random.Random(20261122)
+    plan = PersonPlan(habits=habits, sit_s=0.1, stop=When(time_s=60.0))
+    person, view, seen = PersonBehaviour(plan, tick_hz), STANDING, set()
+    for tick in range(100 * tick_hz):
+        if tick % 10 == 0:
+            view = view._replace(
+                speed_mps=dice.choice([0.0, dice.uniform(-1.0, 30.0)]),
+                engine_radps=dice.uniform(0.0, 500.0),
+                engine_running=float(dice.random() < 0.95),
+                gear=dice.choice([person.intent.gear, 0.0]),
+            )
+        intent = person.decide(view._replace(time_s=tick / tick_hz))
+        seen.add(person.phase)
+        assert all(0.0 <= pressed <= 1.0 for pressed in (intent.throttle, intent.brake, intent.clutch)), intent
+    assert {Phase.BITE, Phase.BRAKE, Phase.STAND} <= seen
