@@ -86,4 +86,4 @@ def test_a_motor_that_breaks_the_contract_is_found() -> None:
 def test_every_port_of_the_package_is_under_the_contract() -> None:
     package = ROOT / "simconsole" / "devices"
     ports = {path.stem for path in package.rglob("*.py") if "A `HapticPort`." in path.read_text("utf-8")}
-    assert ports == {"evdev_haptics", "sdl_haptics", "watched"}, "a new one belongs into `judge`"
+    assert ports == {"evdev_haptics", "sdl_haptics", "watchdog_client"}, "a new one belongs into `judge`"

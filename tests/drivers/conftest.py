@@ -13,6 +13,9 @@ from simconsole.drivers.path_tracker.tracker_settings import HATCHBACK, CarModel
 from simconsole.profiles.files.loader import load
 from simconsole.profiles.world import WorldProfile
 from simconsole.world.course import Course
+from tests.devices.conftest import sdl, t500
+
+__all__ = ["sdl", "t500"]  # fixtures: who sits in a cockpit needs one
 
 STEP_S = 0.002
 
