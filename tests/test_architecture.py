@@ -293,6 +293,19 @@ def test_importing_every_shell_loads_no_heavy_library() -> None:
     assert loaded_by(code, forbid=[*HEAVY]) == set()
 
 
+def test_profiles_are_the_only_door_to_yaml() -> None:
+    users = {
+        name
+        for name, path in modules().items()
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.Import | ast.ImportFrom)
+        if "yaml"
+        in {alias.name.partition(".")[0] for alias in node.names}
+        | {(getattr(node, "module", "") or "").partition(".")[0]}
+    }
+    assert users == {"simconsole.profiles.strict_yaml"}
+
+
 def test_nothing_linux_only_is_imported_at_module_level() -> None:
     found = {
         (module_name(path), name)

@@ -62,6 +62,12 @@ def to_text(profile: object) -> str:
     return _NOT_IN_YAML.sub(lambda match: f"\\u{ord(match[0]):04x}", text) + "\n"
 
 
+def to_yaml(profile: object) -> str:
+    """Return a profile as block YAML that a person can edit, in ASCII."""
+    text: str = yaml.safe_dump(msgspec.to_builtins(profile), sort_keys=False, allow_unicode=False, width=120)
+    return text
+
+
 class _Reader:
     """One pass over the events; the depth check comes before any recursion, so 20,000 brackets cost 32 calls."""
 

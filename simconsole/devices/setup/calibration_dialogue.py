@@ -6,9 +6,6 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, Final
 
-import msgspec
-import yaml
-
 from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.calibration.input_detection import SteadyReadings, steady_readings
 from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
@@ -17,6 +14,7 @@ from simconsole.devices.setup.device_commands import Pace, Say, answer, realtime
 from simconsole.devices.sources.raw_joysticks import RawJoysticks
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.profiles.device import CockpitProfile
+from simconsole.profiles.strict_yaml import to_yaml
 from simconsole.values.errors import DeviceError
 from simconsole.values.signals import Button
 from simconsole.values.units import RAD_PER_DEG
@@ -90,7 +88,7 @@ def write_profile(path: Path, profile: CockpitProfile) -> None:
     Raises:
         DeviceError: the file is there already or cannot be written.
     """
-    text = yaml.safe_dump(msgspec.to_builtins(profile), sort_keys=False, allow_unicode=False, width=120)
+    text = to_yaml(profile)
     try:
         with path.open("x", encoding="ascii") as file:
             file.write(text)
