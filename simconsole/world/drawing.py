@@ -50,14 +50,14 @@ def draw(course: Course) -> Drawing:
     for crossing in world.crossings:
         add_crossing(layers, course, crossing)
     return Drawing(
-        tuple(layers.surfaces),
-        tuple(layers.islands),
-        tuple(layers.edges),
-        tuple(layers.centre_lines),
-        tuple(layers.zebras),
-        tuple(layers.stop_lines),
-        tuple(layers.lights),
-        course.offset(0.0, 0.0, course.length_m, STEP_M),
+        surfaces=tuple(layers.surfaces),
+        islands=tuple(layers.islands),
+        edges=tuple(layers.edges),
+        centre_lines=tuple(layers.centre_lines),
+        zebras=tuple(layers.zebras),
+        stop_lines=tuple(layers.stop_lines),
+        lights=tuple(layers.lights),
+        path=course.offset(0.0, 0.0, course.length_m, STEP_M),
     )
 
 

@@ -87,29 +87,37 @@ def cockpit_settings(profile: CockpitProfile, tick_hz: int) -> CockpitSettings:
     gears += [0.0] * (GEARS - len(gears))
     sequential = shifter.pattern == "sequential"
     return CockpitSettings(
-        wheel.centre_raw,
-        wheel.dead_zone,
-        wheel.curve,
-        sign * 0.5 * wheel.lock_to_lock_deg * RAD_PER_DEG,
-        wheel.rate_filter_s,
-        profile.limits.rearm_deg * RAD_PER_DEG,
-        *_ends(pedals.throttle),
-        *_ends(pedals.brake),
-        *_ends(pedals.clutch),
-        *_ends(pedals.handbrake),
-        profile.limits.arming,
-        math.floor(profile.limits.stale_s * tick_hz + 1e-9) * 1.0,
-        round(shifter.neutral_dwell_s * tick_hz) * 1.0,
-        1.0 if sequential else 0.0,
-        float(shifter.top_gear if sequential else len(shifter.gears)),
-        0.0 if shifter.reverse is None else _mask(shifter.on, shifter.reverse),
-        *gears,
-        *(_role_mask(getattr(profile.buttons, name)) for name in Buttons.__struct_fields__),
+        wheel_centre_raw=wheel.centre_raw,
+        wheel_dead_raw=wheel.dead_zone,
+        wheel_curve=wheel.curve,
+        wheel_rad_per_raw=sign * 0.5 * wheel.lock_to_lock_deg * RAD_PER_DEG,
+        wheel_rate_filter_s=wheel.rate_filter_s,
+        wheel_rearm_rad=profile.limits.rearm_deg * RAD_PER_DEG,
+        **_travel("throttle", pedals.throttle),
+        **_travel("brake", pedals.brake),
+        **_travel("clutch", pedals.clutch),
+        **_travel("handbrake", pedals.handbrake),
+        arming_limit=profile.limits.arming,
+        stale_ticks=math.floor(profile.limits.stale_s * tick_hz + 1e-9) * 1.0,
+        neutral_dwell_ticks=round(shifter.neutral_dwell_s * tick_hz) * 1.0,
+        sequential=1.0 if sequential else 0.0,
+        top_gear=float(shifter.top_gear if sequential else len(shifter.gears)),
+        gear_reverse_mask=0.0 if shifter.reverse is None else _mask(shifter.on, shifter.reverse),
+        **{f"gear_{gear}_mask": mask for gear, mask in enumerate(gears, start=1)},
+        **{f"{role}_mask": _role_mask(getattr(profile.buttons, role)) for role in Buttons.__struct_fields__},
     )
 
 
-def _ends(pedal: PedalAxis | None) -> tuple[float, float, float, float]:
-    return (0.0, 0.0, 0.0, 1.0) if pedal is None else (pedal.rest_raw, pedal.full_raw, pedal.dead_zone, pedal.curve)
+def _travel(name: str, pedal: PedalAxis | None) -> dict[str, float]:
+    """Return the settings of one pedal; one that the cockpit has not reads 0."""
+    if pedal is None:
+        return {f"{name}_rest_raw": 0.0, f"{name}_full_raw": 0.0, f"{name}_dead": 0.0, f"{name}_curve": 1.0}
+    return {
+        f"{name}_rest_raw": pedal.rest_raw,
+        f"{name}_full_raw": pedal.full_raw,
+        f"{name}_dead": pedal.dead_zone,
+        f"{name}_curve": pedal.curve,
+    }
 
 
 def _role_mask(binding: ButtonBinding | None) -> float:

@@ -63,17 +63,21 @@ def raw_sample(intent: Intent, settings: CockpitSettings) -> DeviceSample:
     wheel_buttons, shifter_buttons, hat = button_masks(intent.gear, intent.pressed, settings)
     s = settings
     return DeviceSample(
-        wheel_raw(intent.hand_wheel_rad, s),
-        pedal_raw(intent.throttle, s.throttle_rest_raw, s.throttle_full_raw, s.throttle_dead, s.throttle_curve),
-        pedal_raw(intent.brake, s.brake_rest_raw, s.brake_full_raw, s.brake_dead, s.brake_curve),
-        pedal_raw(intent.clutch, s.clutch_rest_raw, s.clutch_full_raw, s.clutch_dead, s.clutch_curve),
-        pedal_raw(intent.handbrake, s.handbrake_rest_raw, s.handbrake_full_raw, s.handbrake_dead, s.handbrake_curve),
-        float(wheel_buttons),
-        float(shifter_buttons),
-        float((hat & HAT_RIGHT != 0) - (hat & HAT_LEFT != 0)),
-        float((hat & HAT_UP != 0) - (hat & HAT_DOWN != 0)),
-        0.0,
-        0.0,
-        0.0,
-        0.0,
+        wheel_axis=wheel_raw(intent.hand_wheel_rad, s),
+        throttle_axis=pedal_raw(
+            intent.throttle, s.throttle_rest_raw, s.throttle_full_raw, s.throttle_dead, s.throttle_curve
+        ),
+        brake_axis=pedal_raw(intent.brake, s.brake_rest_raw, s.brake_full_raw, s.brake_dead, s.brake_curve),
+        clutch_axis=pedal_raw(intent.clutch, s.clutch_rest_raw, s.clutch_full_raw, s.clutch_dead, s.clutch_curve),
+        handbrake_axis=pedal_raw(
+            intent.handbrake, s.handbrake_rest_raw, s.handbrake_full_raw, s.handbrake_dead, s.handbrake_curve
+        ),
+        wheel_buttons=float(wheel_buttons),
+        shifter_buttons=float(shifter_buttons),
+        hat_x=float((hat & HAT_RIGHT != 0) - (hat & HAT_LEFT != 0)),
+        hat_y=float((hat & HAT_UP != 0) - (hat & HAT_DOWN != 0)),
+        wheel_age_ticks=0.0,
+        pedals_age_ticks=0.0,
+        shifter_age_ticks=0.0,
+        handbrake_age_ticks=0.0,
     )

@@ -204,15 +204,15 @@ def limited_torque(
     raw_nm = parts.car_nm + parts.servo_nm + parts.guide_nm + parts.effects_nm
     wished_nm = ramp * soft_clip(raw_nm, force)
     return WheelTorque(
-        approach(before.torque_nm, wished_nm, force.slew_nm),
-        parts.car_nm,
-        parts.servo_nm,
-        parts.guide_nm,
-        ramp,
-        1.0 if abs(raw_nm) > force.max_torque_nm else 0.0,
-        1.0,
-        estimated.human_nm,
-        estimated.hands_on,
+        torque_nm=approach(before.torque_nm, wished_nm, force.slew_nm),
+        car_nm=parts.car_nm,
+        servo_nm=parts.servo_nm,
+        guide_nm=parts.guide_nm,
+        ramp=ramp,
+        clipped=1.0 if abs(raw_nm) > force.max_torque_nm else 0.0,
+        enabled=1.0,
+        human_nm=estimated.human_nm,
+        hands_on=estimated.hands_on,
     )
 
 
@@ -302,7 +302,17 @@ def wheel_torque(
     driven = follows or mode in (_MANUAL, _SHARED)
     enabled = live and target.known and driven and int(events) & _STANDING == 0
     ramp = approach(before.ramp, 1.0, force.ramp_per_tick) if enabled else 0.0
-    torque = WheelTorque(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, estimated.human_nm, estimated.hands_on)
+    torque = WheelTorque(
+        torque_nm=0.0,
+        car_nm=0.0,
+        servo_nm=0.0,
+        guide_nm=0.0,
+        ramp=0.0,
+        clipped=0.0,
+        enabled=0.0,
+        human_nm=estimated.human_nm,
+        hands_on=estimated.hands_on,
+    )
     if enabled:
         guided = arbitration.remote_guidance if mode == _SHARED else 0.0
         parts = torque_parts(follows, target.rim, rim, vehicle, target.asked, guided, force)
@@ -312,16 +322,16 @@ def wheel_torque(
         driver, estimated, target.rim, share, watching, live, memory, force, rate_filter_s, tick_s
     )
     return torque, WheelMemory(
-        1.0 if live else 0.0,
-        estimated.rad,
-        estimated.radps,
-        motor_nm,
-        estimated.hands_nm,
-        target.rim.rad,
-        unattended.rad,
-        unattended.radps,
-        unattended.motor_nm,
-        unattended.explained_rad,
-        unattended.explained_radps,
-        target.asked.slow_rad,
+        live=1.0 if live else 0.0,
+        wheel_rad=estimated.rad,
+        wheel_radps=estimated.radps,
+        motor_nm=motor_nm,
+        hands_nm=estimated.hands_nm,
+        target_rad=target.rim.rad,
+        model_rad=unattended.rad,
+        model_radps=unattended.radps,
+        model_nm=unattended.motor_nm,
+        explained_rad=unattended.explained_rad,
+        explained_radps=unattended.explained_radps,
+        guide_rad=target.asked.slow_rad,
     )

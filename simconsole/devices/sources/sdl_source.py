@@ -57,13 +57,15 @@ def connected_joysticks(pygame: Any) -> list[tuple[JoystickInfo, Any]]:
     joysticks = []
     for index in range(pygame.joystick.get_count()):
         joystick = pygame.joystick.Joystick(index)
+        vendor_id, product_id = identity(joystick.get_guid())
         entry = JoystickInfo(
-            *identity(joystick.get_guid()),
-            joystick.get_name(),
-            joystick.get_instance_id(),
-            joystick.get_numaxes(),
-            joystick.get_numbuttons(),
-            joystick.get_numhats(),
+            vendor_id=vendor_id,
+            product_id=product_id,
+            name=joystick.get_name(),
+            instance_id=joystick.get_instance_id(),
+            axes=joystick.get_numaxes(),
+            buttons=joystick.get_numbuttons(),
+            hats=joystick.get_numhats(),
         )
         joysticks.append((entry, joystick))
     return joysticks
@@ -127,19 +129,19 @@ class SdlSource:
         angle, wheel_buttons, hat_x, hat_y = self._wheel
         throttle, brake, clutch = self._pedals
         return DeviceSample(
-            angle,
-            throttle,
-            brake,
-            clutch,
-            self._handbrake,
-            wheel_buttons,
-            self._shifter,
-            hat_x,
-            hat_y,
-            NEVER_TICKS if wheel is None else 0.0,
-            NEVER_TICKS if pedals is None else 0.0,
-            NEVER_TICKS if shifter is None else 0.0,
-            NEVER_TICKS if hand is None else 0.0,
+            wheel_axis=angle,
+            throttle_axis=throttle,
+            brake_axis=brake,
+            clutch_axis=clutch,
+            handbrake_axis=self._handbrake,
+            wheel_buttons=wheel_buttons,
+            shifter_buttons=self._shifter,
+            hat_x=hat_x,
+            hat_y=hat_y,
+            wheel_age_ticks=NEVER_TICKS if wheel is None else 0.0,
+            pedals_age_ticks=NEVER_TICKS if pedals is None else 0.0,
+            shifter_age_ticks=NEVER_TICKS if shifter is None else 0.0,
+            handbrake_age_ticks=NEVER_TICKS if hand is None else 0.0,
         )
 
     def instance_id(self, role: RoleName) -> int | None:

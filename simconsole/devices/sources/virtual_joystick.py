@@ -68,7 +68,16 @@ def specs(profile: CockpitProfile) -> list[VirtualSpec]:
             if pedal is not None and profile.played_by(name) == binding.role:
                 rest[pedal.axis] = pedal.rest_raw
         is_wheel = binding.role == "wheel" or (key in made and made[key].is_wheel)
-        made[key] = VirtualSpec(binding.name, *key, binding.axes, binding.buttons, binding.hats, tuple(rest), is_wheel)
+        made[key] = VirtualSpec(
+            name=binding.name,
+            vendor_id=binding.vendor_id,
+            product_id=binding.product_id,
+            axes=binding.axes,
+            buttons=binding.buttons,
+            hats=binding.hats,
+            rest=tuple(rest),
+            is_wheel=is_wheel,
+        )
     return list(made.values())
 
 

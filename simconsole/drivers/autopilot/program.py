@@ -127,7 +127,14 @@ def motion_of(odometry: Any) -> VehicleMotion | None:
     pose, twist = odometry.pose.pose, odometry.twist.twist
     q = pose.orientation
     yaw = math.atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z))
-    seen = VehicleMotion(pose.position.x, pose.position.y, yaw, twist.linear.x, twist.linear.y, twist.angular.z)
+    seen = VehicleMotion(
+        x_m=pose.position.x,
+        y_m=pose.position.y,
+        yaw_rad=yaw,
+        vx_mps=twist.linear.x,
+        vy_mps=twist.linear.y,
+        yaw_rate_radps=twist.angular.z,
+    )
     return seen if all(map(math.isfinite, seen)) else None
 
 

@@ -50,16 +50,16 @@ def view_of(snapshot: Snapshot) -> View:
     """Return what a snapshot shows."""
     vehicle = snapshot.vehicle
     return View(
-        snapshot.t_s,
-        vehicle.x_m,
-        vehicle.y_m,
-        vehicle.yaw_rad,
-        vehicle.vx_mps,
-        vehicle.distance_m,
-        vehicle.engine_radps,
-        vehicle.engine_running,
-        vehicle.gear,
-        snapshot.arbitration.mode,
+        time_s=snapshot.t_s,
+        x_m=vehicle.x_m,
+        y_m=vehicle.y_m,
+        yaw_rad=vehicle.yaw_rad,
+        speed_mps=vehicle.vx_mps,
+        distance_m=vehicle.distance_m,
+        engine_radps=vehicle.engine_radps,
+        engine_running=vehicle.engine_running,
+        gear=vehicle.gear,
+        mode=snapshot.arbitration.mode,
     )
 
 
