@@ -5,7 +5,7 @@ from simconsole.devices.calibration.inverse_calibration import Intent, raw_sampl
 from simconsole.devices.force_feedback.simulated_wheel import RELAXED, STEERING, SimulatedWheel
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.drivers.simulated_person.behaviour import PersonBehaviour
-from simconsole.drivers.simulated_person.launch import view_of
+from simconsole.drivers.simulated_person.view import view_of
 from simconsole.profiles.person import PersonPlan
 from simconsole.values.state_vector import Snapshot
 

@@ -4,6 +4,8 @@ from collections.abc import Callable
 from typing import Final
 
 from simconsole.devices.calibration.inverse_calibration import Intent
+from simconsole.drivers.line_keeper import X_AXIS, state_feedback
+from simconsole.drivers.speed_holder import SpeedHolder
 from simconsole.values.signals import Mode
 from simconsole.values.state_vector import Snapshot
 from simconsole.values.units import MPS_PER_KMH
@@ -12,17 +14,6 @@ SETTLE_S: Final = 0.6
 """Pedals at rest until the console has seen them; and what the automatic needs to leave its gear."""
 SPARE_MPS: Final = 1.0
 """The run-up goes beyond the test's speed; the car rolls down to it with nothing pressed."""
-SPEED_GAIN_PER_MPS: Final = 0.35
-LEARNING_PER_M: Final = 0.1
-NEAR_MPS: Final = 3.0
-"""Only this near to the wanted speed does the foot learn what holds it."""
-
-# Back to the line: by where the car will be a moment on, its heading, and its yaw rate against overdoing it.
-LINE_GAIN_RADPM: Final = 0.12
-LINE_AHEAD_M: Final = 1.3
-HEADING_GAIN: Final = 0.9
-YAW_RATE_GAIN_S: Final = 0.25
-MOST_ROAD_WHEEL_RAD: Final = 0.5
 
 Pilot = Callable[[Snapshot], Intent | None]
 """Looks at the last tick and says what hands and feet do now; None ends the drive."""
@@ -33,9 +24,7 @@ Steps = Callable[[Snapshot, float], Intent | None]
 def keep_line(snapshot: Snapshot, ratio: float) -> float:
     """Return the hand-wheel angle in rad that keeps the car on the x axis."""
     seen = snapshot.vehicle
-    wanted = -LINE_GAIN_RADPM * (seen.y_m + LINE_AHEAD_M * seen.yaw_rad)
-    wanted -= HEADING_GAIN * seen.yaw_rad + YAW_RATE_GAIN_S * seen.yaw_rate_radps
-    return ratio * min(MOST_ROAD_WHEEL_RAD, max(-MOST_ROAD_WHEEL_RAD, wanted))
+    return ratio * state_feedback(X_AXIS.deviation(seen.x_m, seen.y_m, seen.yaw_rad), seen.yaw_rate_radps)
 
 
 class RunUp:
@@ -57,7 +46,7 @@ class RunUp:
         self._rolling = rolling
         self._most = most
         self._released_s: float | None = None
-        self._hold = HoldSpeed(self._speed_mps)
+        self._hold = SpeedHolder(self._speed_mps)
         self.began_tick: int | None = None
         """The last tick before the test."""
 
@@ -70,7 +59,7 @@ class RunUp:
         hand = keep_line(snapshot, self._ratio)
         speed = snapshot.vehicle.vx_mps
         if not self._rolling:
-            if self._hold.settled(snapshot):
+            if self._hold.settled:
                 return self._begin(snapshot)
             return Intent(hand_wheel_rad=hand, throttle=min(self._most, self._hold(snapshot)), gear=1.0)
         if self._released_s is None and speed < self._speed_mps + SPARE_MPS:
@@ -84,25 +73,3 @@ class RunUp:
     def _begin(self, snapshot: Snapshot) -> Intent | None:
         self.began_tick = snapshot.tick
         return self._steps(snapshot, 0.0)
-
-
-class HoldSpeed:
-    """A foot that holds a speed: proportional, with an integral that only learns near it."""
-
-    def __init__(self, speed_mps: float) -> None:
-        self._speed_mps = speed_mps
-        self._learnt = 0.0
-        self._near_s = 0.0
-
-    def __call__(self, snapshot: Snapshot) -> float:
-        """Return the throttle."""
-        missing = self._speed_mps - snapshot.vehicle.vx_mps
-        if abs(missing) < NEAR_MPS:
-            self._learnt += LEARNING_PER_M * missing / snapshot.tick_hz
-        self._near_s = self._near_s + 1.0 / snapshot.tick_hz if abs(missing) < 0.1 else 0.0
-        self._learnt = min(1.0, max(0.0, self._learnt))
-        return min(1.0, max(0.0, SPEED_GAIN_PER_MPS * missing + self._learnt))
-
-    def settled(self, snapshot: Snapshot) -> bool:
-        """Return whether the speed has been held for a second."""
-        return self._near_s > 1.0

@@ -6,15 +6,11 @@ from enum import Enum, auto
 from typing import Final, NamedTuple
 
 from simconsole.devices.calibration.inverse_calibration import Intent
-from simconsole.drivers.simulated_person.launch import (
-    Line,
-    View,
-    clutch_through_bite,
-    hold_speed,
-    launch_throttle,
-    steer_along,
-)
-from simconsole.profiles.person import PersonPlan, When
+from simconsole.drivers.line_keeper import Line, pure_pursuit
+from simconsole.drivers.simulated_person.launch import clutch_through_bite, launch_throttle
+from simconsole.drivers.simulated_person.view import View
+from simconsole.drivers.speed_holder import hold_speed
+from simconsole.profiles.person import Habits, PersonPlan, When
 from simconsole.values.signals import Button, Mode
 from simconsole.values.units import MPS_PER_KMH, RAD_PER_DEG, RADPS_PER_RPM
 
@@ -287,6 +283,13 @@ class PersonBehaviour:
             clutch=_towards(now.clutch, feet.clutch, foot),
             pressed=int(Button.AUTONOMOUS) if pressing else 0,
         )
+
+
+def steer_along(line: Line, view: View, habits: Habits) -> float:
+    """Return the hand-wheel angle in rad that leads back to the line."""
+    ahead_m = max(habits.look_ahead_min_m, abs(view.speed_mps) * habits.look_ahead_s)
+    beside = line.deviation(view.x_m, view.y_m, view.yaw_rad)
+    return pure_pursuit(beside, ahead_m, habits.wheelbase_m) * habits.steering_ratio
 
 
 def _towards(value: float, target: float, step: float) -> float:

@@ -3,7 +3,8 @@
 import numpy as np
 
 from simconsole.devices.calibration.inverse_calibration import Intent
-from simconsole.drivers.manoeuvre_driver.run_up import HoldSpeed, RunUp
+from simconsole.drivers.manoeuvre_driver.run_up import RunUp
+from simconsole.drivers.speed_holder import SpeedHolder
 from simconsole.evaluation.manoeuvres.attempt import Attempt, Driving, Line, Panel, Result, part, traces, undriven
 from simconsole.evaluation.metrics.table import Array, Drive
 from simconsole.profiles.manoeuvre import SteadyCircle, StepSteer
@@ -18,7 +19,7 @@ SMOOTHED_S = 0.5
 
 def steady_circle(spec: SteadyCircle, car: Platform) -> Driving:
     """Turn the hand wheel slowly at constant speed until the car grips no more (or the wheel is at its stop)."""
-    hold = HoldSpeed(spec.speed_kmh * MPS_PER_KMH)
+    hold = SpeedHolder(spec.speed_kmh * MPS_PER_KMH)
 
     def turn(snapshot: Snapshot, time_s: float) -> Intent | None:
         hand = spec.hand_wheel_degps * RAD_PER_DEG * time_s

@@ -6,15 +6,11 @@ import random
 import pytest
 
 from simconsole.devices.calibration.inverse_calibration import Intent
-from simconsole.drivers.simulated_person.behaviour import PersonBehaviour, Phase
-from simconsole.drivers.simulated_person.launch import (
-    Line,
-    View,
-    clutch_through_bite,
-    hold_speed,
-    launch_throttle,
-    steer_along,
-)
+from simconsole.drivers.line_keeper import Line
+from simconsole.drivers.simulated_person.behaviour import PersonBehaviour, Phase, steer_along
+from simconsole.drivers.simulated_person.launch import clutch_through_bite, launch_throttle
+from simconsole.drivers.simulated_person.view import View
+from simconsole.drivers.speed_holder import hold_speed
 from simconsole.profiles.files.loader import parse
 from simconsole.profiles.person import Habits, PersonPlan, When
 from simconsole.values.errors import ProfileError

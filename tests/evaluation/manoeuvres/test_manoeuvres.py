@@ -5,9 +5,10 @@ import math
 import numpy as np
 import pytest
 
+from simconsole.drivers.manoeuvre_driver.lane_changer import course_of, path_at
 from simconsole.evaluation.manoeuvres.attempt import Attempt
 from simconsole.evaluation.manoeuvres.braking import straight_braking
-from simconsole.evaluation.manoeuvres.lane_change import course_of, least_room_m, path_at
+from simconsole.evaluation.manoeuvres.lane_change import least_room_m
 from simconsole.evaluation.manoeuvres.library import drive_manoeuvre
 from simconsole.evaluation.manoeuvres.observed import observed
 from simconsole.evaluation.manoeuvres.sine_with_dwell import completion_s, wave
