@@ -248,13 +248,14 @@ def calibrate(
     edges = held & ~_held(before, sample, int(previous.pressed), settings)
     shifted = Lever(previous.gear, previous.shifter_validity, previous.neutral_ticks, previous.lever_fault)
     shift = lever(sample, edges, bad_ticks, shifted, settings)
+    handbrake = 1.0 if held & HANDBRAKE != 0 else feet.handbrake.pressed
     return DriverInput(
         hand_wheel_rad=angle.rad,
         hand_wheel_radps=angle.radps,
         throttle=feet.throttle.pressed,
         brake=feet.brake.pressed,
         clutch=feet.clutch.pressed,
-        handbrake=1.0 if held & HANDBRAKE != 0 else feet.handbrake.pressed,
+        handbrake=handbrake,
         gear=shift.gear,
         pressed=float(held),
         edges=float(edges),
