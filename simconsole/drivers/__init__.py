@@ -1,1 +1,1 @@
-"""Everything that drives."""
+"""Everything that drives. `cockpit` and `autopilot` touch devices and sockets; all else is pure."""

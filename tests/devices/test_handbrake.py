@@ -39,19 +39,19 @@ class Drive:
 
     def __init__(self, cockpit: CockpitProfile, *, reverse_order: bool = False) -> None:
         self.plugged = VirtualCockpit(cockpit, reverse_order=reverse_order)
-        self.seat = CalibrationRun(cockpit_settings(cockpit, TICK_HZ))
+        self.calibration = CalibrationRun(cockpit_settings(cockpit, TICK_HZ))
         self.source: SdlSource | None = None
         self.tick = 0
 
     def do(self, intent: Intent, ticks: int = 1) -> DriverInput:
-        self.plugged.write(raw_sample(intent, self.seat.settings))
+        self.plugged.write(raw_sample(intent, self.calibration.settings))
         return self.poll(ticks)
 
     def poll(self, ticks: int = 1) -> DriverInput:
         assert self.source is not None
         for _ in range(ticks):
             self.tick += 1
-            driver = self.seat.calibrate(self.source.poll(self.tick))
+            driver = self.calibration.calibrate(self.source.poll(self.tick))
         return driver
 
     def close(self) -> None:
@@ -121,19 +121,19 @@ def test_lost_pedals_leave_the_handbrake(drive: Drive) -> None:
 
 
 def test_pulled_at_the_start_counts_only_after_it_was_let_go(cockpit: CockpitProfile) -> None:
-    seat = CalibrationRun(cockpit_settings(cockpit, TICK_HZ))
-    driver = seat.do(Intent(handbrake=1.0), ticks=10)
+    calibration = CalibrationRun(cockpit_settings(cockpit, TICK_HZ))
+    driver = calibration.do(Intent(handbrake=1.0), ticks=10)
     assert (driver.handbrake, driver.handbrake_validity, driver.brake_validity) == (0.0, UNKNOWN, LIVE)
-    seat.do(Intent())
-    assert seat.do(Intent(handbrake=1.0)).handbrake == 1.0
+    calibration.do(Intent())
+    assert calibration.do(Intent(handbrake=1.0)).handbrake == 1.0
 
 
 def test_silent_handbrake_is_held_for_the_limit_and_then_released(cockpit: CockpitProfile) -> None:
-    seat = CalibrationRun(cockpit_settings(cockpit, TICK_HZ))
-    seat.do(ticks=2)
-    held = seat.do(Intent(handbrake=0.8), handbrake_age_ticks=25.0)
+    calibration = CalibrationRun(cockpit_settings(cockpit, TICK_HZ))
+    calibration.do(ticks=2)
+    held = calibration.do(Intent(handbrake=0.8), handbrake_age_ticks=25.0)
     assert held.handbrake == pytest.approx(0.8)
-    silent = seat.do(Intent(handbrake=0.8), handbrake_age_ticks=26.0)
+    silent = calibration.do(Intent(handbrake=0.8), handbrake_age_ticks=26.0)
     assert (silent.handbrake, silent.handbrake_validity, silent.brake_validity) == (0.0, STALE, LIVE)
 
 

@@ -21,7 +21,7 @@ class Bench:
     def __init__(self, cockpit: CockpitProfile, source: SdlSource) -> None:
         self.cockpit = cockpit
         self.source = source
-        self.seat = CalibrationRun(cockpit_settings(cockpit, HZ))
+        self.calibration = CalibrationRun(cockpit_settings(cockpit, HZ))
         self.tick = 0
 
     def watch(self, duration_s: float) -> list[tuple[DeviceSample, DriverInput]]:
@@ -31,7 +31,7 @@ class Bench:
             time.sleep(max(0.0, start_s + number / HZ - time.monotonic()))
             self.tick += 1
             sample = self.source.poll(self.tick)
-            seen.append((sample, self.seat.calibrate(sample)))
+            seen.append((sample, self.calibration.calibrate(sample)))
         return seen
 
 

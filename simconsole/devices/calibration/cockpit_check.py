@@ -1,4 +1,4 @@
-"""What a look at the cockpit finds: the range of every axis, the buttons that fired, what is wrong. Pure."""
+"""Check of a cockpit while somebody tries it: ranges of its axes, buttons that fired, what is wrong. Pure."""
 
 from typing import Any, Final
 

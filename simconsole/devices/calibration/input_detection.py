@@ -1,6 +1,6 @@
-"""What a cockpit's raw readings teach: which axis moved, where it rests and ends, which button is held. Pure.
+"""Detection of inputs in raw readings: which axis moved, where it rests and ends, which button is held. Pure.
 
-A reading is taken while the person holds still, so that nothing here depends on how fast anybody moves.
+Readings are taken while the person holds still, so that nothing here depends on how fast anybody moves.
 """
 
 import math
@@ -14,13 +14,13 @@ DeviceKey = tuple[int, int]
 """USB vendor and product id."""
 
 MOVED_RAW: Final = MIN_TRAVEL_RAW
-"""An axis that is held further than this from its rest was meant."""
+"""An axis that is held further than this from its rest is the one that the person moves."""
 CLEAR: Final = 2.0
-"""The axis that was meant moved this many times as far as any other."""
+"""The axis that the person moves goes this many times as far as any other."""
 LEAST_DEAD_ZONE: Final = 0.02
 MOST_DEAD_ZONE: Final = 0.3
 BUTTONS: Final = 24
-"""As many of a device are looked at; beyond them lie the four directions of its hat (lever.py)."""
+"""How many buttons of a device are looked at; the four directions of its hat follow them (cockpit_settings.py)."""
 HATS: Final = ("left", "right", "up", "down")
 END_MARGIN: Final = 0.01
 """Share of a pedal's travel that is left out at its end, so that a foot reaches all of it every time."""

@@ -1,4 +1,7 @@
-"""The inverse of calibration: what the axes would read if a person did this. Pure; for scripts and simulated people."""
+"""The inverse of calibration, for scripts and simulated people: from what a person does to raw axes. Pure.
+
+Pedals come in as 0 to 1 and are not clamped: scripts are bounded by their profile, simulated feet by their control.
+"""
 
 from typing import Final, NamedTuple
 

@@ -1,6 +1,6 @@
 """Calibration step by step: what is asked, in which order, and the profile that comes of it.
 
-The world outside is three functions: ask a question, say a line, look at the devices for a moment.
+It reaches the outside through three functions: ask a question, print a line, read the devices while they are held.
 """
 
 from collections.abc import Callable

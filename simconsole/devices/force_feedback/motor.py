@@ -46,7 +46,7 @@ class HapticPort(Protocol):
         """End every effect at once. Twice is harmless."""
 
     def close(self) -> None:
-        """Stop, leave the wheel as a desk finds it, let go. Twice is harmless."""
+        """Stop, set gain and autocentre for other programs, release the device. A second call does nothing."""
 
 
 class NoHaptics:
@@ -111,7 +111,7 @@ class SimulatedWheelPort:
 
 
 class WheelMotor:
-    """A `Station` that turns the row's torque into the device's effect."""
+    """A `Station` that turns each tick's torque into the device's effect."""
 
     hop = Hop.TORQUE
 
@@ -122,7 +122,7 @@ class WheelMotor:
         clock_s: Callable[[Snapshot], float],
         say: Callable[[str], None] = lambda line: None,
     ) -> None:
-        """Take hold of the motor, without force.
+        """Open without force.
 
         Args:
             port: The device.
@@ -180,7 +180,7 @@ class WheelMotor:
             self._say("force feedback is back")
 
     def close(self) -> None:
-        """Let go of the wheel; a device that is gone already is no error."""
+        """Release the wheel; a device that is gone already is no error."""
         self._runs, self._level = False, 0.0
         try:
             self._port.close()

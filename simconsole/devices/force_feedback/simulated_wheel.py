@@ -1,4 +1,4 @@
-"""A wheel that is not there, with motor, friction and a person's arms: what force feedback acts on without hardware.
+"""A simulated wheel with motor, friction and a person's arms: what force feedback acts on without hardware.
 
 Pure. Its angle goes into the virtual device's axis and comes back through the joystick as any other wheel's does.
 """
@@ -14,7 +14,7 @@ from simconsole.values.units import RAD_PER_DEG
 
 STEP_S: Final = 0.001
 LAG_S: Final = 0.002
-"""The motor's own, beside the delay of the way to it."""
+"""Lag of the motor itself; the delay on the way to it comes on top."""
 
 
 class Arm(NamedTuple):
@@ -36,7 +36,7 @@ STEERING: Final = Arm(50.0, 1.6, 0.03, 12.0, 0.0)
 
 
 class WheelBody(NamedTuple):
-    """The machine."""
+    """The mechanics of the wheel."""
 
     inertia_kgm2: float
     damping_nms: float
@@ -87,7 +87,7 @@ class SimulatedWheel:
     """One wheel. `write` and `run` are its motor's effect, `turn` lets a tick pass."""
 
     def __init__(self, force: ForceFeedback, lock_to_lock_deg: float, *, tick_hz: int, step: Step = step_wheel) -> None:
-        """Put it on the table, straight.
+        """Begin at rest, straight ahead.
 
         Args:
             force: The profile of the wheel that it plays.

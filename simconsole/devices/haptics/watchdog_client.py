@@ -1,4 +1,4 @@
-"""The console's side of the watchdog: a motor that says with every start of its effects that somebody is there."""
+"""The console's side of the watchdog: a motor that sends a heartbeat with every start of its effects."""
 
 import json
 import mmap
@@ -19,7 +19,7 @@ END_S: Final = 2.0
 
 
 class Watchdog:
-    """One for a cockpit's wheel, however often it is plugged in again."""
+    """The watchdog of a cockpit's wheel; one serves however often the wheel is plugged in again."""
 
     def __init__(self, identity: tuple[int, int]) -> None:
         """Start it.
@@ -50,12 +50,12 @@ class Watchdog:
         return None if self._process is None or self._process.poll() is not None else self._process.pid
 
     def beat(self, force: bool) -> None:
-        """Say that the loop lives, and whether it leaves force on the wheel."""
+        """Count a heartbeat, and tell whether force stays on the wheel."""
         self._words[FORCE] = int(force)
         self._words[BEATS] += 1
 
     def close(self) -> None:
-        """Send it home. Twice is harmless."""
+        """End its process. A second call does nothing."""
         process, self._process = self._process, None
         if process is None:
             return
@@ -70,7 +70,7 @@ class Watchdog:
 
 
 class WatchdogPort:
-    """A motor whose every start is a beat. A `HapticPort`."""
+    """A motor that sends a heartbeat with every start. A `HapticPort`."""
 
     def __init__(self, port: HapticPort, watchdog: Watchdog) -> None:
         self._port = port
@@ -86,17 +86,17 @@ class WatchdogPort:
         self._port.write(level)
 
     def start(self) -> None:
-        """Start the effects, and say so."""
+        """Send a heartbeat, then start the effects."""
         self._watchdog.beat(force=True)  # first: a console that stops in between is watched already
         self._port.start()
 
     def stop(self) -> None:
-        """End them, and say that nothing is left to watch."""
+        """End them, and tell the watchdog that no force is left."""
         self._port.stop()
         self._watchdog.beat(force=False)
 
     def close(self) -> None:
-        """Let go. The watchdog stays, for the wheel that is plugged in again."""
+        """Release the motor. The watchdog stays for a wheel that is plugged in again."""
         self._port.close()
         self._watchdog.beat(force=False)
 

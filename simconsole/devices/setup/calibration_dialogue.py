@@ -97,7 +97,7 @@ def write_profile(path: Path, profile: CockpitProfile) -> None:
 
 
 class _Hands:
-    """Virtual devices with somebody at them who does what a step asks for."""
+    """Virtual devices that do what each step asks for."""
 
     def __init__(self, cockpit: CockpitProfile) -> None:
         self._cockpit = VirtualCockpit(cockpit)

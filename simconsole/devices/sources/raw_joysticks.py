@@ -1,4 +1,4 @@
-"""Every joystick as it is, whatever it is: what calibration reads before anything is known about a cockpit."""
+"""Raw readings of every joystick: what the calibration wizard reads before a cockpit has a profile."""
 
 from typing import Self
 

@@ -1,4 +1,4 @@
-"""The trace format: raw device samples as readable lines, one per tick. Pure; opening files is record.py's.
+"""The trace format: raw device samples as readable lines, one per tick. Pure; sources/trace_files.py opens the files.
 
 ::
 
@@ -138,7 +138,7 @@ def aged(sample: DeviceSample, ticks: float) -> DeviceSample:
 
 
 class TracePlayer:
-    """Plays rows: the first poll gives the first row. After the last row the devices fall silent, not still."""
+    """Plays rows: the first poll gives the first row. After the last row the devices are silent: their ages grow."""
 
     def __init__(self, rows: Iterator[tuple[int, DeviceSample]]) -> None:
         self._rows = rows

@@ -1,1 +1,1 @@
-"""A simulated person in the seat."""
+"""The simulated person at a virtual cockpit: this folder touches devices."""

@@ -1,4 +1,4 @@
-"""The simulated person in the seat: works virtual devices by what the last tick showed, never past the joystick."""
+"""The simulated person at virtual devices: sees the last tick, and acts through joysticks only."""
 
 from simconsole.devices.calibration.cockpit_settings import CockpitSettings
 from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
@@ -22,12 +22,12 @@ class SimulatedPerson:
         tick_hz: int,
         wheel: SimulatedWheel | None = None,
     ) -> None:
-        """Sit down.
+        """Put the person at the devices.
 
         Args:
             plan: What to do.
             cockpit: The virtual devices to work.
-            settings: The cockpit's, as `calibrate` gets them: a person knows their pedals.
+            settings: The cockpit's, as `calibrate` gets them: a person knows their own pedals.
             tick_hz: The session's tick rate.
             wheel: The wheel between the hands and the axis, with its motor; None: the axis is where the hands are.
         """
@@ -57,7 +57,7 @@ class SimulatedPerson:
             self._written = now
 
     def _turn(self, wheel: SimulatedWheel, hands_rad: float) -> float:
-        """Let a tick pass at the wheel: hands that rest go along with it, hands that steer pull it to their place."""
+        """Advance the wheel by a tick: resting hands go along with it, steering hands pull it to where they want it."""
         if not self.person.rests_hands:
             return wheel.turn(STEERING, hands_rad)
         angle_rad = wheel.turn(RELAXED)

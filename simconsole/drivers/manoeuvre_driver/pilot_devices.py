@@ -1,4 +1,4 @@
-"""The test driver in the seat: a pilot's hands and feet as the axes of the cockpit."""
+"""The test driver's cockpit: a pilot's hands and feet as raw axes. Pure."""
 
 from simconsole.devices.calibration.cockpit_settings import CockpitSettings
 from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
@@ -8,7 +8,7 @@ from simconsole.values.state_vector import Snapshot
 
 
 class PilotDevices:
-    """Seat and cockpit in one (ports.py): `act` sees the last tick, `poll` gives the coming one its sample."""
+    """A `Seat` and a `DeviceSource` in one (values/protocols.py): `act` sees a tick, `poll` answers it."""
 
     def __init__(self, pilot: Pilot, settings: CockpitSettings) -> None:
         self._pilot = pilot
@@ -17,7 +17,7 @@ class PilotDevices:
         self.finished = False
 
     def act(self, snapshot: Snapshot) -> None:
-        """Let the pilot look and move."""
+        """Ask the pilot what to do in the coming tick."""
         intent = self._pilot(snapshot)
         if intent is None:
             self.finished = True

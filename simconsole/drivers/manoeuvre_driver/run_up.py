@@ -1,4 +1,4 @@
-"""A test driver's skills: get to a speed, let the car roll, keep to a line. The car works clutch and gears itself."""
+"""How a test driver gets to the speed of a manoeuvre, on a straight line. The car is an automatic. Pure."""
 
 from collections.abc import Callable
 from typing import Final
@@ -31,7 +31,7 @@ class RunUp:
     """A pilot that gets to a speed on the x axis and then hands over to the test."""
 
     def __init__(self, speed_kmh: float, ratio: float, steps: Steps, rolling: bool = True, most: float = 1.0) -> None:
-        """Take the seat.
+        """Prepare the run-up.
 
         Args:
             speed_kmh: at which the test begins.

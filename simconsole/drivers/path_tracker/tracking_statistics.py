@@ -1,4 +1,4 @@
-"""What the autopilot counts while it drives."""
+"""Statistics of a drive of the autopilot."""
 
 import math
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""One drive of a manoeuvre, and what a manoeuvre yields: the words that drivers, evaluation and report share."""
+"""One drive of a manoeuvre, and what a manoeuvre yields: the records that drivers, evaluation and report share."""
 
 from collections.abc import Generator
 from typing import NamedTuple, TypeAlias
@@ -49,7 +49,7 @@ def undriven(attempt: str, speed_kmh: float) -> Result:
 
 
 Driving: TypeAlias = Generator[Attempt, Drive, Result]
-"""A manoeuvre at work: it asks for drives one after the other and gets each back as driven."""
+"""A running manoeuvre: it yields one attempt after the other and is sent the drive of each."""
 
 
 def traces(title: str, y_label: str, drives: dict[str, tuple[Drive, Array]], every: int = 5) -> Panel:

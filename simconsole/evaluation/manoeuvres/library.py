@@ -20,7 +20,7 @@ from simconsole.values.platform import Platform
 
 
 def drive_manoeuvre(spec: Manoeuvre, car: Platform, duration_s: float) -> Driving:
-    """Return the manoeuvre at work: it yields `Attempt`s, takes their drives and returns its `Result`.
+    """Return the running manoeuvre: it yields `Attempt`s, takes their drives and returns its `Result`.
 
     Args:
         spec: its description.

@@ -25,15 +25,15 @@ STALE_TICKS = int(SETTINGS.stale_ticks)
 
 
 @pytest.fixture
-def seat() -> CalibrationRun:
-    """A seat whose every input has been armed."""
+def calibration() -> CalibrationRun:
+    """A run whose every input has been armed."""
     armed = CalibrationRun(SETTINGS)
     armed.do(ticks=2)
     return armed
 
 
-def validities(seat: CalibrationRun) -> set[float]:
-    driver = seat.driver
+def validities(calibration: CalibrationRun) -> set[float]:
+    driver = calibration.driver
     return {
         driver.wheel_validity,
         driver.throttle_validity,
@@ -44,185 +44,187 @@ def validities(seat: CalibrationRun) -> set[float]:
 
 
 def test_nothing_is_known_before_the_first_sample() -> None:
-    seat = CalibrationRun(SETTINGS)
-    assert seat.calibrate(NO_SAMPLE)[:9] == (0.0,) * 9
-    assert validities(seat) == {UNKNOWN}
+    calibration = CalibrationRun(SETTINGS)
+    assert calibration.calibrate(NO_SAMPLE)[:9] == (0.0,) * 9
+    assert validities(calibration) == {UNKNOWN}
 
 
 def test_rest_arms_and_the_next_tick_is_live() -> None:
-    seat = CalibrationRun(SETTINGS)
-    seat.do()
-    assert validities(seat) == {ARMED}
-    seat.do()
-    assert validities(seat) == {LIVE}
+    calibration = CalibrationRun(SETTINGS)
+    calibration.do()
+    assert validities(calibration) == {ARMED}
+    calibration.do()
+    assert validities(calibration) == {LIVE}
 
 
 @pytest.mark.fault("D05")
 @pytest.mark.parametrize("pedal", PEDALS)
 def test_pedal_pressed_at_start_reads_zero_until_released(pedal: str) -> None:
     """D05: a pedal stuck at 100 % commands nothing; one released to 5 % or less does from then on."""
-    seat = CalibrationRun(SETTINGS)
+    calibration = CalibrationRun(SETTINGS)
     for pressed in (1.0, 0.5, 0.06):
-        driver = seat.do(Intent(**{pedal: pressed}))  # type: ignore[arg-type]  # a field by its name
+        driver = calibration.do(Intent(**{pedal: pressed}))  # type: ignore[arg-type]  # a field by its name
         assert getattr(driver, pedal) == 0.0
         assert getattr(driver, f"{pedal}_validity") == UNKNOWN
-    seat.do(Intent(**{pedal: 0.02}))  # type: ignore[arg-type]  # a field by its name
-    assert getattr(seat.do(Intent(**{pedal: 0.7})), pedal) == pytest.approx(0.7)  # type: ignore[arg-type]  # a field by its name
+    calibration.do(Intent(**{pedal: 0.02}))  # type: ignore[arg-type]  # a field by its name
+    assert getattr(calibration.do(Intent(**{pedal: 0.7})), pedal) == pytest.approx(0.7)  # type: ignore[arg-type]  # a field by its name
 
 
 def test_axes_at_zero_before_their_first_report_are_no_half_throttle() -> None:
     """SDL reads 0.0 until the device reports: half the travel of a pedal that rests at 1.0."""
-    seat = CalibrationRun(SETTINGS)
-    driver = seat.do(throttle_axis=0.0, brake_axis=0.0, clutch_axis=0.0)
+    calibration = CalibrationRun(SETTINGS)
+    driver = calibration.do(throttle_axis=0.0, brake_axis=0.0, clutch_axis=0.0)
     assert (driver.throttle, driver.brake, driver.clutch) == (0.0, 0.0, 0.0)
     assert driver.throttle_validity == UNKNOWN
 
 
-def test_dead_zone_is_silent_and_the_pedal_begins_at_its_end(seat: CalibrationRun) -> None:
-    assert seat.do(throttle_axis=1.0 - 2.0 * 0.0199).throttle == 0.0
-    assert 0.0 < seat.do(throttle_axis=1.0 - 2.0 * 0.021).throttle < 0.002
-    assert seat.do(throttle_axis=-1.0).throttle == 1.0
+def test_dead_zone_is_silent_and_the_pedal_begins_at_its_end(calibration: CalibrationRun) -> None:
+    assert calibration.do(throttle_axis=1.0 - 2.0 * 0.0199).throttle == 0.0
+    assert 0.0 < calibration.do(throttle_axis=1.0 - 2.0 * 0.021).throttle < 0.002
+    assert calibration.do(throttle_axis=-1.0).throttle == 1.0
 
 
-def test_wheel_is_left_positive_and_spans_its_lock(seat: CalibrationRun) -> None:
-    assert seat.do(wheel_axis=-1.0).hand_wheel_rad == pytest.approx(math.radians(540))
-    assert seat.do(wheel_axis=1.0).hand_wheel_rad == pytest.approx(-math.radians(540))
+def test_wheel_is_left_positive_and_spans_its_lock(calibration: CalibrationRun) -> None:
+    assert calibration.do(wheel_axis=-1.0).hand_wheel_rad == pytest.approx(math.radians(540))
+    assert calibration.do(wheel_axis=1.0).hand_wheel_rad == pytest.approx(-math.radians(540))
 
 
-def test_wheel_rate_settles_at_the_true_rate(seat: CalibrationRun) -> None:
+def test_wheel_rate_settles_at_the_true_rate(calibration: CalibrationRun) -> None:
     for tick in range(60):
-        driver = seat.do(Intent(hand_wheel_rad=0.01 * tick))
+        driver = calibration.do(Intent(hand_wheel_rad=0.01 * tick))
     assert driver.hand_wheel_radps == pytest.approx(2.5, rel=1e-3)
-    assert abs(seat.do(Intent(hand_wheel_rad=0.59), ticks=60).hand_wheel_radps) < 1e-3
+    assert abs(calibration.do(Intent(hand_wheel_rad=0.59), ticks=60).hand_wheel_radps) < 1e-3
 
 
 def test_first_wheel_position_is_no_motion() -> None:
-    seat = CalibrationRun(SETTINGS)
-    driver = seat.do(Intent(hand_wheel_rad=3.0))
+    calibration = CalibrationRun(SETTINGS)
+    driver = calibration.do(Intent(hand_wheel_rad=3.0))
     assert driver.hand_wheel_rad == pytest.approx(3.0)
     assert driver.hand_wheel_radps == 0.0
 
 
 @pytest.mark.parametrize("tick_hz", [50, 250, 1000])
 def test_silence_counts_from_the_first_tick_after_100_ms_at_every_rate(tick_hz: int) -> None:
-    seat = CalibrationRun(cockpit_settings(PROFILE, tick_hz))
-    seat.do(ticks=2)
+    calibration = CalibrationRun(cockpit_settings(PROFILE, tick_hz))
+    calibration.do(ticks=2)
     for age in range(1, tick_hz):
-        seat.do(wheel_age_ticks=age, pedals_age_ticks=age, shifter_age_ticks=age)
-        if validities(seat) != {LIVE}:
+        calibration.do(wheel_age_ticks=age, pedals_age_ticks=age, shifter_age_ticks=age)
+        if validities(calibration) != {LIVE}:
             break
-    assert validities(seat) == {STALE}
+    assert validities(calibration) == {STALE}
     assert age == 0.1 * tick_hz + 1
 
 
 @pytest.mark.fault("D03")
-def test_silent_device_is_held_then_stale_and_returns_without_arming_again(seat: CalibrationRun) -> None:
+def test_silent_device_is_held_then_stale_and_returns_without_arming_again(calibration: CalibrationRun) -> None:
     """D03: 100 ms."""
     pressed = Intent(throttle=0.6, hand_wheel_rad=1.0, gear=3)
-    seat.do(pressed, ticks=3)
+    calibration.do(pressed, ticks=3)
     for age in range(1, STALE_TICKS + 1):
         ages = {"wheel_age_ticks": age, "pedals_age_ticks": age, "shifter_age_ticks": age}
-        held = seat.do(pressed, **ages)
+        held = calibration.do(pressed, **ages)
         assert held.throttle == pytest.approx(0.6)
-    assert validities(seat) == {LIVE}
-    stale = seat.do(pressed, wheel_age_ticks=26, pedals_age_ticks=26, shifter_age_ticks=26)
-    assert validities(seat) == {STALE}
+    assert validities(calibration) == {LIVE}
+    stale = calibration.do(pressed, wheel_age_ticks=26, pedals_age_ticks=26, shifter_age_ticks=26)
+    assert validities(calibration) == {STALE}
     assert stale.throttle == 0.0
     assert (stale.hand_wheel_rad, stale.hand_wheel_radps, stale.gear) == (pytest.approx(1.0), 0.0, 3.0)
-    assert seat.do(pressed).throttle == pytest.approx(0.6)
+    assert calibration.do(pressed).throttle == pytest.approx(0.6)
 
 
-def test_lost_pedals_must_be_seen_at_rest_again(seat: CalibrationRun) -> None:
-    seat.do(Intent(throttle=0.8))
-    lost = seat.do(Intent(throttle=0.8), pedals_age_ticks=NEVER_TICKS)
+def test_lost_pedals_must_be_seen_at_rest_again(calibration: CalibrationRun) -> None:
+    calibration.do(Intent(throttle=0.8))
+    lost = calibration.do(Intent(throttle=0.8), pedals_age_ticks=NEVER_TICKS)
     assert (lost.throttle, lost.throttle_validity) == (0.0, LOST)
     assert lost.wheel_validity == LIVE
-    back = seat.do(Intent(throttle=0.8))
+    back = calibration.do(Intent(throttle=0.8))
     assert (back.throttle, back.throttle_validity) == (0.0, UNKNOWN)
-    seat.do()
-    assert seat.do(Intent(throttle=0.8)).throttle == pytest.approx(0.8)
+    calibration.do()
+    assert calibration.do(Intent(throttle=0.8)).throttle == pytest.approx(0.8)
 
 
 @pytest.mark.fault("D04")
 @pytest.mark.parametrize("off_deg", [-6.0, -5.1, 5.1, 400.0])
-def test_lost_wheel_stays_lost_until_it_stands_as_the_car_steers(off_deg: float, seat: CalibrationRun) -> None:
+def test_lost_wheel_stays_lost_until_it_stands_as_the_car_steers(off_deg: float, calibration: CalibrationRun) -> None:
     """D04: 5 degrees. The road wheels keep what they were told until then."""
     model_deg = 40.0
-    seat.do(Intent(hand_wheel_rad=1.0), ticks=3)
-    seat.do(wheel_age_ticks=NEVER_TICKS)
-    seat.model_rad = math.radians(model_deg)
-    away = seat.do(Intent(hand_wheel_rad=math.radians(model_deg + off_deg)), ticks=500)
+    calibration.do(Intent(hand_wheel_rad=1.0), ticks=3)
+    calibration.do(wheel_age_ticks=NEVER_TICKS)
+    calibration.model_rad = math.radians(model_deg)
+    away = calibration.do(Intent(hand_wheel_rad=math.radians(model_deg + off_deg)), ticks=500)
     assert away.wheel_validity == LOST
     assert (away.hand_wheel_rad, away.hand_wheel_radps) == (pytest.approx(1.0), 0.0)
-    near = seat.do(Intent(hand_wheel_rad=math.radians(model_deg + math.copysign(4.9, off_deg))))
+    near = calibration.do(Intent(hand_wheel_rad=math.radians(model_deg + math.copysign(4.9, off_deg))))
     assert near.wheel_validity == ARMED
     assert near.hand_wheel_rad == pytest.approx(math.radians(model_deg + math.copysign(4.9, off_deg)))
-    assert seat.do(Intent(hand_wheel_rad=-2.0)).hand_wheel_rad == pytest.approx(-2.0), "and then it obeys everywhere"
+    assert calibration.do(Intent(hand_wheel_rad=-2.0)).hand_wheel_rad == pytest.approx(-2.0), (
+        "and then it obeys everywhere"
+    )
 
 
-def test_lost_wheel_that_reads_nonsense_or_a_car_whose_angle_is_none_stays_lost(seat: CalibrationRun) -> None:
-    seat.do(wheel_age_ticks=NEVER_TICKS)
-    assert seat.do(wheel_axis=math.nan, ticks=60).wheel_validity == LOST
-    seat.model_rad = math.nan
-    assert seat.do().wheel_validity == LOST
+def test_lost_wheel_that_reads_nonsense_or_a_car_whose_angle_is_none_stays_lost(calibration: CalibrationRun) -> None:
+    calibration.do(wheel_age_ticks=NEVER_TICKS)
+    assert calibration.do(wheel_axis=math.nan, ticks=60).wheel_validity == LOST
+    calibration.model_rad = math.nan
+    assert calibration.do().wheel_validity == LOST
 
 
-def test_emergency_button_of_a_wheel_that_is_not_armed_works(seat: CalibrationRun) -> None:
-    seat.do(wheel_age_ticks=NEVER_TICKS)
-    seat.model_rad = 2.0
-    seat.do()
-    pressed = seat.do(Intent(pressed=int(Button.EMERGENCY_STOP)))
+def test_emergency_button_of_a_wheel_that_is_not_armed_works(calibration: CalibrationRun) -> None:
+    calibration.do(wheel_age_ticks=NEVER_TICKS)
+    calibration.model_rad = 2.0
+    calibration.do()
+    pressed = calibration.do(Intent(pressed=int(Button.EMERGENCY_STOP)))
     assert (pressed.wheel_validity, pressed.edges) == (LOST, float(Button.EMERGENCY_STOP))
 
 
 def test_shifter_buttons_work_while_the_wheel_is_gone() -> None:
     buttons = msgspec.structs.replace(PROFILE.buttons, mark=ButtonBinding(on="shifter", button=9))
-    seat = CalibrationRun(cockpit_settings(msgspec.structs.replace(PROFILE, buttons=buttons), 250))
-    seat.do(ticks=2)
-    seat.do(wheel_age_ticks=NEVER_TICKS)
-    assert seat.do(Intent(pressed=int(Button.MARK)), wheel_age_ticks=NEVER_TICKS).edges == float(Button.MARK)
-    assert seat.do(Intent(), shifter_age_ticks=NEVER_TICKS).pressed == 0.0
+    calibration = CalibrationRun(cockpit_settings(msgspec.structs.replace(PROFILE, buttons=buttons), 250))
+    calibration.do(ticks=2)
+    calibration.do(wheel_age_ticks=NEVER_TICKS)
+    assert calibration.do(Intent(pressed=int(Button.MARK)), wheel_age_ticks=NEVER_TICKS).edges == float(Button.MARK)
+    assert calibration.do(Intent(), shifter_age_ticks=NEVER_TICKS).pressed == 0.0
 
 
 @pytest.mark.fault("D07")
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 1.5, -1e308])
 @pytest.mark.parametrize("field", ["wheel_axis", "throttle_axis", "brake_axis", "clutch_axis"])
-def test_bad_axis_is_refused_held_and_stale_after_100_ms(field: str, value: float, seat: CalibrationRun) -> None:
+def test_bad_axis_is_refused_held_and_stale_after_100_ms(field: str, value: float, calibration: CalibrationRun) -> None:
     """D07, for every axis."""
     good = Intent(hand_wheel_rad=0.5, throttle=0.4, brake=0.3, clutch=0.2)
-    before = seat.do(good, ticks=200)
-    held = seat.do(good, ticks=STALE_TICKS, **{field: value})
+    before = calibration.do(good, ticks=200)
+    held = calibration.do(good, ticks=STALE_TICKS, **{field: value})
     for name in ("hand_wheel_rad", *PEDALS):
         assert getattr(held, name) == pytest.approx(getattr(before, name))
-    assert validities(seat) == {LIVE}
+    assert validities(calibration) == {LIVE}
     assert held.refused_ticks == STALE_TICKS
-    stale = seat.do(good, **{field: value})  # type: ignore[arg-type]  # a field by its name
+    stale = calibration.do(good, **{field: value})  # type: ignore[arg-type]  # a field by its name
     role = field.removesuffix("_axis")
     assert getattr(stale, f"{role}_validity") == STALE
     assert role == "wheel" or getattr(stale, role) == 0.0
     assert sum(v == STALE for v in stale[9:14]) == 1
     assert all(math.isfinite(number) for number in stale)
-    assert seat.do(good).refused_ticks == 0.0
-    assert validities(seat) == {LIVE}
+    assert calibration.do(good).refused_ticks == 0.0
+    assert validities(calibration) == {LIVE}
 
 
 @pytest.mark.parametrize("mask", [math.nan, -1.0, 0.5, 2.0**24, math.inf])
 @pytest.mark.parametrize("field", ["wheel_buttons", "shifter_buttons"])
-def test_bad_button_mask_is_refused_and_the_last_kept(field: str, mask: float, seat: CalibrationRun) -> None:
+def test_bad_button_mask_is_refused_and_the_last_kept(field: str, mask: float, calibration: CalibrationRun) -> None:
     held = Intent(gear=2, pressed=int(Button.MARK))
-    seat.do(held, ticks=2)
-    driver = seat.do(held, **{field: mask})  # type: ignore[arg-type]  # a field by its name
+    calibration.do(held, ticks=2)
+    driver = calibration.do(held, **{field: mask})  # type: ignore[arg-type]  # a field by its name
     assert (driver.gear, driver.pressed, driver.edges) == (2.0, float(Button.MARK), 0.0)
-    driver = seat.do(held)
+    driver = calibration.do(held)
     assert (driver.gear, driver.pressed, driver.edges) == (2.0, float(Button.MARK), 0.0)
 
 
-def test_button_is_an_edge_once(seat: CalibrationRun) -> None:
+def test_button_is_an_edge_once(calibration: CalibrationRun) -> None:
     pressed = Intent(pressed=int(Button.AUTONOMOUS | Button.INDICATOR_LEFT))
-    first, second = seat.do(pressed), seat.do(pressed)
+    first, second = calibration.do(pressed), calibration.do(pressed)
     assert first.edges == first.pressed == float(Button.AUTONOMOUS | Button.INDICATOR_LEFT)
     assert (second.edges, second.pressed) == (0.0, first.pressed)
-    assert seat.do().pressed == 0.0
+    assert calibration.do().pressed == 0.0
 
 
 @pytest.mark.parametrize(
@@ -236,42 +238,44 @@ def test_button_is_an_edge_once(seat: CalibrationRun) -> None:
         ({"hat_y": 1.0, "wheel_age_ticks": NEVER_TICKS}, Button(0)),
     ],
 )
-def test_the_hat_of_the_wheel_has_buttons_too(hat: dict[str, float], roles: Button, seat: CalibrationRun) -> None:
-    first, second = seat.do(**hat), seat.do(**hat)  # type: ignore[arg-type]  # fields by their name
+def test_the_hat_of_the_wheel_has_buttons_too(
+    hat: dict[str, float], roles: Button, calibration: CalibrationRun
+) -> None:
+    first, second = calibration.do(**hat), calibration.do(**hat)  # type: ignore[arg-type]  # fields by their name
     assert (first.pressed, first.edges) == (float(roles), float(roles))
     assert (second.pressed, second.edges) == (float(roles), 0.0)
 
 
 def test_a_handbrake_may_be_a_button_or_a_direction_of_the_hat() -> None:
     for mask in (float(1 << 5), float(8 << 48)):
-        seat = CalibrationRun(
+        calibration = CalibrationRun(
             SETTINGS._replace(handbrake_button_mask=mask, handbrake_rest_raw=0.0, handbrake_full_raw=0.0)
         )
-        seat.do(ticks=2)
-        assert seat.do().handbrake == 0.0
-        held = seat.do(Intent(pressed=int(Button.HANDBRAKE_BUTTON)))
+        calibration.do(ticks=2)
+        assert calibration.do().handbrake == 0.0
+        held = calibration.do(Intent(pressed=int(Button.HANDBRAKE_BUTTON)))
         assert held.handbrake == 1.0
-        assert seat.do().handbrake == 0.0
+        assert calibration.do().handbrake == 0.0
 
 
 def test_button_held_while_the_wheel_arrives_is_no_edge() -> None:
-    seat = CalibrationRun(SETTINGS)
+    calibration = CalibrationRun(SETTINGS)
     held = Intent(pressed=int(Button.AUTONOMOUS))
-    assert [driver.edges for driver in (seat.do(held), seat.do(held))] == [0.0, 0.0]
+    assert [driver.edges for driver in (calibration.do(held), calibration.do(held))] == [0.0, 0.0]
 
 
-def test_lost_wheel_presses_nothing(seat: CalibrationRun) -> None:
+def test_lost_wheel_presses_nothing(calibration: CalibrationRun) -> None:
     pressed = Intent(pressed=int(Button.RESET))
-    seat.do(pressed)
-    assert seat.do(pressed, wheel_age_ticks=NEVER_TICKS).pressed == 0.0
+    calibration.do(pressed)
+    assert calibration.do(pressed, wheel_age_ticks=NEVER_TICKS).pressed == 0.0
 
 
 @given(st.lists(st.floats(0.0, 1.0), min_size=2, max_size=40))
 def test_pedal_is_monotone_bounded_and_the_inverse_of_uncalibrate(shares: list[float]) -> None:
     shares.sort()
-    seat = CalibrationRun(SETTINGS)
-    seat.do(ticks=2)
-    pressed = [seat.do(Intent(brake=share)).brake for share in shares]
+    calibration = CalibrationRun(SETTINGS)
+    calibration.do(ticks=2)
+    pressed = [calibration.do(Intent(brake=share)).brake for share in shares]
     assert pressed == sorted(pressed)
     assert all(0.0 <= brake <= 1.0 for brake in pressed)
     assert pressed == pytest.approx(shares, abs=1e-12)
@@ -328,8 +332,8 @@ def test_curve_above_one_is_gentle_first_and_below_one_quick() -> None:
 @given(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
 def test_wheel_is_monotone(one: float, other: float) -> None:
     low, high = sorted((one, other))
-    seat = CalibrationRun(SETTINGS)
-    right, left = seat.do(wheel_axis=high).hand_wheel_rad, seat.do(wheel_axis=low).hand_wheel_rad
+    calibration = CalibrationRun(SETTINGS)
+    right, left = calibration.do(wheel_axis=high).hand_wheel_rad, calibration.do(wheel_axis=low).hand_wheel_rad
     assert right <= left
     assert max(abs(right), abs(left)) <= math.radians(540.0) * (1 + 1e-12)
 
@@ -339,8 +343,8 @@ NUMBERS = st.one_of(st.floats(), st.floats(-1.1, 1.1), st.sampled_from([0.0, 1.0
 
 @given(st.lists(st.lists(NUMBERS, min_size=13, max_size=13), max_size=20))
 def test_no_sample_whatever_makes_anything_not_finite(rows: list[list[float]]) -> None:
-    seat = CalibrationRun(SETTINGS)
-    for driver in seat.all(DeviceSample(*row) for row in rows):
+    calibration = CalibrationRun(SETTINGS)
+    for driver in calibration.all(DeviceSample(*row) for row in rows):
         assert all(math.isfinite(number) for number in driver)
         assert all(0.0 <= getattr(driver, pedal) <= 1.0 for pedal in (*PEDALS, "handbrake"))
         assert -1.0 <= driver.gear <= 7.0

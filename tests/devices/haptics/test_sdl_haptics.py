@@ -95,8 +95,10 @@ def test_recorded_motion_of_a_t500_arrives_as_a_person(tmp_path: Path, t500: Coc
     done = start(tmp_path / "calls.jsonl", "motion", motion=Path(__file__).with_name("t500_motion.txt"))
     out, err = done.communicate(timeout=PATIENCE_S)
     assert done.returncode == 0, out + err
-    seat = CalibrationRun(cockpit_settings(t500, 250))
-    drivers = [seat.calibrate(DeviceSample(**json.loads(line))) for line in out.splitlines() if line.startswith("{")]
+    calibration = CalibrationRun(cockpit_settings(t500, 250))
+    drivers = [
+        calibration.calibrate(DeviceSample(**json.loads(line))) for line in out.splitlines() if line.startswith("{")
+    ]
     assert len(drivers) >= 40
     first, last = drivers[1], drivers[-1]
     assert (first.throttle, first.brake, first.clutch) == (0.0, 0.0, 0.0), "at rest before the first report"

@@ -91,8 +91,8 @@ def test_recorded_trace_plays_what_the_devices_showed(t500: CockpitProfile, tmp_
     results = record_devices(t500, path, say=Paper(), duration_s=2.0, virtual=True, pace=at_once, name="t500rs_th8rs")
     assert results["ticks"] == 500
     source = TraceSource(path, tick_hz=250)
-    seat = CalibrationRun(CockpitCheck(t500, 250)._settings)
-    throttle = [seat.calibrate(source.poll(tick)).throttle for tick in range(1, 501)]
+    calibration = CalibrationRun(CockpitCheck(t500, 250)._settings)
+    throttle = [calibration.calibrate(source.poll(tick)).throttle for tick in range(1, 501)]
     source.close()
     assert max(throttle) == pytest.approx(1.0, abs=0.02)
     assert source.header.cockpit == "t500rs_th8rs"
@@ -131,9 +131,9 @@ def test_real_time_pace_sleeps_until_each_ticks_deadline(late_s: float, monkeypa
 
 def test_check_refuses_a_wheel_that_is_not_straight(t500: CockpitProfile, t500_settings: CockpitSettings) -> None:
     check = CockpitCheck(t500, 250)
-    seat = CalibrationRun(t500_settings)
+    calibration = CalibrationRun(t500_settings)
     for angle_rad in (0.0, 0.2, 0.8):
-        check.add(seat.raw(Intent(hand_wheel_rad=angle_rad)))
+        check.add(calibration.raw(Intent(hand_wheel_rad=angle_rad)))
     assert check.problems() == [
         "wheel: value 46 deg at the end: within 30 deg of straight ahead; centre_raw is wrong, "
         "or the wheel was not let go"

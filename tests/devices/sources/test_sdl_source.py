@@ -36,17 +36,17 @@ class Drive:
     def __init__(self, plugged: VirtualCockpit, source: SdlSource, settings: CockpitSettings) -> None:
         self.plugged = plugged
         self.source = source
-        self.seat = CalibrationRun(settings)
+        self.calibration = CalibrationRun(settings)
         self.tick = 0
 
     def do(self, intent: Intent = Intent(), ticks: int = 1) -> DriverInput:  # noqa: B008  # immutable
-        self.plugged.write(raw_sample(intent, self.seat.settings))
+        self.plugged.write(raw_sample(intent, self.calibration.settings))
         return self.poll(ticks)
 
     def poll(self, ticks: int = 1) -> DriverInput:
         for _ in range(ticks):
             self.tick += 1
-            driver = self.seat.calibrate(self.source.poll(self.tick))
+            driver = self.calibration.calibrate(self.source.poll(self.tick))
         return driver
 
 
@@ -219,7 +219,7 @@ def test_device_that_comes_back_pressed_must_be_released_first(drive: Drive) -> 
     drive.plugged.unplug("pedals")
     drive.poll(3)
     drive.plugged.plug("pedals")
-    drive.plugged.write(raw_sample(Intent(throttle=0.9, brake=0.5), drive.seat.settings))
+    drive.plugged.write(raw_sample(Intent(throttle=0.9, brake=0.5), drive.calibration.settings))
     drivers = [drive.poll() for _ in range(10)]
     assert {driver.throttle for driver in drivers} == {0.0}
     assert (drivers[-1].throttle_validity, drivers[-1].wheel_validity) == (UNKNOWN, LIVE)

@@ -124,14 +124,14 @@ class TestEverySource:
         opened.source.close()
 
     def test_samples_are_raw_fresh_and_drive_the_person(self, opened: Opened) -> None:
-        seat = CalibrationRun(opened.settings)
+        calibration = CalibrationRun(opened.settings)
         for tick in range(1, 250):
             opened.before(tick)
             sample = opened.source.poll(tick)
             assert all(axis_good(raw) for raw in sample[:5])
             assert all(mask_good(mask) for mask in sample[5:7])
             assert sample[9:12] == (0.0, 0.0, 0.0)
-            driver = seat.calibrate(sample)
+            driver = calibration.calibrate(sample)
             if tick <= 100:
                 assert (driver.throttle, driver.gear) == (0.0, 0.0)
         assert driver.throttle > 0.7

@@ -19,14 +19,14 @@ class Board:
         self.held = Key(0)
         self.age = 0
         self.source = KeyboardSource(lambda: (int(self.held), self.age), settings, tick_hz=250)
-        self.seat = CalibrationRun(settings)
+        self.calibration = CalibrationRun(settings)
         self.tick = 0
 
     def hold(self, held: Key, seconds: float) -> DriverInput:
         self.held = held
         for _ in range(round(seconds * 250)):
             self.tick += 1
-            driver = self.seat.calibrate(self.source.poll(self.tick))
+            driver = self.calibration.calibrate(self.source.poll(self.tick))
         return driver
 
 

@@ -20,8 +20,8 @@ HZ = 250
 def driven(settings: CockpitSettings, seconds: float, *points: dict[str, Any]) -> list[DriverInput]:
     script = ScriptProfile(points=[ScriptPoint(**point) for point in points])
     source = ScriptSource(script, settings, tick_hz=HZ)
-    seat = CalibrationRun(settings)
-    return [seat.calibrate(source.poll(tick)) for tick in range(1, round(seconds * HZ) + 1)]
+    calibration = CalibrationRun(settings)
+    return [calibration.calibrate(source.poll(tick)) for tick in range(1, round(seconds * HZ) + 1)]
 
 
 def at(drivers: list[DriverInput], time_s: float) -> DriverInput:

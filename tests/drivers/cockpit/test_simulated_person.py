@@ -64,21 +64,21 @@ def drive(
     state = initial_state(under)
     plugged = VirtualCockpit(cockpit)
     source = SdlSource(cockpit)
-    seat = SimulatedPerson(plan, plugged, cockpit_settings(cockpit, HZ), tick_hz=HZ)
+    driver = SimulatedPerson(plan, plugged, cockpit_settings(cockpit, HZ), tick_hz=HZ)
     snapshot, scenes = Snapshot(0, HZ, state.row), []
     try:
         for tick in range(1, round(limit_s * HZ) + 1):
             meddle(tick, plugged)
-            seat.act(snapshot)
+            driver.act(snapshot)
             inputs = TickInputs(source.poll(tick), controller(tick, snapshot), NO_EVENTS)
             state, snapshot = advance(state, inputs, under)
-            scenes.append(Scene(seat.person.phase, snapshot))
-            if seat.finished:
+            scenes.append(Scene(driver.person.phase, snapshot))
+            if driver.finished:
                 return scenes
     finally:
         source.close()
         plugged.close()
-    raise AssertionError(f"not finished in {limit_s} s: {seat.person.phase}, {snapshot.vehicle}, {snapshot.driver}")
+    raise AssertionError(f"not finished in {limit_s} s: {driver.person.phase}, {snapshot.vehicle}, {snapshot.driver}")
 
 
 def straight_ahead(tick: int, snapshot: Snapshot) -> RemoteCommand:
