@@ -271,7 +271,7 @@ def test_lost_wheel_presses_nothing(calibration: CalibrationRun) -> None:
 
 
 @given(st.lists(st.floats(0.0, 1.0), min_size=2, max_size=40))
-def test_pedal_is_monotone_bounded_and_the_inverse_of_uncalibrate(shares: list[float]) -> None:
+def test_pedal_is_monotone_bounded_and_has_an_inverse(shares: list[float]) -> None:
     shares.sort()
     calibration = CalibrationRun(SETTINGS)
     calibration.do(ticks=2)
