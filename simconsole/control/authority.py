@@ -117,17 +117,39 @@ def remote_side(
         return _fading_side(entered, hold, person, now.before, now.command_before)
     if mode in (_MANUAL, _SHARED, _AUTONOMOUS, _TAKEOVER_REQUESTED):
         if link.fresh == 0.0:
-            return RemoteSide(now.command_before.road_wheel_rad, 0.0, 0.0, 0.0, 0.0, 0.0, hold)
+            return RemoteSide(
+                road_wheel_rad=now.command_before.road_wheel_rad,
+                throttle=0.0,
+                brake=0.0,
+                direction=0.0,
+                speed_integral_mps2=0.0,
+                stop_accel_mps2=0.0,
+                hold_road_wheel_rad=hold,
+            )
         if mode == _SHARED:
             offered = _held_back(now, offered)
         integral = offered.speed_integral_mps2 if mode != _MANUAL and shares.longitudinal >= 1.0 else 0.0
         return RemoteSide(
-            offered.road_wheel_rad, offered.throttle, offered.brake, offered.direction, integral, 0.0, hold
+            road_wheel_rad=offered.road_wheel_rad,
+            throttle=offered.throttle,
+            brake=offered.brake,
+            direction=offered.direction,
+            speed_integral_mps2=integral,
+            stop_accel_mps2=0.0,
+            hold_road_wheel_rad=hold,
         )
     if mode == _MINIMAL_RISK:
         return _safe_side(now, entered, hold, offered.road_wheel_rad, steered)
     brake = now.settings.emergency_brake if mode == _EMERGENCY_STOP else now.settings.hold_brake
-    return RemoteSide(hold, 0.0, brake, 0.0, 0.0, 0.0, hold)
+    return RemoteSide(
+        road_wheel_rad=hold,
+        throttle=0.0,
+        brake=brake,
+        direction=0.0,
+        speed_integral_mps2=0.0,
+        stop_accel_mps2=0.0,
+        hold_road_wheel_rad=hold,
+    )
 
 
 @kernel
@@ -137,18 +159,26 @@ def _fading_side(
     """Hold what the remote side contributed to the command in force at the hand-over, while its share fades out."""
     if not entered:
         return RemoteSide(
-            before.remote_road_wheel_rad, before.remote_throttle, before.remote_brake, 0.0, 0.0, 0.0, hold_rad
+            road_wheel_rad=before.remote_road_wheel_rad,
+            throttle=before.remote_throttle,
+            brake=before.remote_brake,
+            direction=0.0,
+            speed_integral_mps2=0.0,
+            stop_accel_mps2=0.0,
+            hold_road_wheel_rad=hold_rad,
         )
     return RemoteSide(
-        _contribution(
+        road_wheel_rad=_contribution(
             before.remote_road_wheel_rad, command_before.road_wheel_rad, person.road_wheel_rad, before.remote_lateral
         ),
-        _contribution(before.remote_throttle, command_before.throttle, person.throttle, before.remote_longitudinal),
-        _contribution(before.remote_brake, command_before.brake, person.brake, before.remote_longitudinal),
-        0.0,
-        0.0,
-        0.0,
-        hold_rad,
+        throttle=_contribution(
+            before.remote_throttle, command_before.throttle, person.throttle, before.remote_longitudinal
+        ),
+        brake=_contribution(before.remote_brake, command_before.brake, person.brake, before.remote_longitudinal),
+        direction=0.0,
+        speed_integral_mps2=0.0,
+        stop_accel_mps2=0.0,
+        hold_road_wheel_rad=hold_rad,
     )
 
 
@@ -217,13 +247,13 @@ def _safe_side(now: Moment, entered: bool, hold_rad: float, offered_rad: float, 
     if not steered:
         road_wheel_rad = approach(hold_rad, 0.0, now.settings.stop_road_wheel_decay_radps * now.tick_s)
     return RemoteSide(
-        road_wheel_rad,
-        0.0,
-        stop.brake,
-        0.0,
-        stop.integral_mps2,
-        stop.stop_accel_mps2,
-        road_wheel_rad,
+        road_wheel_rad=road_wheel_rad,
+        throttle=0.0,
+        brake=stop.brake,
+        direction=0.0,
+        speed_integral_mps2=stop.integral_mps2,
+        stop_accel_mps2=stop.stop_accel_mps2,
+        hold_road_wheel_rad=road_wheel_rad,
     )
 
 
@@ -281,13 +311,13 @@ def blend(
     elif mode in (_MANUAL, _SHARED):
         handbrake = driver.handbrake
     return Request(
-        road_wheel_rad,
-        throttle,
-        brake,
-        transmission.clutch,
-        handbrake,
-        transmission.gear,
-        transmission.automatic,
-        lights.turn_indicators,
-        lights.hazard_lights,
+        road_wheel_rad=road_wheel_rad,
+        throttle=throttle,
+        brake=brake,
+        clutch=transmission.clutch,
+        handbrake=handbrake,
+        gear=transmission.gear,
+        automatic=transmission.automatic,
+        turn_indicators=lights.turn_indicators,
+        hazard_lights=lights.hazard_lights,
     )

@@ -98,26 +98,34 @@ def limits_of(mode: float, settings: ControlSettings) -> Limits:
     slew = settings.manual_pedal_slew_per_s
     if mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED):
         return Limits(
-            settings.automatic_road_wheel_rad,
-            settings.automatic_road_wheel_radps,
-            settings.automatic_lateral_accel_mps2,
-            settings.automatic_lateral_jerk_mps3,
-            settings.automatic_throttle_slew_per_s,
-            settings.automatic_brake_slew_per_s,
-            settings.target_accel_mps2,
+            road_wheel_rad=settings.automatic_road_wheel_rad,
+            road_wheel_radps=settings.automatic_road_wheel_radps,
+            lateral_accel_mps2=settings.automatic_lateral_accel_mps2,
+            lateral_jerk_mps3=settings.automatic_lateral_jerk_mps3,
+            throttle_slew_per_s=settings.automatic_throttle_slew_per_s,
+            brake_slew_per_s=settings.automatic_brake_slew_per_s,
+            target_accel_mps2=settings.target_accel_mps2,
         )
     if mode in (_MANUAL, _SHARED):
         lock = settings.max_road_wheel_rad
-        return Limits(lock, settings.manual_road_wheel_radps, 0.0, 0.0, slew, slew, settings.target_accel_mps2)
+        return Limits(
+            road_wheel_rad=lock,
+            road_wheel_radps=settings.manual_road_wheel_radps,
+            lateral_accel_mps2=0.0,
+            lateral_jerk_mps3=0.0,
+            throttle_slew_per_s=slew,
+            brake_slew_per_s=slew,
+            target_accel_mps2=settings.target_accel_mps2,
+        )
     emergency = mode == _EMERGENCY_STOP
     return Limits(
-        settings.max_road_wheel_rad,
-        settings.stop_road_wheel_radps,
-        0.0 if emergency else settings.automatic_lateral_accel_mps2,
-        settings.automatic_lateral_jerk_mps3,
-        slew,
-        settings.emergency_brake_slew_per_s if emergency else settings.automatic_brake_slew_per_s,
-        settings.target_accel_mps2 if emergency else settings.stop_decel_mps2,
+        road_wheel_rad=settings.max_road_wheel_rad,
+        road_wheel_radps=settings.stop_road_wheel_radps,
+        lateral_accel_mps2=0.0 if emergency else settings.automatic_lateral_accel_mps2,
+        lateral_jerk_mps3=settings.automatic_lateral_jerk_mps3,
+        throttle_slew_per_s=slew,
+        brake_slew_per_s=settings.emergency_brake_slew_per_s if emergency else settings.automatic_brake_slew_per_s,
+        target_accel_mps2=settings.target_accel_mps2 if emergency else settings.stop_decel_mps2,
     )
 
 
@@ -162,24 +170,24 @@ def gate(
     hazard = _switch(request.hazard_lights, before.hazard_lights, False)
     active |= gear.active | target.active | turn.active | hazard.active
     return VehicleCommand(
-        wheel.value,
-        throttle.value,
-        brake.value,
-        clutch.value,
-        handbrake.value,
-        gear.value,
-        automatic,
-        target.speed_mps,
-        target.x_m,
-        target.y_m,
-        target.yaw_rad,
-        turn.value,
-        hazard.value,
-        float(active),
-        _counted(before.gate_active_ticks, active),
-        _switched(before.anti_lock_off, events, _ANTI_LOCK),
-        _switched(before.traction_off, events, _TRACTION),
-        _switched(before.stability_off, events, _STABILITY),
+        road_wheel_rad=wheel.value,
+        throttle=throttle.value,
+        brake=brake.value,
+        clutch=clutch.value,
+        handbrake=handbrake.value,
+        gear=gear.value,
+        automatic=automatic,
+        target_speed_mps=target.speed_mps,
+        target_x_m=target.x_m,
+        target_y_m=target.y_m,
+        target_yaw_rad=target.yaw_rad,
+        turn_indicators=turn.value,
+        hazard_lights=hazard.value,
+        gate_active=float(active),
+        gate_active_ticks=_counted(before.gate_active_ticks, active),
+        anti_lock_off=_switched(before.anti_lock_off, events, _ANTI_LOCK),
+        traction_off=_switched(before.traction_off, events, _TRACTION),
+        stability_off=_switched(before.stability_off, events, _STABILITY),
     )
 
 

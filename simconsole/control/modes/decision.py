@@ -82,7 +82,14 @@ def decide(now: Moment, person: Person, controllers: Controllers, steering: bool
     if refusal == GRANTED and controllers.unheard:
         refusal = _REFUSED_NOT_COMMANDER
     if trigger >= 0:
-        return Decision(after, _reason(after, trigger, asked), 1.0, refusal, 0.0, 1.0)
+        return Decision(
+            mode=after,
+            reason=_reason(after, trigger, asked),
+            changed=1.0,
+            refusal=refusal,
+            refusal_ticks=0.0,
+            wait_begins=1.0,
+        )
     reason = now.before.reason
     wait_begins = 0.0
     if mode == _TAKEOVER_REQUESTED and asked.takeover > 0.0:
@@ -93,11 +100,20 @@ def decide(now: Moment, person: Person, controllers: Controllers, steering: bool
     if refusal == GRANTED and link.implausible_ticks > 0.0 and mode in (_SHARED, _AUTONOMOUS, _TAKEOVER_REQUESTED):
         refusal = _REFUSED_IMPLAUSIBLE
     if refusal != GRANTED:
-        return Decision(mode, reason, 0.0, refusal, 0.0, wait_begins)
+        return Decision(
+            mode=mode, reason=reason, changed=0.0, refusal=refusal, refusal_ticks=0.0, wait_begins=wait_begins
+        )
     shown = now.memory.refusal_ticks + 1.0 < settings.refusal_ticks
     if now.before.refusal != GRANTED and shown:
-        return Decision(mode, reason, 0.0, now.before.refusal, now.memory.refusal_ticks + 1.0, wait_begins)
-    return Decision(mode, reason, 0.0, GRANTED, 0.0, wait_begins)
+        return Decision(
+            mode=mode,
+            reason=reason,
+            changed=0.0,
+            refusal=now.before.refusal,
+            refusal_ticks=now.memory.refusal_ticks + 1.0,
+            wait_begins=wait_begins,
+        )
+    return Decision(mode=mode, reason=reason, changed=0.0, refusal=GRANTED, refusal_ticks=0.0, wait_begins=wait_begins)
 
 
 @kernel

@@ -84,14 +84,14 @@ def asked_of(driver: DriverInput, events: int) -> Asked:
     manual = (events & _EVENT_MANUAL) | (edges & _BUTTON_MANUAL)
     autonomous = (events & _EVENT_AUTONOMOUS) | (edges & _BUTTON_AUTONOMOUS)
     return Asked(
-        _flag(emergency),
-        _flag(mask(driver.pressed) & _BUTTON_EMERGENCY),
-        _flag(reset),
-        _flag(manual),
-        _flag(autonomous),
-        _flag((events & _EVENT_TAKEOVER) | (edges & _BUTTON_TAKEOVER)),
-        _flag((events & _EVENT_SHARED) | (edges & _BUTTON_SHARED)),
-        _flag(edges & (_BUTTON_MANUAL | _BUTTON_AUTONOMOUS | _BUTTON_SHARED)),
+        emergency=_flag(emergency),
+        emergency_held=_flag(mask(driver.pressed) & _BUTTON_EMERGENCY),
+        reset=_flag(reset),
+        manual=_flag(manual),
+        autonomous=_flag(autonomous),
+        takeover=_flag((events & _EVENT_TAKEOVER) | (edges & _BUTTON_TAKEOVER)),
+        shared=_flag((events & _EVENT_SHARED) | (edges & _BUTTON_SHARED)),
+        by_person=_flag(edges & (_BUTTON_MANUAL | _BUTTON_AUTONOMOUS | _BUTTON_SHARED)),
     )
 
 

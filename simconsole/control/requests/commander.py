@@ -62,16 +62,16 @@ def look(now: Moment) -> Controllers:
     ros_offered = _offered(now.ros, ros_link, 0.0 if by_ecu else integral_mps2, now)
     ecu_offered = _offered(now.ecu, ecu_link, integral_mps2 if by_ecu else 0.0, now)
     return Controllers(
-        commander,
-        ros_link,
-        ecu_link,
-        ros_offered,
-        ecu_offered,
-        now.ecu if by_ecu else now.ros,
-        ecu_link if by_ecu else ros_link,
-        ecu_offered if by_ecu else ros_offered,
-        events_of(now.events, commander),
-        ecu_unheard(now.events, commander),
+        commander=commander,
+        ros_link=ros_link,
+        ecu_link=ecu_link,
+        ros_offered=ros_offered,
+        ecu_offered=ecu_offered,
+        remote=now.ecu if by_ecu else now.ros,
+        link=ecu_link if by_ecu else ros_link,
+        offered=ecu_offered if by_ecu else ros_offered,
+        events=events_of(now.events, commander),
+        unheard=ecu_unheard(now.events, commander),
     )
 
 

@@ -156,11 +156,11 @@ def brake_torques(car: Car, p: CarParameters, request: Request, axles: Axles, ai
     front_share = 0.0 if inwards else 1.0
     hand = request.handbrake * rear.handbrake_nm
     return Brakes(
-        fl * (pedal * front.brake_nm + front_share * to_left),
-        fr * (pedal * front.brake_nm + front_share * to_right),
-        low * pedal * rear.brake_nm + hand + (1.0 - front_share) * to_left * rl,
-        low * pedal * rear.brake_nm + hand + (1.0 - front_share) * to_right * rr,
-        fl,
-        fr,
-        low,
+        fl_nm=fl * (pedal * front.brake_nm + front_share * to_left),
+        fr_nm=fr * (pedal * front.brake_nm + front_share * to_right),
+        rl_nm=low * pedal * rear.brake_nm + hand + (1.0 - front_share) * to_left * rl,
+        rr_nm=low * pedal * rear.brake_nm + hand + (1.0 - front_share) * to_right * rr,
+        fl_share=fl,
+        fr_share=fr,
+        rear_share=low,
     )

@@ -108,7 +108,14 @@ def steered(
     # The contact patch stays on the ground while the wheel turns about it: its deflection turns back in the wheel.
     x = wheel.deflection_x_m + turned_rad * wheel.deflection_y_m
     y = wheel.deflection_y_m - turned_rad * x
-    seen = Wheel(wheel.radps, x, y, wheel.lift_m, wheel.lift_mps, wheel.brake_share)
+    seen = Wheel(
+        radps=wheel.radps,
+        deflection_x_m=x,
+        deflection_y_m=y,
+        lift_m=wheel.lift_m,
+        lift_mps=wheel.lift_mps,
+        brake_share=wheel.brake_share,
+    )
     along = vx_mps * c + vy_mps * s
     on = straight(axle, friction, seen, along, vy_mps * c - vx_mps * s, camber_rad, side, step_s)
     force_x = on.force_x_n * c - on.force_y_n * s
@@ -172,14 +179,14 @@ def push(car: Car, p: CarParameters, grips: Grips, points: Heading, turned_rad: 
         steering, fr.tyre, car.fr.radps * front.radius_m
     )
     return Axles(
-        fl,
-        fr,
-        rl,
-        rr,
-        (fl.force_x_n + fr.force_x_n) + (rl.force_x_n + rr.force_x_n),
-        front_y,
-        rear_y,
-        (front.ahead_m * front_y + rear.ahead_m * rear_y)
+        fl=fl,
+        fr=fr,
+        rl=rl,
+        rr=rr,
+        force_x_n=(fl.force_x_n + fr.force_x_n) + (rl.force_x_n + rr.force_x_n),
+        front_y_n=front_y,
+        rear_y_n=rear_y,
+        moment_nm=(front.ahead_m * front_y + rear.ahead_m * rear_y)
         + (front.half_track_m * (fr.force_x_n - fl.force_x_n) + rear.half_track_m * (rr.force_x_n - rl.force_x_n)),
-        aligning,
+        aligning_nm=aligning,
     )

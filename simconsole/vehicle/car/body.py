@@ -58,12 +58,12 @@ def move_axle(
     left_m = clip(left.lift_m + step_s * left_mps, -MOST_LIFT_M, MOST_LIFT_M)
     right_m = clip(right.lift_m + step_s * right_mps, -MOST_LIFT_M, MOST_LIFT_M)
     return AxleMotion(
-        left_m,
-        stopped(left_mps, left_m, MOST_LIFT_M),
-        right_m,
-        stopped(right_mps, right_m, MOST_LIFT_M),
-        left_n + right_n,
-        axle.half_track_m * (left_n - right_n),
+        left_m=left_m,
+        left_mps=stopped(left_mps, left_m, MOST_LIFT_M),
+        right_m=right_m,
+        right_mps=stopped(right_mps, right_m, MOST_LIFT_M),
+        force_n=left_n + right_n,
+        moment_nm=axle.half_track_m * (left_n - right_n),
     )
 
 
@@ -114,20 +114,20 @@ def move(car: Car, p: CarParameters, axles: Axles, step_s: float) -> Motion:
     roll = clip(before.roll_rad + step_s * roll_radps, -MOST_LEAN_RAD, MOST_LEAN_RAD)
     pitch = clip(before.pitch_rad + step_s * pitch_radps, -MOST_LEAN_RAD, MOST_LEAN_RAD)
     moved = BodyState(
-        before.x_m + step_s * (on_ground_x * c - on_ground_y * s),
-        before.y_m + step_s * (on_ground_x * s + on_ground_y * c),
-        wrap_angle(before.yaw_rad + step_s * yaw_rate),
-        vx,
-        vy,
-        yaw_rate,
-        ax,
-        ay,
-        heave,
-        stopped(heave_mps, heave, MOST_LIFT_M),
-        roll,
-        stopped(roll_radps, roll, MOST_LEAN_RAD),
-        pitch,
-        stopped(pitch_radps, pitch, MOST_LEAN_RAD),
-        before.distance_m + step_s * sqrt(on_ground_x * on_ground_x + on_ground_y * on_ground_y),
+        x_m=before.x_m + step_s * (on_ground_x * c - on_ground_y * s),
+        y_m=before.y_m + step_s * (on_ground_x * s + on_ground_y * c),
+        yaw_rad=wrap_angle(before.yaw_rad + step_s * yaw_rate),
+        vx_mps=vx,
+        vy_mps=vy,
+        yaw_rate_radps=yaw_rate,
+        ax_mps2=ax,
+        ay_mps2=ay,
+        heave_m=heave,
+        heave_mps=stopped(heave_mps, heave, MOST_LIFT_M),
+        roll_rad=roll,
+        roll_radps=stopped(roll_radps, roll, MOST_LEAN_RAD),
+        pitch_rad=pitch,
+        pitch_radps=stopped(pitch_radps, pitch, MOST_LEAN_RAD),
+        distance_m=before.distance_m + step_s * sqrt(on_ground_x * on_ground_x + on_ground_y * on_ground_y),
     )
     return Motion(moved, front, rear)

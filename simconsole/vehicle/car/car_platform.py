@@ -266,38 +266,40 @@ def _axle(profile: CarProfile, axle: AxleProfile, ground: Ground, at_front: bool
 
 def _engine(engine: EngineProfile) -> EngineParameters:
     return EngineParameters(
-        engine.inertia_kgm2,
-        1.0 / engine.inertia_kgm2,
-        engine.drag_nm,
-        engine.drag_nm_per_1000rpm / (1000.0 * RADPS_PER_RPM),
-        engine.hold_nm,
-        engine.idle_rpm * RADPS_PER_RPM,
-        1.0 / (engine.idle_rpm * RADPS_PER_RPM),
-        engine.idle_gain_nm_per_rpm / RADPS_PER_RPM,
-        engine.idle_max_nm,
-        engine.stall_rpm * RADPS_PER_RPM,
-        engine.fire_rpm * RADPS_PER_RPM,
-        engine.starter_nm,
-        engine.limit_rpm * RADPS_PER_RPM,
-        1.0 / (LIMIT_BAND_RPM * RADPS_PER_RPM),
-        *_ramps(engine),
+        inertia_kgm2=engine.inertia_kgm2,
+        per_inertia_pkgm2=1.0 / engine.inertia_kgm2,
+        drag_nm=engine.drag_nm,
+        drag_nms=engine.drag_nm_per_1000rpm / (1000.0 * RADPS_PER_RPM),
+        hold_nm=engine.hold_nm,
+        idle_radps=engine.idle_rpm * RADPS_PER_RPM,
+        per_idle_s=1.0 / (engine.idle_rpm * RADPS_PER_RPM),
+        idle_gain_nms=engine.idle_gain_nm_per_rpm / RADPS_PER_RPM,
+        idle_max_nm=engine.idle_max_nm,
+        stall_radps=engine.stall_rpm * RADPS_PER_RPM,
+        fire_radps=engine.fire_rpm * RADPS_PER_RPM,
+        starter_nm=engine.starter_nm,
+        limit_radps=engine.limit_rpm * RADPS_PER_RPM,
+        per_limit_band_s=1.0 / (LIMIT_BAND_RPM * RADPS_PER_RPM),
+        **_ramps(engine),
     )
 
 
-def _ramps(engine: EngineProfile) -> tuple[float, ...]:
-    """Return (speed, change of slope) of each corner of the curve, filled up to RAMPS with nothing."""
+def _ramps(engine: EngineProfile) -> dict[str, float]:
+    """Return speed and change of slope of each corner of the curve, filled up to RAMPS with nothing."""
     first = engine.curve[0]
     points = [(0.5 * first.at_rpm, 0.0)] + [(point.at_rpm, point.torque_nm) for point in engine.curve]
-    corners: list[float] = []
+    ramps: dict[str, float] = {}
     slope = 0.0
-    for index, (rpm, torque) in enumerate(points):
-        new = 0.0
-        if index + 1 < len(points):
-            after_rpm, after_torque = points[index + 1]
-            new = (after_torque - torque) / ((after_rpm - rpm) * RADPS_PER_RPM)
-        corners += [rpm * RADPS_PER_RPM, new - slope]
+    for index in range(RAMPS):
+        rpm = new = 0.0
+        if index < len(points):
+            rpm, torque = points[index]
+            if index + 1 < len(points):
+                after_rpm, after_torque = points[index + 1]
+                new = (after_torque - torque) / ((after_rpm - rpm) * RADPS_PER_RPM)
+        ramps |= {f"ramp_{index + 1}_radps": rpm * RADPS_PER_RPM, f"ramp_{index + 1}_nms": new - slope}
         slope = new
-    return (*corners, *(0.0,) * (2 * RAMPS - len(corners)))
+    return ramps
 
 
 def _gears(

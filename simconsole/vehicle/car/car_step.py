@@ -76,17 +76,17 @@ def load_parameters(parameters: Row) -> CarParameters:
     """Return the groups of the parameter row, read anew."""
     forget()
     return CarParameters(
-        BodyParameters(*take(parameters, BODY_AT, BODY_WIDTH)),
-        SteeringParameters(*take(parameters, STEERING_AT, STEERING_WIDTH)),
-        EngineParameters(*take(parameters, ENGINE_AT, ENGINE_WIDTH)),
-        GearParameters(*take(parameters, GEARS_AT, GEARS_WIDTH)),
-        AidParameters(*take(parameters, AIDS_AT, AIDS_WIDTH)),
-        AxleParameters(*take(parameters, FRONT_AT, AXLE_WIDTH)),
-        AxleParameters(*take(parameters, REAR_AT, AXLE_WIDTH)),
-        PatchParameters(*take(parameters, PATCH_1_AT, PATCH_WIDTH)),
-        PatchParameters(*take(parameters, PATCH_2_AT, PATCH_WIDTH)),
-        PatchParameters(*take(parameters, PATCH_3_AT, PATCH_WIDTH)),
-        PatchParameters(*take(parameters, PATCH_4_AT, PATCH_WIDTH)),
+        body=BodyParameters(*take(parameters, BODY_AT, BODY_WIDTH)),
+        steering=SteeringParameters(*take(parameters, STEERING_AT, STEERING_WIDTH)),
+        engine=EngineParameters(*take(parameters, ENGINE_AT, ENGINE_WIDTH)),
+        gears=GearParameters(*take(parameters, GEARS_AT, GEARS_WIDTH)),
+        aids=AidParameters(*take(parameters, AIDS_AT, AIDS_WIDTH)),
+        front=AxleParameters(*take(parameters, FRONT_AT, AXLE_WIDTH)),
+        rear=AxleParameters(*take(parameters, REAR_AT, AXLE_WIDTH)),
+        patch_1=PatchParameters(*take(parameters, PATCH_1_AT, PATCH_WIDTH)),
+        patch_2=PatchParameters(*take(parameters, PATCH_2_AT, PATCH_WIDTH)),
+        patch_3=PatchParameters(*take(parameters, PATCH_3_AT, PATCH_WIDTH)),
+        patch_4=PatchParameters(*take(parameters, PATCH_4_AT, PATCH_WIDTH)),
     )
 
 
@@ -94,15 +94,15 @@ def load_parameters(parameters: Row) -> CarParameters:
 def load_car(row: Row) -> Car:
     """Return the groups of the state in a row."""
     return Car(
-        BodyState(*take(row, PLATFORM_AT, BODY_STATE_WIDTH)),
-        SteeringState(*take(row, RACK_AT, STEERING_STATE_WIDTH)),
-        Wheel(*take(row, FL_AT, WHEEL_WIDTH)),
-        Wheel(*take(row, FR_AT, WHEEL_WIDTH)),
-        Wheel(*take(row, RL_AT, WHEEL_WIDTH)),
-        Wheel(*take(row, RR_AT, WHEEL_WIDTH)),
-        ShaftState(*take(row, SHAFTS_AT, SHAFT_WIDTH)),
-        Gearbox(*take(row, BOX_AT, BOX_WIDTH)),
-        AidState(*take(row, AID_STATE_AT, AID_WIDTH)),
+        body=BodyState(*take(row, PLATFORM_AT, BODY_STATE_WIDTH)),
+        steering=SteeringState(*take(row, RACK_AT, STEERING_STATE_WIDTH)),
+        fl=Wheel(*take(row, FL_AT, WHEEL_WIDTH)),
+        fr=Wheel(*take(row, FR_AT, WHEEL_WIDTH)),
+        rl=Wheel(*take(row, RL_AT, WHEEL_WIDTH)),
+        rr=Wheel(*take(row, RR_AT, WHEEL_WIDTH)),
+        shafts=ShaftState(*take(row, SHAFTS_AT, SHAFT_WIDTH)),
+        box=Gearbox(*take(row, BOX_AT, BOX_WIDTH)),
+        aids=AidState(*take(row, AID_STATE_AT, AID_WIDTH)),
     )
 
 
@@ -127,15 +127,15 @@ def step(previous: Row, row: Row, parameters: Row, substeps: int) -> None:
     car = load_car(previous)
     grips = grips_of(car, load_parameters(parameters))
     request = Request(
-        command.road_wheel_rad if is_finite(command.road_wheel_rad) else car.steering.road_wheel_rad,
-        pedal(command.throttle),
-        pedal(command.brake),
-        pedal(command.clutch),
-        pedal(command.handbrake),
-        lever(command.gear),
-        command.automatic,
-        command.turn_indicators,
-        command.hazard_lights,
+        road_wheel_rad=command.road_wheel_rad if is_finite(command.road_wheel_rad) else car.steering.road_wheel_rad,
+        throttle=pedal(command.throttle),
+        brake=pedal(command.brake),
+        clutch=pedal(command.clutch),
+        handbrake=pedal(command.handbrake),
+        gear=lever(command.gear),
+        automatic=command.automatic,
+        turn_indicators=command.turn_indicators,
+        hazard_lights=command.hazard_lights,
     )
     for _ in range(substeps):
         car = substep(car, parameters, grips, request, command)
@@ -162,17 +162,27 @@ def with_aids(p: CarParameters, command: VehicleCommand) -> CarParameters:
     """Return the parameters with the driver aids off that somebody has switched off."""
     aids = p.aids
     switched = AidParameters(
-        0.0 if command.anti_lock_off > 0.0 else aids.anti_lock,
-        0.0 if command.traction_off > 0.0 else aids.traction,
-        0.0 if command.stability_off > 0.0 else aids.stability,
-        aids.hill_hold,
-        aids.understeer_s2pm2,
-        aids.lateral_mps2,
-        aids.stability_nms,
-        aids.stability_most_nm,
+        anti_lock=0.0 if command.anti_lock_off > 0.0 else aids.anti_lock,
+        traction=0.0 if command.traction_off > 0.0 else aids.traction,
+        stability=0.0 if command.stability_off > 0.0 else aids.stability,
+        hill_hold=aids.hill_hold,
+        understeer_s2pm2=aids.understeer_s2pm2,
+        lateral_mps2=aids.lateral_mps2,
+        stability_nms=aids.stability_nms,
+        stability_most_nm=aids.stability_most_nm,
     )
     return CarParameters(
-        p.body, p.steering, p.engine, p.gears, switched, p.front, p.rear, p.patch_1, p.patch_2, p.patch_3, p.patch_4
+        body=p.body,
+        steering=p.steering,
+        engine=p.engine,
+        gears=p.gears,
+        aids=switched,
+        front=p.front,
+        rear=p.rear,
+        patch_1=p.patch_1,
+        patch_2=p.patch_2,
+        patch_3=p.patch_3,
+        patch_4=p.patch_4,
     )
 
 
@@ -193,19 +203,26 @@ def substep(car: Car, parameters: Row, grips: Grips, request: Request, command: 
     rear = motion.rear
     brakes = line.brakes
     return Car(
-        motion.body,
-        SteeringState(mean_rad, rate, torque),
-        wheel(axles.fl, line.fl_radps, front.left_m, front.left_mps, brakes.fl_share),
-        wheel(axles.fr, line.fr_radps, front.right_m, front.right_mps, brakes.fr_share),
-        wheel(axles.rl, line.rl_radps, rear.left_m, rear.left_mps, brakes.rear_share),
-        wheel(axles.rr, line.rr_radps, rear.right_m, rear.right_mps, brakes.rear_share),
-        line.shafts,
-        line.box,
-        line.aids,
+        body=motion.body,
+        steering=SteeringState(mean_rad, rate, torque),
+        fl=wheel(axles.fl, line.fl_radps, front.left_m, front.left_mps, brakes.fl_share),
+        fr=wheel(axles.fr, line.fr_radps, front.right_m, front.right_mps, brakes.fr_share),
+        rl=wheel(axles.rl, line.rl_radps, rear.left_m, rear.left_mps, brakes.rear_share),
+        rr=wheel(axles.rr, line.rr_radps, rear.right_m, rear.right_mps, brakes.rear_share),
+        shafts=line.shafts,
+        box=line.box,
+        aids=line.aids,
     )
 
 
 @kernel
 def wheel(on_ground: Contact, radps: float, lift_m: float, lift_mps: float, brake_share: float) -> Wheel:
     """Return a wheel after its step."""
-    return Wheel(radps, on_ground.tyre.deflection_x_m, on_ground.tyre.deflection_y_m, lift_m, lift_mps, brake_share)
+    return Wheel(
+        radps=radps,
+        deflection_x_m=on_ground.tyre.deflection_x_m,
+        deflection_y_m=on_ground.tyre.deflection_y_m,
+        lift_m=lift_m,
+        lift_mps=lift_mps,
+        brake_share=brake_share,
+    )

@@ -81,12 +81,12 @@ def turn(car: Car, p: CarParameters, request: Request, axles: Axles, step_s: flo
     rl_nms = friction_nms(p.rear, brakes.rl_nm, axles.rl, step_s)
     rr_nms = friction_nms(p.rear, brakes.rr_nm, axles.rr, step_s)
     most = Capacity(
-        step_s * drive.friction_nm,
-        step_s * clutch_nm,
-        rl_nms if at_rear else fl_nms,
-        rr_nms if at_rear else fr_nms,
-        step_s * p.gears.lock_nm,
-        p.gears.lock_share,
+        engine_nms=step_s * drive.friction_nm,
+        clutch_nms=step_s * clutch_nm,
+        left_nms=rl_nms if at_rear else fl_nms,
+        right_nms=rr_nms if at_rear else fr_nms,
+        lock_nms=step_s * p.gears.lock_nm,
+        lock_share=p.gears.lock_share,
     )
     shafts = turn_driven(car, p, drive, rl if at_rear else fl, rr if at_rear else fr, ratio, most, step_s)
     if at_rear:
@@ -100,15 +100,15 @@ def turn(car: Car, p: CarParameters, request: Request, axles: Axles, step_s: flo
         rl = braked(rl, p.rear.per_wheel_inertia_pkgm2, rl_nms)
         rr = braked(rr, p.rear.per_wheel_inertia_pkgm2, rr_nms)
     kept = ShaftState(
-        shafts.engine_radps,
-        drive.running,
-        shafts.engine_impulse_nms,
-        shafts.clutch_impulse_nms,
-        shafts.left_impulse_nms,
-        shafts.right_impulse_nms,
-        shafts.lock_impulse_nms,
+        engine_radps=shafts.engine_radps,
+        engine_running=drive.running,
+        engine_impulse_nms=shafts.engine_impulse_nms,
+        clutch_impulse_nms=shafts.clutch_impulse_nms,
+        left_impulse_nms=shafts.left_impulse_nms,
+        right_impulse_nms=shafts.right_impulse_nms,
+        lock_impulse_nms=shafts.lock_impulse_nms,
     )
-    return Driveline(box, kept, brakes, aids, fl, fr, rl, rr)
+    return Driveline(box=box, shafts=kept, brakes=brakes, aids=aids, fl_radps=fl, fr_radps=fr, rl_radps=rl, rr_radps=rr)
 
 
 @kernel
@@ -126,14 +126,14 @@ def turn_driven(
     s = car.shafts
     driven = p.rear if p.gears.rear_driven != 0.0 else p.front
     speeds = Shafts(
-        s.engine_radps + drive.torque_nm * (step_s * p.engine.per_inertia_pkgm2),
-        left_radps,
-        right_radps,
-        s.engine_impulse_nms,
-        s.clutch_impulse_nms,
-        s.left_impulse_nms,
-        s.right_impulse_nms,
-        s.lock_impulse_nms,
+        engine_radps=s.engine_radps + drive.torque_nm * (step_s * p.engine.per_inertia_pkgm2),
+        left_radps=left_radps,
+        right_radps=right_radps,
+        engine_impulse_nms=s.engine_impulse_nms,
+        clutch_impulse_nms=s.clutch_impulse_nms,
+        left_impulse_nms=s.left_impulse_nms,
+        right_impulse_nms=s.right_impulse_nms,
+        lock_impulse_nms=s.lock_impulse_nms,
     )
     flywheel = Inertia(p.engine.inertia_kgm2, p.engine.per_inertia_pkgm2)
     wheel = Inertia(driven.wheel_inertia_kgm2, driven.per_wheel_inertia_pkgm2)

@@ -55,7 +55,15 @@ def by_lever(
 ) -> Gearbox:
     """Return the gearbox under the person's lever and clutch pedal."""
     if lever == box.gear:
-        return Gearbox(lever, pedal, 1.0, lever, 0.0, box.since_shift_s, 0.0)
+        return Gearbox(
+            gear=lever,
+            clutch=pedal,
+            lever_adopted=1.0,
+            wanted_gear=lever,
+            shift_left_s=0.0,
+            since_shift_s=box.since_shift_s,
+            gear_fault=0.0,
+        )
     ratio = gear_ratio(p, lever)
     speed = ratio * wheel_radps
     free = pedal >= p.bite_open or abs(speed - engine_radps) < p.synchro_radps
@@ -68,7 +76,15 @@ def by_lever(
         if ratio == 0.0 or speed <= BACKWARDS_RADPS:
             fault += MISSED
     gear = lever if fault == 0.0 else 0.0
-    return Gearbox(gear, pedal, 1.0, gear, 0.0, 0.0, fault)
+    return Gearbox(
+        gear=gear,
+        clutch=pedal,
+        lever_adopted=1.0,
+        wanted_gear=gear,
+        shift_left_s=0.0,
+        since_shift_s=0.0,
+        gear_fault=fault,
+    )
 
 
 @kernel
@@ -157,9 +173,25 @@ def by_itself(
     elif wanted != gear:
         target = wanted
         left = p.shift_s
-    shifted = Gearbox(gear, box.clutch, 0.0, target, left, since, 0.0)
+    shifted = Gearbox(
+        gear=gear,
+        clutch=box.clutch,
+        lever_adopted=0.0,
+        wanted_gear=target,
+        shift_left_s=left,
+        since_shift_s=since,
+        gear_fault=0.0,
+    )
     clutch = automatic_clutch(p, shifted, engine_radps, wheel_radps, step_s)
-    return Gearbox(gear, clutch, 0.0, target, left, since, 0.0)
+    return Gearbox(
+        gear=gear,
+        clutch=clutch,
+        lever_adopted=0.0,
+        wanted_gear=target,
+        shift_left_s=left,
+        since_shift_s=since,
+        gear_fault=0.0,
+    )
 
 
 @kernel
@@ -182,4 +214,12 @@ def work_gearbox(
         return by_lever(p, box, request.gear, request.clutch, engine_radps, wheel_radps)
     kept = by_itself(p, box, box.gear, engine_radps, wheel_radps, step_s)
     clutch = request.clutch if request.clutch > kept.clutch else kept.clutch
-    return Gearbox(kept.gear, clutch, 0.0, kept.wanted_gear, kept.shift_left_s, kept.since_shift_s, 0.0)
+    return Gearbox(
+        gear=kept.gear,
+        clutch=clutch,
+        lever_adopted=0.0,
+        wanted_gear=kept.wanted_gear,
+        shift_left_s=kept.shift_left_s,
+        since_shift_s=kept.since_shift_s,
+        gear_fault=0.0,
+    )

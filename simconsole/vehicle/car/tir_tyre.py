@@ -103,7 +103,14 @@ def tir_tyre(
         share = limit / force
         force_x = force_x * share
         force_y = force_y * share
-    return TirForce(force_x, force_y, x, y, demand, turned * given.moment_nm * touching)
+    return TirForce(
+        force_x_n=force_x,
+        force_y_n=force_y,
+        deflection_x_m=x,
+        deflection_y_m=y,
+        demand=demand,
+        moment_nm=turned * given.moment_nm * touching,
+    )
 
 
 @kernel
