@@ -12,7 +12,8 @@ from simconsole.vehicle.car.car_platform import car_parameters
 from simconsole.vehicle.car.engine import engine_drive, engine_friction, full_torque
 from simconsole.vehicle.car.gearbox import bite, gear_ratio, work_gearbox
 from simconsole.vehicle.car.powertrain import Capacity, Inertia, Shafts, braked, solve_shafts
-from simconsole.vehicle.car.state import AID_WIDTH, CAR_WIDTH, Car, CarState, Gearbox, SteeringState, Wheel
+from simconsole.vehicle.car.state import CAR as COLUMNS
+from simconsole.vehicle.car.state import Car, CarState, Gearbox, SteeringState, Wheel
 from simconsole.vehicle.car.steering import aligning_moment, hand_wheel_torque, heading, steer
 from simconsole.vehicle.car.suspension import wheel_load
 from simconsole.vehicle.car.tyre import Tyre, tyre
@@ -273,4 +274,4 @@ def test_columns_are_the_groups_one_after_the_other() -> None:
         prefix = f"{name}_" if group is Wheel else ""
         names += [prefix + field for field in group._fields]
     assert tuple(names) == CarState._fields
-    assert (len(names), AID_WIDTH) == (CAR_WIDTH, 4)
+    assert len(names) == COLUMNS.width

@@ -8,9 +8,10 @@ spin, so a slope moves it with 5/7 of gravity.
 from math import sqrt
 from typing import Final, NamedTuple
 
-from simconsole.values.kernels import Row, approach, clip, is_finite, kernel, put, take
+from simconsole.values.kernels import Row, approach, clip, is_finite, kernel
+from simconsole.values.layout import Part, read, write
 from simconsole.values.signals import VehicleCommand, VehicleState
-from simconsole.values.state_vector import COMMAND_AT, COMMAND_WIDTH, PLATFORM_AT, VEHICLE_AT
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT
 from simconsole.values.trigonometry import atan2, cos, sin, wrap_angle
 
 STEP_S: Final = 0.001
@@ -49,8 +50,8 @@ class BallParameters(NamedTuple):
     gravity_y_mps2: float
 
 
-BALL_WIDTH: Final = len(BallState._fields)
-PARAMETERS_WIDTH: Final = len(BallParameters._fields)
+BALL: Final = Part(BallState, PLATFORM_AT)
+PARAMETERS: Final = Part(BallParameters)
 
 
 class Velocity(NamedTuple):
@@ -63,16 +64,16 @@ class Velocity(NamedTuple):
 @kernel
 def step(previous: Row, row: Row, parameters: Row, substeps: int) -> None:
     """Advance the ball by one tick: the platform interface of vehicle/platform.py."""
-    p = BallParameters(*take(parameters, 0, PARAMETERS_WIDTH))
-    command = VehicleCommand(*take(row, COMMAND_AT, COMMAND_WIDTH))
-    state = BallState(*take(previous, PLATFORM_AT, BALL_WIDTH))
+    p = read(parameters, PARAMETERS)
+    command = read(row, LAYOUT.command)
+    state = read(previous, BALL)
     brake = clip(command.brake, 0.0, 1.0) if is_finite(command.brake) else 0.0
     following = is_finite(command.target_speed_mps) and command.target_speed_mps > 0.0
     following = following and is_finite(command.target_x_m) and is_finite(command.target_y_m)
     for _ in range(substeps):
         state = follow(state, p, command, brake) if following else pushed(state, p, command, brake)
-    put(row, PLATFORM_AT, state)
-    put(row, VEHICLE_AT, vehicle_state(state, p, command.road_wheel_rad))
+    write(row, BALL, state)
+    write(row, LAYOUT.vehicle, vehicle_state(state, p, command.road_wheel_rad))
 
 
 @kernel

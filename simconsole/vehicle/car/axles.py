@@ -1,13 +1,20 @@
 """The four wheels on the ground: where their contact patches slide, what their tyres push."""
 
-from typing import Final, NamedTuple
+from collections.abc import Callable
+from typing import Any, Final, NamedTuple
 
 from simconsole.values.kernels import kernel
 from simconsole.vehicle.car.parameters import AxleParameters, CarParameters, SteeringParameters
 from simconsole.vehicle.car.state import BodyState, Car, Wheel
 from simconsole.vehicle.car.steering import Heading, aligning_moment
 from simconsole.vehicle.car.suspension import axle_roll, wheel_load
-from simconsole.vehicle.car.tyre import Tyre, tyre
+from simconsole.vehicle.car.tyre import Tyre
+
+TyreModel = Callable[..., Any]
+"""A kernel with the arguments of `tyre.tyre` that returns a `Tyre` or a record with the same fields and more."""
+
+RimMoment = Callable[[SteeringParameters, Any, float], float]
+"""A kernel that returns the moment about the kingpin, as `rim_moment`, from what the tyre's kernel returns."""
 
 LIGHT_SHARE: Final = 0.1
 """Of the static load below which a standing wheel is about to lift and keeps what it has."""
@@ -62,6 +69,7 @@ def kept_share(axle: AxleParameters, wheel: Wheel, step_s: float) -> float:
 
 @kernel
 def straight(
+    tyre: TyreModel,
     axle: AxleParameters,
     friction: float,
     wheel: Wheel,
@@ -92,6 +100,7 @@ def straight(
 
 @kernel
 def steered(
+    tyre: TyreModel,
     axle: AxleParameters,
     friction: float,
     wheel: Wheel,
@@ -117,7 +126,7 @@ def steered(
         brake_share=wheel.brake_share,
     )
     along = vx_mps * c + vy_mps * s
-    on = straight(axle, friction, seen, along, vy_mps * c - vx_mps * s, camber_rad, side, step_s)
+    on = straight(tyre, axle, friction, seen, along, vy_mps * c - vx_mps * s, camber_rad, side, step_s)
     force_x = on.force_x_n * c - on.force_y_n * s
     return Contact(on.tyre, on.load_n, on.ground_mps, force_x, on.force_x_n * s + on.force_y_n * c)
 
@@ -154,7 +163,16 @@ def camber(axle: AxleParameters, body: BodyState, left: Wheel, right: Wheel) -> 
 
 
 @kernel
-def push(car: Car, p: CarParameters, grips: Grips, points: Heading, turned_rad: float, step_s: float) -> Axles:
+def push(
+    car: Car,
+    p: CarParameters,
+    grips: Grips,
+    points: Heading,
+    turned_rad: float,
+    step_s: float,
+    tyre: TyreModel,
+    rim_moment: RimMoment,
+) -> Axles:
     """Return the tyres one step later, with the front wheels pointing to `points`."""
     body = car.body
     front = p.front
@@ -164,14 +182,18 @@ def push(car: Car, p: CarParameters, grips: Grips, points: Heading, turned_rad: 
     side = front.half_track_m * body.yaw_rate_radps
     lean = camber(front, body, car.fl, car.fr)
     mu = front.friction_left * grips.fl
-    fl = steered(front, mu, car.fl, vx - side, vy, points.left_cos, points.left_sin, turned_rad, lean, 1.0, step_s)
+    fl = steered(
+        tyre, front, mu, car.fl, vx - side, vy, points.left_cos, points.left_sin, turned_rad, lean, 1.0, step_s
+    )
     mu = front.friction_right * grips.fr
-    fr = steered(front, mu, car.fr, vx + side, vy, points.right_cos, points.right_sin, turned_rad, lean, -1.0, step_s)
+    fr = steered(
+        tyre, front, mu, car.fr, vx + side, vy, points.right_cos, points.right_sin, turned_rad, lean, -1.0, step_s
+    )
     vy = side_speed(rear, body, car.rl, car.rr)
     side = rear.half_track_m * body.yaw_rate_radps
     lean = camber(rear, body, car.rl, car.rr)
-    rl = straight(rear, rear.friction_left * grips.rl, car.rl, vx - side, vy, lean, 1.0, step_s)
-    rr = straight(rear, rear.friction_right * grips.rr, car.rr, vx + side, vy, lean, -1.0, step_s)
+    rl = straight(tyre, rear, rear.friction_left * grips.rl, car.rl, vx - side, vy, lean, 1.0, step_s)
+    rr = straight(tyre, rear, rear.friction_right * grips.rr, car.rr, vx + side, vy, lean, -1.0, step_s)
     front_y = fl.force_y_n + fr.force_y_n
     rear_y = rl.force_y_n + rr.force_y_n
     steering = p.steering

@@ -15,15 +15,16 @@ from simconsole.profiles.vehicle import (
     GearboxProfile,
 )
 from simconsole.values.errors import ProfileError
-from simconsole.values.kernels import Row, put
+from simconsole.values.kernels import Row
+from simconsole.values.layout import Part, read, write
 from simconsole.values.platform import MOST_PATCHES, Ground, Platform, Pose
-from simconsole.values.state_vector import PLATFORM_AT
 from simconsole.values.trigonometry import wrap_angle
 from simconsole.values.units import MPS_PER_KMH, RAD_PER_DEG, RADPS_PER_RPM, STANDARD_GRAVITY_MPS2
-from simconsole.vehicle.car.car_step import STEP_S, load_car, step
+from simconsole.vehicle.car.car_step import STEP_S, step
 from simconsole.vehicle.car.outputs import vehicle_state
 from simconsole.vehicle.car.parameters import (
     NO_PATCH,
+    PARAMETERS,
     AidParameters,
     AxleParameters,
     BodyParameters,
@@ -33,7 +34,7 @@ from simconsole.vehicle.car.parameters import (
     PatchParameters,
     SteeringParameters,
 )
-from simconsole.vehicle.car.state import CAR_WIDTH, CarState
+from simconsole.vehicle.car.state import CAR, Car, CarState
 
 AIR_KGPM3: Final = 1.225
 """Density of air, ISO 2533 standard atmosphere at sea level."""
@@ -52,7 +53,7 @@ LIMIT_BAND_RPM: Final = 100.0
 def build_car(profile: CarProfile, pose: Pose, ground: Ground) -> Platform:
     """Return the car at rest with its engine idling, in neutral."""
     car = car_parameters(profile, ground)
-    initial = CarState(*(0.0,) * CAR_WIDTH)._replace(
+    initial = CarState(*(0.0,) * CAR.width)._replace(
         x_m=pose.x_m,
         y_m=pose.y_m,
         yaw_rad=wrap_angle(pose.yaw_rad),
@@ -66,14 +67,14 @@ def build_car(profile: CarProfile, pose: Pose, ground: Ground) -> Platform:
         rr_brake_share=1.0,
     )
     body = profile.body
-    row = np.zeros(PLATFORM_AT + CAR_WIDTH)
-    put(row, PLATFORM_AT, initial)
+    parameters = np.empty(PARAMETERS.width)
+    write(parameters, PARAMETERS, car)
     return Platform(
         name="car",
         state=CarState,
         initial_state=tuple(initial),
-        initial_vehicle=vehicle_state(load_car(row), car, 0.0),
-        parameters=np.array([value for group in car for value in group], dtype=np.float64),
+        initial_vehicle=vehicle_state(read(np.array(initial), Part(Car)), car, 0.0),
+        parameters=parameters,
         step=_step(profile),
         steering_ratio=profile.steering.ratio,
         max_road_wheel_rad=car.steering.max_road_wheel_rad,
@@ -98,7 +99,7 @@ def _step(profile: CarProfile) -> Callable[[Row, Row, Row, int], None]:
     from simconsole.vehicle.car.pac2002 import coefficients
     from simconsole.vehicle.car.tir_tyre import step_on
 
-    return step_on(coefficients(profile.tyre.coefficients))  # type: ignore[no-any-return]
+    return step_on(coefficients(profile.tyre.coefficients))
 
 
 def car_parameters(profile: CarProfile, ground: Ground) -> CarParameters:

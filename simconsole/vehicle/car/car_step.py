@@ -1,132 +1,57 @@
 """One tick of the car: the order of its parts. Every part is a kernel of its own file."""
 
+from collections.abc import Callable
 from typing import Final
 
-from simconsole.values.kernels import Row, clip, forget, is_finite, kernel, put, take
+from simconsole.values.kernels import Row, clip, forget, is_finite, kernel
+from simconsole.values.layout import read, write
 from simconsole.values.signals import Request, VehicleCommand
-from simconsole.values.state_vector import COMMAND_AT, COMMAND_WIDTH, PLATFORM_AT, VEHICLE_AT
+from simconsole.values.state_vector import LAYOUT
 from simconsole.values.trigonometry import nearest
-from simconsole.vehicle.car.axles import Contact, Grips, push
+from simconsole.vehicle.car.axles import Contact, Grips, RimMoment, TyreModel, push, rim_moment
 from simconsole.vehicle.car.body import move
 from simconsole.vehicle.car.driveline import turn
 from simconsole.vehicle.car.ground import grips_of
 from simconsole.vehicle.car.outputs import vehicle_state
-from simconsole.vehicle.car.parameters import (
-    AIDS_AT,
-    AIDS_WIDTH,
-    AXLE_WIDTH,
-    BODY_AT,
-    BODY_WIDTH,
-    ENGINE_AT,
-    ENGINE_WIDTH,
-    FRONT_AT,
-    GEARS_AT,
-    GEARS_WIDTH,
-    PATCH_1_AT,
-    PATCH_2_AT,
-    PATCH_3_AT,
-    PATCH_4_AT,
-    PATCH_WIDTH,
-    REAR_AT,
-    STEERING_AT,
-    STEERING_WIDTH,
-    AidParameters,
-    AxleParameters,
-    BodyParameters,
-    CarParameters,
-    EngineParameters,
-    GearParameters,
-    PatchParameters,
-    SteeringParameters,
-)
-from simconsole.vehicle.car.state import (
-    AID_WIDTH,
-    BOX_WIDTH,
-    SHAFT_WIDTH,
-    WHEEL_WIDTH,
-    AidState,
-    BodyState,
-    Car,
-    Gearbox,
-    ShaftState,
-    SteeringState,
-    Wheel,
-)
-from simconsole.vehicle.car.state import BODY_WIDTH as BODY_STATE_WIDTH
-from simconsole.vehicle.car.state import STEERING_WIDTH as STEERING_STATE_WIDTH
+from simconsole.vehicle.car.parameters import PARAMETERS, AidParameters, CarParameters
+from simconsole.vehicle.car.state import CAR, Car, SteeringState, Wheel
 from simconsole.vehicle.car.steering import hand_wheel_torque, heading, steer
+from simconsole.vehicle.car.tyre import tyre
 
 STEP_S: Final = 0.001
 """The car integrates at 1 ms whatever the tick; its stiffest mode (a wheel on its tyre) has a period of 30 ms."""
 
 MOST_GEARS: Final = 7.0
 
-RACK_AT: Final = PLATFORM_AT + BODY_STATE_WIDTH
-FL_AT: Final = RACK_AT + STEERING_STATE_WIDTH
-FR_AT: Final = FL_AT + WHEEL_WIDTH
-RL_AT: Final = FR_AT + WHEEL_WIDTH
-RR_AT: Final = RL_AT + WHEEL_WIDTH
-SHAFTS_AT: Final = RR_AT + WHEEL_WIDTH
-BOX_AT: Final = SHAFTS_AT + SHAFT_WIDTH
-AID_STATE_AT: Final = BOX_AT + BOX_WIDTH
-
 
 @kernel
 def load_parameters(parameters: Row) -> CarParameters:
-    """Return the groups of the parameter row, read anew."""
+    """Return the parameters, read anew."""
     forget()
-    return CarParameters(
-        body=BodyParameters(*take(parameters, BODY_AT, BODY_WIDTH)),
-        steering=SteeringParameters(*take(parameters, STEERING_AT, STEERING_WIDTH)),
-        engine=EngineParameters(*take(parameters, ENGINE_AT, ENGINE_WIDTH)),
-        gears=GearParameters(*take(parameters, GEARS_AT, GEARS_WIDTH)),
-        aids=AidParameters(*take(parameters, AIDS_AT, AIDS_WIDTH)),
-        front=AxleParameters(*take(parameters, FRONT_AT, AXLE_WIDTH)),
-        rear=AxleParameters(*take(parameters, REAR_AT, AXLE_WIDTH)),
-        patch_1=PatchParameters(*take(parameters, PATCH_1_AT, PATCH_WIDTH)),
-        patch_2=PatchParameters(*take(parameters, PATCH_2_AT, PATCH_WIDTH)),
-        patch_3=PatchParameters(*take(parameters, PATCH_3_AT, PATCH_WIDTH)),
-        patch_4=PatchParameters(*take(parameters, PATCH_4_AT, PATCH_WIDTH)),
-    )
+    return read(parameters, PARAMETERS)
+
+
+def make_step(tyre: TyreModel, rim_moment: RimMoment) -> Callable[[Row, Row, Row, int], None]:
+    """Return the kernel that advances a car on such tyres by one tick: the platform interface of values/platform.py."""
+
+    @kernel
+    def step(previous: Row, row: Row, parameters: Row, substeps: int) -> None:
+        command = read(row, LAYOUT.command)
+        car = read(previous, CAR)
+        grips = grips_of(car, load_parameters(parameters))
+        request = request_of(command, car)
+        for _ in range(substeps):
+            car = substep(car, parameters, grips, request, command, tyre, rim_moment)
+        write(row, CAR, car)
+        write(row, LAYOUT.vehicle, vehicle_state(car, load_parameters(parameters), command.automatic))
+
+    return step
 
 
 @kernel
-def load_car(row: Row) -> Car:
-    """Return the groups of the state in a row."""
-    return Car(
-        body=BodyState(*take(row, PLATFORM_AT, BODY_STATE_WIDTH)),
-        steering=SteeringState(*take(row, RACK_AT, STEERING_STATE_WIDTH)),
-        fl=Wheel(*take(row, FL_AT, WHEEL_WIDTH)),
-        fr=Wheel(*take(row, FR_AT, WHEEL_WIDTH)),
-        rl=Wheel(*take(row, RL_AT, WHEEL_WIDTH)),
-        rr=Wheel(*take(row, RR_AT, WHEEL_WIDTH)),
-        shafts=ShaftState(*take(row, SHAFTS_AT, SHAFT_WIDTH)),
-        box=Gearbox(*take(row, BOX_AT, BOX_WIDTH)),
-        aids=AidState(*take(row, AID_STATE_AT, AID_WIDTH)),
-    )
-
-
-@kernel
-def store_car(row: Row, car: Car) -> None:
-    """Write the state into a row."""
-    put(row, PLATFORM_AT, car.body)
-    put(row, RACK_AT, car.steering)
-    put(row, FL_AT, car.fl)
-    put(row, FR_AT, car.fr)
-    put(row, RL_AT, car.rl)
-    put(row, RR_AT, car.rr)
-    put(row, SHAFTS_AT, car.shafts)
-    put(row, BOX_AT, car.box)
-    put(row, AID_STATE_AT, car.aids)
-
-
-@kernel
-def step(previous: Row, row: Row, parameters: Row, substeps: int) -> None:
-    """Advance the car by one tick: the platform interface of vehicle/platform.py."""
-    command = VehicleCommand(*take(row, COMMAND_AT, COMMAND_WIDTH))
-    car = load_car(previous)
-    grips = grips_of(car, load_parameters(parameters))
-    request = Request(
+def request_of(command: VehicleCommand, car: Car) -> Request:
+    """Return what a command asks of the car; an angle that is not finite leaves the rack where it is."""
+    return Request(
         road_wheel_rad=command.road_wheel_rad if is_finite(command.road_wheel_rad) else car.steering.road_wheel_rad,
         throttle=pedal(command.throttle),
         brake=pedal(command.brake),
@@ -137,10 +62,6 @@ def step(previous: Row, row: Row, parameters: Row, substeps: int) -> None:
         turn_indicators=command.turn_indicators,
         hazard_lights=command.hazard_lights,
     )
-    for _ in range(substeps):
-        car = substep(car, parameters, grips, request, command)
-    store_car(row, car)
-    put(row, VEHICLE_AT, vehicle_state(car, load_parameters(parameters), command.automatic))
 
 
 @kernel
@@ -187,13 +108,22 @@ def with_aids(p: CarParameters, command: VehicleCommand) -> CarParameters:
 
 
 @kernel
-def substep(car: Car, parameters: Row, grips: Grips, request: Request, command: VehicleCommand) -> Car:
+def substep(
+    car: Car,
+    parameters: Row,
+    grips: Grips,
+    request: Request,
+    command: VehicleCommand,
+    tyre: TyreModel,
+    rim_moment: RimMoment,
+) -> Car:
     """Advance the car by 1 ms: steer, push against the ground, turn the shafts, move."""
     rack = car.steering
     p = load_parameters(parameters)
     # The rack works against the tyres of the last step: their moment is part of the rack's torque.
     mean_rad = rack.road_wheel_rad + STEP_S * rack.road_wheel_radps
-    axles = push(car, p, grips, heading(p.steering, mean_rad), mean_rad - rack.road_wheel_rad, STEP_S)
+    points = heading(p.steering, mean_rad)
+    axles = push(car, p, grips, points, mean_rad - rack.road_wheel_rad, STEP_S, tyre, rim_moment)
     moved = SteeringState(mean_rad, rack.road_wheel_radps, rack.hand_wheel_torque_nm)
     rate = steer(p.steering, moved, request.road_wheel_rad, axles.aligning_nm)
     torque = hand_wheel_torque(p.steering, axles.aligning_nm, rate, car.body.vx_mps)
@@ -226,3 +156,7 @@ def wheel(on_ground: Contact, radps: float, lift_m: float, lift_mps: float, brak
         lift_mps=lift_mps,
         brake_share=brake_share,
     )
+
+
+step: Final = make_step(tyre, rim_moment)
+"""The step of a car whose tyres the profile describes itself."""

@@ -5,6 +5,8 @@ Whatever the kernels divide by is here as its reciprocal, `per_...`: a division 
 
 from typing import Final, NamedTuple
 
+from simconsole.values.layout import Part
+
 
 class AxleParameters(NamedTuple):
     """One axle. Figures of tyre, spring and brake are of one wheel; tyre stiffness is per newton of load."""
@@ -194,24 +196,6 @@ class PatchParameters(NamedTuple):
 
 
 NO_PATCH: Final = PatchParameters(1.0, -1.0, 1.0, -1.0, 1.0)
-BODY_AT: Final = 0
-BODY_WIDTH: Final = len(BodyParameters._fields)
-STEERING_AT: Final = BODY_AT + BODY_WIDTH
-STEERING_WIDTH: Final = len(SteeringParameters._fields)
-ENGINE_AT: Final = STEERING_AT + STEERING_WIDTH
-ENGINE_WIDTH: Final = len(EngineParameters._fields)
-GEARS_AT: Final = ENGINE_AT + ENGINE_WIDTH
-GEARS_WIDTH: Final = len(GearParameters._fields)
-AIDS_AT: Final = GEARS_AT + GEARS_WIDTH
-AIDS_WIDTH: Final = len(AidParameters._fields)
-FRONT_AT: Final = AIDS_AT + AIDS_WIDTH
-AXLE_WIDTH: Final = len(AxleParameters._fields)
-REAR_AT: Final = FRONT_AT + AXLE_WIDTH
-PATCH_1_AT: Final = REAR_AT + AXLE_WIDTH
-PATCH_WIDTH: Final = len(PatchParameters._fields)
-PATCH_2_AT: Final = PATCH_1_AT + PATCH_WIDTH
-PATCH_3_AT: Final = PATCH_2_AT + PATCH_WIDTH
-PATCH_4_AT: Final = PATCH_3_AT + PATCH_WIDTH
 
 
 class CarParameters(NamedTuple):
@@ -228,3 +212,7 @@ class CarParameters(NamedTuple):
     patch_2: PatchParameters
     patch_3: PatchParameters
     patch_4: PatchParameters
+
+
+PARAMETERS: Final = Part(CarParameters)
+"""Where they lie in the parameter row."""
