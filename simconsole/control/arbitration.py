@@ -5,7 +5,7 @@ last is held while its authority fades out, so that nothing jumps whatever it se
 The person's brake is never faded down: it counts in full in every mode.
 """
 
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 from simconsole.control.authority import (
     RemoteSide,
@@ -29,12 +29,6 @@ from simconsole.control.requests.tick_context import Moment
 from simconsole.control.shared import consent
 from simconsole.values.kernels import kernel
 from simconsole.values.signals import ArbiterMemory, Arbitration, Link, Mode, Notice, Request
-
-_SHARED: Final = float(Mode.SHARED)
-_AUTONOMOUS: Final = float(Mode.AUTONOMOUS)
-_TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)
-_MINIMAL_RISK: Final = float(Mode.MINIMAL_RISK)
-_THROTTLE_HELD: Final = float(Notice.THROTTLE_HELD)
 
 
 class Seen(NamedTuple):
@@ -104,7 +98,7 @@ def arbitrate(now: Moment) -> tuple[ArbiterMemory, Link, Link, Arbitration, Requ
 @kernel
 def watched(mode: float) -> bool:
     """Return whether a person can take over from `mode` by moving the wheel."""
-    return mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED, _MINIMAL_RISK)
+    return mode in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED, Mode.MINIMAL_RISK)
 
 
 @kernel
@@ -132,7 +126,7 @@ def _see(now: Moment) -> Seen:
 def _notice(restart: Restart, throttle_held_ticks: float, settings: ControlSettings) -> float:
     if restart.notice > 0.0:
         return restart.notice
-    return _THROTTLE_HELD if throttle_held_ticks > settings.throttle_held_ticks else 0.0
+    return Notice.THROTTLE_HELD if throttle_held_ticks > settings.throttle_held_ticks else 0.0
 
 
 @kernel
@@ -158,7 +152,7 @@ def _remembered(
         stop_accel_mps2=side.stop_accel_mps2,
         hold_road_wheel_rad=side.hold_road_wheel_rad,
         stop_steered=stop_steered,
-        shared_trade=trade if decision.mode == _SHARED else 1.0,
+        shared_trade=trade if decision.mode == Mode.SHARED else 1.0,
         stalk=stalk.turn_indicators,
         hazard_switch=stalk.hazard_lights,
         throttle_held_ticks=throttle_held_ticks,

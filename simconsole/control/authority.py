@@ -1,6 +1,6 @@
 """How much authority each side has, what each asks for, and the blend of both."""
 
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 from simconsole.control.lights import Lights
 from simconsole.control.modes.decision import Decision
@@ -12,17 +12,6 @@ from simconsole.control.requests.stops import safe_stop, stop_start
 from simconsole.control.requests.tick_context import Moment
 from simconsole.values.kernels import approach, clip, kernel
 from simconsole.values.signals import Arbitration, DriverInput, Link, Mode, Reason, Request, VehicleCommand
-
-_PARKED: Final = float(Mode.PARKED)
-_MANUAL: Final = float(Mode.MANUAL)
-_SHARED: Final = float(Mode.SHARED)
-_AUTONOMOUS: Final = float(Mode.AUTONOMOUS)
-_TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)
-_MINIMAL_RISK: Final = float(Mode.MINIMAL_RISK)
-_STOPPED: Final = float(Mode.STOPPED)
-_NO_REACTION: Final = float(Reason.NO_REACTION)
-_LOOP_STALL: Final = float(Reason.LOOP_STALL)
-_EMERGENCY_STOP: Final = float(Mode.EMERGENCY_STOP)
 
 
 class Shares(NamedTuple):
@@ -67,14 +56,14 @@ def shares_of(
         settings: Of this drive.
     """
     guidance = 0.0
-    if mode == _MANUAL:
+    if mode == Mode.MANUAL:
         lateral = 0.0
         longitudinal = 0.0
-    elif mode == _SHARED:
+    elif mode == Mode.SHARED:
         lateral = 0.0 if settings.shared_haptic > 0.0 else shared_lateral
         guidance = shared_lateral
         longitudinal = settings.shared_longitudinal
-    elif mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED):
+    elif mode in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED):
         lateral = 1.0
         longitudinal = 1.0 - throttle_override
     else:
@@ -113,9 +102,9 @@ def remote_side(
     mode = decision.mode
     entered = decision.changed > 0.0
     hold = now.command_before.road_wheel_rad if entered else now.memory.hold_road_wheel_rad
-    if mode == _MANUAL and (shares.lateral > 0.0 or shares.longitudinal > 0.0):
+    if mode == Mode.MANUAL and (shares.lateral > 0.0 or shares.longitudinal > 0.0):
         return _fading_side(entered, hold, person, now.before, now.command_before)
-    if mode in (_MANUAL, _SHARED, _AUTONOMOUS, _TAKEOVER_REQUESTED):
+    if mode in (Mode.MANUAL, Mode.SHARED, Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED):
         if link.fresh == 0.0:
             return RemoteSide(
                 road_wheel_rad=now.command_before.road_wheel_rad,
@@ -126,9 +115,9 @@ def remote_side(
                 stop_accel_mps2=0.0,
                 hold_road_wheel_rad=hold,
             )
-        if mode == _SHARED:
+        if mode == Mode.SHARED:
             offered = _held_back(now, offered)
-        integral = offered.speed_integral_mps2 if mode != _MANUAL and shares.longitudinal >= 1.0 else 0.0
+        integral = offered.speed_integral_mps2 if mode != Mode.MANUAL and shares.longitudinal >= 1.0 else 0.0
         return RemoteSide(
             road_wheel_rad=offered.road_wheel_rad,
             throttle=offered.throttle,
@@ -138,9 +127,9 @@ def remote_side(
             stop_accel_mps2=0.0,
             hold_road_wheel_rad=hold,
         )
-    if mode == _MINIMAL_RISK:
+    if mode == Mode.MINIMAL_RISK:
         return _safe_side(now, entered, hold, offered.road_wheel_rad, steered)
-    brake = now.settings.emergency_brake if mode == _EMERGENCY_STOP else now.settings.hold_brake
+    brake = now.settings.emergency_brake if mode == Mode.EMERGENCY_STOP else now.settings.hold_brake
     return RemoteSide(
         road_wheel_rad=hold,
         throttle=0.0,
@@ -227,12 +216,12 @@ def steered_stop(now: Moment, decision: Decision, offered: RemoteRequest, link: 
     drove (their wheel is lost, or the loop stood still), it steers if it is steady and asks for about what they did.
     One that is `lost` in this tick (it left or did not answer) steers no more, however young its last command is.
     """
-    if decision.mode != _MINIMAL_RISK or link.fresh == 0.0 or link.invalid > 0.0 or lost:
+    if decision.mode != Mode.MINIMAL_RISK or link.fresh == 0.0 or link.invalid > 0.0 or lost:
         return 0.0
     if decision.changed == 0.0:
         return now.memory.stop_steered
-    if now.before.mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED):
-        return 1.0 if decision.reason in (_NO_REACTION, _LOOP_STALL) else 0.0
+    if now.before.mode in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED):
+        return 1.0 if decision.reason in (Reason.NO_REACTION, Reason.LOOP_STALL) else 0.0
     apart = lateral_apart(offered.road_wheel_rad, now.command_before.road_wheel_rad, now.vehicle, now.settings)
     steady = link.fresh_ticks >= now.settings.engage_stable_ticks
     return 1.0 if steady and apart <= now.settings.stop_steering_apart_mps2 else 0.0
@@ -264,16 +253,16 @@ def transmission_of(now: Moment, mode: float, direction: float) -> Transmission:
     After autonomy the car goes on doing it until the person's clutch takes them back: the lever stands in any gear.
     """
     driver, command_before, settings = now.driver, now.command_before, now.settings
-    if mode == _PARKED:
+    if mode == Mode.PARKED:
         return Transmission(0.0, 0.0, 0.0)
-    if mode == _STOPPED:
+    if mode == Mode.STOPPED:
         return Transmission(0.0, 0.0, 1.0)
-    if mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED):
+    if mode in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED):
         return Transmission(0.0, direction, 1.0)
-    if mode in (_MINIMAL_RISK, _EMERGENCY_STOP):
+    if mode in (Mode.MINIMAL_RISK, Mode.EMERGENCY_STOP):
         gear = command_before.gear if command_before.automatic > 0.0 else _sign(now.vehicle.gear)
         return Transmission(0.0, gear, 1.0)
-    if mode == _SHARED and settings.shared_longitudinal > 0.0:
+    if mode == Mode.SHARED and settings.shared_longitudinal > 0.0:
         return Transmission(0.0, direction, 1.0)
     if settings.manual_automatic > 0.0:
         return Transmission(0.0, _sign(driver.gear), 1.0)
@@ -306,9 +295,9 @@ def blend(
     if person.brake > brake:
         brake = person.brake
     handbrake = 0.0
-    if mode in (_PARKED, _STOPPED):
+    if mode in (Mode.PARKED, Mode.STOPPED):
         handbrake = 1.0
-    elif mode in (_MANUAL, _SHARED):
+    elif mode in (Mode.MANUAL, Mode.SHARED):
         handbrake = driver.handbrake
     return Request(
         road_wheel_rad=road_wheel_rad,

@@ -24,27 +24,6 @@ from simconsole.values.signals import (
     VehicleState,
 )
 
-_PARKED: Final = float(Mode.PARKED)
-_MANUAL: Final = float(Mode.MANUAL)
-_SHARED: Final = float(Mode.SHARED)
-_AUTONOMOUS: Final = float(Mode.AUTONOMOUS)
-_TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)
-_MINIMAL_RISK: Final = float(Mode.MINIMAL_RISK)
-_EMERGENCY_STOP: Final = float(Mode.EMERGENCY_STOP)
-_POSE: Final = float(RemoteKind.POSE)
-_NON_FINITE: Final = int(GateLimit.NON_FINITE)
-_RANGE: Final = int(GateLimit.RANGE)
-_RATE: Final = int(GateLimit.RATE)
-_LATERAL: Final = int(GateLimit.LATERAL_ACCELERATION)
-_OVER: Final = int(GateLimit.BRAKE_OVER_THROTTLE)
-_GEAR: Final = int(GateLimit.GEAR)
-_JERK: Final = int(GateLimit.LATERAL_JERK)
-
-_RESET: Final = int(Event.RESET)
-_ANTI_LOCK: Final = int(Event.TOGGLE_ANTI_LOCK)
-_TRACTION: Final = int(Event.TOGGLE_TRACTION)
-_STABILITY: Final = int(Event.TOGGLE_STABILITY)
-
 _SAFE_BRAKE: Final = 0.3
 """Stands in for a brake request that is not finite: slows any car, locks none on a dry road."""
 _MOST_YAW_RAD: Final = 1000.0
@@ -96,7 +75,7 @@ def limits_of(mode: float, settings: ControlSettings) -> Limits:
     lateral acceleration and jerk are free: catching a skid or swerving needs more of both than any comfort limit has.
     """
     slew = settings.manual_pedal_slew_per_s
-    if mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED):
+    if mode in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED):
         return Limits(
             road_wheel_rad=settings.automatic_road_wheel_rad,
             road_wheel_radps=settings.automatic_road_wheel_radps,
@@ -106,7 +85,7 @@ def limits_of(mode: float, settings: ControlSettings) -> Limits:
             brake_slew_per_s=settings.automatic_brake_slew_per_s,
             target_accel_mps2=settings.target_accel_mps2,
         )
-    if mode in (_MANUAL, _SHARED):
+    if mode in (Mode.MANUAL, Mode.SHARED):
         lock = settings.max_road_wheel_rad
         return Limits(
             road_wheel_rad=lock,
@@ -117,7 +96,7 @@ def limits_of(mode: float, settings: ControlSettings) -> Limits:
             brake_slew_per_s=slew,
             target_accel_mps2=settings.target_accel_mps2,
         )
-    emergency = mode == _EMERGENCY_STOP
+    emergency = mode == Mode.EMERGENCY_STOP
     return Limits(
         road_wheel_rad=settings.max_road_wheel_rad,
         road_wheel_radps=settings.stop_road_wheel_radps,
@@ -157,7 +136,8 @@ def gate(
     wheel = _road_wheel(request.road_wheel_rad, known(before.road_wheel_rad, 0.0), vehicle, limits, settings, tick_s)
     brake_step = limits.brake_slew_per_s * tick_s
     brake = _pedal(request.brake, _SAFE_BRAKE, before.brake, brake_step, brake_step)
-    cut = mode == _PARKED or mode >= _MINIMAL_RISK or _at_least(request.brake, brake.value, settings.brake_override)
+    braked = _at_least(request.brake, brake.value, settings.brake_override)
+    cut = mode == Mode.PARKED or mode >= Mode.MINIMAL_RISK or braked
     throttle = _throttle(request.throttle, before.throttle, cut, limits, settings, tick_s)
     hand_step = settings.manual_pedal_slew_per_s * tick_s
     clutch = _pedal(request.clutch, 0.0, before.clutch, hand_step, hand_step)
@@ -185,16 +165,16 @@ def gate(
         hazard_lights=hazard.value,
         gate_active=float(active),
         gate_active_ticks=_counted(before.gate_active_ticks, active),
-        anti_lock_off=_switched(before.anti_lock_off, events, _ANTI_LOCK),
-        traction_off=_switched(before.traction_off, events, _TRACTION),
-        stability_off=_switched(before.stability_off, events, _STABILITY),
+        anti_lock_off=_switched(before.anti_lock_off, events, Event.TOGGLE_ANTI_LOCK),
+        traction_off=_switched(before.traction_off, events, Event.TOGGLE_TRACTION),
+        stability_off=_switched(before.stability_off, events, Event.TOGGLE_STABILITY),
     )
 
 
 @kernel
 def _switched(before: float, events: float, bit: int) -> float:
     """Return the other position of a switch in a tick with its event. A reset puts every switch back on (0)."""
-    if int(events) & _RESET:
+    if int(events) & Event.RESET:
         return 0.0
     off = 1.0 if before > 0.0 else 0.0
     return 1.0 - off if int(events) & bit else off
@@ -225,18 +205,18 @@ def _road_wheel(
     wanted = wanted_rad
     if not is_finite(wanted):
         wanted = before_rad
-        active = _NON_FINITE
+        active = GateLimit.NON_FINITE
     ranged = clip(wanted, -limits.road_wheel_rad, limits.road_wheel_rad)
     if ranged != wanted:
-        active |= _RANGE
+        active |= GateLimit.RANGE
     gentle = gentle_angle(ranged, limits.lateral_accel_mps2, vehicle, settings)
     if gentle != ranged:
-        active |= _LATERAL
+        active |= GateLimit.LATERAL_ACCELERATION
     step = limits.road_wheel_radps * tick_s
     smooth_step = gentle_step(before_rad, step, limits.lateral_jerk_mps3, vehicle, settings, tick_s)
     moved = approach(before_rad, gentle, smooth_step)
     if moved != gentle:
-        active |= _JERK if smooth_step < step else _RATE
+        active |= GateLimit.LATERAL_JERK if smooth_step < step else GateLimit.RATE
     return Passed(clip(moved, -settings.max_road_wheel_rad, settings.max_road_wheel_rad), active)
 
 
@@ -244,14 +224,14 @@ def _road_wheel(
 def _pedal(wanted: float, safe: float, before: float, up: float, down: float) -> Passed:
     if is_finite(wanted):
         ranged = clip(wanted, 0.0, 1.0)
-        active = 0 if ranged == wanted else _RANGE
+        active = 0 if ranged == wanted else GateLimit.RANGE
     else:
         ranged = safe
-        active = _NON_FINITE
+        active = GateLimit.NON_FINITE
     held = clip(known(before, safe), 0.0, 1.0)
     moved = approach(held, ranged, up if ranged > held else down)
     if moved != ranged:
-        active |= _RATE
+        active |= GateLimit.RATE
     return Passed(moved, active)
 
 
@@ -262,8 +242,8 @@ def _throttle(
     passed = _pedal(wanted, 0.0, before, limits.throttle_slew_per_s * tick_s, settings.manual_pedal_slew_per_s * tick_s)
     if not cut:
         return passed
-    over = _OVER if passed.value > 0.0 else 0
-    return Passed(0.0, (passed.active & _NON_FINITE) | over)
+    over = GateLimit.BRAKE_OVER_THROTTLE if passed.value > 0.0 else 0
+    return Passed(0.0, (passed.active & GateLimit.NON_FINITE) | over)
 
 
 @kernel
@@ -272,13 +252,13 @@ def _gear(wanted: float, before: float, automatic: float, vehicle: VehicleState,
     lowest = -1.0
     highest = 1.0 if automatic > 0.0 else settings.gear_max
     if not is_finite(wanted):
-        return Passed(clip(before, lowest, highest), _NON_FINITE)
+        return Passed(clip(before, lowest, highest), GateLimit.NON_FINITE)
     if wanted < lowest or wanted > highest or float(int(wanted)) != wanted:
-        return Passed(clip(before, lowest, highest), _GEAR)
+        return Passed(clip(before, lowest, highest), GateLimit.GEAR)
     speed = known(vehicle.vx_mps, 0.0)
     against = wanted * speed < 0.0 and abs(speed) > settings.reverse_speed_max_mps
     if against and wanted * before <= 0.0:
-        return Passed(clip(before, lowest, highest), _GEAR)
+        return Passed(clip(before, lowest, highest), GateLimit.GEAR)
     return Passed(wanted, 0)
 
 
@@ -289,12 +269,12 @@ def _switch(wanted: float, before: float, two_sided: bool) -> Passed:
     value = wanted
     if not is_finite(wanted):
         value = known(before, 0.0)
-        active = _NON_FINITE
+        active = GateLimit.NON_FINITE
     position = 1.0 if value > 0.0 else 0.0
     if two_sided and value < 0.0:
         position = -1.0
     if position != value:
-        active |= _RANGE
+        active |= GateLimit.RANGE
     return Passed(position, active)
 
 
@@ -316,17 +296,17 @@ def _target(
         known(before.target_speed_mps, 0.0), -settings.target_speed_max_mps, settings.target_speed_max_mps
     )
     step = limits.target_accel_mps2 * tick_s
-    driven = mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED, _SHARED)
-    if driven and remote.kind == _POSE:
+    driven = mode in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED, Mode.SHARED)
+    if driven and remote.kind == RemoteKind.POSE:
         return _pose_target(remote, before, before_mps, step, settings)
     wanted = remote.speed_mps if driven else 0.0
     active = 0
     if not is_finite(wanted):
         wanted = 0.0
-        active = _NON_FINITE
+        active = GateLimit.NON_FINITE
     wanted = clip(wanted, -settings.target_speed_max_mps, settings.target_speed_max_mps)
     speed = approach(before_mps, wanted, step)
-    if mode >= _MINIMAL_RISK:
+    if mode >= Mode.MINIMAL_RISK:
         pose = _finite_pose(before.target_x_m, before.target_y_m, before.target_yaw_rad, before, settings)
     else:
         pose = _finite_pose(vehicle.x_m, vehicle.y_m, vehicle.yaw_rad, before, settings)
@@ -343,13 +323,13 @@ def _pose_target(
     wanted = remote.speed_mps
     if not is_finite(wanted):
         wanted = 0.0
-        active |= _NON_FINITE
+        active |= GateLimit.NON_FINITE
     ranged = clip(wanted, -most, most)
     if ranged != wanted:
-        active |= _RANGE
+        active |= GateLimit.RANGE
     speed = approach(before_mps, ranged, step)
     if speed != ranged:
-        active |= _RATE
+        active |= GateLimit.RATE
     return Target(speed, pose.x_m, pose.y_m, pose.yaw_rad, active)
 
 
@@ -360,9 +340,9 @@ def _finite_pose(x_m: float, y_m: float, yaw_rad: float, before: VehicleCommand,
     if is_finite(x_m) and is_finite(y_m) and is_finite(yaw_rad):
         if abs(x_m) <= most and abs(y_m) <= most and abs(yaw_rad) <= _MOST_YAW_RAD:
             return Pose(x_m, y_m, yaw_rad, 0)
-        active = _RANGE
+        active = GateLimit.RANGE
     else:
-        active = _NON_FINITE
+        active = GateLimit.NON_FINITE
     x = clip(known(before.target_x_m, 0.0), -most, most)
     y = clip(known(before.target_y_m, 0.0), -most, most)
     yaw = clip(known(before.target_yaw_rad, 0.0), -_MOST_YAW_RAD, _MOST_YAW_RAD)

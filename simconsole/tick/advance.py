@@ -11,7 +11,6 @@ import numpy as np
 
 from simconsole.control.arbitration import arbitrate, watched
 from simconsole.control.gate import gate
-from simconsole.control.requests.commander import ECU
 from simconsole.control.requests.control_settings import ControlSettings
 from simconsole.control.requests.tick_context import Moment
 from simconsole.devices.calibration.calibrator import calibrate
@@ -22,21 +21,11 @@ from simconsole.values.kernels import Row, kernel, put
 from simconsole.values.latency import Hop, Mark, unheard
 from simconsole.values.layout import Part, lay_out, read, write
 from simconsole.values.platform import Platform
-from simconsole.values.signals import (
-    NO_COMMAND,
-    NO_SAMPLE,
-)
-from simconsole.values.state_vector import (
-    INPUT_WIDTH,
-    LAYOUT,
-    PLATFORM_AT,
-    Snapshot,
-    TickInputs,
-    columns,
-)
+from simconsole.values.signals import NO_COMMAND, NO_SAMPLE, Commander
+from simconsole.values.state_vector import INPUT_WIDTH, LAYOUT, PLATFORM_AT, Snapshot, TickInputs, columns
 
 Execution = Callable[[Callable[..., Any]], Callable[..., Any]]
-"""How kernels run: `compiling.compiled` or `compiling.plain`."""
+"""How kernels run: `jit.compiled` or `jit.plain`."""
 
 
 class SettingsLayout(NamedTuple):
@@ -89,7 +78,7 @@ def build_console(
     execution: Execution,
     force: ForceSettings = NO_FORCE,
 ) -> Console:
-    """Put a console together. `execution` is `compiling.compiled` or `compiling.plain`; both give equal bits.
+    """Put a console together. `execution` is `jit.compiled` or `jit.plain`; both give equal bits.
 
     Raises:
         ValueError: `tick_hz` does not divide 1000.
@@ -195,7 +184,7 @@ def decide(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
         tick_s=tick_s,
     )
     memory, ros_link, ecu_link, arbitration, request = arbitrate(now)
-    remote = ecu if arbitration.commander == ECU else ros
+    remote = ecu if arbitration.commander == Commander.ECU else ros
     events = read(row, LAYOUT.events)
     command = gate(request, remote, arbitration, command_before, vehicle, control, tick_s, events.events)
     write(row, LAYOUT.driver, driver)

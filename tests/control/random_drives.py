@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from simconsole.control.arbitration import arbitrate
 from simconsole.control.gate import gate
-from simconsole.control.requests.commander import ECU
 from simconsole.control.requests.control_settings import ControlSettings, settings
 from simconsole.control.requests.tick_context import Moment
 from simconsole.profiles.control import ControlProfile
@@ -107,7 +106,7 @@ def drive(inputs: Row, outputs: Row, row: Row, tick_s: float) -> None:
         )
         ros_age_before, ecu_age_before = ros.age_ticks, ecu.age_ticks
         memory, ros_link, ecu_link, arbitration, request = arbitrate(now)
-        remote = ecu if arbitration.commander == ECU else ros
+        remote = ecu if arbitration.commander == Commander.ECU else ros
         command = gate(request, remote, arbitration, command, vehicle, s, tick_s, 0.0)
         write(before, MEMORY, memory)
         write(before, ROS_LINK, ros_link)

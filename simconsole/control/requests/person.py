@@ -6,8 +6,6 @@ from simconsole.control.requests.control_settings import ControlSettings
 from simconsole.values.kernels import clip, is_finite, kernel
 from simconsole.values.signals import DriverInput, Validity
 
-_ARMED: Final = float(Validity.ARMED)
-_LIVE: Final = float(Validity.LIVE)
 _MOST_MASK: Final = 2147483647.0
 
 
@@ -31,7 +29,7 @@ def mask(value: float) -> int:
 @kernel
 def armed(validity: float) -> bool:
     """Return whether an input with this `Validity` may command."""
-    return validity in (_ARMED, _LIVE)
+    return validity in (Validity.ARMED, Validity.LIVE)
 
 
 @kernel

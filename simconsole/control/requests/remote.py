@@ -14,12 +14,6 @@ from simconsole.values.kernels import clip, is_finite, kernel
 from simconsole.values.signals import RemoteCommand, RemoteKind, VehicleState
 from simconsole.values.trigonometry import atan
 
-_ACCELERATION: Final = float(RemoteKind.ACCELERATION)
-_SPEED: Final = float(RemoteKind.SPEED)
-_TWIST: Final = float(RemoteKind.TWIST)
-_ACTUATION: Final = float(RemoteKind.ACTUATION)
-_POSE: Final = float(RemoteKind.POSE)
-
 _MOST_MPS: Final = 100.0
 _MOST_MPS2: Final = 20.0
 _MOST_RADPS: Final = 20.0
@@ -52,7 +46,7 @@ def command_finite(remote: RemoteCommand) -> bool:
 @kernel
 def known_kind(kind: float) -> bool:
     """Return whether the command's kind is one that can be turned into a request."""
-    return kind in (_ACCELERATION, _SPEED, _TWIST, _ACTUATION, _POSE)
+    return kind in (RemoteKind.ACCELERATION, RemoteKind.SPEED, RemoteKind.TWIST, RemoteKind.ACTUATION, RemoteKind.POSE)
 
 
 @kernel
@@ -63,7 +57,7 @@ def implausible(remote: RemoteCommand, vehicle: VehicleState, settings: ControlS
     plausible at walking pace and a mistake of the sender at speed.
     """
     most_mps2 = settings.implausible_lateral_accel_mps2
-    if remote.kind == _TWIST:
+    if remote.kind == RemoteKind.TWIST:
         speed_mps = clip(known(vehicle.vx_mps, 0.0), -_MOST_MPS, _MOST_MPS)
         return abs(speed_mps * remote.yaw_rate_radps) > most_mps2
     return gentle_angle(remote.road_wheel_rad, most_mps2, vehicle, settings) != remote.road_wheel_rad
@@ -89,15 +83,15 @@ def remote_request(
         tick_s: Length of a tick in s.
     """
     direction = commanded_direction(remote)
-    if remote.kind == _ACTUATION:
+    if remote.kind == RemoteKind.ACTUATION:
         brake = clip(remote.brake, 0.0, 1.0)
         throttle = 0.0 if brake >= settings.brake_override else clip(remote.throttle, 0.0, 1.0)
         return RemoteRequest(clip(remote.road_wheel_rad, -_MOST_RAD, _MOST_RAD), throttle, brake, direction, 0.0)
-    if remote.kind == _POSE:
+    if remote.kind == RemoteKind.POSE:
         # Targets bypass steering and pedals (control/gate.py): a platform that reads them has neither.
         return RemoteRequest(0.0, 0.0, 0.0, direction, 0.0)
     road_wheel_rad = clip(remote.road_wheel_rad, -_MOST_RAD, _MOST_RAD)
-    if remote.kind == _TWIST:
+    if remote.kind == RemoteKind.TWIST:
         road_wheel_rad = twist_road_wheel(remote.speed_mps, remote.yaw_rate_radps, held_road_wheel_rad, settings)
     pedals, integral = _pedals(remote, direction, integral_mps2, vehicle, settings, tick_s)
     return RemoteRequest(road_wheel_rad, pedals.throttle, pedals.brake, direction, integral)
@@ -108,7 +102,7 @@ def commanded_direction(remote: RemoteCommand) -> float:
     """Return 1 (drive), -1 (reverse: by gear or, for speed and twist, by a negative speed) or 0 (neutral)."""
     if remote.direction == 0.0:
         return 0.0
-    backward = (remote.kind == _SPEED or remote.kind == _TWIST) and remote.speed_mps < 0.0
+    backward = (remote.kind == RemoteKind.SPEED or remote.kind == RemoteKind.TWIST) and remote.speed_mps < 0.0
     return -1.0 if backward or remote.direction < 0.0 else 1.0
 
 
@@ -142,7 +136,7 @@ def _pedals(
     along_mps = clip(known(travel * vehicle.vx_mps, 0.0), -_MOST_MPS, _MOST_MPS)
     if along_mps < -_WRONG_WAY_MPS:
         return pedals_for(-settings.stop_decel_mps2, -travel, vehicle, settings), 0.0
-    by_speed = remote.kind != _ACCELERATION
+    by_speed = remote.kind != RemoteKind.ACCELERATION
     speed_mps = clip(abs(remote.speed_mps), 0.0, _MOST_MPS)
     stand = speed_mps < _STANDING_MPS if by_speed else remote.accel_mps2 <= 0.0
     if stand and abs(along_mps) < settings.standstill_speed_mps:

@@ -6,16 +6,10 @@ engaged gear and the automatic clutch stay until the person takes them back: by 
 lever where the gearbox is while the clutch is closed.
 """
 
-from typing import Final
-
 from simconsole.values.kernels import approach, clip, kernel
 from simconsole.values.signals import GearFault, Request
 from simconsole.vehicle.car.parameters import GearParameters
 from simconsole.vehicle.car.state import Gearbox
-
-GRIND: Final = float(GearFault.GRIND)
-MONEY_SHIFT: Final = float(GearFault.MONEY_SHIFT)
-MISSED: Final = float(GearFault.MISSED)
 
 BACKWARDS_RADPS = -40.0
 """How fast a gear may turn the engine's side backwards when it goes in: rolling at a slow walking pace."""
@@ -70,11 +64,11 @@ def by_lever(
     fault = 0.0
     if lever != 0.0:
         if not free:
-            fault += GRIND
+            fault += GearFault.GRIND
         if speed >= p.limit_radps:
-            fault += MONEY_SHIFT
+            fault += GearFault.MONEY_SHIFT
         if ratio == 0.0 or speed <= BACKWARDS_RADPS:
-            fault += MISSED
+            fault += GearFault.MISSED
     gear = lever if fault == 0.0 else 0.0
     return Gearbox(
         gear=gear,
