@@ -21,17 +21,17 @@ from simconsole.control.modes.decision import Decision, decide, takeover_stage
 from simconsole.control.modes.restart import Restart, restart_of
 from simconsole.control.modes.takeover import WheelWatch, steering_taken, throttle_held, throttle_overrides, watch_wheel
 from simconsole.control.modes.triggers import link_lost
-from simconsole.control.requests.commander import Controllers, look
+from simconsole.control.requests.commander import Controllers, assess
 from simconsole.control.requests.control_settings import ControlSettings
 from simconsole.control.requests.person import Person, person_of
-from simconsole.control.requests.stops import slow
-from simconsole.control.requests.tick_context import Moment
-from simconsole.control.shared import consent
+from simconsole.control.requests.stops import stands
+from simconsole.control.requests.tick_context import TickContext
+from simconsole.control.shared import shared_authority
 from simconsole.values.kernels import kernel
 from simconsole.values.signals import ArbiterMemory, Arbitration, Link, Mode, Notice, Request
 
 
-class Seen(NamedTuple):
+class Observed(NamedTuple):
     """What the sources say in this tick."""
 
     person: Person
@@ -42,14 +42,14 @@ class Seen(NamedTuple):
 
 
 @kernel
-def arbitrate(now: Moment) -> tuple[ArbiterMemory, Link, Link, Arbitration, Request]:
+def arbitrate(now: TickContext) -> tuple[ArbiterMemory, Link, Link, Arbitration, Request]:
     """Decide who drives, and what is asked of the vehicle.
 
     Returns:
         What to remember, the links of the ROS side and of the ECU, who had which authority, and the request for the
         gate (which may still be out of limits).
     """
-    seen = _see(now)
+    seen = _observe(now)
     controllers = seen.controllers
     decision = decide(
         now,
@@ -70,7 +70,7 @@ def arbitrate(now: Moment) -> tuple[ArbiterMemory, Link, Link, Arbitration, Requ
         )
     held_ticks = throttle_held(now.memory.throttle_held_ticks, seen.throttle_override, decision.mode)
     mode_ticks = 0.0 if decision.wait_begins > 0.0 else now.memory.mode_ticks + 1.0
-    shared = consent(now, seen.person.road_wheel_rad, controllers.offered.road_wheel_rad)
+    shared = shared_authority(now, seen.person.road_wheel_rad, controllers.offered.road_wheel_rad)
     shares = shares_of(decision.mode, seen.throttle_override, shared.lateral, now.before, now.settings)
     steered = steered_stop(now, decision, controllers.offered, controllers.link, link_lost(controllers.events))
     side = remote_side(now, decision, shares, controllers.offered, controllers.link, seen.person, steered > 0.0)
@@ -78,10 +78,10 @@ def arbitrate(now: Moment) -> tuple[ArbiterMemory, Link, Link, Arbitration, Requ
     stalk = switched(now.driver, now.memory)
     lights = lights_of(decision.mode, stalk, controllers.remote, controllers.link)
     return (
-        _remembered(seen, decision, side, mode_ticks, shared.trade, steered, stalk, held_ticks, restart.ticks),
+        _memory(seen, decision, side, mode_ticks, shared.trade, steered, stalk, held_ticks, restart.ticks),
         controllers.ros_link,
         controllers.ecu_link,
-        _shown(
+        _arbitration(
             decision,
             shares,
             seen.person,
@@ -102,7 +102,7 @@ def watched(mode: float) -> bool:
 
 
 @kernel
-def _see(now: Moment) -> Seen:
+def _observe(now: TickContext) -> Observed:
     person = person_of(now.driver, now.command_before.road_wheel_rad, now.settings)
     watch = watch_wheel(
         WheelWatch(now.memory.engage_hand_wheel_rad, now.memory.steering_ticks),
@@ -113,12 +113,12 @@ def _see(now: Moment) -> Seen:
         person.wheel_trusted > 0.0,
         now.settings,
     )
-    return Seen(
+    return Observed(
         person,
-        look(now),
+        assess(now),
         watch,
         throttle_overrides(now.memory.throttle_override, person.throttle, now.settings),
-        now.memory.standstill_ticks + 1.0 if slow(now.vehicle, now.settings) else 0.0,
+        now.memory.standstill_ticks + 1.0 if stands(now.vehicle, now.settings) else 0.0,
     )
 
 
@@ -130,8 +130,8 @@ def _notice(restart: Restart, throttle_held_ticks: float, settings: ControlSetti
 
 
 @kernel
-def _remembered(
-    seen: Seen,
+def _memory(
+    seen: Observed,
     decision: Decision,
     side: RemoteSide,
     mode_ticks: float,
@@ -161,7 +161,7 @@ def _remembered(
 
 
 @kernel
-def _shown(
+def _arbitration(
     decision: Decision,
     shares: Shares,
     person: Person,

@@ -4,12 +4,12 @@ from typing import NamedTuple
 
 from simconsole.control.lights import Lights
 from simconsole.control.modes.decision import Decision
-from simconsole.control.requests.angles import gentle_angle, gentle_step, lateral_apart
+from simconsole.control.requests.angles import lateral_apart, limited_angle, limited_step
 from simconsole.control.requests.control_settings import ControlSettings
 from simconsole.control.requests.person import Person
 from simconsole.control.requests.remote import RemoteRequest
 from simconsole.control.requests.stops import safe_stop, stop_start
-from simconsole.control.requests.tick_context import Moment
+from simconsole.control.requests.tick_context import TickContext
 from simconsole.values.kernels import approach, clip, kernel
 from simconsole.values.signals import Arbitration, DriverInput, Link, Mode, Reason, Request, VehicleCommand
 
@@ -78,7 +78,7 @@ def shares_of(
 
 @kernel
 def remote_side(
-    now: Moment,
+    now: TickContext,
     decision: Decision,
     shares: Shares,
     offered: RemoteRequest,
@@ -184,14 +184,14 @@ def _contribution(asked: float, in_force: float, person: float, share: float) ->
 
 
 @kernel
-def _held_back(now: Moment, offered: RemoteRequest) -> RemoteRequest:
+def _held_back(now: TickContext, offered: RemoteRequest) -> RemoteRequest:
     """Limit the controller's part of a shared command as in AUTONOMOUS: the gate must leave the person's hands free."""
     before, settings, tick_s = now.before, now.settings, now.tick_s
     most = settings.automatic_road_wheel_rad
-    gentle = gentle_angle(
+    gentle = limited_angle(
         clip(offered.road_wheel_rad, -most, most), settings.automatic_lateral_accel_mps2, now.vehicle, settings
     )
-    step = gentle_step(
+    step = limited_step(
         before.remote_road_wheel_rad,
         settings.automatic_road_wheel_radps * tick_s,
         settings.automatic_lateral_jerk_mps3,
@@ -209,7 +209,7 @@ def _held_back(now: Moment, offered: RemoteRequest) -> RemoteRequest:
 
 
 @kernel
-def steered_stop(now: Moment, decision: Decision, offered: RemoteRequest, link: Link, lost: bool) -> float:
+def steered_stop(now: TickContext, decision: Decision, offered: RemoteRequest, link: Link, lost: bool) -> float:
     """Return 1 while the controller steers a safe stop: nothing is wrong with it, and never was during this stop.
 
     If it drove, it goes on: a car whose person did not react, or whose loop stood still, stops in its lane. If a person
@@ -228,7 +228,7 @@ def steered_stop(now: Moment, decision: Decision, offered: RemoteRequest, link: 
 
 
 @kernel
-def _safe_side(now: Moment, entered: bool, hold_rad: float, offered_rad: float, steered: bool) -> RemoteSide:
+def _safe_side(now: TickContext, entered: bool, hold_rad: float, offered_rad: float, steered: bool) -> RemoteSide:
     accel = stop_start(now.vehicle, now.settings) if entered else now.memory.stop_accel_mps2
     integral = 0.0 if entered else now.memory.speed_integral_mps2
     stop = safe_stop(accel, integral, steered, now.vehicle, now.settings, now.tick_s)
@@ -247,7 +247,7 @@ def _safe_side(now: Moment, entered: bool, hold_rad: float, offered_rad: float, 
 
 
 @kernel
-def transmission_of(now: Moment, mode: float, direction: float) -> Transmission:
+def transmission_of(now: TickContext, mode: float, direction: float) -> Transmission:
     """Return who works clutch and gears; `direction` is what the remote side asks for.
 
     After autonomy the car goes on doing it until the person's clutch takes them back: the lever stands in any gear.

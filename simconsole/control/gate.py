@@ -7,9 +7,9 @@ narrower. Throttle is the exception downwards: with the brake pressed or in a st
 
 from typing import Final, NamedTuple
 
-from simconsole.control.requests.angles import gentle_angle, gentle_step
+from simconsole.control.requests.angles import limited_angle, limited_step
 from simconsole.control.requests.control_settings import ControlSettings
-from simconsole.control.requests.longitudinal import known
+from simconsole.control.requests.longitudinal import finite_or
 from simconsole.values.kernels import approach, clip, is_finite, kernel
 from simconsole.values.signals import (
     NEVER_TICKS,
@@ -133,7 +133,9 @@ def gate(
     """
     mode = arbitration.mode
     limits = limits_of(mode, settings)
-    wheel = _road_wheel(request.road_wheel_rad, known(before.road_wheel_rad, 0.0), vehicle, limits, settings, tick_s)
+    wheel = _road_wheel(
+        request.road_wheel_rad, finite_or(before.road_wheel_rad, 0.0), vehicle, limits, settings, tick_s
+    )
     brake_step = limits.brake_slew_per_s * tick_s
     brake = _pedal(request.brake, _SAFE_BRAKE, before.brake, brake_step, brake_step)
     braked = _at_least(request.brake, brake.value, settings.brake_override)
@@ -143,7 +145,7 @@ def gate(
     clutch = _pedal(request.clutch, 0.0, before.clutch, hand_step, hand_step)
     handbrake = _pedal(request.handbrake, 0.0, before.handbrake, hand_step, hand_step)
     automatic = 1.0 if request.automatic > 0.0 else 0.0
-    gear = _gear(request.gear, known(before.gear, 0.0), automatic, vehicle, settings)
+    gear = _gear(request.gear, finite_or(before.gear, 0.0), automatic, vehicle, settings)
     target = _target(remote, mode, before, vehicle, limits, settings, tick_s)
     active = wheel.active | brake.active | throttle.active | clutch.active | handbrake.active
     turn = _switch(request.turn_indicators, before.turn_indicators, True)
@@ -183,7 +185,7 @@ def _switched(before: float, events: float, bit: int) -> float:
 @kernel
 def _counted(before_ticks: float, active: int) -> float:
     """Return for how many ticks of the drive the gate has changed something."""
-    ticks = clip(known(before_ticks, 0.0), 0.0, NEVER_TICKS)
+    ticks = clip(finite_or(before_ticks, 0.0), 0.0, NEVER_TICKS)
     return ticks + 1.0 if active != 0 else ticks
 
 
@@ -209,11 +211,11 @@ def _road_wheel(
     ranged = clip(wanted, -limits.road_wheel_rad, limits.road_wheel_rad)
     if ranged != wanted:
         active |= GateLimit.RANGE
-    gentle = gentle_angle(ranged, limits.lateral_accel_mps2, vehicle, settings)
+    gentle = limited_angle(ranged, limits.lateral_accel_mps2, vehicle, settings)
     if gentle != ranged:
         active |= GateLimit.LATERAL_ACCELERATION
     step = limits.road_wheel_radps * tick_s
-    smooth_step = gentle_step(before_rad, step, limits.lateral_jerk_mps3, vehicle, settings, tick_s)
+    smooth_step = limited_step(before_rad, step, limits.lateral_jerk_mps3, vehicle, settings, tick_s)
     moved = approach(before_rad, gentle, smooth_step)
     if moved != gentle:
         active |= GateLimit.LATERAL_JERK if smooth_step < step else GateLimit.RATE
@@ -228,7 +230,7 @@ def _pedal(wanted: float, safe: float, before: float, up: float, down: float) ->
     else:
         ranged = safe
         active = GateLimit.NON_FINITE
-    held = clip(known(before, safe), 0.0, 1.0)
+    held = clip(finite_or(before, safe), 0.0, 1.0)
     moved = approach(held, ranged, up if ranged > held else down)
     if moved != ranged:
         active |= GateLimit.RATE
@@ -255,7 +257,7 @@ def _gear(wanted: float, before: float, automatic: float, vehicle: VehicleState,
         return Passed(clip(before, lowest, highest), GateLimit.NON_FINITE)
     if wanted < lowest or wanted > highest or float(int(wanted)) != wanted:
         return Passed(clip(before, lowest, highest), GateLimit.GEAR)
-    speed = known(vehicle.vx_mps, 0.0)
+    speed = finite_or(vehicle.vx_mps, 0.0)
     against = wanted * speed < 0.0 and abs(speed) > settings.reverse_speed_max_mps
     if against and wanted * before <= 0.0:
         return Passed(clip(before, lowest, highest), GateLimit.GEAR)
@@ -268,7 +270,7 @@ def _switch(wanted: float, before: float, two_sided: bool) -> Passed:
     active = 0
     value = wanted
     if not is_finite(wanted):
-        value = known(before, 0.0)
+        value = finite_or(before, 0.0)
         active = GateLimit.NON_FINITE
     position = 1.0 if value > 0.0 else 0.0
     if two_sided and value < 0.0:
@@ -293,7 +295,7 @@ def _target(
     The pose holds during a stop (the way ahead is kept) and follows the vehicle while a person drives.
     """
     before_mps = clip(
-        known(before.target_speed_mps, 0.0), -settings.target_speed_max_mps, settings.target_speed_max_mps
+        finite_or(before.target_speed_mps, 0.0), -settings.target_speed_max_mps, settings.target_speed_max_mps
     )
     step = limits.target_accel_mps2 * tick_s
     driven = mode in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED, Mode.SHARED)
@@ -343,7 +345,7 @@ def _finite_pose(x_m: float, y_m: float, yaw_rad: float, before: VehicleCommand,
         active = GateLimit.RANGE
     else:
         active = GateLimit.NON_FINITE
-    x = clip(known(before.target_x_m, 0.0), -most, most)
-    y = clip(known(before.target_y_m, 0.0), -most, most)
-    yaw = clip(known(before.target_yaw_rad, 0.0), -_MOST_YAW_RAD, _MOST_YAW_RAD)
+    x = clip(finite_or(before.target_x_m, 0.0), -most, most)
+    y = clip(finite_or(before.target_y_m, 0.0), -most, most)
+    yaw = clip(finite_or(before.target_yaw_rad, 0.0), -_MOST_YAW_RAD, _MOST_YAW_RAD)
     return Pose(x, y, yaw, active)

@@ -12,7 +12,7 @@ import numpy as np
 from simconsole.control.arbitration import arbitrate, watched
 from simconsole.control.gate import gate
 from simconsole.control.requests.control_settings import ControlSettings
-from simconsole.control.requests.tick_context import Moment
+from simconsole.control.requests.tick_context import TickContext
 from simconsole.devices.calibration.calibrator import calibrate
 from simconsole.devices.calibration.cockpit_settings import CockpitSettings
 from simconsole.devices.force_feedback.force_settings import NO_FORCE, ForceSettings
@@ -163,7 +163,7 @@ def decide(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
         read(settings, SETTINGS.cockpit),
         tick_s,
     )
-    now = Moment(
+    now = TickContext(
         driver=driver,
         ros=ros,
         ecu=ecu,

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from simconsole.control.arbitration import arbitrate
 from simconsole.control.gate import gate
 from simconsole.control.requests.control_settings import ControlSettings, settings
-from simconsole.control.requests.tick_context import Moment
+from simconsole.control.requests.tick_context import TickContext
 from simconsole.profiles.control import ControlProfile
 from simconsole.values.host.jit import compiled
 from simconsole.values.kernels import Row, kernel
@@ -84,7 +84,7 @@ def drive(inputs: Row, outputs: Row, row: Row, tick_s: float) -> None:
         ros = read(given, ROS)
         ecu = read(given, ECU_COMMAND)
         command = read(before, COMMAND)
-        now = Moment(
+        now = TickContext(
             read(given, DRIVER),
             ros,
             ecu,

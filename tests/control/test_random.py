@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from simconsole.control.arbitration import arbitrate
 from simconsole.control.gate import gate, limits_of
 from simconsole.control.requests.control_settings import settings
-from simconsole.control.requests.tick_context import Moment
+from simconsole.control.requests.tick_context import TickContext
 from simconsole.profiles.control import ControlProfile
 from simconsole.values.host.jit import compiled, plain
 from simconsole.values.layout import read
@@ -213,7 +213,7 @@ def test_from_every_mode_a_person_gets_back_to_manual(long_drive: Drive) -> None
             for tick in range(int(2.0 / long_drive.tick_s)):
                 event = Event.REQUEST_MANUAL if tick % 2 else Event.RESET
                 happened = EventInput(float(event))
-                now = Moment(
+                now = TickContext(
                     driver, remote, remote, happened, vehicle, memory, ros_link, ecu_link, NEVER_TICKS, NEVER_TICKS,
                     arbitration, command,
                     0.0, 0.0, 0.0, 0.0, s, long_drive.tick_s,

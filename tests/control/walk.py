@@ -6,7 +6,7 @@ import numpy as np
 
 from simconsole.control.arbitration import arbitrate
 from simconsole.control.gate import gate
-from simconsole.control.requests.tick_context import Moment
+from simconsole.control.requests.tick_context import TickContext
 from simconsole.values.kernels import Row, is_finite, kernel, put
 from simconsole.values.layout import Part, read, write
 from simconsole.values.signals import (
@@ -275,7 +275,7 @@ def walk(
         explained = g[EXPLAINED] * figures[2]
         command = read(before, COMMAND)
         was = read(before, ARBITRATION)
-        now = Moment(
+        now = TickContext(
             driver,
             ros,
             ecu,

@@ -17,7 +17,7 @@ from simconsole.control.modes.triggers import (
 from simconsole.control.requests.commander import Controllers
 from simconsole.control.requests.control_settings import ControlSettings
 from simconsole.control.requests.person import Person
-from simconsole.control.requests.tick_context import Moment
+from simconsole.control.requests.tick_context import TickContext
 from simconsole.values.kernels import kernel
 from simconsole.values.signals import Mode, Reason
 
@@ -34,7 +34,7 @@ class Decision(NamedTuple):
 
 
 @kernel
-def decide(now: Moment, person: Person, controllers: Controllers, steering: bool, standing: bool) -> Decision:
+def decide(now: TickContext, person: Person, controllers: Controllers, steering: bool, standing: bool) -> Decision:
     """Decide the mode of this tick.
 
     Args:

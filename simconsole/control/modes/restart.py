@@ -11,8 +11,8 @@ from typing import Final, NamedTuple
 
 from simconsole.control.requests.control_settings import ControlSettings
 from simconsole.control.requests.person import Person, mask
-from simconsole.control.requests.stops import slow
-from simconsole.control.requests.tick_context import Moment
+from simconsole.control.requests.stops import stands
+from simconsole.control.requests.tick_context import TickContext
 from simconsole.values.kernels import kernel
 from simconsole.values.signals import Button, DriverInput, Event, Mode, Notice, Reason
 
@@ -30,7 +30,7 @@ class Restart(NamedTuple):
 
 
 @kernel
-def restart_of(now: Moment, person: Person) -> Restart:
+def restart_of(now: TickContext, person: Person) -> Restart:
     """Grant a restart, refuse it, or let it wait, at most for the profile's time."""
     waited = now.memory.restart_ticks
     events = mask(now.events.events)
@@ -42,7 +42,7 @@ def restart_of(now: Moment, person: Person) -> Restart:
     if hindrance == GRANTED:
         return Restart(0.0, 1.0, 0.0, 0.0)
     centred = abs(now.driver.hand_wheel_rad) <= now.settings.restart_wheel_rad
-    stays = slow(now.vehicle, now.settings) or (centred and waited > 0.0)
+    stays = stands(now.vehicle, now.settings) or (centred and waited > 0.0)
     if hindrance == Reason.REFUSED_EMERGENCY or not stays or waited >= now.settings.restart_wait_ticks:
         return Restart(0.0, 0.0, hindrance, 0.0)
     notice = Notice.RELEASE_PEDALS

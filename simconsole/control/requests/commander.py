@@ -16,7 +16,7 @@ from simconsole.control.requests.control_settings import ControlSettings
 from simconsole.control.requests.link import watch_link
 from simconsole.control.requests.person import mask
 from simconsole.control.requests.remote import RemoteRequest, command_finite, remote_request
-from simconsole.control.requests.tick_context import Moment
+from simconsole.control.requests.tick_context import TickContext
 from simconsole.values.kernels import kernel
 from simconsole.values.signals import Arbitration, Commander, Event, EventInput, Link, Mode, RemoteCommand
 
@@ -43,7 +43,7 @@ class Controllers(NamedTuple):
 
 
 @kernel
-def look(now: Moment) -> Controllers:
+def assess(now: TickContext) -> Controllers:
     """Look at both controllers, by the same rules, and say which of them commands."""
     ros_link = watch_link(now.ros, now.ros_before, now.ros_age_before_ticks, now.vehicle, now.settings)
     ecu_link = watch_link(now.ecu, now.ecu_before, now.ecu_age_before_ticks, now.vehicle, now.settings)
@@ -67,7 +67,7 @@ def look(now: Moment) -> Controllers:
 
 
 @kernel
-def _offered(command: RemoteCommand, link: Link, integral_mps2: float, now: Moment) -> RemoteRequest:
+def _offered(command: RemoteCommand, link: Link, integral_mps2: float, now: TickContext) -> RemoteRequest:
     """Return what a controller asks for.
 
     A command that steers as it cannot be meant is refused whole: what is in force is held, except that it may slow the

@@ -28,7 +28,7 @@ def watch_link(
     """
     lease = before.lease_ticks - 1.0 if before.lease_ticks > 0.0 else 0.0
     if not command_finite(remote):
-        return _spoilt(before, lease)
+        return _not_finite(before, lease)
     refused = remote.refused - before.refused_seen
     if refused < 0.0:
         refused = 0.0
@@ -69,7 +69,7 @@ def watch_link(
 
 
 @kernel
-def _spoilt(before: Link, lease_ticks: float) -> Link:
+def _not_finite(before: Link, lease_ticks: float) -> Link:
     """Return the link after a command that is not finite: invalid, and nothing of the command is remembered."""
     return Link(
         sequence_seen=before.sequence_seen,

@@ -6,10 +6,10 @@ pid_longitudinal_controller publishes them. A vehicle that rolls the wrong way i
 
 from typing import Final, NamedTuple
 
-from simconsole.control.requests.angles import gentle_angle
+from simconsole.control.requests.angles import limited_angle
 from simconsole.control.requests.control_settings import ControlSettings
-from simconsole.control.requests.longitudinal import Pedals, integrate, known, pedals_for
-from simconsole.control.requests.stops import travel_of
+from simconsole.control.requests.longitudinal import Pedals, finite_or, integrate, pedals_for
+from simconsole.control.requests.stops import travel_direction
 from simconsole.values.kernels import clip, is_finite, kernel
 from simconsole.values.signals import RemoteCommand, RemoteKind, VehicleState
 from simconsole.values.trigonometry import atan
@@ -58,9 +58,9 @@ def implausible(remote: RemoteCommand, vehicle: VehicleState, settings: ControlS
     """
     most_mps2 = settings.implausible_lateral_accel_mps2
     if remote.kind == RemoteKind.TWIST:
-        speed_mps = clip(known(vehicle.vx_mps, 0.0), -_MOST_MPS, _MOST_MPS)
+        speed_mps = clip(finite_or(vehicle.vx_mps, 0.0), -_MOST_MPS, _MOST_MPS)
         return abs(speed_mps * remote.yaw_rate_radps) > most_mps2
-    return gentle_angle(remote.road_wheel_rad, most_mps2, vehicle, settings) != remote.road_wheel_rad
+    return limited_angle(remote.road_wheel_rad, most_mps2, vehicle, settings) != remote.road_wheel_rad
 
 
 @kernel
@@ -132,8 +132,8 @@ def _pedals(
     settings: ControlSettings,
     tick_s: float,
 ) -> tuple[Pedals, float]:
-    travel = direction if direction != 0.0 else travel_of(vehicle)
-    along_mps = clip(known(travel * vehicle.vx_mps, 0.0), -_MOST_MPS, _MOST_MPS)
+    travel = direction if direction != 0.0 else travel_direction(vehicle)
+    along_mps = clip(finite_or(travel * vehicle.vx_mps, 0.0), -_MOST_MPS, _MOST_MPS)
     if along_mps < -_WRONG_WAY_MPS:
         return pedals_for(-settings.stop_decel_mps2, -travel, vehicle, settings), 0.0
     by_speed = remote.kind != RemoteKind.ACCELERATION
@@ -142,7 +142,7 @@ def _pedals(
     if stand and abs(along_mps) < settings.standstill_speed_mps:
         return Pedals(0.0, settings.hold_brake), 0.0
     wanted = clip(remote.accel_mps2, -_MOST_MPS2, _MOST_MPS2)
-    error = wanted - clip(known(travel * vehicle.ax_mps2, wanted), -_MOST_MPS2, _MOST_MPS2)
+    error = wanted - clip(finite_or(travel * vehicle.ax_mps2, wanted), -_MOST_MPS2, _MOST_MPS2)
     free = True
     if by_speed:
         error = settings.speed_gain_per_s * (speed_mps - along_mps)

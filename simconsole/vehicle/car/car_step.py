@@ -8,14 +8,14 @@ from simconsole.values.layout import read, write
 from simconsole.values.signals import Request, VehicleCommand
 from simconsole.values.state_vector import LAYOUT
 from simconsole.values.trigonometry import nearest
-from simconsole.vehicle.car.axles import Contact, Grips, RimMoment, TyreModel, push, rim_moment
-from simconsole.vehicle.car.body import move
-from simconsole.vehicle.car.driveline import turn
-from simconsole.vehicle.car.ground import grips_of
+from simconsole.vehicle.car.axles import Contact, FrictionShares, KingpinMoment, TyreModel, kingpin_moment, tyre_forces
+from simconsole.vehicle.car.body import body_step
+from simconsole.vehicle.car.driveline import driveline_step
+from simconsole.vehicle.car.ground import friction_shares
 from simconsole.vehicle.car.outputs import vehicle_state
 from simconsole.vehicle.car.parameters import PARAMETERS, AidParameters, CarParameters
 from simconsole.vehicle.car.state import CAR, Car, SteeringState, Wheel
-from simconsole.vehicle.car.steering import hand_wheel_torque, heading, steer
+from simconsole.vehicle.car.steering import hand_wheel_torque, rack_rate, wheel_directions
 from simconsole.vehicle.car.tyre import tyre
 
 STEP_S: Final = 0.001
@@ -31,17 +31,17 @@ def load_parameters(parameters: Row) -> CarParameters:
     return read(parameters, PARAMETERS)
 
 
-def make_step(tyre: TyreModel, rim_moment: RimMoment) -> Callable[[Row, Row, Row, int], None]:
+def make_step(tyre: TyreModel, rim_moment: KingpinMoment) -> Callable[[Row, Row, Row, int], None]:
     """Return the kernel that advances a car on such tyres by one tick: the platform interface of values/platform.py."""
 
     @kernel
     def step(previous: Row, row: Row, parameters: Row, substeps: int) -> None:
         command = read(row, LAYOUT.command)
         car = read(previous, CAR)
-        grips = grips_of(car, load_parameters(parameters))
+        grips = friction_shares(car, load_parameters(parameters))
         request = request_of(command, car)
         for _ in range(substeps):
-            car = substep(car, parameters, grips, request, command, tyre, rim_moment)
+            car = substep(car, parameters, grips, request, command, tyre, kingpin_moment)
         write(row, CAR, car)
         write(row, LAYOUT.vehicle, vehicle_state(car, load_parameters(parameters), command.automatic))
 
@@ -87,7 +87,7 @@ def with_aids(p: CarParameters, command: VehicleCommand) -> CarParameters:
         traction=0.0 if command.traction_off > 0.0 else aids.traction,
         stability=0.0 if command.stability_off > 0.0 else aids.stability,
         hill_hold=aids.hill_hold,
-        understeer_s2pm2=aids.understeer_s2pm2,
+        understeer_per_square_mps=aids.understeer_per_square_mps,
         lateral_mps2=aids.lateral_mps2,
         stability_nms=aids.stability_nms,
         stability_most_nm=aids.stability_most_nm,
@@ -111,24 +111,24 @@ def with_aids(p: CarParameters, command: VehicleCommand) -> CarParameters:
 def substep(
     car: Car,
     parameters: Row,
-    grips: Grips,
+    grips: FrictionShares,
     request: Request,
     command: VehicleCommand,
     tyre: TyreModel,
-    rim_moment: RimMoment,
+    rim_moment: KingpinMoment,
 ) -> Car:
     """Advance the car by 1 ms: steer, push against the ground, turn the shafts, move."""
     rack = car.steering
     p = load_parameters(parameters)
     # The rack works against the tyres of the last step: their moment is part of the rack's torque.
     mean_rad = rack.road_wheel_rad + STEP_S * rack.road_wheel_radps
-    points = heading(p.steering, mean_rad)
-    axles = push(car, p, grips, points, mean_rad - rack.road_wheel_rad, STEP_S, tyre, rim_moment)
+    points = wheel_directions(p.steering, mean_rad)
+    axles = tyre_forces(car, p, grips, points, mean_rad - rack.road_wheel_rad, STEP_S, tyre, kingpin_moment)
     moved = SteeringState(mean_rad, rack.road_wheel_radps, rack.hand_wheel_torque_nm)
-    rate = steer(p.steering, moved, request.road_wheel_rad, axles.aligning_nm)
+    rate = rack_rate(p.steering, moved, request.road_wheel_rad, axles.aligning_nm)
     torque = hand_wheel_torque(p.steering, axles.aligning_nm, rate, car.body.vx_mps)
-    line = turn(car, with_aids(load_parameters(parameters), command), request, axles, STEP_S)
-    motion = move(car, load_parameters(parameters), axles, STEP_S)
+    line = driveline_step(car, with_aids(load_parameters(parameters), command), request, axles, STEP_S)
+    motion = body_step(car, load_parameters(parameters), axles, STEP_S)
     front = motion.front
     rear = motion.rear
     brakes = line.brakes
@@ -158,5 +158,5 @@ def wheel(on_ground: Contact, radps: float, lift_m: float, lift_mps: float, brak
     )
 
 
-step: Final = make_step(tyre, rim_moment)
+step: Final = make_step(tyre, kingpin_moment)
 """The step of a car whose tyres the profile describes itself."""

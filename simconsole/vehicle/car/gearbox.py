@@ -44,7 +44,7 @@ def bite(p: GearParameters, clutch: float) -> float:
 
 
 @kernel
-def by_lever(
+def by_person(
     p: GearParameters, box: Gearbox, lever: float, pedal: float, engine_radps: float, wheel_radps: float
 ) -> Gearbox:
     """Return the gearbox under the person's lever and clutch pedal."""
@@ -90,7 +90,7 @@ def gear_for(p: GearParameters, box: Gearbox, direction: float, throttle: float,
         return -1.0 if vx_mps < ROLLING_MPS else 0.0
     if vx_mps < -ROLLING_MPS:
         return 0.0
-    wheel = vx_mps * p.per_wheel_radius_pm
+    wheel = vx_mps * p.per_wheel_radius_m
     up = p.up_radps + p.up_per_throttle_radps * throttle
     if box.gear < 1.0:
         gear = 1.0
@@ -118,9 +118,9 @@ def automatic_clutch(p: GearParameters, box: Gearbox, engine_radps: float, wheel
     """
     closed = 0.0
     if box.shift_left_s <= 0.0 and box.gear != 0.0:
-        launch = (engine_radps - p.launch_from_radps) * p.per_launch_s
+        launch = (engine_radps - p.launch_from_radps) * p.per_launch_radps
         speed = gear_ratio(p, box.gear) * wheel_radps
-        lock = (speed - p.lock_from_radps) * p.per_lock_s
+        lock = (speed - p.lock_from_radps) * p.per_lock_radps
         closed = clip(launch if launch > lock else lock, 0.0, 1.0)
     target = p.bite_open - closed * (p.bite_open - p.bite_closed)
     if closed == 1.0:
@@ -149,7 +149,7 @@ def matched_throttle(
 
 
 @kernel
-def by_itself(
+def by_automatic(
     p: GearParameters, box: Gearbox, wanted: float, engine_radps: float, wheel_radps: float, step_s: float
 ) -> Gearbox:
     """Return the gearbox under the automatic: a shift opens the clutch, changes the gear half-way and closes again."""
@@ -189,7 +189,7 @@ def by_itself(
 
 
 @kernel
-def work_gearbox(
+def gearbox_step(
     p: GearParameters,
     box: Gearbox,
     request: Request,
@@ -201,12 +201,12 @@ def work_gearbox(
     """Advance clutch and gears by one step: automatic, person, or the wait in between."""
     if request.automatic != 0.0:
         wanted = gear_for(p, box, request.gear, request.throttle, vx_mps)
-        return by_itself(p, box, wanted, engine_radps, wheel_radps, step_s)
+        return by_automatic(p, box, wanted, engine_radps, wheel_radps, step_s)
     closed = box.gear == 0.0 or (box.clutch <= p.bite_closed and box.shift_left_s <= 0.0)
     taken_back = request.clutch >= p.bite_open or (request.gear == box.gear and closed)
     if box.lever_adopted != 0.0 or taken_back:
-        return by_lever(p, box, request.gear, request.clutch, engine_radps, wheel_radps)
-    kept = by_itself(p, box, box.gear, engine_radps, wheel_radps, step_s)
+        return by_person(p, box, request.gear, request.clutch, engine_radps, wheel_radps)
+    kept = by_automatic(p, box, box.gear, engine_radps, wheel_radps, step_s)
     clutch = request.clutch if request.clutch > kept.clutch else kept.clutch
     return Gearbox(
         gear=kept.gear,

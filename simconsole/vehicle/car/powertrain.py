@@ -152,6 +152,6 @@ def solve_shafts(before: Shafts, ratio: float, flywheel: Inertia, wheel: Inertia
 
 
 @kernel
-def braked(wheel_radps: float, per_inertia_pkgm2: float, capacity_nms: float) -> float:
+def braked(wheel_radps: float, per_inertia_kgm2: float, capacity_nms: float) -> float:
     """Return the speed of a free-running wheel after its brake: at most to exactly 0."""
-    return approach(wheel_radps, 0.0, capacity_nms * per_inertia_pkgm2)
+    return approach(wheel_radps, 0.0, capacity_nms * per_inertia_kgm2)

@@ -94,7 +94,7 @@ def make_tyre(p: Pac2002) -> TyreModel:
             held = clip(1.0 - demand / PEAK_DEMAND, 0.0, 1.0)
             damping = axle.damping_nspm * held * held
         touching = clip(load_n * (1.0 / LEAST_LOAD_N), 0.0, 1.0)
-        rate = damping * clip(load_n * axle.per_static_pn, 0.0, 4.0) * (1.0 / step_s)
+        rate = damping * clip(load_n * axle.per_static_n, 0.0, 4.0) * (1.0 / step_s)
         force_x = given.x_n * touching + rate * (x - deflection_x_m)
         force_y = turned * given.y_n * touching + rate * (y - deflection_y_m)
         force = sqrt(force_x * force_x + force_y * force_y)
@@ -116,7 +116,7 @@ def make_tyre(p: Pac2002) -> TyreModel:
 
 
 @kernel
-def tir_moment(p: SteeringParameters, tyre_force: TirForce, rolling_mps: float) -> float:
+def tir_kingpin_moment(p: SteeringParameters, tyre_force: TirForce, rolling_mps: float) -> float:
     """Return the moment about the kingpin: the tyre's own, which turns over when it rolls back, and the caster's."""
     way = rolling_mps / (abs(rolling_mps) + ROLLING_MPS)
     return tyre_force.moment_nm * way - tyre_force.force_y_n * p.caster_trail_m
@@ -125,4 +125,4 @@ def tir_moment(p: SteeringParameters, tyre_force: TirForce, rolling_mps: float) 
 @cache
 def step_on(coefficients: Pac2002) -> Callable[[Row, Row, Row, int], None]:
     """Return the car's step on this tyre. Equal coefficients give the same step: it compiles once."""
-    return make_step(make_tyre(coefficients), tir_moment)
+    return make_step(make_tyre(coefficients), tir_kingpin_moment)
