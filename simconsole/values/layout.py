@@ -61,9 +61,15 @@ def lay_out(layout: type[L]) -> L:
 
 def read(row: Row, part: Part[R]) -> R:
     """Return the record that lies at `part` of a row."""
+    values = row[part.start : part.stop].tolist()
+    return _built(part, values, part.start) if part.inner else part.record(*values)
+
+
+def _built(part: Part[Any], values: list[float], start: int) -> Any:
+    """Return the record of a part; the first of `values` is that of the column `start`."""
     if part.inner:
-        return part.record(*[read(row, inner) for inner in part.inner])
-    return part.record(*row[part.start : part.stop].tolist())
+        return part.record(*[_built(inner, values, start) for inner in part.inner])
+    return part.record(*values[part.start - start : part.stop - start])
 
 
 def write(row: Row, part: Part[R], record: R) -> None:
