@@ -21,7 +21,7 @@ from simconsole.bridge.client.bridge_client import BridgeClient
 from simconsole.bridge.transport.lockstep_server import LockstepBridge
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import BridgeError
-from simconsole.values.state_vector import PLATFORM_AT, VEHICLE_AT, Snapshot
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT, Snapshot
 
 TICK_HZ = 250
 PERIOD_TICKS = 5
@@ -80,7 +80,7 @@ def bridge_rate(round_trips: int) -> float:
             raise SystemExit("the client did not come")
         begin = time.perf_counter()
         for number in range(1, round_trips + 1):
-            row[VEHICLE_AT] = number / 3
+            row[LAYOUT.vehicle.start] = number / 3
             if not bridge.exchange(Snapshot(number * PERIOD_TICKS, TICK_HZ, row)):
                 raise SystemExit("no answer")
             bridge.take(number * PERIOD_TICKS + 1)

@@ -68,13 +68,13 @@ def _start(cars: int):  # type: ignore[no-untyped-def]  # noqa: ANN202  # numba 
     from simconsole.profiles.files.loader import load
     from simconsole.profiles.vehicle import CarProfile
     from simconsole.values.platform import Ground, Pose
-    from simconsole.values.state_vector import COMMAND_WIDTH
+    from simconsole.values.state_vector import LAYOUT
     from simconsole.vehicle.platforms import build
 
     vehicle = build(load("vehicles", "hatchback", CarProfile), Pose(0.0, 0.0, 0.0), Ground(1.0, 0.0, 0.0))
     states = np.array([vehicle.initial_state] * cars)
     states[:, 3] += np.linspace(5.0, 20.0, cars)
-    commands = np.zeros((cars, COMMAND_WIDTH))
+    commands = np.zeros((cars, LAYOUT.command.width))
     commands[:, 0] = np.linspace(-0.05, 0.05, cars)
     commands[:, 1] = np.linspace(0.0, 1.0, cars)
     commands[:, 5:7] = 1.0
@@ -98,13 +98,13 @@ def _part(cars: int) -> None:
     import numpy as np
 
     from simconsole.values.host.jit import compiled
-    from simconsole.values.state_vector import COMMAND_AT, PLATFORM_AT
+    from simconsole.values.state_vector import LAYOUT, PLATFORM_AT
 
     vehicle, states, commands = _start(cars)
     step = compiled(vehicle.step)
     rows = np.zeros((cars, PLATFORM_AT + states.shape[1]))
     rows[:, PLATFORM_AT:] = states
-    rows[:, COMMAND_AT : COMMAND_AT + commands.shape[1]] = commands
+    rows[:, LAYOUT.command.start : LAYOUT.command.start + commands.shape[1]] = commands
 
     @numba.njit
     def tick(rows, parameters, substeps):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202

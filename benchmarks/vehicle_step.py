@@ -38,7 +38,7 @@ from simconsole.values.host.jit import compiled
 from simconsole.values.kernels import put
 from simconsole.values.platform import Ground, Platform, Pose
 from simconsole.values.signals import VehicleCommand
-from simconsole.values.state_vector import COMMAND_AT, PLATFORM_AT
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT
 from simconsole.vehicle.batch.fleet import Fleet
 from simconsole.vehicle.platforms import build
 
@@ -106,7 +106,7 @@ def alone(vehicle: Platform, substeps: int) -> Steps:
 
     def steps(count: int) -> None:
         put(row, PLATFORM_AT, rolling(vehicle))
-        put(row, COMMAND_AT, command())
+        put(row, LAYOUT.command.start, command())
         ticks(row, vehicle.parameters, substeps, count // substeps)
 
     return steps

@@ -348,3 +348,42 @@ def test_file_is_short_enough_to_read(path: Path) -> None:
 @pytest.mark.parametrize("path", modules().values(), ids=modules().keys())
 def test_module_says_what_it_is(path: Path) -> None:
     assert (ast.get_docstring(ast.parse(path.read_text())) or "").strip()
+
+
+RECORDS_BY_KEYWORD = ("control", "tick", "values", "vehicle")
+"""The rooms in which a record of six or more fields is built by keyword: nobody sees a swap of two floats."""
+
+
+def built_by_position(tree: ast.AST, records: set[str], most: int = 5) -> list[str]:
+    """The records that are built with more than `most` positional values; `Record(*values)` is not meant."""
+    return [
+        f"{node.func.id}, line {node.lineno}"
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in records
+        if len([value for value in node.args if not isinstance(value, ast.Starred)]) > most
+    ]
+
+
+def records() -> set[str]:
+    """The names of all record classes of the package."""
+    return {
+        node.name
+        for path in modules().values()
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.ClassDef) and any(ast.unparse(base) == "NamedTuple" for base in node.bases)
+    }
+
+
+def test_large_records_are_built_by_keyword() -> None:
+    known = records()
+    files = [path for path in modules().values() if path.relative_to(ROOT).parts[1] in RECORDS_BY_KEYWORD]
+    found = {str(path): built_by_position(ast.parse(path.read_text()), known) for path in files}
+    assert {path: calls for path, calls in found.items() if calls} == {}
+    assert len(files) > 60
+
+
+def test_finder_of_records_built_by_position_finds_them() -> None:
+    tree = ast.parse(
+        "A(1, 2, 3, 4, 5, 6)\nA(1, 2, 3, 4, 5, *rest)\nA(a=1)\nB(1, 2, 3, 4, 5, 6)\nA(*rest)\nA(1, 2, 3, 4, 5, f=6)"
+    )
+    assert built_by_position(tree, {"A"}) == ["A, line 1"]

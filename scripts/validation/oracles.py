@@ -13,7 +13,7 @@ from simconsole.values.host.jit import compiled, plain
 from simconsole.values.kernels import Row, put
 from simconsole.values.platform import Ground, Pose
 from simconsole.values.signals import VehicleCommand
-from simconsole.values.state_vector import COMMAND_AT, PLATFORM_AT, VEHICLE_AT
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT
 from simconsole.values.units import STANDARD_GRAVITY_MPS2
 from simconsole.vehicle.car import car_platform as car_assembly
 from simconsole.vehicle.car import car_step
@@ -38,7 +38,7 @@ class Run:
         }
         self.row: Row = np.zeros(PLATFORM_AT + len(self.vehicle.initial_state))
         put(self.row, PLATFORM_AT, CarState(*self.vehicle.initial_state)._replace(**{**spins, **start}))
-        put(self.row, VEHICLE_AT, self.vehicle.initial_vehicle)
+        put(self.row, LAYOUT.vehicle.start, self.vehicle.initial_vehicle)
 
     @property
     def state(self) -> CarState:
@@ -47,7 +47,7 @@ class Run:
 
     def hold(self, seconds: float, substeps: int = 1, **command: float) -> list[CarState]:
         """Hold a command and return the states of every `substeps` steps of 1 ms."""
-        put(self.row, COMMAND_AT, NOTHING._replace(**command))
+        put(self.row, LAYOUT.command.start, NOTHING._replace(**command))
         states = []
         for _ in range(round(seconds * 1000 / substeps)):
             self.step(self.row, self.row, self.vehicle.parameters, substeps)
@@ -198,6 +198,6 @@ def _stepped(step_s: float) -> tuple[float, float]:
     # The rack's parameters are made for the step.
     with mock.patch.object(car_step, "STEP_S", step_s), mock.patch.object(car_assembly, "STEP_S", step_s):
         run = Run(hatchback(), execution=plain, vx_mps=20.0)
-        put(run.row, COMMAND_AT, NOTHING._replace(road_wheel_rad=0.04, clutch=1.0))
+        put(run.row, LAYOUT.command.start, NOTHING._replace(road_wheel_rad=0.04, clutch=1.0))
         run.step(run.row, run.row, run.vehicle.parameters, round(1.0 / step_s))
     return run.state.x_m, run.state.y_m

@@ -21,7 +21,7 @@ from simconsole.profiles.vehicle import CarProfile
 from simconsole.values.host.jit import compiled
 from simconsole.values.kernels import put
 from simconsole.values.platform import Ground, Pose
-from simconsole.values.state_vector import COMMAND_AT, PLATFORM_AT
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT
 from simconsole.vehicle.car.state import CarState
 from simconsole.vehicle.platforms import build
 
@@ -115,7 +115,7 @@ def _ours(speed: float, angle: float) -> Way:
     samples = []
     for tick in range(round(DURATION_S / OUR_STEP_S)):
         # A step and a half ahead: the rack follows its command with that lag, their angle has none.
-        row[COMMAND_AT] = angle * min((tick + 2.5) * OUR_STEP_S / RAMP_S, 1.0)
+        row[LAYOUT.command.start] = angle * min((tick + 2.5) * OUR_STEP_S / RAMP_S, 1.0)
         step(row, row, vehicle.parameters, 1)
         if (tick + 1) % every == 0:
             samples.append(row[PLATFORM_AT:].copy())

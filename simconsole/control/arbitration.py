@@ -5,7 +5,7 @@ last is held while its authority fades out, so that nothing jumps whatever it se
 The person's brake is never faded down: it counts in full in every mode.
 """
 
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 from simconsole.control.authority import (
     RemoteSide,
@@ -21,23 +21,17 @@ from simconsole.control.modes.decision import Decision, decide, takeover_stage
 from simconsole.control.modes.restart import Restart, restart_of
 from simconsole.control.modes.takeover import WheelWatch, steering_taken, throttle_held, throttle_overrides, watch_wheel
 from simconsole.control.modes.triggers import link_lost
-from simconsole.control.requests.commander import Controllers, look
+from simconsole.control.requests.commander import Controllers, assess
 from simconsole.control.requests.control_settings import ControlSettings
 from simconsole.control.requests.person import Person, person_of
-from simconsole.control.requests.stops import slow
-from simconsole.control.requests.tick_context import Moment
-from simconsole.control.shared import consent
+from simconsole.control.requests.stops import stands
+from simconsole.control.requests.tick_context import TickContext
+from simconsole.control.shared import shared_authority
 from simconsole.values.kernels import kernel
 from simconsole.values.signals import ArbiterMemory, Arbitration, Link, Mode, Notice, Request
 
-_SHARED: Final = float(Mode.SHARED)
-_AUTONOMOUS: Final = float(Mode.AUTONOMOUS)
-_TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)
-_MINIMAL_RISK: Final = float(Mode.MINIMAL_RISK)
-_THROTTLE_HELD: Final = float(Notice.THROTTLE_HELD)
 
-
-class Seen(NamedTuple):
+class Observed(NamedTuple):
     """What the sources say in this tick."""
 
     person: Person
@@ -48,14 +42,14 @@ class Seen(NamedTuple):
 
 
 @kernel
-def arbitrate(now: Moment) -> tuple[ArbiterMemory, Link, Link, Arbitration, Request]:
+def arbitrate(now: TickContext) -> tuple[ArbiterMemory, Link, Link, Arbitration, Request]:
     """Decide who drives, and what is asked of the vehicle.
 
     Returns:
         What to remember, the links of the ROS side and of the ECU, who had which authority, and the request for the
         gate (which may still be out of limits).
     """
-    seen = _see(now)
+    seen = _observe(now)
     controllers = seen.controllers
     decision = decide(
         now,
@@ -67,11 +61,16 @@ def arbitrate(now: Moment) -> tuple[ArbiterMemory, Link, Link, Arbitration, Requ
     restart = restart_of(now, seen.person)
     if restart.refusal > 0.0:
         decision = Decision(
-            decision.mode, decision.reason, decision.changed, restart.refusal, 0.0, decision.wait_begins
+            mode=decision.mode,
+            reason=decision.reason,
+            changed=decision.changed,
+            refusal=restart.refusal,
+            refusal_ticks=0.0,
+            wait_begins=decision.wait_begins,
         )
     held_ticks = throttle_held(now.memory.throttle_held_ticks, seen.throttle_override, decision.mode)
     mode_ticks = 0.0 if decision.wait_begins > 0.0 else now.memory.mode_ticks + 1.0
-    shared = consent(now, seen.person.road_wheel_rad, controllers.offered.road_wheel_rad)
+    shared = shared_authority(now, seen.person.road_wheel_rad, controllers.offered.road_wheel_rad)
     shares = shares_of(decision.mode, seen.throttle_override, shared.lateral, now.before, now.settings)
     steered = steered_stop(now, decision, controllers.offered, controllers.link, link_lost(controllers.events))
     side = remote_side(now, decision, shares, controllers.offered, controllers.link, seen.person, steered > 0.0)
@@ -79,10 +78,10 @@ def arbitrate(now: Moment) -> tuple[ArbiterMemory, Link, Link, Arbitration, Requ
     stalk = switched(now.driver, now.memory)
     lights = lights_of(decision.mode, stalk, controllers.remote, controllers.link)
     return (
-        _remembered(seen, decision, side, mode_ticks, shared.trade, steered, stalk, held_ticks, restart.ticks),
+        _memory(seen, decision, side, mode_ticks, shared.trade, steered, stalk, held_ticks, restart.ticks),
         controllers.ros_link,
         controllers.ecu_link,
-        _shown(
+        _arbitration(
             decision,
             shares,
             seen.person,
@@ -99,11 +98,11 @@ def arbitrate(now: Moment) -> tuple[ArbiterMemory, Link, Link, Arbitration, Requ
 @kernel
 def watched(mode: float) -> bool:
     """Return whether a person can take over from `mode` by moving the wheel."""
-    return mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED, _MINIMAL_RISK)
+    return mode in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED, Mode.MINIMAL_RISK)
 
 
 @kernel
-def _see(now: Moment) -> Seen:
+def _observe(now: TickContext) -> Observed:
     person = person_of(now.driver, now.command_before.road_wheel_rad, now.settings)
     watch = watch_wheel(
         WheelWatch(now.memory.engage_hand_wheel_rad, now.memory.steering_ticks),
@@ -114,12 +113,12 @@ def _see(now: Moment) -> Seen:
         person.wheel_trusted > 0.0,
         now.settings,
     )
-    return Seen(
+    return Observed(
         person,
-        look(now),
+        assess(now),
         watch,
         throttle_overrides(now.memory.throttle_override, person.throttle, now.settings),
-        now.memory.standstill_ticks + 1.0 if slow(now.vehicle, now.settings) else 0.0,
+        now.memory.standstill_ticks + 1.0 if stands(now.vehicle, now.settings) else 0.0,
     )
 
 
@@ -127,12 +126,12 @@ def _see(now: Moment) -> Seen:
 def _notice(restart: Restart, throttle_held_ticks: float, settings: ControlSettings) -> float:
     if restart.notice > 0.0:
         return restart.notice
-    return _THROTTLE_HELD if throttle_held_ticks > settings.throttle_held_ticks else 0.0
+    return Notice.THROTTLE_HELD if throttle_held_ticks > settings.throttle_held_ticks else 0.0
 
 
 @kernel
-def _remembered(
-    seen: Seen,
+def _memory(
+    seen: Observed,
     decision: Decision,
     side: RemoteSide,
     mode_ticks: float,
@@ -143,26 +142,26 @@ def _remembered(
     restart_ticks: float,
 ) -> ArbiterMemory:
     return ArbiterMemory(
-        mode_ticks,
-        seen.watch.reference_rad,
-        seen.watch.past_ticks,
-        seen.throttle_override,
-        decision.refusal_ticks,
-        seen.standstill_ticks,
-        side.speed_integral_mps2,
-        side.stop_accel_mps2,
-        side.hold_road_wheel_rad,
-        stop_steered,
-        trade if decision.mode == _SHARED else 1.0,
-        stalk.turn_indicators,
-        stalk.hazard_lights,
-        throttle_held_ticks,
-        restart_ticks,
+        mode_ticks=mode_ticks,
+        engage_hand_wheel_rad=seen.watch.reference_rad,
+        steering_ticks=seen.watch.past_ticks,
+        throttle_override=seen.throttle_override,
+        refusal_ticks=decision.refusal_ticks,
+        standstill_ticks=seen.standstill_ticks,
+        speed_integral_mps2=side.speed_integral_mps2,
+        stop_accel_mps2=side.stop_accel_mps2,
+        hold_road_wheel_rad=side.hold_road_wheel_rad,
+        stop_steered=stop_steered,
+        shared_trade=trade if decision.mode == Mode.SHARED else 1.0,
+        stalk=stalk.turn_indicators,
+        hazard_switch=stalk.hazard_lights,
+        throttle_held_ticks=throttle_held_ticks,
+        restart_ticks=restart_ticks,
     )
 
 
 @kernel
-def _shown(
+def _arbitration(
     decision: Decision,
     shares: Shares,
     person: Person,
@@ -173,26 +172,26 @@ def _shown(
     notice: float,
 ) -> Arbitration:
     return Arbitration(
-        decision.mode,
-        decision.reason,
-        decision.refusal,
-        shares.lateral,
-        shares.longitudinal,
-        person.road_wheel_rad,
-        person.throttle,
-        person.brake,
-        side.road_wheel_rad,
-        side.throttle,
-        side.brake,
-        stage,
-        shares.guidance,
-        controllers.commander,
-        controllers.ros_offered.road_wheel_rad,
-        controllers.ros_offered.throttle,
-        controllers.ros_offered.brake,
-        controllers.ecu_offered.road_wheel_rad,
-        controllers.ecu_offered.throttle,
-        controllers.ecu_offered.brake,
-        restart.granted,
-        notice,
+        mode=decision.mode,
+        reason=decision.reason,
+        refusal=decision.refusal,
+        remote_lateral=shares.lateral,
+        remote_longitudinal=shares.longitudinal,
+        person_road_wheel_rad=person.road_wheel_rad,
+        person_throttle=person.throttle,
+        person_brake=person.brake,
+        remote_road_wheel_rad=side.road_wheel_rad,
+        remote_throttle=side.throttle,
+        remote_brake=side.brake,
+        takeover_stage=stage,
+        remote_guidance=shares.guidance,
+        commander=controllers.commander,
+        ros_road_wheel_rad=controllers.ros_offered.road_wheel_rad,
+        ros_throttle=controllers.ros_offered.throttle,
+        ros_brake=controllers.ros_offered.brake,
+        ecu_road_wheel_rad=controllers.ecu_offered.road_wheel_rad,
+        ecu_throttle=controllers.ecu_offered.throttle,
+        ecu_brake=controllers.ecu_offered.brake,
+        restarted=restart.granted,
+        notice=notice,
     )

@@ -1,28 +1,17 @@
 """How much authority each side has, what each asks for, and the blend of both."""
 
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 from simconsole.control.lights import Lights
 from simconsole.control.modes.decision import Decision
-from simconsole.control.requests.angles import gentle_angle, gentle_step, lateral_apart
+from simconsole.control.requests.angles import lateral_apart, limited_angle, limited_step
 from simconsole.control.requests.control_settings import ControlSettings
 from simconsole.control.requests.person import Person
 from simconsole.control.requests.remote import RemoteRequest
 from simconsole.control.requests.stops import safe_stop, stop_start
-from simconsole.control.requests.tick_context import Moment
+from simconsole.control.requests.tick_context import TickContext
 from simconsole.values.kernels import approach, clip, kernel
 from simconsole.values.signals import Arbitration, DriverInput, Link, Mode, Reason, Request, VehicleCommand
-
-_PARKED: Final = float(Mode.PARKED)
-_MANUAL: Final = float(Mode.MANUAL)
-_SHARED: Final = float(Mode.SHARED)
-_AUTONOMOUS: Final = float(Mode.AUTONOMOUS)
-_TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)
-_MINIMAL_RISK: Final = float(Mode.MINIMAL_RISK)
-_STOPPED: Final = float(Mode.STOPPED)
-_NO_REACTION: Final = float(Reason.NO_REACTION)
-_LOOP_STALL: Final = float(Reason.LOOP_STALL)
-_EMERGENCY_STOP: Final = float(Mode.EMERGENCY_STOP)
 
 
 class Shares(NamedTuple):
@@ -67,14 +56,14 @@ def shares_of(
         settings: Of this drive.
     """
     guidance = 0.0
-    if mode == _MANUAL:
+    if mode == Mode.MANUAL:
         lateral = 0.0
         longitudinal = 0.0
-    elif mode == _SHARED:
+    elif mode == Mode.SHARED:
         lateral = 0.0 if settings.shared_haptic > 0.0 else shared_lateral
         guidance = shared_lateral
         longitudinal = settings.shared_longitudinal
-    elif mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED):
+    elif mode in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED):
         lateral = 1.0
         longitudinal = 1.0 - throttle_override
     else:
@@ -89,7 +78,7 @@ def shares_of(
 
 @kernel
 def remote_side(
-    now: Moment,
+    now: TickContext,
     decision: Decision,
     shares: Shares,
     offered: RemoteRequest,
@@ -113,21 +102,43 @@ def remote_side(
     mode = decision.mode
     entered = decision.changed > 0.0
     hold = now.command_before.road_wheel_rad if entered else now.memory.hold_road_wheel_rad
-    if mode == _MANUAL and (shares.lateral > 0.0 or shares.longitudinal > 0.0):
+    if mode == Mode.MANUAL and (shares.lateral > 0.0 or shares.longitudinal > 0.0):
         return _fading_side(entered, hold, person, now.before, now.command_before)
-    if mode in (_MANUAL, _SHARED, _AUTONOMOUS, _TAKEOVER_REQUESTED):
+    if mode in (Mode.MANUAL, Mode.SHARED, Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED):
         if link.fresh == 0.0:
-            return RemoteSide(now.command_before.road_wheel_rad, 0.0, 0.0, 0.0, 0.0, 0.0, hold)
-        if mode == _SHARED:
+            return RemoteSide(
+                road_wheel_rad=now.command_before.road_wheel_rad,
+                throttle=0.0,
+                brake=0.0,
+                direction=0.0,
+                speed_integral_mps2=0.0,
+                stop_accel_mps2=0.0,
+                hold_road_wheel_rad=hold,
+            )
+        if mode == Mode.SHARED:
             offered = _held_back(now, offered)
-        integral = offered.speed_integral_mps2 if mode != _MANUAL and shares.longitudinal >= 1.0 else 0.0
+        integral = offered.speed_integral_mps2 if mode != Mode.MANUAL and shares.longitudinal >= 1.0 else 0.0
         return RemoteSide(
-            offered.road_wheel_rad, offered.throttle, offered.brake, offered.direction, integral, 0.0, hold
+            road_wheel_rad=offered.road_wheel_rad,
+            throttle=offered.throttle,
+            brake=offered.brake,
+            direction=offered.direction,
+            speed_integral_mps2=integral,
+            stop_accel_mps2=0.0,
+            hold_road_wheel_rad=hold,
         )
-    if mode == _MINIMAL_RISK:
+    if mode == Mode.MINIMAL_RISK:
         return _safe_side(now, entered, hold, offered.road_wheel_rad, steered)
-    brake = now.settings.emergency_brake if mode == _EMERGENCY_STOP else now.settings.hold_brake
-    return RemoteSide(hold, 0.0, brake, 0.0, 0.0, 0.0, hold)
+    brake = now.settings.emergency_brake if mode == Mode.EMERGENCY_STOP else now.settings.hold_brake
+    return RemoteSide(
+        road_wheel_rad=hold,
+        throttle=0.0,
+        brake=brake,
+        direction=0.0,
+        speed_integral_mps2=0.0,
+        stop_accel_mps2=0.0,
+        hold_road_wheel_rad=hold,
+    )
 
 
 @kernel
@@ -137,18 +148,26 @@ def _fading_side(
     """Hold what the remote side contributed to the command in force at the hand-over, while its share fades out."""
     if not entered:
         return RemoteSide(
-            before.remote_road_wheel_rad, before.remote_throttle, before.remote_brake, 0.0, 0.0, 0.0, hold_rad
+            road_wheel_rad=before.remote_road_wheel_rad,
+            throttle=before.remote_throttle,
+            brake=before.remote_brake,
+            direction=0.0,
+            speed_integral_mps2=0.0,
+            stop_accel_mps2=0.0,
+            hold_road_wheel_rad=hold_rad,
         )
     return RemoteSide(
-        _contribution(
+        road_wheel_rad=_contribution(
             before.remote_road_wheel_rad, command_before.road_wheel_rad, person.road_wheel_rad, before.remote_lateral
         ),
-        _contribution(before.remote_throttle, command_before.throttle, person.throttle, before.remote_longitudinal),
-        _contribution(before.remote_brake, command_before.brake, person.brake, before.remote_longitudinal),
-        0.0,
-        0.0,
-        0.0,
-        hold_rad,
+        throttle=_contribution(
+            before.remote_throttle, command_before.throttle, person.throttle, before.remote_longitudinal
+        ),
+        brake=_contribution(before.remote_brake, command_before.brake, person.brake, before.remote_longitudinal),
+        direction=0.0,
+        speed_integral_mps2=0.0,
+        stop_accel_mps2=0.0,
+        hold_road_wheel_rad=hold_rad,
     )
 
 
@@ -165,14 +184,14 @@ def _contribution(asked: float, in_force: float, person: float, share: float) ->
 
 
 @kernel
-def _held_back(now: Moment, offered: RemoteRequest) -> RemoteRequest:
+def _held_back(now: TickContext, offered: RemoteRequest) -> RemoteRequest:
     """Limit the controller's part of a shared command as in AUTONOMOUS: the gate must leave the person's hands free."""
     before, settings, tick_s = now.before, now.settings, now.tick_s
     most = settings.automatic_road_wheel_rad
-    gentle = gentle_angle(
+    gentle = limited_angle(
         clip(offered.road_wheel_rad, -most, most), settings.automatic_lateral_accel_mps2, now.vehicle, settings
     )
-    step = gentle_step(
+    step = limited_step(
         before.remote_road_wheel_rad,
         settings.automatic_road_wheel_radps * tick_s,
         settings.automatic_lateral_jerk_mps3,
@@ -190,26 +209,26 @@ def _held_back(now: Moment, offered: RemoteRequest) -> RemoteRequest:
 
 
 @kernel
-def steered_stop(now: Moment, decision: Decision, offered: RemoteRequest, link: Link, lost: bool) -> float:
+def steered_stop(now: TickContext, decision: Decision, offered: RemoteRequest, link: Link, lost: bool) -> float:
     """Return 1 while the controller steers a safe stop: nothing is wrong with it, and never was during this stop.
 
     If it drove, it goes on: a car whose person did not react, or whose loop stood still, stops in its lane. If a person
     drove (their wheel is lost, or the loop stood still), it steers if it is steady and asks for about what they did.
     One that is `lost` in this tick (it left or did not answer) steers no more, however young its last command is.
     """
-    if decision.mode != _MINIMAL_RISK or link.fresh == 0.0 or link.invalid > 0.0 or lost:
+    if decision.mode != Mode.MINIMAL_RISK or link.fresh == 0.0 or link.invalid > 0.0 or lost:
         return 0.0
     if decision.changed == 0.0:
         return now.memory.stop_steered
-    if now.before.mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED):
-        return 1.0 if decision.reason in (_NO_REACTION, _LOOP_STALL) else 0.0
+    if now.before.mode in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED):
+        return 1.0 if decision.reason in (Reason.NO_REACTION, Reason.LOOP_STALL) else 0.0
     apart = lateral_apart(offered.road_wheel_rad, now.command_before.road_wheel_rad, now.vehicle, now.settings)
     steady = link.fresh_ticks >= now.settings.engage_stable_ticks
     return 1.0 if steady and apart <= now.settings.stop_steering_apart_mps2 else 0.0
 
 
 @kernel
-def _safe_side(now: Moment, entered: bool, hold_rad: float, offered_rad: float, steered: bool) -> RemoteSide:
+def _safe_side(now: TickContext, entered: bool, hold_rad: float, offered_rad: float, steered: bool) -> RemoteSide:
     accel = stop_start(now.vehicle, now.settings) if entered else now.memory.stop_accel_mps2
     integral = 0.0 if entered else now.memory.speed_integral_mps2
     stop = safe_stop(accel, integral, steered, now.vehicle, now.settings, now.tick_s)
@@ -217,33 +236,33 @@ def _safe_side(now: Moment, entered: bool, hold_rad: float, offered_rad: float, 
     if not steered:
         road_wheel_rad = approach(hold_rad, 0.0, now.settings.stop_road_wheel_decay_radps * now.tick_s)
     return RemoteSide(
-        road_wheel_rad,
-        0.0,
-        stop.brake,
-        0.0,
-        stop.integral_mps2,
-        stop.stop_accel_mps2,
-        road_wheel_rad,
+        road_wheel_rad=road_wheel_rad,
+        throttle=0.0,
+        brake=stop.brake,
+        direction=0.0,
+        speed_integral_mps2=stop.integral_mps2,
+        stop_accel_mps2=stop.stop_accel_mps2,
+        hold_road_wheel_rad=road_wheel_rad,
     )
 
 
 @kernel
-def transmission_of(now: Moment, mode: float, direction: float) -> Transmission:
+def transmission_of(now: TickContext, mode: float, direction: float) -> Transmission:
     """Return who works clutch and gears; `direction` is what the remote side asks for.
 
     After autonomy the car goes on doing it until the person's clutch takes them back: the lever stands in any gear.
     """
     driver, command_before, settings = now.driver, now.command_before, now.settings
-    if mode == _PARKED:
+    if mode == Mode.PARKED:
         return Transmission(0.0, 0.0, 0.0)
-    if mode == _STOPPED:
+    if mode == Mode.STOPPED:
         return Transmission(0.0, 0.0, 1.0)
-    if mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED):
+    if mode in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED):
         return Transmission(0.0, direction, 1.0)
-    if mode in (_MINIMAL_RISK, _EMERGENCY_STOP):
+    if mode in (Mode.MINIMAL_RISK, Mode.EMERGENCY_STOP):
         gear = command_before.gear if command_before.automatic > 0.0 else _sign(now.vehicle.gear)
         return Transmission(0.0, gear, 1.0)
-    if mode == _SHARED and settings.shared_longitudinal > 0.0:
+    if mode == Mode.SHARED and settings.shared_longitudinal > 0.0:
         return Transmission(0.0, direction, 1.0)
     if settings.manual_automatic > 0.0:
         return Transmission(0.0, _sign(driver.gear), 1.0)
@@ -276,18 +295,18 @@ def blend(
     if person.brake > brake:
         brake = person.brake
     handbrake = 0.0
-    if mode in (_PARKED, _STOPPED):
+    if mode in (Mode.PARKED, Mode.STOPPED):
         handbrake = 1.0
-    elif mode in (_MANUAL, _SHARED):
+    elif mode in (Mode.MANUAL, Mode.SHARED):
         handbrake = driver.handbrake
     return Request(
-        road_wheel_rad,
-        throttle,
-        brake,
-        transmission.clutch,
-        handbrake,
-        transmission.gear,
-        transmission.automatic,
-        lights.turn_indicators,
-        lights.hazard_lights,
+        road_wheel_rad=road_wheel_rad,
+        throttle=throttle,
+        brake=brake,
+        clutch=transmission.clutch,
+        handbrake=handbrake,
+        gear=transmission.gear,
+        automatic=transmission.automatic,
+        turn_indicators=lights.turn_indicators,
+        hazard_lights=lights.hazard_lights,
     )

@@ -7,9 +7,9 @@ narrower. Throttle is the exception downwards: with the brake pressed or in a st
 
 from typing import Final, NamedTuple
 
-from simconsole.control.requests.angles import gentle_angle, gentle_step
+from simconsole.control.requests.angles import limited_angle, limited_step
 from simconsole.control.requests.control_settings import ControlSettings
-from simconsole.control.requests.longitudinal import known
+from simconsole.control.requests.longitudinal import finite_or
 from simconsole.values.kernels import approach, clip, is_finite, kernel
 from simconsole.values.signals import (
     NEVER_TICKS,
@@ -23,27 +23,6 @@ from simconsole.values.signals import (
     VehicleCommand,
     VehicleState,
 )
-
-_PARKED: Final = float(Mode.PARKED)
-_MANUAL: Final = float(Mode.MANUAL)
-_SHARED: Final = float(Mode.SHARED)
-_AUTONOMOUS: Final = float(Mode.AUTONOMOUS)
-_TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)
-_MINIMAL_RISK: Final = float(Mode.MINIMAL_RISK)
-_EMERGENCY_STOP: Final = float(Mode.EMERGENCY_STOP)
-_POSE: Final = float(RemoteKind.POSE)
-_NON_FINITE: Final = int(GateLimit.NON_FINITE)
-_RANGE: Final = int(GateLimit.RANGE)
-_RATE: Final = int(GateLimit.RATE)
-_LATERAL: Final = int(GateLimit.LATERAL_ACCELERATION)
-_OVER: Final = int(GateLimit.BRAKE_OVER_THROTTLE)
-_GEAR: Final = int(GateLimit.GEAR)
-_JERK: Final = int(GateLimit.LATERAL_JERK)
-
-_RESET: Final = int(Event.RESET)
-_ANTI_LOCK: Final = int(Event.TOGGLE_ANTI_LOCK)
-_TRACTION: Final = int(Event.TOGGLE_TRACTION)
-_STABILITY: Final = int(Event.TOGGLE_STABILITY)
 
 _SAFE_BRAKE: Final = 0.3
 """Stands in for a brake request that is not finite: slows any car, locks none on a dry road."""
@@ -96,28 +75,36 @@ def limits_of(mode: float, settings: ControlSettings) -> Limits:
     lateral acceleration and jerk are free: catching a skid or swerving needs more of both than any comfort limit has.
     """
     slew = settings.manual_pedal_slew_per_s
-    if mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED):
+    if mode in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED):
         return Limits(
-            settings.automatic_road_wheel_rad,
-            settings.automatic_road_wheel_radps,
-            settings.automatic_lateral_accel_mps2,
-            settings.automatic_lateral_jerk_mps3,
-            settings.automatic_throttle_slew_per_s,
-            settings.automatic_brake_slew_per_s,
-            settings.target_accel_mps2,
+            road_wheel_rad=settings.automatic_road_wheel_rad,
+            road_wheel_radps=settings.automatic_road_wheel_radps,
+            lateral_accel_mps2=settings.automatic_lateral_accel_mps2,
+            lateral_jerk_mps3=settings.automatic_lateral_jerk_mps3,
+            throttle_slew_per_s=settings.automatic_throttle_slew_per_s,
+            brake_slew_per_s=settings.automatic_brake_slew_per_s,
+            target_accel_mps2=settings.target_accel_mps2,
         )
-    if mode in (_MANUAL, _SHARED):
+    if mode in (Mode.MANUAL, Mode.SHARED):
         lock = settings.max_road_wheel_rad
-        return Limits(lock, settings.manual_road_wheel_radps, 0.0, 0.0, slew, slew, settings.target_accel_mps2)
-    emergency = mode == _EMERGENCY_STOP
+        return Limits(
+            road_wheel_rad=lock,
+            road_wheel_radps=settings.manual_road_wheel_radps,
+            lateral_accel_mps2=0.0,
+            lateral_jerk_mps3=0.0,
+            throttle_slew_per_s=slew,
+            brake_slew_per_s=slew,
+            target_accel_mps2=settings.target_accel_mps2,
+        )
+    emergency = mode == Mode.EMERGENCY_STOP
     return Limits(
-        settings.max_road_wheel_rad,
-        settings.stop_road_wheel_radps,
-        0.0 if emergency else settings.automatic_lateral_accel_mps2,
-        settings.automatic_lateral_jerk_mps3,
-        slew,
-        settings.emergency_brake_slew_per_s if emergency else settings.automatic_brake_slew_per_s,
-        settings.target_accel_mps2 if emergency else settings.stop_decel_mps2,
+        road_wheel_rad=settings.max_road_wheel_rad,
+        road_wheel_radps=settings.stop_road_wheel_radps,
+        lateral_accel_mps2=0.0 if emergency else settings.automatic_lateral_accel_mps2,
+        lateral_jerk_mps3=settings.automatic_lateral_jerk_mps3,
+        throttle_slew_per_s=slew,
+        brake_slew_per_s=settings.emergency_brake_slew_per_s if emergency else settings.automatic_brake_slew_per_s,
+        target_accel_mps2=settings.target_accel_mps2 if emergency else settings.stop_decel_mps2,
     )
 
 
@@ -146,47 +133,50 @@ def gate(
     """
     mode = arbitration.mode
     limits = limits_of(mode, settings)
-    wheel = _road_wheel(request.road_wheel_rad, known(before.road_wheel_rad, 0.0), vehicle, limits, settings, tick_s)
+    wheel = _road_wheel(
+        request.road_wheel_rad, finite_or(before.road_wheel_rad, 0.0), vehicle, limits, settings, tick_s
+    )
     brake_step = limits.brake_slew_per_s * tick_s
     brake = _pedal(request.brake, _SAFE_BRAKE, before.brake, brake_step, brake_step)
-    cut = mode == _PARKED or mode >= _MINIMAL_RISK or _at_least(request.brake, brake.value, settings.brake_override)
+    braked = _at_least(request.brake, brake.value, settings.brake_override)
+    cut = mode == Mode.PARKED or mode >= Mode.MINIMAL_RISK or braked
     throttle = _throttle(request.throttle, before.throttle, cut, limits, settings, tick_s)
     hand_step = settings.manual_pedal_slew_per_s * tick_s
     clutch = _pedal(request.clutch, 0.0, before.clutch, hand_step, hand_step)
     handbrake = _pedal(request.handbrake, 0.0, before.handbrake, hand_step, hand_step)
     automatic = 1.0 if request.automatic > 0.0 else 0.0
-    gear = _gear(request.gear, known(before.gear, 0.0), automatic, vehicle, settings)
+    gear = _gear(request.gear, finite_or(before.gear, 0.0), automatic, vehicle, settings)
     target = _target(remote, mode, before, vehicle, limits, settings, tick_s)
     active = wheel.active | brake.active | throttle.active | clutch.active | handbrake.active
     turn = _switch(request.turn_indicators, before.turn_indicators, True)
     hazard = _switch(request.hazard_lights, before.hazard_lights, False)
     active |= gear.active | target.active | turn.active | hazard.active
     return VehicleCommand(
-        wheel.value,
-        throttle.value,
-        brake.value,
-        clutch.value,
-        handbrake.value,
-        gear.value,
-        automatic,
-        target.speed_mps,
-        target.x_m,
-        target.y_m,
-        target.yaw_rad,
-        turn.value,
-        hazard.value,
-        float(active),
-        _counted(before.gate_active_ticks, active),
-        _switched(before.anti_lock_off, events, _ANTI_LOCK),
-        _switched(before.traction_off, events, _TRACTION),
-        _switched(before.stability_off, events, _STABILITY),
+        road_wheel_rad=wheel.value,
+        throttle=throttle.value,
+        brake=brake.value,
+        clutch=clutch.value,
+        handbrake=handbrake.value,
+        gear=gear.value,
+        automatic=automatic,
+        target_speed_mps=target.speed_mps,
+        target_x_m=target.x_m,
+        target_y_m=target.y_m,
+        target_yaw_rad=target.yaw_rad,
+        turn_indicators=turn.value,
+        hazard_lights=hazard.value,
+        gate_active=float(active),
+        gate_active_ticks=_counted(before.gate_active_ticks, active),
+        anti_lock_off=_switched(before.anti_lock_off, events, Event.TOGGLE_ANTI_LOCK),
+        traction_off=_switched(before.traction_off, events, Event.TOGGLE_TRACTION),
+        stability_off=_switched(before.stability_off, events, Event.TOGGLE_STABILITY),
     )
 
 
 @kernel
 def _switched(before: float, events: float, bit: int) -> float:
     """Return the other position of a switch in a tick with its event. A reset puts every switch back on (0)."""
-    if int(events) & _RESET:
+    if int(events) & Event.RESET:
         return 0.0
     off = 1.0 if before > 0.0 else 0.0
     return 1.0 - off if int(events) & bit else off
@@ -195,7 +185,7 @@ def _switched(before: float, events: float, bit: int) -> float:
 @kernel
 def _counted(before_ticks: float, active: int) -> float:
     """Return for how many ticks of the drive the gate has changed something."""
-    ticks = clip(known(before_ticks, 0.0), 0.0, NEVER_TICKS)
+    ticks = clip(finite_or(before_ticks, 0.0), 0.0, NEVER_TICKS)
     return ticks + 1.0 if active != 0 else ticks
 
 
@@ -217,18 +207,18 @@ def _road_wheel(
     wanted = wanted_rad
     if not is_finite(wanted):
         wanted = before_rad
-        active = _NON_FINITE
+        active = GateLimit.NON_FINITE
     ranged = clip(wanted, -limits.road_wheel_rad, limits.road_wheel_rad)
     if ranged != wanted:
-        active |= _RANGE
-    gentle = gentle_angle(ranged, limits.lateral_accel_mps2, vehicle, settings)
+        active |= GateLimit.RANGE
+    gentle = limited_angle(ranged, limits.lateral_accel_mps2, vehicle, settings)
     if gentle != ranged:
-        active |= _LATERAL
+        active |= GateLimit.LATERAL_ACCELERATION
     step = limits.road_wheel_radps * tick_s
-    smooth_step = gentle_step(before_rad, step, limits.lateral_jerk_mps3, vehicle, settings, tick_s)
+    smooth_step = limited_step(before_rad, step, limits.lateral_jerk_mps3, vehicle, settings, tick_s)
     moved = approach(before_rad, gentle, smooth_step)
     if moved != gentle:
-        active |= _JERK if smooth_step < step else _RATE
+        active |= GateLimit.LATERAL_JERK if smooth_step < step else GateLimit.RATE
     return Passed(clip(moved, -settings.max_road_wheel_rad, settings.max_road_wheel_rad), active)
 
 
@@ -236,14 +226,14 @@ def _road_wheel(
 def _pedal(wanted: float, safe: float, before: float, up: float, down: float) -> Passed:
     if is_finite(wanted):
         ranged = clip(wanted, 0.0, 1.0)
-        active = 0 if ranged == wanted else _RANGE
+        active = 0 if ranged == wanted else GateLimit.RANGE
     else:
         ranged = safe
-        active = _NON_FINITE
-    held = clip(known(before, safe), 0.0, 1.0)
+        active = GateLimit.NON_FINITE
+    held = clip(finite_or(before, safe), 0.0, 1.0)
     moved = approach(held, ranged, up if ranged > held else down)
     if moved != ranged:
-        active |= _RATE
+        active |= GateLimit.RATE
     return Passed(moved, active)
 
 
@@ -254,8 +244,8 @@ def _throttle(
     passed = _pedal(wanted, 0.0, before, limits.throttle_slew_per_s * tick_s, settings.manual_pedal_slew_per_s * tick_s)
     if not cut:
         return passed
-    over = _OVER if passed.value > 0.0 else 0
-    return Passed(0.0, (passed.active & _NON_FINITE) | over)
+    over = GateLimit.BRAKE_OVER_THROTTLE if passed.value > 0.0 else 0
+    return Passed(0.0, (passed.active & GateLimit.NON_FINITE) | over)
 
 
 @kernel
@@ -264,13 +254,13 @@ def _gear(wanted: float, before: float, automatic: float, vehicle: VehicleState,
     lowest = -1.0
     highest = 1.0 if automatic > 0.0 else settings.gear_max
     if not is_finite(wanted):
-        return Passed(clip(before, lowest, highest), _NON_FINITE)
+        return Passed(clip(before, lowest, highest), GateLimit.NON_FINITE)
     if wanted < lowest or wanted > highest or float(int(wanted)) != wanted:
-        return Passed(clip(before, lowest, highest), _GEAR)
-    speed = known(vehicle.vx_mps, 0.0)
+        return Passed(clip(before, lowest, highest), GateLimit.GEAR)
+    speed = finite_or(vehicle.vx_mps, 0.0)
     against = wanted * speed < 0.0 and abs(speed) > settings.reverse_speed_max_mps
     if against and wanted * before <= 0.0:
-        return Passed(clip(before, lowest, highest), _GEAR)
+        return Passed(clip(before, lowest, highest), GateLimit.GEAR)
     return Passed(wanted, 0)
 
 
@@ -280,13 +270,13 @@ def _switch(wanted: float, before: float, two_sided: bool) -> Passed:
     active = 0
     value = wanted
     if not is_finite(wanted):
-        value = known(before, 0.0)
-        active = _NON_FINITE
+        value = finite_or(before, 0.0)
+        active = GateLimit.NON_FINITE
     position = 1.0 if value > 0.0 else 0.0
     if two_sided and value < 0.0:
         position = -1.0
     if position != value:
-        active |= _RANGE
+        active |= GateLimit.RANGE
     return Passed(position, active)
 
 
@@ -305,20 +295,20 @@ def _target(
     The pose holds during a stop (the way ahead is kept) and follows the vehicle while a person drives.
     """
     before_mps = clip(
-        known(before.target_speed_mps, 0.0), -settings.target_speed_max_mps, settings.target_speed_max_mps
+        finite_or(before.target_speed_mps, 0.0), -settings.target_speed_max_mps, settings.target_speed_max_mps
     )
     step = limits.target_accel_mps2 * tick_s
-    driven = mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED, _SHARED)
-    if driven and remote.kind == _POSE:
+    driven = mode in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED, Mode.SHARED)
+    if driven and remote.kind == RemoteKind.POSE:
         return _pose_target(remote, before, before_mps, step, settings)
     wanted = remote.speed_mps if driven else 0.0
     active = 0
     if not is_finite(wanted):
         wanted = 0.0
-        active = _NON_FINITE
+        active = GateLimit.NON_FINITE
     wanted = clip(wanted, -settings.target_speed_max_mps, settings.target_speed_max_mps)
     speed = approach(before_mps, wanted, step)
-    if mode >= _MINIMAL_RISK:
+    if mode >= Mode.MINIMAL_RISK:
         pose = _finite_pose(before.target_x_m, before.target_y_m, before.target_yaw_rad, before, settings)
     else:
         pose = _finite_pose(vehicle.x_m, vehicle.y_m, vehicle.yaw_rad, before, settings)
@@ -335,13 +325,13 @@ def _pose_target(
     wanted = remote.speed_mps
     if not is_finite(wanted):
         wanted = 0.0
-        active |= _NON_FINITE
+        active |= GateLimit.NON_FINITE
     ranged = clip(wanted, -most, most)
     if ranged != wanted:
-        active |= _RANGE
+        active |= GateLimit.RANGE
     speed = approach(before_mps, ranged, step)
     if speed != ranged:
-        active |= _RATE
+        active |= GateLimit.RATE
     return Target(speed, pose.x_m, pose.y_m, pose.yaw_rad, active)
 
 
@@ -352,10 +342,10 @@ def _finite_pose(x_m: float, y_m: float, yaw_rad: float, before: VehicleCommand,
     if is_finite(x_m) and is_finite(y_m) and is_finite(yaw_rad):
         if abs(x_m) <= most and abs(y_m) <= most and abs(yaw_rad) <= _MOST_YAW_RAD:
             return Pose(x_m, y_m, yaw_rad, 0)
-        active = _RANGE
+        active = GateLimit.RANGE
     else:
-        active = _NON_FINITE
-    x = clip(known(before.target_x_m, 0.0), -most, most)
-    y = clip(known(before.target_y_m, 0.0), -most, most)
-    yaw = clip(known(before.target_yaw_rad, 0.0), -_MOST_YAW_RAD, _MOST_YAW_RAD)
+        active = GateLimit.NON_FINITE
+    x = clip(finite_or(before.target_x_m, 0.0), -most, most)
+    y = clip(finite_or(before.target_y_m, 0.0), -most, most)
+    yaw = clip(finite_or(before.target_yaw_rad, 0.0), -_MOST_YAW_RAD, _MOST_YAW_RAD)
     return Pose(x, y, yaw, active)

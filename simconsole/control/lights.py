@@ -6,20 +6,11 @@ console makes itself always shows them: a minimal-risk manoeuvre (UN R157, 5.5),
 emergency stop.
 """
 
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 from simconsole.control.requests.person import mask
 from simconsole.values.kernels import kernel
 from simconsole.values.signals import ArbiterMemory, Button, DriverInput, Link, Mode, RemoteCommand
-
-_AUTONOMOUS: Final = float(Mode.AUTONOMOUS)
-_TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)
-_MINIMAL_RISK: Final = float(Mode.MINIMAL_RISK)
-_STOPPED: Final = float(Mode.STOPPED)
-_EMERGENCY_STOP: Final = float(Mode.EMERGENCY_STOP)
-_LEFT: Final = int(Button.INDICATOR_LEFT)
-_RIGHT: Final = int(Button.INDICATOR_RIGHT)
-_HAZARD: Final = int(Button.HAZARD)
 
 
 class Lights(NamedTuple):
@@ -34,12 +25,12 @@ def switched(driver: DriverInput, memory: ArbiterMemory) -> Lights:
     """Return the person's stalk and hazard switch after this tick; a second press switches off what the first did."""
     pressed = mask(driver.edges)
     stalk = memory.stalk
-    if pressed & _LEFT != 0:
+    if pressed & Button.INDICATOR_LEFT != 0:
         stalk = 0.0 if stalk > 0.0 else 1.0
-    elif pressed & _RIGHT != 0:
+    elif pressed & Button.INDICATOR_RIGHT != 0:
         stalk = 0.0 if stalk < 0.0 else -1.0
     hazard = memory.hazard_switch
-    if pressed & _HAZARD != 0:
+    if pressed & Button.HAZARD != 0:
         hazard = 1.0 - hazard
     return Lights(stalk, hazard)
 
@@ -56,11 +47,11 @@ def lights_of(mode: float, person: Lights, remote: RemoteCommand, link: Link) ->
     """
     turn_indicators = person.turn_indicators
     hazard_lights = person.hazard_lights
-    if mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED) and link.fresh > 0.0:
+    if mode in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED) and link.fresh > 0.0:
         if remote.turn_indicators != 0.0:
             turn_indicators = remote.turn_indicators
         if remote.hazard_lights > 0.0:
             hazard_lights = 1.0
-    if mode in (_MINIMAL_RISK, _STOPPED, _EMERGENCY_STOP):
+    if mode in (Mode.MINIMAL_RISK, Mode.STOPPED, Mode.EMERGENCY_STOP):
         hazard_lights = 1.0
     return Lights(turn_indicators, hazard_lights)

@@ -10,8 +10,8 @@ from typing import Final, NamedTuple
 
 from simconsole.control.requests.angles import lateral_apart
 from simconsole.control.requests.control_settings import ControlSettings
-from simconsole.control.requests.longitudinal import known
-from simconsole.control.requests.tick_context import Moment
+from simconsole.control.requests.longitudinal import finite_or
+from simconsole.control.requests.tick_context import TickContext
 from simconsole.values.kernels import clip, kernel
 from simconsole.values.signals import VehicleState
 
@@ -21,7 +21,7 @@ NEVER_S: Final = 100.0
 _MOST_NM: Final = 100.0
 
 
-class Consent(NamedTuple):
+class SharedAuthority(NamedTuple):
     """The controller's authority over steering in SHARED, and the state of the trade: -1 the person has it, 1 not."""
 
     lateral: float
@@ -65,15 +65,15 @@ def traded(trade: float, human_nm: float, person_rad: float, remote_rad: float, 
 
 
 @kernel
-def consent(now: Moment, person_rad: float, remote_rad: float) -> Consent:
+def shared_authority(now: TickContext, person_rad: float, remote_rad: float) -> SharedAuthority:
     """Return the controller's authority over steering that the profile's rule gives in this tick; finite angles."""
     settings = now.settings
     if settings.shared_rule == BY_LINE_CROSSING:
         crossing_s = time_to_crossing(person_rad, remote_rad, now.vehicle, settings)
-        return Consent(by_line_crossing(crossing_s, settings), 1.0)
+        return SharedAuthority(by_line_crossing(crossing_s, settings), 1.0)
     if settings.shared_rule == TRADED:
-        human_nm = clip(known(now.human_nm, 0.0), -_MOST_NM, _MOST_NM)
+        human_nm = clip(finite_or(now.human_nm, 0.0), -_MOST_NM, _MOST_NM)
         trade = traded(now.memory.shared_trade, human_nm, person_rad, remote_rad, settings)
         smooth = 0.5 + trade * (0.75 - 0.25 * trade * trade)
-        return Consent(settings.shared_lateral * smooth, trade)
-    return Consent(settings.shared_lateral, 1.0)
+        return SharedAuthority(settings.shared_lateral * smooth, trade)
+    return SharedAuthority(settings.shared_lateral, 1.0)

@@ -5,8 +5,9 @@ from typing import Final, NamedTuple
 from simconsole.profiles.control import ControlProfile
 from simconsole.profiles.view import HudProfile
 from simconsole.values.labels import commander_words, gear_words, mode_words, notice_words, reason_words
-from simconsole.values.signals import NEVER_TICKS, ArbiterMemory, Event, GateLimit, Mode
-from simconsole.values.state_vector import MEMORY_AT, MEMORY_WIDTH, Snapshot
+from simconsole.values.layout import read
+from simconsole.values.signals import NEVER_TICKS, Event, GateLimit, Mode
+from simconsole.values.state_vector import LAYOUT, Snapshot
 from simconsole.values.units import KMH_PER_MPS, RPM_PER_RADPS
 
 STALE_S: Final = 0.5
@@ -173,7 +174,7 @@ def _remaining_s(snapshot: Snapshot, settings: HudSettings) -> float:
     """Return how long the person still has to take over; 0 where nobody asks."""
     if snapshot.arbitration.mode != Mode.TAKEOVER_REQUESTED:
         return 0.0
-    memory = ArbiterMemory(*snapshot.row[MEMORY_AT : MEMORY_AT + MEMORY_WIDTH].tolist())
+    memory = read(snapshot.row, LAYOUT.memory)
     return max(0.0, settings.takeover_window_s - memory.mode_ticks / snapshot.tick_hz)
 
 

@@ -35,7 +35,7 @@ from simconsole.values.errors import BridgeError, CanError
 from simconsole.values.latency import Hop
 from simconsole.values.protocols import CommandSource, NobodyCommands
 from simconsole.values.signals import NEVER_TICKS, NO_COMMAND, EventInput, RemoteCommand
-from simconsole.values.state_vector import REMOTE_WIDTH, Snapshot
+from simconsole.values.state_vector import LAYOUT, Snapshot
 from simconsole.values.units import NS_PER_S
 
 PROGRAMS: Final = "simconsole.session.worker_programs"
@@ -118,7 +118,7 @@ def make_memory(folder: Path, console: Console) -> tuple[RingStation, CommandPor
         StationError: one cannot be made.
     """
     snapshots = Ring.create(folder / SNAPSHOTS, console.width, SNAPSHOT_CAPACITY)
-    command = Ring.create(folder / COMMAND, REMOTE_WIDTH, SLOT_CAPACITY)
+    command = Ring.create(folder / COMMAND, LAYOUT.ros.width, SLOT_CAPACITY)
     keys = Ring.create(folder / KEYS, 1, SLOT_CAPACITY)
     events = EventCounters.create(folder / EVENTS)
     return RingStation(snapshots), CommandPort(command, events, console.tick_hz), KeyPort(keys, console.tick_hz)
@@ -132,7 +132,7 @@ def add_can_memory(resolved: ResolvedSession, console: Console, folder: Path) ->
     """
     if resolved.session.outputs.can is None:
         return NobodyCommands()
-    slot = Ring.create(folder / CAN_COMMAND, REMOTE_WIDTH, SLOT_CAPACITY)
+    slot = Ring.create(folder / CAN_COMMAND, LAYOUT.ros.width, SLOT_CAPACITY)
     return CommandPort(slot, EventCounters.create(folder / CAN_EVENTS), console.tick_hz)
 
 

@@ -23,7 +23,7 @@ from simconsole.values.kernels import Row
 from simconsole.values.labels import LINK_DOWN
 from simconsole.values.latency import Hop, Ledger
 from simconsole.values.signals import RemoteCommand
-from simconsole.values.state_vector import REMOTE_WIDTH, Snapshot
+from simconsole.values.state_vector import LAYOUT, Snapshot
 from simconsole.values.units import NS_PER_S
 
 SNAPSHOTS: Final = "snapshots"
@@ -276,4 +276,4 @@ def snapshot_of(record: Record, tick_hz: int) -> Snapshot:
 
 def command_of(values: Row) -> RemoteCommand:
     """Return a slot's values as a command."""
-    return RemoteCommand(*values[:REMOTE_WIDTH].tolist())
+    return RemoteCommand(*values[: LAYOUT.ros.width].tolist())

@@ -11,75 +11,35 @@ import numpy as np
 
 from simconsole.control.arbitration import arbitrate, watched
 from simconsole.control.gate import gate
-from simconsole.control.requests.commander import ECU
 from simconsole.control.requests.control_settings import ControlSettings
-from simconsole.control.requests.tick_context import Moment
+from simconsole.control.requests.tick_context import TickContext
 from simconsole.devices.calibration.calibrator import calibrate
 from simconsole.devices.calibration.cockpit_settings import CockpitSettings
 from simconsole.devices.force_feedback.force_settings import NO_FORCE, ForceSettings
 from simconsole.devices.force_feedback.torque import wheel_torque
-from simconsole.values.kernels import Row, kernel, put, take
+from simconsole.values.kernels import Row, kernel, put
 from simconsole.values.latency import Hop, Mark, unheard
+from simconsole.values.layout import Part, lay_out, read, write
 from simconsole.values.platform import Platform
-from simconsole.values.signals import (
-    NO_COMMAND,
-    NO_SAMPLE,
-    ArbiterMemory,
-    Arbitration,
-    DeviceSample,
-    DriverInput,
-    EventInput,
-    Link,
-    RemoteCommand,
-    VehicleCommand,
-    VehicleState,
-    WheelMemory,
-    WheelTorque,
-)
-from simconsole.values.state_vector import (
-    ARBITRATION_AT,
-    ARBITRATION_WIDTH,
-    COMMAND_AT,
-    COMMAND_WIDTH,
-    DRIVER_AT,
-    DRIVER_WIDTH,
-    ECU_AT,
-    ECU_LINK_AT,
-    EVENTS_AT,
-    EVENTS_WIDTH,
-    INPUT_WIDTH,
-    LINK_WIDTH,
-    MEMORY_AT,
-    MEMORY_WIDTH,
-    MOTOR_AT,
-    MOTOR_WIDTH,
-    PLATFORM_AT,
-    REMOTE_WIDTH,
-    ROS_AT,
-    ROS_LINK_AT,
-    SAMPLE_AT,
-    SAMPLE_WIDTH,
-    TORQUE_AT,
-    TORQUE_WIDTH,
-    VEHICLE_AT,
-    VEHICLE_WIDTH,
-    Snapshot,
-    TickInputs,
-    columns,
-)
+from simconsole.values.signals import NO_COMMAND, NO_SAMPLE, Commander
+from simconsole.values.state_vector import INPUT_WIDTH, LAYOUT, PLATFORM_AT, Snapshot, TickInputs, columns
 
 Execution = Callable[[Callable[..., Any]], Callable[..., Any]]
-"""How kernels run: `compiling.compiled` or `compiling.plain`."""
+"""How kernels run: `jit.compiled` or `jit.plain`."""
 
-COCKPIT_AT: Final = 0
-COCKPIT_WIDTH: Final = len(CockpitSettings._fields)
-CONTROL_AT: Final = COCKPIT_WIDTH
-CONTROL_WIDTH: Final = len(ControlSettings._fields)
-FORCE_AT: Final = CONTROL_AT + CONTROL_WIDTH
-FORCE_WIDTH: Final = len(ForceSettings._fields)
-_ROS_AGE_AT: Final = ROS_AT + RemoteCommand._fields.index("age_ticks")
-_ECU_AGE_AT: Final = ECU_AT + RemoteCommand._fields.index("age_ticks")
-_RESTARTED_AT: Final = ARBITRATION_AT + Arbitration._fields.index("restarted")
+
+class SettingsLayout(NamedTuple):
+    """The settings that stay constant over a drive, one after the other."""
+
+    cockpit: Part[CockpitSettings]
+    control: Part[ControlSettings]
+    force: Part[ForceSettings]
+
+
+SETTINGS: Final = lay_out(SettingsLayout)
+_ROS_AGE_AT: Final = LAYOUT.ros.at("age_ticks")
+_ECU_AGE_AT: Final = LAYOUT.ecu.at("age_ticks")
+_RESTARTED_AT: Final = LAYOUT.arbitration.at("restarted")
 PHYSICS_HZ: Final = 1000
 """The vehicle integrates at a fixed 1 ms whatever the tick."""
 
@@ -118,7 +78,7 @@ def build_console(
     execution: Execution,
     force: ForceSettings = NO_FORCE,
 ) -> Console:
-    """Put a console together. `execution` is `compiling.compiled` or `compiling.plain`; both give equal bits.
+    """Put a console together. `execution` is `jit.compiled` or `jit.plain`; both give equal bits.
 
     Raises:
         ValueError: `tick_hz` does not divide 1000.
@@ -141,10 +101,10 @@ def build_console(
 def initial_state(console: Console) -> ConsoleState:
     """Return the state before the first tick: vehicle in place, nobody armed, parked."""
     row = np.zeros(console.width, dtype=np.float64)
-    put(row, SAMPLE_AT, NO_SAMPLE)
-    put(row, ROS_AT, NO_COMMAND)
-    put(row, ECU_AT, NO_COMMAND)
-    put(row, VEHICLE_AT, console.platform.initial_vehicle)
+    write(row, LAYOUT.sample, NO_SAMPLE)
+    write(row, LAYOUT.ros, NO_COMMAND)
+    write(row, LAYOUT.ecu, NO_COMMAND)
+    write(row, LAYOUT.vehicle, console.platform.initial_vehicle)
     put(row, PLATFORM_AT, console.platform.initial_state)
     return ConsoleState(0, row)
 
@@ -171,7 +131,7 @@ def advance_row(previous: Row, inputs: Row | tuple[float, ...], console: Console
     console.step(previous, row, console.platform.parameters, console.substeps)
     mark(Hop.STEP)
     if console.force_feedback is None:
-        row[TORQUE_AT:PLATFORM_AT] = 0.0
+        row[LAYOUT.torque.start : PLATFORM_AT] = 0.0
     else:
         console.force_feedback(previous, row, console.settings, console.tick_s)
         mark(Hop.FORCE_FEEDBACK)
@@ -181,78 +141,78 @@ def advance_row(previous: Row, inputs: Row | tuple[float, ...], console: Console
 def _start_again(previous: Row, console: Console) -> Row:
     """Return the row before the first tick, with the devices as they are."""
     row = initial_state(console).row
-    row[SAMPLE_AT:ROS_AT] = previous[SAMPLE_AT:ROS_AT]
-    row[DRIVER_AT:MEMORY_AT] = previous[DRIVER_AT:MEMORY_AT]
+    row[LAYOUT.sample.slice] = previous[LAYOUT.sample.slice]
+    row[LAYOUT.driver.slice] = previous[LAYOUT.driver.slice]
     return row
 
 
 @kernel
 def decide(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
     """Calibrate, arbitrate and gate: turn the inputs in `row` into the one command the vehicle gets."""
-    ros = RemoteCommand(*take(row, ROS_AT, REMOTE_WIDTH))
-    ecu = RemoteCommand(*take(row, ECU_AT, REMOTE_WIDTH))
-    control = ControlSettings(*take(settings, CONTROL_AT, CONTROL_WIDTH))
-    vehicle = VehicleState(*take(previous, VEHICLE_AT, VEHICLE_WIDTH))
-    command_before = VehicleCommand(*take(previous, COMMAND_AT, COMMAND_WIDTH))
-    motor = WheelMemory(*take(previous, MOTOR_AT, MOTOR_WIDTH))
+    ros = read(row, LAYOUT.ros)
+    ecu = read(row, LAYOUT.ecu)
+    control = read(settings, SETTINGS.control)
+    vehicle = read(previous, LAYOUT.vehicle)
+    command_before = read(previous, LAYOUT.command)
+    motor = read(previous, LAYOUT.motor)
     driver = calibrate(
-        DeviceSample(*take(row, SAMPLE_AT, SAMPLE_WIDTH)),
-        DeviceSample(*take(previous, SAMPLE_AT, SAMPLE_WIDTH)),
-        DriverInput(*take(previous, DRIVER_AT, DRIVER_WIDTH)),
+        read(row, LAYOUT.sample),
+        read(previous, LAYOUT.sample),
+        read(previous, LAYOUT.driver),
         vehicle.road_wheel_rad / control.road_wheel_per_hand_wheel,
-        CockpitSettings(*take(settings, COCKPIT_AT, COCKPIT_WIDTH)),
+        read(settings, SETTINGS.cockpit),
         tick_s,
     )
-    now = Moment(
-        driver,
-        ros,
-        ecu,
-        EventInput(*take(row, EVENTS_AT, EVENTS_WIDTH)),
-        vehicle,
-        ArbiterMemory(*take(previous, MEMORY_AT, MEMORY_WIDTH)),
-        Link(*take(previous, ROS_LINK_AT, LINK_WIDTH)),
-        Link(*take(previous, ECU_LINK_AT, LINK_WIDTH)),
-        previous[_ROS_AGE_AT],
-        previous[_ECU_AGE_AT],
-        Arbitration(*take(previous, ARBITRATION_AT, ARBITRATION_WIDTH)),
-        command_before,
-        motor.explained_rad,
-        motor.explained_radps,
-        WheelTorque(*take(previous, TORQUE_AT, TORQUE_WIDTH)).human_nm,
-        motor.live,
-        control,
-        tick_s,
+    now = TickContext(
+        driver=driver,
+        ros=ros,
+        ecu=ecu,
+        events=read(row, LAYOUT.events),
+        vehicle=vehicle,
+        memory=read(previous, LAYOUT.memory),
+        ros_before=read(previous, LAYOUT.ros_link),
+        ecu_before=read(previous, LAYOUT.ecu_link),
+        ros_age_before_ticks=previous[_ROS_AGE_AT],
+        ecu_age_before_ticks=previous[_ECU_AGE_AT],
+        before=read(previous, LAYOUT.arbitration),
+        command_before=command_before,
+        explained_rad=motor.explained_rad,
+        explained_radps=motor.explained_radps,
+        human_nm=read(previous, LAYOUT.torque).human_nm,
+        wheel_motor=motor.live,
+        settings=control,
+        tick_s=tick_s,
     )
     memory, ros_link, ecu_link, arbitration, request = arbitrate(now)
-    remote = ecu if arbitration.commander == ECU else ros
-    events = EventInput(*take(row, EVENTS_AT, EVENTS_WIDTH))
+    remote = ecu if arbitration.commander == Commander.ECU else ros
+    events = read(row, LAYOUT.events)
     command = gate(request, remote, arbitration, command_before, vehicle, control, tick_s, events.events)
-    put(row, DRIVER_AT, driver)
-    put(row, MEMORY_AT, memory)
-    put(row, ROS_LINK_AT, ros_link)
-    put(row, ECU_LINK_AT, ecu_link)
-    put(row, ARBITRATION_AT, arbitration)
-    put(row, COMMAND_AT, command)
+    write(row, LAYOUT.driver, driver)
+    write(row, LAYOUT.memory, memory)
+    write(row, LAYOUT.ros_link, ros_link)
+    write(row, LAYOUT.ecu_link, ecu_link)
+    write(row, LAYOUT.arbitration, arbitration)
+    write(row, LAYOUT.command, command)
 
 
 @kernel
 def force_feedback(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
     """Turn what the vehicle does into the torque of the wheel's motor, for the coming tick."""
-    sample = DeviceSample(*take(row, SAMPLE_AT, SAMPLE_WIDTH))
-    arbitration = Arbitration(*take(row, ARBITRATION_AT, ARBITRATION_WIDTH))
-    cockpit = CockpitSettings(*take(settings, COCKPIT_AT, COCKPIT_WIDTH))
+    sample = read(row, LAYOUT.sample)
+    arbitration = read(row, LAYOUT.arbitration)
+    cockpit = read(settings, SETTINGS.cockpit)
     torque, memory = wheel_torque(
-        DriverInput(*take(row, DRIVER_AT, DRIVER_WIDTH)),
+        read(row, LAYOUT.driver),
         sample.wheel_motor,
         arbitration,
         watched(arbitration.mode),
-        EventInput(*take(row, EVENTS_AT, EVENTS_WIDTH)).events,
-        VehicleState(*take(row, VEHICLE_AT, VEHICLE_WIDTH)),
-        WheelTorque(*take(previous, TORQUE_AT, TORQUE_WIDTH)),
-        WheelMemory(*take(previous, MOTOR_AT, MOTOR_WIDTH)),
-        ForceSettings(*take(settings, FORCE_AT, FORCE_WIDTH)),
+        read(row, LAYOUT.events).events,
+        read(row, LAYOUT.vehicle),
+        read(previous, LAYOUT.torque),
+        read(previous, LAYOUT.motor),
+        read(settings, SETTINGS.force),
         cockpit.wheel_rate_filter_s,
         tick_s,
     )
-    put(row, TORQUE_AT, torque)
-    put(row, MOTOR_AT, memory)
+    write(row, LAYOUT.torque, torque)
+    write(row, LAYOUT.motor, memory)

@@ -58,13 +58,13 @@ def ground_of(environment: Environment) -> Ground:
     """Return the ground and the wind of a session."""
     to_rad = environment.wind_to_deg * RAD_PER_DEG
     return Ground(
-        environment.friction,
-        environment.slope_x_percent / 100.0,
-        environment.slope_y_percent / 100.0,
-        environment.friction_right_share,
-        environment.wind_mps * math.cos(to_rad),
-        environment.wind_mps * math.sin(to_rad),
-        tuple(Patch(*structs.astuple(patch)) for patch in environment.friction_patches),
+        friction=environment.friction,
+        slope_x=environment.slope_x_percent / 100.0,
+        slope_y=environment.slope_y_percent / 100.0,
+        right_share=environment.friction_right_share,
+        wind_x_mps=environment.wind_mps * math.cos(to_rad),
+        wind_y_mps=environment.wind_mps * math.sin(to_rad),
+        patches=tuple(Patch(*structs.astuple(patch)) for patch in environment.friction_patches),
     )
 
 

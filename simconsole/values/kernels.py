@@ -5,8 +5,7 @@ A kernel takes and returns floats, `typing.NamedTuple`s of floats and float64 ar
 here; `simconsole.values.host.jit` makes the compiled twin, so importing a core never loads numba.
 """
 
-from collections.abc import Callable, Iterable, Mapping
-from types import FunctionType
+from collections.abc import Callable, Iterable
 from typing import Any, TypeVar
 
 from numpy.typing import NDArray
@@ -26,40 +25,6 @@ def kernel(function: F) -> F:
 def is_kernel(value: object) -> bool:
     """Return whether `value` was marked by `kernel`."""
     return bool(getattr(value, "__kernel__", False))
-
-
-def rebound(function: F, places: Mapping[int, Any]) -> F:
-    """Return a copy of a kernel that uses other values for some globals, as do the kernels that it calls.
-
-    Args:
-        function: a kernel. It stays as it is, and is returned itself where nothing changes.
-        places: the new value by the `id` of the present one.
-    """
-    namespace = dict(function.__globals__)
-    changed = False
-    for name in function.__code__.co_names:
-        value = namespace.get(name)
-        new = places.get(id(value), value)
-        if new is value and isinstance(value, FunctionType) and is_kernel(value) and value is not function:
-            new = rebound(value, places)
-        changed = changed or new is not value
-        if name in namespace:
-            namespace[name] = new
-    if not changed:
-        return function
-    copy = FunctionType(function.__code__, namespace, function.__name__, function.__defaults__)
-    copy.__module__ = function.__module__
-    copy.__qualname__ = function.__qualname__
-    copy.__annotations__ = function.__annotations__
-    return kernel(copy)  # type: ignore[return-value]  # a function of the same type
-
-
-def take(row: Row, start: int, count: int) -> tuple[float, ...]:
-    """Return `count` values of `row` from `start` as Python floats.
-
-    In kernels, `count` must be a module constant: `State(*take(row, STATE_AT, STATE_WIDTH))`.
-    """
-    return tuple(row[start : start + count].tolist())
 
 
 def forget() -> None:

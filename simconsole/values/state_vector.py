@@ -9,6 +9,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from simconsole.values.kernels import Row
+from simconsole.values.layout import Part, lay_out, read
 from simconsole.values.signals import (
     NO_COMMAND,
     ArbiterMemory,
@@ -28,50 +29,30 @@ from simconsole.values.signals import (
 )
 from simconsole.values.units import tick_time_ns
 
-SAMPLE_WIDTH: Final = len(DeviceSample._fields)
-REMOTE_WIDTH: Final = len(RemoteCommand._fields)
-EVENTS_WIDTH: Final = len(EventInput._fields)
-DRIVER_WIDTH: Final = len(DriverInput._fields)
-MEMORY_WIDTH: Final = len(ArbiterMemory._fields)
-LINK_WIDTH: Final = len(Link._fields)
-ARBITRATION_WIDTH: Final = len(Arbitration._fields)
-COMMAND_WIDTH: Final = len(VehicleCommand._fields)
-VEHICLE_WIDTH: Final = len(VehicleState._fields)
-TORQUE_WIDTH: Final = len(WheelTorque._fields)
-MOTOR_WIDTH: Final = len(WheelMemory._fields)
 
-SAMPLE_AT: Final = 0
-ROS_AT: Final = SAMPLE_AT + SAMPLE_WIDTH
-EVENTS_AT: Final = ROS_AT + REMOTE_WIDTH
-ECU_AT: Final = EVENTS_AT + EVENTS_WIDTH
-INPUT_WIDTH: Final = ECU_AT + REMOTE_WIDTH
-DRIVER_AT: Final = INPUT_WIDTH
-MEMORY_AT: Final = DRIVER_AT + DRIVER_WIDTH
-ROS_LINK_AT: Final = MEMORY_AT + MEMORY_WIDTH
-ECU_LINK_AT: Final = ROS_LINK_AT + LINK_WIDTH
-ARBITRATION_AT: Final = ECU_LINK_AT + LINK_WIDTH
-COMMAND_AT: Final = ARBITRATION_AT + ARBITRATION_WIDTH
-VEHICLE_AT: Final = COMMAND_AT + COMMAND_WIDTH
-TORQUE_AT: Final = VEHICLE_AT + VEHICLE_WIDTH
-MOTOR_AT: Final = TORQUE_AT + TORQUE_WIDTH
-PLATFORM_AT: Final = MOTOR_AT + MOTOR_WIDTH
+class Layout(NamedTuple):
+    """The parts of a row that every platform has, in their order."""
 
-STAGES: Final[tuple[tuple[str, type[tuple[float, ...]]], ...]] = (
-    ("sample", DeviceSample),
-    ("ros", RemoteCommand),
-    ("events", EventInput),
-    ("ecu", RemoteCommand),
-    ("driver", DriverInput),
-    ("memory", ArbiterMemory),
-    ("ros_link", Link),
-    ("ecu_link", Link),
-    ("arbitration", Arbitration),
-    ("command", VehicleCommand),
-    ("vehicle", VehicleState),
-    ("torque", WheelTorque),
-    ("motor", WheelMemory),
-)
+    sample: Part[DeviceSample]
+    ros: Part[RemoteCommand]
+    events: Part[EventInput]
+    ecu: Part[RemoteCommand]
+    driver: Part[DriverInput]
+    memory: Part[ArbiterMemory]
+    ros_link: Part[Link]
+    ecu_link: Part[Link]
+    arbitration: Part[Arbitration]
+    command: Part[VehicleCommand]
+    vehicle: Part[VehicleState]
+    torque: Part[WheelTorque]
+    motor: Part[WheelMemory]
 
+
+LAYOUT: Final = lay_out(Layout)
+INPUT_WIDTH: Final = LAYOUT.ecu.stop
+"""The first columns: what comes from outside."""
+PLATFORM_AT: Final = LAYOUT.motor.stop
+"""Where the platform's own state begins."""
 
 _RECORDING_FAILED: Final = int(Event.RECORDING_FAILED)
 
@@ -87,8 +68,8 @@ class TickInputs(NamedTuple):
 
 def columns(platform_state: type[tuple[float, ...]]) -> tuple[str, ...]:
     """Return the name of every column, `stage.field_unit`, for a platform with this state type."""
-    stages = (*STAGES, ("platform", platform_state))
-    return tuple(f"{stage}.{field}" for stage, record in stages for field in record._fields)  # type: ignore[attr-defined]
+    parts = LAYOUT._asdict() | {"platform": Part(platform_state, PLATFORM_AT)}
+    return tuple(f"{stage}.{field}" for stage, part in parts.items() for field in part.names)
 
 
 def input_row(inputs: TickInputs) -> Row:
@@ -116,17 +97,17 @@ class Snapshot(NamedTuple):
     @property
     def sample(self) -> DeviceSample:
         """The cockpit as read."""
-        return DeviceSample(*self.row[SAMPLE_AT:ROS_AT].tolist())
+        return read(self.row, LAYOUT.sample)
 
     @property
     def ros(self) -> RemoteCommand:
         """The ROS side's newest command."""
-        return RemoteCommand(*self.row[ROS_AT:EVENTS_AT].tolist())
+        return read(self.row, LAYOUT.ros)
 
     @property
     def ecu(self) -> RemoteCommand:
         """The ECU's newest command."""
-        return RemoteCommand(*self.row[ECU_AT:INPUT_WIDTH].tolist())
+        return read(self.row, LAYOUT.ecu)
 
     @property
     def remote(self) -> RemoteCommand:
@@ -136,32 +117,32 @@ class Snapshot(NamedTuple):
     @property
     def ros_link(self) -> Link:
         """How far the ROS side's commands may be relied on."""
-        return Link(*self.row[ROS_LINK_AT:ECU_LINK_AT].tolist())
+        return read(self.row, LAYOUT.ros_link)
 
     @property
     def ecu_link(self) -> Link:
         """How far the ECU's commands may be relied on."""
-        return Link(*self.row[ECU_LINK_AT:ARBITRATION_AT].tolist())
+        return read(self.row, LAYOUT.ecu_link)
 
     @property
     def events(self) -> EventInput:
         """The edges of this tick."""
-        return EventInput(*self.row[EVENTS_AT:ECU_AT].tolist())
+        return read(self.row, LAYOUT.events)
 
     @property
     def driver(self) -> DriverInput:
         """The person, calibrated."""
-        return DriverInput(*self.row[DRIVER_AT:MEMORY_AT].tolist())
+        return read(self.row, LAYOUT.driver)
 
     @property
     def arbitration(self) -> Arbitration:
         """Authority, mode and reason."""
-        return Arbitration(*self.row[ARBITRATION_AT:COMMAND_AT].tolist())
+        return read(self.row, LAYOUT.arbitration)
 
     @property
     def recording_failed(self) -> bool:
         """Whether nothing more is kept of this drive."""
-        return bool(int(self.row[EVENTS_AT]) & _RECORDING_FAILED)
+        return bool(int(self.row[LAYOUT.events.start]) & _RECORDING_FAILED)
 
     @property
     def notice(self) -> float:
@@ -171,14 +152,14 @@ class Snapshot(NamedTuple):
     @property
     def command(self) -> VehicleCommand:
         """What left the gate."""
-        return VehicleCommand(*self.row[COMMAND_AT:VEHICLE_AT].tolist())
+        return read(self.row, LAYOUT.command)
 
     @property
     def vehicle(self) -> VehicleState:
         """The vehicle after the tick."""
-        return VehicleState(*self.row[VEHICLE_AT:TORQUE_AT].tolist())
+        return read(self.row, LAYOUT.vehicle)
 
     @property
     def torque(self) -> WheelTorque:
         """What the wheel's motor is asked for."""
-        return WheelTorque(*self.row[TORQUE_AT:MOTOR_AT].tolist())
+        return read(self.row, LAYOUT.torque)

@@ -14,25 +14,16 @@ from simconsole.bridge.protocol.server_protocol import Outcome
 from simconsole.bridge.transport.server import serve
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.signals import Arbitration, DeviceSample, EventInput, RemoteCommand, VehicleCommand, VehicleState
-from simconsole.values.state_vector import (
-    ARBITRATION_AT,
-    COMMAND_AT,
-    EVENTS_AT,
-    PLATFORM_AT,
-    ROS_AT,
-    SAMPLE_AT,
-    VEHICLE_AT,
-    Snapshot,
-)
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT, Snapshot
 from tests.patience import PATIENCE_S
 
 STAGES: dict[type[Any], int] = {
-    DeviceSample: SAMPLE_AT,
-    RemoteCommand: ROS_AT,
-    EventInput: EVENTS_AT,
-    VehicleCommand: COMMAND_AT,
-    Arbitration: ARBITRATION_AT,
-    VehicleState: VEHICLE_AT,
+    DeviceSample: LAYOUT.sample.start,
+    RemoteCommand: LAYOUT.ros.start,
+    EventInput: LAYOUT.events.start,
+    VehicleCommand: LAYOUT.command.start,
+    Arbitration: LAYOUT.arbitration.start,
+    VehicleState: LAYOUT.vehicle.start,
 }
 
 

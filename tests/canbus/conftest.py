@@ -3,6 +3,7 @@
 import itertools
 import os
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,8 +11,9 @@ import pytest
 from simconsole.canbus.bus.worker import load_codec
 from simconsole.canbus.codec import Codec
 from simconsole.profiles.can import CanProfile
-from simconsole.values.signals import Arbitration, DriverInput, Mode, Reason, Validity, VehicleCommand, VehicleState
-from simconsole.values.state_vector import ARBITRATION_AT, COMMAND_AT, DRIVER_AT, PLATFORM_AT, VEHICLE_AT, Snapshot
+from simconsole.values.layout import Part
+from simconsole.values.signals import Mode, Reason, Validity
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT, Snapshot
 
 _channels = itertools.count()
 
@@ -32,17 +34,17 @@ def snapshot() -> Callable[[int], Snapshot]:
     """A car at 15 m/s, driven autonomously by 60 %, at a tick of 250 Hz; two wheel speeds behind the stages."""
     row = np.zeros(PLATFORM_AT + 2)
 
-    def put(at: int, record: type, **values: float) -> None:
+    def put(part: Part[Any], **values: float) -> None:
         for name, value in values.items():
-            row[at + record._fields.index(name)] = value  # type: ignore[attr-defined]
+            row[part.at(name)] = value
 
-    put(DRIVER_AT, DriverInput, hand_wheel_rad=-3.0, hand_wheel_radps=1.5, throttle=0.25, brake=0.5, clutch=1.0)
-    put(DRIVER_AT, DriverInput, gear=-1.0, wheel_validity=float(Validity.LIVE), throttle_validity=2.0)
-    put(ARBITRATION_AT, Arbitration, mode=float(Mode.AUTONOMOUS), reason=float(Reason.REMOTE_ASKED))
-    put(ARBITRATION_AT, Arbitration, remote_lateral=0.6, remote_longitudinal=1.0, takeover_stage=1.0, commander=2.0)
-    put(COMMAND_AT, VehicleCommand, road_wheel_rad=0.3, throttle=0.75, brake=0.1, automatic=1.0, gate_active=5.0)
-    put(COMMAND_AT, VehicleCommand, turn_indicators=-1.0, hazard_lights=1.0)
-    put(VEHICLE_AT, VehicleState, vx_mps=15.0, yaw_rate_radps=-0.4, ax_mps2=1.25, ay_mps2=-6.0, road_wheel_rad=0.29)
-    put(VEHICLE_AT, VehicleState, gear=3.0, engine_radps=300.0, engine_running=1.0, clutch=0.4)
+    put(LAYOUT.driver, hand_wheel_rad=-3.0, hand_wheel_radps=1.5, throttle=0.25, brake=0.5, clutch=1.0)
+    put(LAYOUT.driver, gear=-1.0, wheel_validity=float(Validity.LIVE), throttle_validity=2.0)
+    put(LAYOUT.arbitration, mode=float(Mode.AUTONOMOUS), reason=float(Reason.REMOTE_ASKED))
+    put(LAYOUT.arbitration, remote_lateral=0.6, remote_longitudinal=1.0, takeover_stage=1.0, commander=2.0)
+    put(LAYOUT.command, road_wheel_rad=0.3, throttle=0.75, brake=0.1, automatic=1.0, gate_active=5.0)
+    put(LAYOUT.command, turn_indicators=-1.0, hazard_lights=1.0)
+    put(LAYOUT.vehicle, vx_mps=15.0, yaw_rate_radps=-0.4, ax_mps2=1.25, ay_mps2=-6.0, road_wheel_rad=0.29)
+    put(LAYOUT.vehicle, gear=3.0, engine_radps=300.0, engine_running=1.0, clutch=0.4)
     row[PLATFORM_AT:] = (48.0, 50.0)
     return lambda tick: Snapshot(tick, 250, row)

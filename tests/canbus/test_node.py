@@ -11,7 +11,7 @@ from simconsole.canbus.node import CanNode
 from simconsole.canbus.protection import Check, protected
 from simconsole.profiles.can import CanProfile
 from simconsole.values.signals import NEVER_TICKS, Event, Mode, Reason, RemoteKind
-from simconsole.values.state_vector import PLATFORM_AT, VEHICLE_AT, Snapshot
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT, Snapshot
 
 Snapshots = Callable[[int], Snapshot]
 GOOD = {"REQUEST": 0.0, "ROAD_WHEEL": 0.1, "ACCEL": 1.5, "DIRECTION": 1.0, "TURN_INDICATORS": 0.0, "HAZARD_LIGHTS": 0.0}
@@ -127,7 +127,7 @@ def test_columns_of_the_wheels() -> None:
 
 def test_value_that_is_not_finite_silences_its_message_only(codec: Codec, node: CanNode, snapshot: Snapshots) -> None:
     row = snapshot(0).row.copy()
-    row[VEHICLE_AT + 6] = np.nan  # vx_mps
+    row[LAYOUT.vehicle.start + 6] = np.nan  # vx_mps
     names = [codec.by_id[frame.can_id] for frame in node.transmit(Snapshot(0, 250, row), 0)]
     assert "SC_MOTION" not in names
     assert len(names) == 6

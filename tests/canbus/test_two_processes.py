@@ -21,8 +21,8 @@ from simconsole.profiles.can import CanProfile
 from simconsole.profiles.files.loader import to_text
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.session.resolution import load_session, override
-from simconsole.values.signals import Mode, RemoteCommand, RemoteKind
-from simconsole.values.state_vector import ARBITRATION_AT, ECU_AT, VEHICLE_AT
+from simconsole.values.signals import Mode, RemoteKind
+from simconsole.values.state_vector import LAYOUT
 from tests.paths import ROOT
 from tests.patience import PATIENCE_S, wait_until
 
@@ -85,14 +85,14 @@ def test_ecu_drives_the_car_by_can_alone(port: int, codec: Codec, tmp_path: Path
         said = results(ecu)
     assert Mode.AUTONOMOUS in said["modes"]
     rows = open_bundle(bundle).log.table().rows
-    autonomous = rows[:, ARBITRATION_AT] == Mode.AUTONOMOUS
+    autonomous = rows[:, LAYOUT.arbitration.start] == Mode.AUTONOMOUS
     assert autonomous.any()
-    assert not rows[: autonomous.argmax(), VEHICLE_AT + 6].any(), "it stood until the ECU had it"
-    assert 1.0 < rows[:, VEHICLE_AT + 6].max() < 4.5
-    assert rows[-1, VEHICLE_AT + 3] > 0.02, "it turned left"
-    accepted = rows[:, ECU_AT + RemoteCommand._fields.index("sequence")]
+    assert not rows[: autonomous.argmax(), LAYOUT.vehicle.start + 6].any(), "it stood until the ECU had it"
+    assert 1.0 < rows[:, LAYOUT.vehicle.start + 6].max() < 4.5
+    assert rows[-1, LAYOUT.vehicle.start + 3] > 0.02, "it turned left"
+    accepted = rows[:, LAYOUT.ecu.at("sequence")]
     assert accepted[-1] > 50
-    assert set(rows[accepted > 0, ECU_AT]) == {float(RemoteKind.ACCELERATION)}
+    assert set(rows[accepted > 0, LAYOUT.ecu.start]) == {float(RemoteKind.ACCELERATION)}
     assert driven["can"]["node"]["refused"] == 0
     frames = {suffix: read_log(bundle / f"can.{suffix}") for suffix in ("blf", "log")}
     assert [frame for _, frame in frames["blf"]] == [frame for _, frame in frames["log"]]

@@ -7,7 +7,7 @@ import pytest
 from simconsole.control.arbitration import arbitrate
 from simconsole.control.gate import gate
 from simconsole.control.requests.control_settings import ControlSettings, settings
-from simconsole.control.requests.tick_context import Moment
+from simconsole.control.requests.tick_context import TickContext
 from simconsole.profiles.control import ControlProfile
 from simconsole.values.signals import (
     NEVER_TICKS,
@@ -111,9 +111,9 @@ class Rig:
         )
         self._move()
 
-    def moment(self, event: Event | int = 0, edge: Button | int = 0, ecu_event: Event | int = 0) -> Moment:
+    def moment(self, event: Event | int = 0, edge: Button | int = 0, ecu_event: Event | int = 0) -> TickContext:
         """Return what arbitration would decide from now."""
-        return Moment(
+        return TickContext(
             self.driver._replace(edges=float(edge), pressed=float(int(self.driver.pressed) | int(edge))),
             self.remote,
             self.ecu,

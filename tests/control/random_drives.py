@@ -7,12 +7,12 @@ from numpy.typing import NDArray
 
 from simconsole.control.arbitration import arbitrate
 from simconsole.control.gate import gate
-from simconsole.control.requests.commander import ECU
 from simconsole.control.requests.control_settings import ControlSettings, settings
-from simconsole.control.requests.tick_context import Moment
+from simconsole.control.requests.tick_context import TickContext
 from simconsole.profiles.control import ControlProfile
 from simconsole.values.host.jit import compiled
-from simconsole.values.kernels import Row, kernel, put, take
+from simconsole.values.kernels import Row, kernel
+from simconsole.values.layout import Part, read, write
 from simconsole.values.signals import (
     NEVER_TICKS,
     ArbiterMemory,
@@ -33,28 +33,25 @@ from simconsole.values.signals import (
 Rows = NDArray[np.float64]
 SEED: Final = 20_260_301
 STEPS: Final = 350_000
-DRIVER_WIDTH: Final = len(DriverInput._fields)
-REMOTE_WIDTH: Final = len(RemoteCommand._fields)
-VEHICLE_WIDTH: Final = len(VehicleState._fields)
-MEMORY_WIDTH: Final = len(ArbiterMemory._fields)
-LINK_WIDTH: Final = len(Link._fields)
-ARBITRATION_WIDTH: Final = len(Arbitration._fields)
-COMMAND_WIDTH: Final = len(VehicleCommand._fields)
-SETTINGS_WIDTH: Final = len(ControlSettings._fields)
-REMOTE_AT: Final = DRIVER_WIDTH
-VEHICLE_AT: Final = REMOTE_AT + REMOTE_WIDTH
-EVENT_AT: Final = VEHICLE_AT + VEHICLE_WIDTH
+DRIVER: Final = Part(DriverInput)
+ROS: Final = Part(RemoteCommand, DRIVER.stop)
+VEHICLE: Final = Part(VehicleState, ROS.stop)
+EVENT_AT: Final = VEHICLE.stop
 ECU_EVENT_AT: Final = EVENT_AT + 1
-ECU_AT: Final = ECU_EVENT_AT + 1
-HUMAN_AT: Final = ECU_AT + REMOTE_WIDTH
+ECU_COMMAND: Final = Part(RemoteCommand, ECU_EVENT_AT + 1)
+HUMAN_AT: Final = ECU_COMMAND.stop
 INPUT_WIDTH: Final = HUMAN_AT + 1
-ROS_LINK_AT: Final = MEMORY_WIDTH
-ECU_LINK_AT: Final = ROS_LINK_AT + LINK_WIDTH
-ARBITRATION_AT: Final = ECU_LINK_AT + LINK_WIDTH
-COMMAND_AT: Final = ARBITRATION_AT + ARBITRATION_WIDTH
-SPEED_AT: Final = COMMAND_AT + COMMAND_WIDTH
+MEMORY: Final = Part(ArbiterMemory)
+ROS_LINK: Final = Part(Link, MEMORY.stop)
+ECU_LINK: Final = Part(Link, ROS_LINK.stop)
+ARBITRATION: Final = Part(Arbitration, ECU_LINK.stop)
+COMMAND: Final = Part(VehicleCommand, ARBITRATION.stop)
+SPEED_AT: Final = COMMAND.stop
 OUTPUT_WIDTH: Final = SPEED_AT + 1
-VX: Final = VEHICLE_AT + VehicleState._fields.index("vx_mps")
+SETTINGS: Final = Part(ControlSettings)
+SEEN: Final = Part(VehicleState)
+VX_SEEN: Final = SEEN.at("vx_mps")
+VX: Final = VEHICLE.at("vx_mps")
 COLUMNS: Final = (
     *DriverInput._fields, *RemoteCommand._fields, *VehicleState._fields, "events", "ecu_events",
     *(f"ecu_{name}" for name in RemoteCommand._fields), "human_nm",
@@ -74,31 +71,31 @@ OFTEN: Final = {
 @kernel
 def drive(inputs: Row, outputs: Row, row: Row, tick_s: float) -> None:
     """Run rows of driver, remote, vehicle and event through arbitration and gate; speed follows the pedals."""
-    s = ControlSettings(*take(row, 0, SETTINGS_WIDTH))
+    s = read(row, SETTINGS)
     before = np.zeros(OUTPUT_WIDTH)
     speed = 0.0
     ros_age_before = ecu_age_before = NEVER_TICKS
     for index in range(inputs.shape[0]):
         given = inputs[index]
-        vehicle_row = given[VEHICLE_AT : VEHICLE_AT + VEHICLE_WIDTH].copy()
+        vehicle_row = given[VX - VX_SEEN : EVENT_AT].copy()
         if given[VX] == KEEP_SPEED:
-            vehicle_row[VX - VEHICLE_AT] = speed
-        vehicle = VehicleState(*take(vehicle_row, 0, VEHICLE_WIDTH))
-        ros = RemoteCommand(*take(given, REMOTE_AT, REMOTE_WIDTH))
-        ecu = RemoteCommand(*take(given, ECU_AT, REMOTE_WIDTH))
-        command = VehicleCommand(*take(before, COMMAND_AT, COMMAND_WIDTH))
-        now = Moment(
-            DriverInput(*take(given, 0, DRIVER_WIDTH)),
+            vehicle_row[VX_SEEN] = speed
+        vehicle = read(vehicle_row, SEEN)
+        ros = read(given, ROS)
+        ecu = read(given, ECU_COMMAND)
+        command = read(before, COMMAND)
+        now = TickContext(
+            read(given, DRIVER),
             ros,
             ecu,
             EventInput(given[EVENT_AT], 0.0, given[ECU_EVENT_AT]),
             vehicle,
-            ArbiterMemory(*take(before, 0, MEMORY_WIDTH)),
-            Link(*take(before, ROS_LINK_AT, LINK_WIDTH)),
-            Link(*take(before, ECU_LINK_AT, LINK_WIDTH)),
+            read(before, MEMORY),
+            read(before, ROS_LINK),
+            read(before, ECU_LINK),
             ros_age_before,
             ecu_age_before,
-            Arbitration(*take(before, ARBITRATION_AT, ARBITRATION_WIDTH)),
+            read(before, ARBITRATION),
             command,
             0.0,
             0.0,
@@ -109,13 +106,13 @@ def drive(inputs: Row, outputs: Row, row: Row, tick_s: float) -> None:
         )
         ros_age_before, ecu_age_before = ros.age_ticks, ecu.age_ticks
         memory, ros_link, ecu_link, arbitration, request = arbitrate(now)
-        remote = ecu if arbitration.commander == ECU else ros
+        remote = ecu if arbitration.commander == Commander.ECU else ros
         command = gate(request, remote, arbitration, command, vehicle, s, tick_s, 0.0)
-        put(before, 0, memory)
-        put(before, ROS_LINK_AT, ros_link)
-        put(before, ECU_LINK_AT, ecu_link)
-        put(before, ARBITRATION_AT, arbitration)
-        put(before, COMMAND_AT, command)
+        write(before, MEMORY, memory)
+        write(before, ROS_LINK, ros_link)
+        write(before, ECU_LINK, ecu_link)
+        write(before, ARBITRATION, arbitration)
+        write(before, COMMAND, command)
         before[SPEED_AT] = speed
         outputs[index] = before
         speed = speed + (4.0 * command.throttle - 9.0 * command.brake - 0.2) * tick_s
@@ -135,9 +132,8 @@ class Drive(NamedTuple):
         return self.inputs[:, COLUMNS.index(name)]
 
     def of(self, record: type[tuple[float, ...]], name: str) -> Rows:
-        at = {ArbiterMemory: 0, Arbitration: ARBITRATION_AT, VehicleCommand: COMMAND_AT}[record]
-        fields: tuple[str, ...] = record._fields  # type: ignore[attr-defined]  # a NamedTuple
-        return self.outputs[:, at + fields.index(name)]
+        part = next(part for part in (MEMORY, ARBITRATION, COMMAND) if part.record is record)
+        return self.outputs[:, part.at(name)]
 
     @property
     def events(self) -> NDArray[np.int64]:

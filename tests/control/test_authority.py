@@ -22,7 +22,7 @@ from simconsole.control.requests.angles import lateral_apart
 from simconsole.control.requests.control_settings import ControlSettings
 from simconsole.control.requests.person import Person
 from simconsole.control.requests.remote import RemoteRequest
-from simconsole.control.requests.tick_context import Moment
+from simconsole.control.requests.tick_context import TickContext
 from simconsole.values.signals import Arbitration, Link, Mode, Reason, Request, VehicleCommand
 
 TICK_S = 0.004
@@ -44,7 +44,7 @@ MakeRig = Callable[..., Any]
 
 
 @pytest.fixture
-def now(make_rig: MakeRig) -> Moment:
+def now(make_rig: MakeRig) -> TickContext:
     rig = make_rig()
     return rig.moment()._replace(before=BEFORE, command_before=IN_FORCE)  # type: ignore[no-any-return]
 
@@ -91,7 +91,7 @@ def test_the_consoles_own_stops_have_all_authority_at_once(mode: Mode, control: 
 
 
 def side(
-    now: Moment,
+    now: TickContext,
     mode: Mode,
     entered: bool = False,
     shares: Shares = FADING,
@@ -101,7 +101,7 @@ def side(
     return remote_side(now, decided(mode, entered), shares, OFFERED, link, PERSON, steered)
 
 
-def test_what_fades_out_is_what_it_contributed_to_the_command_in_force(now: Moment) -> None:
+def test_what_fades_out_is_what_it_contributed_to_the_command_in_force(now: TickContext) -> None:
     """0.1 in force is half of 0.15 and half of the person's 0.05; throttle a quarter of 0.9, kept at the 0.4 asked."""
     entered = side(now, Mode.MANUAL, entered=True)
     assert entered == pytest.approx((0.15, 0.4, 0.6, 0.0, 0.0, 0.0, 0.1))
@@ -111,7 +111,7 @@ def test_what_fades_out_is_what_it_contributed_to_the_command_in_force(now: Mome
     assert side(later, Mode.MANUAL) == (0.2, 0.4, 0.6, 0.0, 0.0, 0.0, 0.07)
 
 
-def test_a_contribution_stays_between_what_was_asked_and_what_is_in_force(now: Moment) -> None:
+def test_a_contribution_stays_between_what_was_asked_and_what_is_in_force(now: TickContext) -> None:
     """Whichever of both is larger, and whoever had no share contributed just what is in force."""
     before = BEFORE._replace(remote_road_wheel_rad=-0.3, remote_lateral=0.01, remote_longitudinal=0.0)
     entered = side(now._replace(before=before), Mode.MANUAL, entered=True)
@@ -126,11 +126,11 @@ def test_a_contribution_stays_between_what_was_asked_and_what_is_in_force(now: M
 
 
 @pytest.mark.parametrize("shares", [Shares(0.5, 0.0, 0.0), Shares(0.0, 0.5, 0.0), Shares(0.5, 0.5, 0.0)])
-def test_it_fades_as_long_as_either_share_lasts(shares: Shares, now: Moment) -> None:
+def test_it_fades_as_long_as_either_share_lasts(shares: Shares, now: TickContext) -> None:
     assert side(now, Mode.MANUAL, shares=shares).road_wheel_rad == 0.2
 
 
-def test_with_no_share_left_it_is_shown_for_information(now: Moment) -> None:
+def test_with_no_share_left_it_is_shown_for_information(now: TickContext) -> None:
     nothing = Shares(0.0, 0.0, 0.0)
     hold = now.memory.hold_road_wheel_rad
     assert side(now, Mode.MANUAL, shares=nothing) == (0.12, 0.7, 0.35, -1.0, 0.0, 0.0, hold)
@@ -138,7 +138,7 @@ def test_with_no_share_left_it_is_shown_for_information(now: Moment) -> None:
 
 
 @pytest.mark.parametrize("mode", [Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED])
-def test_the_controller_drives_and_integrates_only_with_the_pedals_its_own(mode: Mode, now: Moment) -> None:
+def test_the_controller_drives_and_integrates_only_with_the_pedals_its_own(mode: Mode, now: TickContext) -> None:
     now = now._replace(memory=now.memory._replace(hold_road_wheel_rad=0.07))
     assert side(now, mode, shares=Shares(1.0, 1.0, 0.0)) == (0.12, 0.7, 0.35, -1.0, 0.55, 0.0, 0.07)
     assert side(now, mode, shares=Shares(1.0, 0.99, 0.0)).speed_integral_mps2 == 0.0
@@ -146,7 +146,7 @@ def test_the_controller_drives_and_integrates_only_with_the_pedals_its_own(mode:
     assert side(now, mode, link=STALE) == (0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.07)
 
 
-def test_in_shared_its_part_moves_no_faster_than_in_autonomy(now: Moment) -> None:
+def test_in_shared_its_part_moves_no_faster_than_in_autonomy(now: TickContext) -> None:
     moving = now._replace(vehicle=now.vehicle._replace(vx_mps=20.0))
     s = now.settings
     shared = side(moving, Mode.SHARED, shares=Shares(0.5, 1.0, 0.5))
@@ -161,7 +161,7 @@ def test_in_shared_its_part_moves_no_faster_than_in_autonomy(now: Moment) -> Non
 
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
-def test_in_shared_its_angle_is_limited_as_in_autonomy(sign: float, now: Moment) -> None:
+def test_in_shared_its_angle_is_limited_as_in_autonomy(sign: float, now: TickContext) -> None:
     far = RemoteRequest(sign * 1.9, 0.0, 0.0, 1.0, 0.0)
     most = now.settings.automatic_road_wheel_rad
     at_lock = now._replace(before=BEFORE._replace(remote_road_wheel_rad=sign * most))
@@ -169,7 +169,7 @@ def test_in_shared_its_angle_is_limited_as_in_autonomy(sign: float, now: Moment)
     assert held.road_wheel_rad == sign * most
 
 
-def test_a_safe_stop_begins_with_what_is_and_goes_on_from_its_memory(now: Moment) -> None:
+def test_a_safe_stop_begins_with_what_is_and_goes_on_from_its_memory(now: TickContext) -> None:
     vehicle = now.vehicle._replace(vx_mps=10.0, ax_mps2=-1.0)
     memory = now.memory._replace(stop_accel_mps2=-2.0, speed_integral_mps2=0.3, hold_road_wheel_rad=0.07)
     now = now._replace(vehicle=vehicle, memory=memory)
@@ -187,7 +187,7 @@ def test_a_safe_stop_begins_with_what_is_and_goes_on_from_its_memory(now: Moment
     assert (later.throttle, later.direction) == (0.0, 0.0)
 
 
-def test_a_steered_stop_follows_the_controller_and_brakes_by_the_book(now: Moment) -> None:
+def test_a_steered_stop_follows_the_controller_and_brakes_by_the_book(now: TickContext) -> None:
     vehicle = now.vehicle._replace(vx_mps=10.0, ax_mps2=-1.0)
     now = now._replace(vehicle=vehicle, memory=now.memory._replace(stop_accel_mps2=-2.0))
     steered = side(now, Mode.MINIMAL_RISK, steered=True)
@@ -199,7 +199,7 @@ def test_a_steered_stop_follows_the_controller_and_brakes_by_the_book(now: Momen
 
 
 def steers(
-    now: Moment,
+    now: TickContext,
     mode: Mode,
     before: Mode,
     reason: Reason,
@@ -215,7 +215,7 @@ STOP = Mode.MINIMAL_RISK
 
 
 @pytest.mark.parametrize("before", [Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED])
-def test_a_controller_that_drove_steers_a_stop_that_is_not_its_fault(before: Mode, now: Moment) -> None:
+def test_a_controller_that_drove_steers_a_stop_that_is_not_its_fault(before: Mode, now: TickContext) -> None:
     for reason in Reason:
         expected = 1.0 if reason in (Reason.NO_REACTION, Reason.LOOP_STALL) else 0.0
         assert steers(now, STOP, before, reason) == expected
@@ -228,7 +228,7 @@ def test_a_controller_that_drove_steers_a_stop_that_is_not_its_fault(before: Mod
 
 
 @pytest.mark.parametrize("steered", [0.0, 1.0])
-def test_who_steers_a_stop_is_decided_once(steered: float, now: Moment) -> None:
+def test_who_steers_a_stop_is_decided_once(steered: float, now: TickContext) -> None:
     now = now._replace(memory=now.memory._replace(stop_steered=steered))
     assert steers(now, STOP, STOP, Reason.NO_REACTION, entered=False) == steered
     for link in (STALE, FRESH._replace(invalid=1.0)):
@@ -237,7 +237,7 @@ def test_who_steers_a_stop_is_decided_once(steered: float, now: Moment) -> None:
 
 
 @pytest.mark.parametrize("before", [Mode.MANUAL, Mode.SHARED])
-def test_a_controller_that_did_not_drive_steers_it_if_it_is_steady_and_agrees(before: Mode, now: Moment) -> None:
+def test_a_controller_that_did_not_drive_steers_it_if_it_is_steady_and_agrees(before: Mode, now: TickContext) -> None:
     """OFFERED asks for 0.12 rad, 0.1 rad is in force: 2 m/s2 apart at 16.06 m/s."""
     steady = FRESH._replace(fresh_ticks=now.settings.engage_stable_ticks)
     unsteady = FRESH._replace(fresh_ticks=now.settings.engage_stable_ticks - 1.0)
@@ -253,7 +253,7 @@ def test_a_controller_that_did_not_drive_steers_it_if_it_is_steady_and_agrees(be
         assert steers(near, STOP, before, reason, steady._replace(invalid=1.0)) == 0.0
 
 
-def test_agreeing_to_the_last_bit_is_agreeing(now: Moment) -> None:
+def test_agreeing_to_the_last_bit_is_agreeing(now: TickContext) -> None:
     vehicle = now.vehicle._replace(vx_mps=10.0)
     apart = lateral_apart(OFFERED.road_wheel_rad, IN_FORCE.road_wheel_rad, vehicle, now.settings)
     same = now._replace(vehicle=vehicle, settings=now.settings._replace(stop_steering_apart_mps2=apart))
@@ -261,13 +261,15 @@ def test_agreeing_to_the_last_bit_is_agreeing(now: Moment) -> None:
 
 
 @pytest.mark.parametrize(("mode", "brake"), [(Mode.EMERGENCY_STOP, 1.0), (Mode.STOPPED, 0.4), (Mode.PARKED, 0.4)])
-def test_stops_hold_the_wheels_and_brake(mode: Mode, brake: float, now: Moment) -> None:
+def test_stops_hold_the_wheels_and_brake(mode: Mode, brake: float, now: TickContext) -> None:
     now = now._replace(memory=now.memory._replace(hold_road_wheel_rad=0.07))
     assert side(now, mode) == (0.07, 0.0, brake, 0.0, 0.0, 0.0, 0.07)
     assert side(now, mode, entered=True) == (0.1, 0.0, brake, 0.0, 0.0, 0.0, 0.1)
 
 
-def lever(now: Moment, mode: Mode, gear: float = 2.0, clutch: float = 0.3, automatic: float = 0.0, **own: float) -> Any:
+def lever(
+    now: TickContext, mode: Mode, gear: float = 2.0, clutch: float = 0.3, automatic: float = 0.0, **own: float
+) -> Any:
     driver = now.driver._replace(gear=gear, clutch=clutch)
     command = IN_FORCE._replace(gear=own.pop("in_force", 1.0), automatic=automatic)
     vehicle = now.vehicle._replace(gear=own.pop("engaged", 3.0))
@@ -277,7 +279,7 @@ def lever(now: Moment, mode: Mode, gear: float = 2.0, clutch: float = 0.3, autom
     return transmission_of(changed, float(mode), -1.0)
 
 
-def test_who_works_clutch_and_gears(now: Moment) -> None:
+def test_who_works_clutch_and_gears(now: TickContext) -> None:
     assert lever(now, Mode.PARKED) == (0.0, 0.0, 0.0)
     assert lever(now, Mode.STOPPED) == (0.0, 0.0, 1.0)
     for mode in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED):
@@ -295,20 +297,20 @@ def test_who_works_clutch_and_gears(now: Moment) -> None:
         assert lever(now, mode, gear=0.0, manual_automatic=1.0) == (0.0, 0.0, 1.0)
 
 
-def test_the_persons_clutch_takes_the_gears_back(now: Moment) -> None:
+def test_the_persons_clutch_takes_the_gears_back(now: TickContext) -> None:
     pressed = now.settings.clutch_pressed
     assert lever(now, Mode.MANUAL, automatic=1.0, clutch=pressed - 0.01, in_force=-1.0) == (0.0, -1.0, 1.0)
     assert lever(now, Mode.MANUAL, automatic=1.0, clutch=pressed) == (pressed, 2.0, 0.0)
     assert lever(now, Mode.MANUAL, automatic=0.0, clutch=0.1) == (0.1, 2.0, 0.0)
 
 
-def test_in_shared_the_car_shifts_only_if_the_controller_has_pedals(now: Moment) -> None:
+def test_in_shared_the_car_shifts_only_if_the_controller_has_pedals(now: TickContext) -> None:
     assert lever(now, Mode.SHARED, shared_longitudinal=0.01) == (0.0, -1.0, 1.0)
     assert lever(now, Mode.MANUAL, shared_longitudinal=0.01) == (0.3, 2.0, 0.0)
     assert lever(now, Mode.SHARED, shared_longitudinal=0.0) == (0.3, 2.0, 0.0)
 
 
-def test_the_blend_weighs_both_and_the_persons_brake_counts_in_full(now: Moment) -> None:
+def test_the_blend_weighs_both_and_the_persons_brake_counts_in_full(now: TickContext) -> None:
     asked = RemoteSide(0.2, 0.8, 0.1, 1.0, 0.0, 0.0, 0.0)
     person = Person(1.0, 1.0, -0.1, 0.4, 0.05, 0.4)
     shift = Transmission(0.2, 3.0, 1.0)

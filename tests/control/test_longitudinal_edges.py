@@ -7,7 +7,7 @@ import pytest
 from simconsole.control.modes.takeover import WheelWatch, steering_taken, throttle_overrides, watch_wheel
 from simconsole.control.requests.control_settings import ControlSettings
 from simconsole.control.requests.remote import commanded_direction, remote_request, twist_road_wheel
-from simconsole.control.requests.stops import safe_stop, slow, stop_start, travel_of
+from simconsole.control.requests.stops import safe_stop, stands, stop_start, travel_direction
 from simconsole.control.shared import time_to_crossing
 from simconsole.values.signals import NO_COMMAND, RemoteCommand, RemoteKind, VehicleState
 
@@ -24,13 +24,13 @@ def at(speed_mps: float, car: VehicleState = CAR, **fields: float) -> VehicleSta
 
 def test_slow_in_every_direction_up_to_the_limit_itself(control: ControlSettings) -> None:
     limit = control.standstill_speed_mps
-    assert slow(at(limit), control)
-    assert slow(at(-limit), control)
-    assert not slow(at(limit * 1.001), control)
-    assert not slow(at(0.8 * limit, vy_mps=0.8 * limit), control)
-    assert not slow(at(0.0, vy_mps=-1.01 * limit), control)
-    assert not slow(at(math.nan), control)
-    assert [travel_of(at(speed)) for speed in (-0.1, 0.0, 0.1)] == [-1.0, 1.0, 1.0]
+    assert stands(at(limit), control)
+    assert stands(at(-limit), control)
+    assert not stands(at(limit * 1.001), control)
+    assert not stands(at(0.8 * limit, vy_mps=0.8 * limit), control)
+    assert not stands(at(0.0, vy_mps=-1.01 * limit), control)
+    assert not stands(at(math.nan), control)
+    assert [travel_direction(at(speed)) for speed in (-0.1, 0.0, 0.1)] == [-1.0, 1.0, 1.0]
 
 
 def test_a_stop_begins_with_the_deceleration_there_is(control: ControlSettings) -> None:

@@ -7,7 +7,7 @@ import pytest
 
 from simconsole.control.arbitration import arbitrate, watched
 from simconsole.control.modes.decision import takeover_stage
-from simconsole.control.requests.tick_context import Moment
+from simconsole.control.requests.tick_context import TickContext
 from simconsole.values.signals import Commander, Event, Link, LinkState, Mode, Notice, Reason, RemoteKind, Validity
 
 MakeRig = Callable[..., Any]
@@ -15,7 +15,7 @@ STEADY = Link(7.0, 3.0, 0.0, 90.0, 1.0, 0.0, 100.0, float(LinkState.STEADY), 0.0
 
 
 @pytest.fixture
-def now(make_rig: MakeRig) -> Moment:
+def now(make_rig: MakeRig) -> TickContext:
     """AUTONOMOUS by the ECU, the person's accelerator pressed, the wheel on its way past the threshold."""
     moment = make_rig().moment()
     ros = moment.ros._replace(
@@ -43,7 +43,7 @@ def now(make_rig: MakeRig) -> Moment:
     )  # fmt: skip
 
 
-def test_what_is_remembered_and_shown(now: Moment) -> None:
+def test_what_is_remembered_and_shown(now: TickContext) -> None:
     memory, ros_link, ecu_link, shown, request = arbitrate(now)
     s = now.settings
     assert memory._asdict() == {
@@ -84,14 +84,14 @@ def test_what_is_remembered_and_shown(now: Moment) -> None:
     assert (request.turn_indicators, request.hazard_lights) == (1.0, 1.0)
 
 
-def test_a_change_of_mode_begins_its_time_anew(now: Moment) -> None:
+def test_a_change_of_mode_begins_its_time_anew(now: TickContext) -> None:
     takeover = now._replace(events=now.events._replace(events=float(Event.REQUEST_TAKEOVER)))
     memory, _, _, shown, _ = arbitrate(takeover)
     assert (memory.mode_ticks, shown.mode, shown.takeover_stage) == (0.0, Mode.TAKEOVER_REQUESTED, 1.0)
     assert memory.hold_road_wheel_rad == 0.02
 
 
-def test_a_controller_that_asks_for_what_the_person_steered_takes_over_their_stop(now: Moment) -> None:
+def test_a_controller_that_asks_for_what_the_person_steered_takes_over_their_stop(now: TickContext) -> None:
     stalled = now._replace(
         before=now.before._replace(mode=float(Mode.MANUAL)),
         events=now.events._replace(events=float(Event.LOOP_STALL)),
@@ -104,7 +104,7 @@ def test_a_controller_that_asks_for_what_the_person_steered_takes_over_their_sto
 
 
 @pytest.mark.parametrize("event", [0, Event.COMMANDER_LOST, Event.NO_ANSWER])
-def test_a_controller_that_is_gone_does_not_steer_the_stop_that_it_steered(event: Event, now: Moment) -> None:
+def test_a_controller_that_is_gone_does_not_steer_the_stop_that_it_steered(event: Event, now: TickContext) -> None:
     """Its last command asks for 0.04 rad; without it the wheels go from where they are held to straight."""
     stopping = now.before._replace(mode=float(Mode.MINIMAL_RISK))
     steered = now._replace(before=stopping, memory=now.memory._replace(stop_steered=1.0, steering_ticks=0.0))
@@ -116,14 +116,14 @@ def test_a_controller_that_is_gone_does_not_steer_the_stop_that_it_steered(event
     assert request.road_wheel_rad == pytest.approx(0.07 - decay if event else 0.04)
 
 
-def test_each_controllers_own_age_counts_where_it_steers_too_hard(now: Moment) -> None:
+def test_each_controllers_own_age_counts_where_it_steers_too_hard(now: TickContext) -> None:
     aged = now._replace(ros_age_before_ticks=11.0, ecu_age_before_ticks=22.0)
     wild = {"road_wheel_rad": 0.5, "sequence": 9.0}
     _, ros_link, ecu_link, *_ = arbitrate(aged._replace(ros=now.ros._replace(**wild), ecu=now.ecu._replace(**wild)))
     assert (ros_link.implausible_ticks, ecu_link.implausible_ticks) == (12.0, 23.0)
 
 
-def test_a_restart_that_is_refused_says_so_and_changes_nothing_else(now: Moment) -> None:
+def test_a_restart_that_is_refused_says_so_and_changes_nothing_else(now: TickContext) -> None:
     """The wheel is off the centre and the car moves; whatever else was refused in this tick gives way."""
     plain = arbitrate(now)
     asked = now._replace(events=now.events._replace(events=float(Event.RESTART)))
@@ -138,7 +138,7 @@ def test_a_restart_that_is_refused_says_so_and_changes_nothing_else(now: Moment)
     assert (shown.refusal, memory.mode_ticks) == (Reason.REFUSED_PEDAL_PRESSED, 0.0)
 
 
-def test_a_restart_is_granted_or_waits_and_says_for_what(now: Moment) -> None:
+def test_a_restart_is_granted_or_waits_and_says_for_what(now: TickContext) -> None:
     calm = now._replace(
         driver=now.driver._replace(hand_wheel_rad=0.0, throttle=0.0, brake=0.0),
         events=now.events._replace(events=float(Event.RESTART)),
@@ -154,14 +154,14 @@ def test_a_restart_is_granted_or_waits_and_says_for_what(now: Moment) -> None:
         assert (memory.restart_ticks, shown.restarted, shown.notice, shown.refusal) == (1.0, 0.0, notice, 0.0)
 
 
-def test_an_accelerator_held_over_the_controller_is_told_after_its_time(now: Moment) -> None:
+def test_an_accelerator_held_over_the_controller_is_told_after_its_time(now: TickContext) -> None:
     ticks = now.settings.throttle_held_ticks
     for before, notice in ((ticks - 1.0, 0.0), (ticks, float(Notice.THROTTLE_HELD))):
         memory, _, _, shown, _ = arbitrate(now._replace(memory=now.memory._replace(throttle_held_ticks=before)))
         assert (memory.throttle_held_ticks, shown.notice) == (before + 1.0, notice)
 
 
-def test_the_motors_own_motion_is_taken_off_the_hand_wheels(now: Moment) -> None:
+def test_the_motors_own_motion_is_taken_off_the_hand_wheels(now: TickContext) -> None:
     still = now._replace(memory=now.memory._replace(steering_ticks=0.0), explained_rad=0.25)
     assert arbitrate(still)[0].steering_ticks == 0.0
     assert arbitrate(still._replace(explained_rad=0.0))[0].steering_ticks == 1.0
@@ -173,14 +173,14 @@ def test_the_motors_own_motion_is_taken_off_the_hand_wheels(now: Moment) -> None
 
 
 @pytest.mark.parametrize("mode", Mode)
-def test_only_from_what_drives_itself_the_wheel_takes_over(mode: Mode, now: Moment) -> None:
+def test_only_from_what_drives_itself_the_wheel_takes_over(mode: Mode, now: TickContext) -> None:
     drives = mode in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED, Mode.MINIMAL_RISK)
     assert watched(float(mode)) == drives
     memory = arbitrate(now._replace(before=now.before._replace(mode=float(mode))))[0]
     assert memory.engage_hand_wheel_rad == (0.2 if drives else 0.45)
 
 
-def test_standing_is_counted_while_it_lasts(now: Moment) -> None:
+def test_standing_is_counted_while_it_lasts(now: TickContext) -> None:
     standing = now._replace(vehicle=now.vehicle._replace(vx_mps=0.0))
     assert arbitrate(standing)[0].standstill_ticks == 1.0
     longer = standing._replace(memory=standing.memory._replace(standstill_ticks=30.0))
@@ -189,7 +189,7 @@ def test_standing_is_counted_while_it_lasts(now: Moment) -> None:
     assert arbitrate(rolling)[0].standstill_ticks == 0.0
 
 
-def test_a_vehicle_stands_after_exactly_the_time_of_the_profile(now: Moment) -> None:
+def test_a_vehicle_stands_after_exactly_the_time_of_the_profile(now: TickContext) -> None:
     stop = now._replace(
         before=now.before._replace(mode=float(Mode.MINIMAL_RISK)),
         driver=now.driver._replace(hand_wheel_rad=0.2, brake=0.0),
@@ -201,7 +201,7 @@ def test_a_vehicle_stands_after_exactly_the_time_of_the_profile(now: Moment) -> 
         assert arbitrate(moment)[3].mode == mode
 
 
-def test_the_trade_is_remembered_in_shared_alone(now: Moment) -> None:
+def test_the_trade_is_remembered_in_shared_alone(now: TickContext) -> None:
     shared = now._replace(
         before=now.before._replace(mode=float(Mode.SHARED)),
         settings=now.settings._replace(shared_rule=2.0),
@@ -215,7 +215,7 @@ def test_the_trade_is_remembered_in_shared_alone(now: Moment) -> None:
     assert arbitrate(elsewhere)[0].shared_trade == 1.0
 
 
-def test_a_refusal_is_shown_for_its_time(now: Moment) -> None:
+def test_a_refusal_is_shown_for_its_time(now: TickContext) -> None:
     refused = now.before._replace(refusal=float(Reason.REFUSED_MOVING))
     last = now.settings.refusal_ticks - 1.0
     for before, refusal, ticks in ((last - 1.0, float(Reason.REFUSED_MOVING), last), (last, 0.0, 0.0)):
@@ -225,7 +225,7 @@ def test_a_refusal_is_shown_for_its_time(now: Moment) -> None:
         assert (shown.refusal, memory.refusal_ticks) == (refusal, ticks)
 
 
-def test_a_takeover_escalates_and_ends_to_the_tick(now: Moment) -> None:
+def test_a_takeover_escalates_and_ends_to_the_tick(now: TickContext) -> None:
     s = now.settings
     asked = float(Mode.TAKEOVER_REQUESTED)
     assert takeover_stage(asked, s.escalation_ticks - 1.0, s) == 1.0

@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 from simconsole.control.arbitration import arbitrate
 from simconsole.control.gate import gate, limits_of
 from simconsole.control.requests.control_settings import settings
-from simconsole.control.requests.tick_context import Moment
+from simconsole.control.requests.tick_context import TickContext
 from simconsole.profiles.control import ControlProfile
 from simconsole.values.host.jit import compiled, plain
+from simconsole.values.layout import read
 from simconsole.values.signals import (
     NEVER_TICKS,
     ArbiterMemory,
@@ -21,7 +22,6 @@ from simconsole.values.signals import (
     DriverInput,
     Event,
     EventInput,
-    Link,
     Mode,
     Reason,
     RemoteCommand,
@@ -30,18 +30,19 @@ from simconsole.values.signals import (
     VehicleState,
 )
 from tests.control.random_drives import (
-    ARBITRATION_AT,
+    ARBITRATION,
     COLUMNS,
-    COMMAND_AT,
-    DRIVER_WIDTH,
-    ECU_LINK_AT,
+    COMMAND,
+    DRIVER,
+    ECU_LINK,
     KEEP_SPEED,
-    REMOTE_WIDTH,
-    ROS_LINK_AT,
+    MEMORY,
+    ROS,
+    ROS_LINK,
     SEED,
     SPEED_AT,
     STEPS,
-    VEHICLE_WIDTH,
+    VEHICLE,
     VX,
     Drive,
     calm_inputs,
@@ -195,24 +196,24 @@ def test_from_every_mode_a_person_gets_back_to_manual(long_drive: Drive) -> None
     """No dead state: whatever the memory holds, a present, calm person and a reset end in MANUAL within seconds."""
     rng = np.random.default_rng(SEED)
     person = dict.fromkeys(("wheel_validity", "throttle_validity", "brake_validity"), float(Validity.LIVE))
-    driver = DriverInput(*(0.0,) * DRIVER_WIDTH)._replace(**person)
-    remote = RemoteCommand(*(0.0,) * REMOTE_WIDTH)._replace(age_ticks=NEVER_TICKS)
-    vehicle = VehicleState(*(0.0,) * VEHICLE_WIDTH)
+    driver = DriverInput(*(0.0,) * DRIVER.width)._replace(**person)
+    remote = RemoteCommand(*(0.0,) * ROS.width)._replace(age_ticks=NEVER_TICKS)
+    vehicle = VehicleState(*(0.0,) * VEHICLE.width)
     s = long_drive.settings
     for mode in Mode:
         for index in rng.choice(np.flatnonzero(long_drive.modes == mode), 5):
             row = long_drive.outputs[index]
-            ros_link = Link(*row[ROS_LINK_AT:ECU_LINK_AT].tolist())
-            ecu_link = Link(*row[ECU_LINK_AT:ARBITRATION_AT].tolist())
+            ros_link = read(row, ROS_LINK)
+            ecu_link = read(row, ECU_LINK)
             memory, arbitration, command = (
-                ArbiterMemory(*row[:ROS_LINK_AT].tolist()),
-                Arbitration(*row[ARBITRATION_AT:COMMAND_AT].tolist()),
-                VehicleCommand(*row[COMMAND_AT:SPEED_AT].tolist()),
+                read(row, MEMORY),
+                read(row, ARBITRATION),
+                read(row, COMMAND),
             )
             for tick in range(int(2.0 / long_drive.tick_s)):
                 event = Event.REQUEST_MANUAL if tick % 2 else Event.RESET
                 happened = EventInput(float(event))
-                now = Moment(
+                now = TickContext(
                     driver, remote, remote, happened, vehicle, memory, ros_link, ecu_link, NEVER_TICKS, NEVER_TICKS,
                     arbitration, command,
                     0.0, 0.0, 0.0, 0.0, s, long_drive.tick_s,

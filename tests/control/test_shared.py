@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from simconsole.control.requests.control_settings import ControlSettings, settings
-from simconsole.control.shared import by_line_crossing, consent, time_to_crossing, traded
+from simconsole.control.shared import by_line_crossing, shared_authority, time_to_crossing, traded
 from simconsole.profiles.control import ControlProfile
 from simconsole.values.signals import VehicleState
 
@@ -75,16 +75,15 @@ def test_consent_moves_smoothly_between_none_and_the_full_share(trade: float, pa
     still = now._replace(
         memory=now.memory._replace(shared_trade=trade), settings=now.settings._replace(shared_trade_per_tick=0.0)
     )
-    assert consent(still, 0.1, 0.0) == pytest.approx((0.8 * part, trade))
+    assert shared_authority(still, 0.1, 0.0) == pytest.approx((0.8 * part, trade))
 
 
 def test_each_rule_gives_its_authority_and_only_the_traded_one_moves_the_trade(make_rig: MakeRig) -> None:
     now = make_rig().moment()
     now = now._replace(memory=now.memory._replace(shared_trade=0.25), human_nm=9.0)
     now = now._replace(vehicle=now.vehicle._replace(vx_mps=15.0))
-    fixed, by_line, traded_away = (
-        consent(now._replace(settings=now.settings._replace(shared_rule=rule)), 0.1, 0.0) for rule in (0.0, 1.0, 2.0)
-    )
+    settings = [now.settings._replace(shared_rule=rule) for rule in (0.0, 1.0, 2.0)]
+    fixed, by_line, traded_away = (shared_authority(now._replace(settings=rule), 0.1, 0.0) for rule in settings)
     assert tuple(fixed) == (now.settings.shared_lateral, 1.0)
     crossing_s = time_to_crossing(0.1, 0.0, now.vehicle, now.settings)
     assert tuple(by_line) == (by_line_crossing(crossing_s, now.settings), 1.0)
@@ -95,7 +94,7 @@ def test_each_rule_gives_its_authority_and_only_the_traded_one_moves_the_trade(m
 def test_a_torque_that_is_no_number_is_no_push_however_small_the_threshold(make_rig: MakeRig) -> None:
     now = make_rig(profile=ControlProfile(shared_authority="traded")).moment()
     light = now._replace(settings=now.settings._replace(shared_trade_nm=0.5), human_nm=math.nan)
-    assert consent(light, 0.1, 0.0).trade == pytest.approx(now.settings.shared_trade_per_tick)
+    assert shared_authority(light, 0.1, 0.0).trade == pytest.approx(now.settings.shared_trade_per_tick)
 
 
 def test_a_shares_most_is_never_less_than_its_least() -> None:

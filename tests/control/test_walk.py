@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 from simconsole.control.requests.control_settings import settings
 from simconsole.profiles.control import ControlProfile
 from simconsole.values.host.jit import compiled
-from simconsole.values.signals import Arbitration, Commander, Mode, Reason
+from simconsole.values.layout import read
+from simconsole.values.signals import Commander, Mode, Reason
 from tests.control.nasty import DRAWS, STATE, fresh_start
 from tests.control.oracle import blank
 from tests.control.oracle_rules import COUNT, TRIGGERS, WIDTH, may_meet, rules
-from tests.control.random_drives import ARBITRATION_AT, ECU_LINK_AT, OUTPUT_WIDTH, ROS_LINK_AT
+from tests.control.random_drives import ARBITRATION, ECU_LINK, OUTPUT_WIDTH, ROS_LINK
 from tests.control.walk import BREACHES, COLUMNS, MODES, RECENT, walk
 from tests.samples import Sample
 
@@ -105,9 +106,9 @@ def story(recent: NDArray[np.float64], ticks: int, foreseen: NDArray[np.float64]
         row = recent[tick % RECENT]
         lines.append(", ".join(f"{name}={value:.9g}" for name, value in zip(COLUMNS, row, strict=True) if value))
     lines.append(f"oracle {[round(float(v), 4) for v in foreseen]}")
-    arbitration = Arbitration(*before[ARBITRATION_AT : ARBITRATION_AT + len(Arbitration._fields)].tolist())
+    arbitration = read(before, ARBITRATION)
     lines.append(f"{arbitration} {Reason(int(arbitration.reason)).name}")
-    ros, ecu = before[ROS_LINK_AT:ECU_LINK_AT].tolist(), before[ECU_LINK_AT:ARBITRATION_AT].tolist()
+    ros, ecu = before[ROS_LINK.slice].tolist(), before[ECU_LINK.slice].tolist()
     lines.append(f"ROS {ros} ECU {ecu}")
     return "\n".join(lines)
 

@@ -6,15 +6,14 @@ import numpy as np
 
 from simconsole.control.arbitration import arbitrate
 from simconsole.control.gate import gate
-from simconsole.control.requests.control_settings import ControlSettings
-from simconsole.control.requests.tick_context import Moment
-from simconsole.values.kernels import Row, is_finite, kernel, put, take
+from simconsole.control.requests.tick_context import TickContext
+from simconsole.values.kernels import Row, is_finite, kernel, put
+from simconsole.values.layout import Part, read, write
 from simconsole.values.signals import (
     ArbiterMemory,
     Arbitration,
     DriverInput,
     EventInput,
-    Link,
     Reason,
     RemoteCommand,
     Validity,
@@ -75,19 +74,11 @@ from tests.control.oracle_rules import (
     WILD,
     Rules,
 )
-from tests.control.random_drives import (
-    ARBITRATION_AT,
-    ARBITRATION_WIDTH,
-    COMMAND_AT,
-    COMMAND_WIDTH,
-    ECU_LINK_AT,
-    LINK_WIDTH,
-    MEMORY_WIDTH,
-    ROS_LINK_AT,
-    SETTINGS_WIDTH,
-)
+from tests.control.random_drives import ARBITRATION, COMMAND, ECU_LINK, MEMORY, ROS_LINK, SETTINGS
 
-RULES_WIDTH: Final = len(Rules._fields)
+RULES: Final = Part(Rules)
+MODE_AT: Final = ARBITRATION.at("mode")
+STEERED_AT, THROTTLE_AT, BRAKE_AT = (COMMAND.at(name) for name in ("road_wheel_rad", "throttle", "brake"))
 LIVE: Final = float(Validity.LIVE)
 PERSON_ASKED, OPERATOR_ASKED = float(Reason.PERSON_ASKED), float(Reason.OPERATOR_ASKED)
 REASON_OF: Final = np.array([float(reason) for reason in REASONS])
@@ -102,7 +93,6 @@ DRIVER_COLUMN: Final = 7
 ROS_COLUMN: Final = DRIVER_COLUMN + len(DriverInput._fields)
 ECU_COLUMN: Final = ROS_COLUMN + len(RemoteCommand._fields)
 RECENT: Final = 3
-THROTTLE_FIELD: Final = VehicleCommand._fields.index("throttle")
 RESTART_TICKS: Final = ArbiterMemory._fields.index("restart_ticks")
 
 BREACHES: Final = (
@@ -142,7 +132,7 @@ def judge(
 ) -> float:
     """Return the breach of this tick, 0 for none. `before` is the row of the tick before."""
     mode = arbitration.mode
-    was = Arbitration(*take(before, ARBITRATION_AT, ARBITRATION_WIDTH))
+    was = read(before, ARBITRATION)
     if present[EMERGENCY] != 0.0 and mode != EMERGENCY_STOP:
         return NOT_AT_ONCE
     if was.mode == EMERGENCY_STOP and mode != EMERGENCY_STOP and present[RESET] == 0.0:
@@ -177,7 +167,7 @@ def judge(
     if driven and o[at + RECEIVED] > r.leaves_ticks:
         return TOO_LONG
     if driven and o[at + WILD] != 0.0 and driver.throttle == 0.0:
-        held = before[COMMAND_AT + THROTTLE_FIELD]
+        held = before[THROTTLE_AT]
         held = was.remote_throttle if was.remote_throttle > held else held  # authority may still fade in towards it
         if command.throttle > held + 1e-12:
             return FOLLOWED
@@ -187,7 +177,7 @@ def judge(
 @kernel
 def happen(g: Row, u: Row, o: Row, before: Row, figures: Row, hz: float, r: Rules) -> None:
     """Let a tick's person, events and vehicle happen."""
-    mode = before[ARBITRATION_AT]
+    mode = before[MODE_AT]
     chance, storm = draw(g, u, hz, figures[5])
     at = BLOCK if o[WHO] == ECU else 0
     ends = mode == TAKEOVER and abs(before[0] + 1.0 - r.no_reaction_ticks) < 1.5
@@ -199,7 +189,7 @@ def happen(g: Row, u: Row, o: Row, before: Row, figures: Row, hz: float, r: Rule
         g[(ECU_AT if o[WHO] == ECU else ROS_AT) + REFUSALS] += r.invalid_most
     person(g, u, storm > 0.0, 0.3 if storm > 0.0 else chance, hz)
     events(g, u, mode, storm > 0.0, 0.5 if storm > 0.0 else chance, 1.0 / hz)
-    move(g, u, chance, hz, before[COMMAND_AT + 1], before[COMMAND_AT + 2])
+    move(g, u, chance, hz, before[THROTTLE_AT], before[BRAKE_AT])
 
 
 @kernel
@@ -216,7 +206,7 @@ def driver_of(g: Row) -> DriverInput:
 def vehicle_of(g: Row, before: Row) -> VehicleState:
     """Return the vehicle after the tick before."""
     return VehicleState(
-        0.0, 0.0, 0.0, 0.0, 0.0, 0.0, g[SPEED_NOW], 0.0, 0.0, 0.0, g[AY], before[COMMAND_AT], 0.0, 0.0, 1.0, 1.0,
+        0.0, 0.0, 0.0, 0.0, 0.0, 0.0, g[SPEED_NOW], 0.0, 0.0, 0.0, g[AY], before[STEERED_AT], 0.0, 0.0, 1.0, 1.0,
         0.0, 0.0, -0.2, 3.8, -9.2, 0.0,
     )  # fmt: skip
 
@@ -269,31 +259,31 @@ def walk(
     `figures` is the tick, the longest time after the last plausible command in ticks, the wheel's motor, the oracle's
     mode and the one seen, and how long an automatic mode may last.
     """
-    s = ControlSettings(*take(row, 0, SETTINGS_WIDTH))
-    r = Rules(*take(rules_row, 0, RULES_WIDTH))
+    s = read(row, SETTINGS)
+    r = read(rules_row, RULES)
     present = np.zeros(COUNT)
     given = np.zeros(recent.shape[1])
     hz = 1.0 / tick_s
     for index in range(draws.shape[0]):
         u = draws[index]
         ros_before, ecu_before = g[ROS_AT + 5], g[ECU_AT + 5]
-        mode = before[ARBITRATION_AT]
+        mode = before[MODE_AT]
         happen(g, u, o, before, figures, hz, r)
         ros = controller(g, ROS_AT, u, 28, hz, r.stale_ticks, 0.3 / hz)
         ecu = controller(g, ECU_AT, u, 37, hz, r.stale_ticks, 0.3 / hz)
         driver, vehicle = driver_of(g), vehicle_of(g, before)
         explained = g[EXPLAINED] * figures[2]
-        command = VehicleCommand(*take(before, COMMAND_AT, COMMAND_WIDTH))
-        was = Arbitration(*take(before, ARBITRATION_AT, ARBITRATION_WIDTH))
-        now = Moment(
+        command = read(before, COMMAND)
+        was = read(before, ARBITRATION)
+        now = TickContext(
             driver,
             ros,
             ecu,
             EventInput(g[EVENT_MASK], 0.0, g[ECU_MASK]),
             vehicle,
-            ArbiterMemory(*take(before, 0, MEMORY_WIDTH)),
-            Link(*take(before, ROS_LINK_AT, LINK_WIDTH)),
-            Link(*take(before, ECU_LINK_AT, LINK_WIDTH)),
+            read(before, MEMORY),
+            read(before, ROS_LINK),
+            read(before, ECU_LINK),
             ros_before,
             ecu_before,
             was,
@@ -330,11 +320,11 @@ def walk(
         at = BLOCK if o[WHO] == ECU else 0
         if SHARED <= arbitration.mode <= TAKEOVER and o[at + RECEIVED] > figures[1]:
             figures[1] = o[at + RECEIVED]
-        put(before, 0, memory)
-        put(before, ROS_LINK_AT, ros_link)
-        put(before, ECU_LINK_AT, ecu_link)
-        put(before, ARBITRATION_AT, arbitration)
-        put(before, COMMAND_AT, command)
+        write(before, MEMORY, memory)
+        write(before, ROS_LINK, ros_link)
+        write(before, ECU_LINK, ecu_link)
+        write(before, ARBITRATION, arbitration)
+        write(before, COMMAND, command)
         figures[0] += 1.0
         figures[3], figures[4] = o[MODE], arbitration.mode
         if breach != 0.0:

@@ -16,23 +16,21 @@ from simconsole.values.host.jit import compiled
 from simconsole.values.signals import (
     NO_COMMAND,
     NO_EVENTS,
-    Arbitration,
     Event,
     EventInput,
     Mode,
     RemoteCommand,
     RemoteKind,
-    VehicleState,
 )
-from simconsole.values.state_vector import ARBITRATION_AT, VEHICLE_AT, Snapshot
+from simconsole.values.state_vector import LAYOUT, Snapshot
 from simconsole.world.course import Course
 
 SPEED_MPS = 10.0
 LATERAL_MPS2 = 2.0
 WHEELBASE_M = 2.6
 CONTROL_HZ = 50
-DISTANCE_AT = VEHICLE_AT + VehicleState._fields.index("distance_m")
-MODE_AT = ARBITRATION_AT + Arbitration._fields.index("mode")
+DISTANCE_AT = LAYOUT.vehicle.at("distance_m")
+MODE_AT = LAYOUT.arbitration.at("mode")
 
 
 def resolved(tick_hz: int) -> ResolvedSession:

@@ -27,20 +27,7 @@ from simconsole.session.resolution import load_session, resolve
 from simconsole.tick.assembly import assemble
 from simconsole.values.host.jit import plain
 from simconsole.values.signals import NO_SAMPLE, NO_TORQUE, Event, EventInput, Mode, Validity
-from simconsole.values.state_vector import (
-    ARBITRATION_AT,
-    DRIVER_AT,
-    ECU_AT,
-    EVENTS_AT,
-    MEMORY_AT,
-    MOTOR_AT,
-    PLATFORM_AT,
-    ROS_AT,
-    SAMPLE_AT,
-    TORQUE_AT,
-    VEHICLE_AT,
-    Snapshot,
-)
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT, Snapshot
 from tests.devices.port_contract import CHECKS
 from tests.patience import pause, stamp_ns
 
@@ -52,7 +39,7 @@ FORCE = ForceFeedback(max_torque_nm=4.0, back_end=BACK_END)  # type: ignore[arg-
 
 def shot(torque_nm: float, enabled: float = 1.0) -> Snapshot:
     row = np.zeros(PLATFORM_AT)
-    row[TORQUE_AT:MOTOR_AT] = NO_TORQUE._replace(torque_nm=torque_nm, ramp=1.0, enabled=enabled)
+    row[LAYOUT.torque.slice] = NO_TORQUE._replace(torque_nm=torque_nm, ramp=1.0, enabled=enabled)
     return Snapshot(1, 250, row)
 
 
@@ -120,11 +107,11 @@ def stand(motor: WheelMotor) -> None:
     for tick in range(1, 401):
         before, row = row, row.copy()
         events = {301: Event.PAUSE, 302: Event.START}.get(tick, Event(0))
-        row[EVENTS_AT:ECU_AT] = EventInput(float(events))
-        row[SAMPLE_AT:ROS_AT] = NO_SAMPLE._replace(wheel_motor=1.0)
-        row[DRIVER_AT:MEMORY_AT] = NOBODY._replace(wheel_validity=float(Validity.LIVE))
-        row[ARBITRATION_AT] = float(Mode.MANUAL)
-        row[VEHICLE_AT:TORQUE_AT] = console.platform.initial_vehicle._replace(vx_mps=20.0, hand_wheel_torque_nm=3.0)
+        row[LAYOUT.events.slice] = EventInput(float(events))
+        row[LAYOUT.sample.slice] = NO_SAMPLE._replace(wheel_motor=1.0)
+        row[LAYOUT.driver.slice] = NOBODY._replace(wheel_validity=float(Validity.LIVE))
+        row[LAYOUT.arbitration.start] = float(Mode.MANUAL)
+        row[LAYOUT.vehicle.slice] = console.platform.initial_vehicle._replace(vx_mps=20.0, hand_wheel_torque_nm=3.0)
         console.force_feedback(before, row, console.settings, console.tick_s)
         if tick > 250:
             motor.publish(Snapshot(tick, 250, row))

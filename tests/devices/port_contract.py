@@ -9,7 +9,7 @@ from simconsole.devices.force_feedback.motor import HapticPort, WheelMotor
 from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.values.errors import DeviceError
 from simconsole.values.signals import NO_TORQUE
-from simconsole.values.state_vector import MOTOR_AT, PLATFORM_AT, TORQUE_AT, Snapshot
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT, Snapshot
 
 Check = Callable[[HapticPort], None]
 
@@ -40,7 +40,7 @@ def works_behind_the_motor(port: HapticPort) -> None:
     motor = WheelMotor(port, ForceFeedback(max_torque_nm=4.0), lambda snapshot: snapshot.t_s)
     for tick in range(20):
         row = np.zeros(PLATFORM_AT)
-        row[TORQUE_AT:MOTOR_AT] = NO_TORQUE._replace(torque_nm=tick - 10.0, enabled=float(tick % 7 > 0))
+        row[LAYOUT.torque.slice] = NO_TORQUE._replace(torque_nm=tick - 10.0, enabled=float(tick % 7 > 0))
         motor.publish(Snapshot(tick, 250, row))
     assert motor.failure is None
     motor.close()

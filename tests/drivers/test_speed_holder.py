@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from simconsole.drivers.speed_holder import SpeedHolder, hold_speed
-from simconsole.values.signals import VehicleState
-from simconsole.values.state_vector import PLATFORM_AT, VEHICLE_AT, Snapshot
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT, Snapshot
 
-VX = VEHICLE_AT + VehicleState._fields.index("vx_mps")
+VX = LAYOUT.vehicle.at("vx_mps")
 
 
 def at(speed_mps: float) -> Snapshot:

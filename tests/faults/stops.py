@@ -10,9 +10,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from simconsole.control.requests.control_settings import ControlSettings
 from simconsole.profiles.faults import Silent
-from simconsole.tick.advance import CONTROL_AT
+from simconsole.tick.advance import SETTINGS
 from simconsole.values.signals import Mode
 from simconsole.values.state_vector import Snapshot
 from tests.faults.course import CAR_M, HZ, LANE_M, PERIOD_TICKS, PLACES, Circuit, InlineTracker
@@ -75,7 +74,7 @@ def main() -> None:
     along = np.arange(60.0, track.course.length_m - 150.0, EVERY_M)
     for stop in STOPS:
         for name, value in stop._asdict().items():
-            track.console.settings[CONTROL_AT + ControlSettings._fields.index(name)] = value
+            track.console.settings[SETTINGS.control.at(name)] = value
         places = [beside_m(track, place, 0.0) for place in PLACES.values()]
         cells = [f"{value:.2f} m" for value in places]
         for sigma in (0.0, NOISE_RAD):

@@ -35,8 +35,8 @@ from simconsole.values.errors import CanError
 from simconsole.values.host.jit import plain
 from simconsole.values.kernels import Row
 from simconsole.values.protocols import NobodyCommands, NobodySeated
-from simconsole.values.signals import Arbitration, Mode, Reason, RemoteCommand
-from simconsole.values.state_vector import ARBITRATION_AT, ECU_AT, Snapshot
+from simconsole.values.signals import Mode, Reason
+from simconsole.values.state_vector import LAYOUT, Snapshot
 from tests.paths import ROOT
 
 TICK_HZ = 250
@@ -44,11 +44,11 @@ STALE_TICKS = 50  # 200 ms
 PERIOD_TICKS = 5  # the ECU's 50 Hz
 FAULT = 150
 TICKS = 400
-MODE = ARBITRATION_AT + Arbitration._fields.index("mode")
-REASON = ARBITRATION_AT + Arbitration._fields.index("reason")
-SEQUENCE = ECU_AT + RemoteCommand._fields.index("sequence")
-REFUSED = ECU_AT + RemoteCommand._fields.index("refused")
-AGE = ECU_AT + RemoteCommand._fields.index("age_ticks")
+MODE = LAYOUT.arbitration.at("mode")
+REASON = LAYOUT.arbitration.at("reason")
+SEQUENCE = LAYOUT.ecu.at("sequence")
+REFUSED = LAYOUT.ecu.at("refused")
+AGE = LAYOUT.ecu.at("age_ticks")
 
 _channels = itertools.count()
 Fault = Callable[[int, Frame], list[Frame]]

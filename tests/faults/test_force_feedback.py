@@ -13,8 +13,8 @@ import pytest
 
 from simconsole.devices.force_feedback.simulated_wheel import HANDS_OFF, RELAXED
 from simconsole.devices.haptics.watchdog import POLL_S, STALL_S
-from simconsole.values.signals import Event, EventInput, Mode, VehicleState
-from simconsole.values.state_vector import TORQUE_AT, VEHICLE_AT
+from simconsole.values.signals import Event, EventInput, Mode
+from simconsole.values.state_vector import LAYOUT
 from tests.devices.closed_loop import Loop
 from tests.devices.mocked import calls, start
 from tests.patience import PATIENCE_S, pause, wait_until
@@ -206,14 +206,14 @@ def test_d13_nonsense_from_the_vehicle_never_reaches_the_motor(field: str, value
         row = loop.snapshot.row.copy()
         loop.tick(RELAXED)
         if tick % 3 == 0:
-            loop.snapshot.row[VEHICLE_AT + VehicleState._fields.index(field)] = value
+            loop.snapshot.row[LAYOUT.vehicle.at(field)] = value
             loop.console.force_feedback(row, loop.snapshot.row, loop.console.settings, loop.console.tick_s)  # type: ignore[misc]
-            loop.snapshot.row[VEHICLE_AT + VehicleState._fields.index(field)] = 0.0
+            loop.snapshot.row[LAYOUT.vehicle.at(field)] = 0.0
         torque = loop.snapshot.torque
         assert math.isfinite(torque.torque_nm)
         assert abs(torque.torque_nm) <= 4.0
         assert torque.enabled == 0.0 or abs(torque.torque_nm - before) <= 150.0 / 250.0 + 1e-9
-        assert np.isfinite(loop.snapshot.row[TORQUE_AT:]).all()
+        assert np.isfinite(loop.snapshot.row[LAYOUT.torque.start :]).all()
         before = torque.torque_nm
 
 
@@ -221,7 +221,7 @@ def test_d13_nonsense_from_the_vehicle_never_reaches_the_motor(field: str, value
 def test_d13_sign_that_flips_every_tick_stays_within_the_slew_limit() -> None:
     loop = Loop()
     loop.engage()
-    field = VEHICLE_AT + VehicleState._fields.index("road_wheel_rad")
+    field = LAYOUT.vehicle.at("road_wheel_rad")
     torques = []
     for tick in range(250):
         row = loop.snapshot.row.copy()

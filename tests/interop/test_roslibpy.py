@@ -17,7 +17,7 @@ from simconsole.bridge.transport.lockstep_server import LockstepBridge
 from simconsole.bridge.transport.server import serve
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.signals import RemoteCommand, RemoteKind
-from simconsole.values.state_vector import PLATFORM_AT, VEHICLE_AT, Snapshot
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT, Snapshot
 from tests.patience import PATIENCE_S, stamp_ns
 
 PROGRAM = Path(__file__).with_name("roslibpy_program.py")
@@ -26,7 +26,7 @@ ANSWERS = 20
 
 def snapshot(tick: int) -> Snapshot:
     row = np.zeros(PLATFORM_AT)
-    row[VEHICLE_AT] = tick  # x_m
+    row[LAYOUT.vehicle.start] = tick  # x_m
     return Snapshot(tick, 250, row)
 
 

@@ -21,7 +21,7 @@ from simconsole.values.host.jit import plain
 from simconsole.values.latency import Histogram, Hop, Ledger
 from simconsole.values.protocols import NobodyCommands, NobodySeated
 from simconsole.values.signals import NO_SAMPLE, DeviceSample, EventInput, RemoteCommand
-from simconsole.values.state_vector import PLATFORM_AT, TORQUE_AT, Snapshot
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT, Snapshot
 
 TICKS = 40
 USUAL_NS = {
@@ -122,7 +122,7 @@ def driven(
         decide=late(console.decide, Hop.DECIDE),
         step=late(console.step, Hop.STEP),
         force_feedback=late(
-            lambda previous, row, settings, tick_s: row[TORQUE_AT:PLATFORM_AT].fill(0.0), Hop.FORCE_FEEDBACK
+            lambda previous, row, settings, tick_s: row[LAYOUT.torque.start : PLATFORM_AT].fill(0.0), Hop.FORCE_FEEDBACK
         ),
     )
     ledger = Ledger(clock.read, console.tick_hz, every)

@@ -4,8 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from simconsole.values import state_vector as rows
-from simconsole.values.state_vector import INPUT_WIDTH, PLATFORM_AT, STAGES, Snapshot, columns
+from simconsole.values.state_vector import INPUT_WIDTH, LAYOUT, PLATFORM_AT, Snapshot, columns
 
 
 class PlatformState(NamedTuple):
@@ -24,9 +23,9 @@ def test_columns_are_named_by_stage_and_field_once_each() -> None:
 
 def test_stages_follow_each_other_without_gap_and_inputs_come_first() -> None:
     at = 0
-    for stage, record in STAGES:
-        assert getattr(rows, f"{stage.upper()}_AT") == at
-        at += len(record._fields)  # type: ignore[attr-defined]
+    for part in LAYOUT:
+        assert part.start == at
+        at += part.width
     assert at == PLATFORM_AT
     inputs = {name.partition(".")[0] for name in columns(PlatformState)[:INPUT_WIDTH]}
     assert inputs == {"sample", "ros", "events", "ecu"}
@@ -36,9 +35,9 @@ def test_stages_follow_each_other_without_gap_and_inputs_come_first() -> None:
 def test_views_of_a_snapshot_show_the_columns_of_their_stage() -> None:
     row = np.arange(float(PLATFORM_AT))
     snapshot = Snapshot(750, 250, row)
-    for stage, record in STAGES:
+    for stage, part in LAYOUT._asdict().items():
         if hasattr(snapshot, stage):
             view = getattr(snapshot, stage)
-            start = columns(PlatformState).index(f"{stage}.{record._fields[0]}")  # type: ignore[attr-defined]
-            assert view == record(*row[start : start + len(view)])
+            start = columns(PlatformState).index(f"{stage}.{part.names[0]}")
+            assert view == part.record(*row[start : start + len(view)])
     assert (snapshot.t_ns, snapshot.t_s) == (3_000_000_000, 3.0)

@@ -11,7 +11,7 @@ from simconsole.values.host.jit import compiled
 from simconsole.values.kernels import Row, put
 from simconsole.values.platform import Ground, Platform, Pose
 from simconsole.values.signals import VehicleCommand, VehicleState
-from simconsole.values.state_vector import COMMAND_AT, PLATFORM_AT, TORQUE_AT, VEHICLE_AT
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT
 from simconsole.vehicle.platforms import build
 
 IDLE = VehicleCommand(*(0.0,) * len(VehicleCommand._fields))
@@ -33,13 +33,13 @@ class Drive:
         self.vehicle = vehicle
         self.step = execution(vehicle.step)
         self.row: Row = np.zeros(PLATFORM_AT + len(vehicle.initial_state))
-        put(self.row, VEHICLE_AT, vehicle.initial_vehicle)
+        put(self.row, LAYOUT.vehicle.start, vehicle.initial_vehicle)
         put(self.row, PLATFORM_AT, vehicle.initial_state)
         self.time_s = 0.0
 
     @property
     def seen(self) -> VehicleState:
-        return VehicleState(*self.row[VEHICLE_AT:TORQUE_AT].tolist())
+        return VehicleState(*self.row[LAYOUT.vehicle.slice].tolist())
 
     @property
     def state(self) -> Any:
@@ -47,7 +47,7 @@ class Drive:
 
     def tick(self, command: VehicleCommand) -> None:
         row = self.row.copy()
-        put(row, COMMAND_AT, command)
+        put(row, LAYOUT.command.start, command)
         self.step(self.row, row, self.vehicle.parameters, SUBSTEPS)
         self.row = row
         self.time_s += TICK_S

@@ -23,7 +23,7 @@ from simconsole.profiles.vehicle import CarProfile
 from simconsole.values.host.jit import compiled
 from simconsole.values.platform import Ground, Patch, Platform
 from simconsole.values.signals import VehicleCommand
-from simconsole.values.state_vector import COMMAND_AT, COMMAND_WIDTH, PLATFORM_AT, VEHICLE_AT, VEHICLE_WIDTH
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT
 from simconsole.vehicle.batch.fleet import Fleet
 from simconsole.vehicle.car.state import CarState
 from simconsole.vehicle.platforms import build
@@ -111,10 +111,10 @@ class Singles:
 
     @property
     def vehicles(self) -> Table:
-        return self._rows[:, VEHICLE_AT : VEHICLE_AT + VEHICLE_WIDTH].copy()
+        return self._rows[:, LAYOUT.vehicle.slice].copy()
 
     def command(self, commands: ArrayLike) -> None:
-        self._rows[:, COMMAND_AT : COMMAND_AT + COMMAND_WIDTH] = commands
+        self._rows[:, LAYOUT.command.slice] = commands
 
     def restore(self, states: ArrayLike) -> None:
         self._rows[:, PLATFORM_AT:] = states

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from simconsole.values.host.jit import compiled
 from simconsole.values.kernels import put
 from simconsole.values.platform import Ground
-from simconsole.values.state_vector import COMMAND_AT, PLATFORM_AT
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT
 from simconsole.vehicle.car.car_step import step
 from simconsole.vehicle.car.state import CarState
 from tests.vehicle.driving import IDLE, platform
@@ -77,7 +77,7 @@ def random_cars(count: int, seed: int, steered_rad: float = 0.0, **command: floa
     draw = np.random.default_rng(seed)
     rows[:, PLATFORM_AT:] = grounds[0].initial_state + sizes * draw.uniform(-1.0, 1.0, (count, len(sizes)))
     for row in rows:
-        put(row, COMMAND_AT, IDLE._replace(road_wheel_rad=rng.uniform(-steered_rad, steered_rad), **command))
+        put(row, LAYOUT.command.start, IDLE._replace(road_wheel_rad=rng.uniform(-steered_rad, steered_rad), **command))
     return Cars(rows, np.array([grounds[index % len(grounds)].parameters for index in range(count)]))
 
 

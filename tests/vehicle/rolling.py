@@ -6,7 +6,7 @@ from simconsole.profiles.files.loader import load
 from simconsole.profiles.vehicle import CarProfile
 from simconsole.values.kernels import put
 from simconsole.values.platform import Ground
-from simconsole.values.state_vector import PLATFORM_AT, VEHICLE_AT
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT
 from simconsole.vehicle.car.state import CarState
 from simconsole.vehicle.platforms import build
 from tests.vehicle.driving import LEVEL, ORIGIN, Drive
@@ -24,5 +24,5 @@ def rolling(speed_mps: float, ground: Ground = LEVEL, **aids: bool) -> Drive:
         vx_mps=speed_mps, fl_radps=spin, fr_radps=spin, rl_radps=spin, rr_radps=spin
     )
     put(drive.row, PLATFORM_AT, start)
-    put(drive.row, VEHICLE_AT, drive.vehicle.initial_vehicle._replace(vx_mps=speed_mps))
+    put(drive.row, LAYOUT.vehicle.start, drive.vehicle.initial_vehicle._replace(vx_mps=speed_mps))
     return drive

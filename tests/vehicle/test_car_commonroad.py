@@ -13,10 +13,10 @@ from simconsole.profiles.vehicle import CarProfile
 from simconsole.values.host.jit import compiled
 from simconsole.values.kernels import put
 from simconsole.values.platform import Platform
-from simconsole.values.state_vector import COMMAND_AT, PLATFORM_AT
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT
 from simconsole.vehicle.car.car_step import load_parameters
 from simconsole.vehicle.car.parameters import CarParameters
-from simconsole.vehicle.car.state import CAR_WIDTH, CarState
+from simconsole.vehicle.car.state import CAR, CarState
 from simconsole.vehicle.platforms import build
 from tests.samples import Sample
 from tests.vehicle.commonroad import BMW, DURATION_S, SAMPLE_S, Input, Path, drive_multi_body, drive_single_track
@@ -24,8 +24,8 @@ from tests.vehicle.driving import LEVEL, ORIGIN
 
 CASES = 200
 WHEELBASE_M = BMW.a + BMW.b
-STATE = slice(PLATFORM_AT, PLATFORM_AT + CAR_WIDTH)
-STEER_AT = COMMAND_AT  # VehicleCommand begins with road_wheel_rad
+STATE = CAR.slice
+STEER_AT = LAYOUT.command.start  # VehicleCommand begins with road_wheel_rad
 
 
 class Case(NamedTuple):

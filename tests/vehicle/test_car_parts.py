@@ -10,10 +10,11 @@ from simconsole.values.signals import Request
 from simconsole.values.units import RADPS_PER_RPM
 from simconsole.vehicle.car.car_platform import car_parameters
 from simconsole.vehicle.car.engine import engine_drive, engine_friction, full_torque
-from simconsole.vehicle.car.gearbox import bite, gear_ratio, work_gearbox
+from simconsole.vehicle.car.gearbox import bite, gear_ratio, gearbox_step
 from simconsole.vehicle.car.powertrain import Capacity, Inertia, Shafts, braked, solve_shafts
-from simconsole.vehicle.car.state import AID_WIDTH, CAR_WIDTH, Car, CarState, Gearbox, SteeringState, Wheel
-from simconsole.vehicle.car.steering import aligning_moment, hand_wheel_torque, heading, steer
+from simconsole.vehicle.car.state import CAR as COLUMNS
+from simconsole.vehicle.car.state import Car, CarState, Gearbox, SteeringState, Wheel
+from simconsole.vehicle.car.steering import aligning_moment, hand_wheel_torque, rack_rate, wheel_directions
 from simconsole.vehicle.car.suspension import wheel_load
 from simconsole.vehicle.car.tyre import Tyre, tyre
 from tests.vehicle.driving import LEVEL
@@ -196,14 +197,14 @@ def test_ratios_and_bite() -> None:
 def test_lever_between_two_gears_is_neutral() -> None:
     box = Gearbox(3.0, 0.0, 1.0, 3.0, 0.0, 1.0, 0.0)
     request = Request(0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    assert work_gearbox(CAR.gears, box, request, 150.0, 20.0, 6.0, STEP_S).gear == 0.0
-    assert work_gearbox(CAR.gears, box, request._replace(gear=4.0), 150.0, 20.0, 6.0, STEP_S).gear == 4.0
+    assert gearbox_step(CAR.gears, box, request, 150.0, 20.0, 6.0, STEP_S).gear == 0.0
+    assert gearbox_step(CAR.gears, box, request._replace(gear=4.0), 150.0, 20.0, 6.0, STEP_S).gear == 4.0
 
 
 def test_automatic_taking_over_in_neutral_at_speed_finds_the_gear() -> None:
     box = Gearbox(0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0)
     request = Request(0.0, 0.3, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0)
-    shifting = work_gearbox(CAR.gears, box, request, 84.0, 25.0 / 0.306, 25.0, STEP_S)
+    shifting = gearbox_step(CAR.gears, box, request, 84.0, 25.0 / 0.306, 25.0, STEP_S)
     assert shifting.wanted_gear == 4.0, "3065 rpm, where fifth would have 2460 and third 4040"
     assert shifting.lever_adopted == 0.0
 
@@ -214,7 +215,7 @@ def turned(command: float, ticks: int, start: float = 0.0, moment: float = 0.0, 
     settings = CAR.steering._replace(friction_rad=friction)
     for _ in range(ticks):
         angle = rack.road_wheel_rad + STEP_S * rack.road_wheel_radps
-        rack = SteeringState(angle, steer(settings, rack._replace(road_wheel_rad=angle), command, moment), 0.0)
+        rack = SteeringState(angle, rack_rate(settings, rack._replace(road_wheel_rad=angle), command, moment), 0.0)
     return rack.road_wheel_rad
 
 
@@ -232,7 +233,7 @@ def test_friction_holds_the_rack_and_tyres_bend_it() -> None:
 
 
 def test_inner_wheel_turns_further() -> None:
-    points = heading(CAR.steering._replace(ackermann=0.5 * 1.53 / 2.6), 0.4)
+    points = wheel_directions(CAR.steering._replace(ackermann=0.5 * 1.53 / 2.6), 0.4)
     inner, outer = (math.atan2(points.left_sin, points.left_cos), math.atan2(points.right_sin, points.right_cos))
     assert inner > 0.4 > outer
     assert 1.0 / math.tan(outer) - 1.0 / math.tan(inner) == pytest.approx(1.53 / 2.6)
@@ -253,7 +254,7 @@ def test_moment_of_the_tyres_centres_and_fades_before_the_force_does() -> None:
 def test_torque_at_the_rim_is_odd_and_bends_towards_its_most() -> None:
     for moment in (10.0, 100.0, 1000.0):
         torque = hand_wheel_torque(CAR.steering, moment, 0.0, 20.0)
-        assert 0.0 < torque < 1.0 / CAR.steering.per_hand_torque_most_pnm
+        assert 0.0 < torque < 1.0 / CAR.steering.per_hand_torque_most_nm
         assert torque == -hand_wheel_torque(CAR.steering, -moment, 0.0, 20.0)
         assert torque > hand_wheel_torque(CAR.steering, moment, 0.0, 0.0)
         assert torque > hand_wheel_torque(CAR.steering, moment, 0.1, 20.0), "friction and damping oppose the turning"
@@ -273,4 +274,4 @@ def test_columns_are_the_groups_one_after_the_other() -> None:
         prefix = f"{name}_" if group is Wheel else ""
         names += [prefix + field for field in group._fields]
     assert tuple(names) == CarState._fields
-    assert (len(names), AID_WIDTH) == (CAR_WIDTH, 4)
+    assert len(names) == COLUMNS.width

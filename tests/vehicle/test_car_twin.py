@@ -17,7 +17,7 @@ from simconsole.values.host.jit import _cached, _twin, compiled
 from simconsole.values.kernels import Row, put
 from simconsole.values.platform import Ground, Platform
 from simconsole.values.signals import VehicleCommand
-from simconsole.values.state_vector import COMMAND_AT, PLATFORM_AT, VEHICLE_AT
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT
 from simconsole.vehicle.car.state import CarState
 from tests.vehicle.driving import IDLE, Drive, platform
 
@@ -70,7 +70,7 @@ def rows(
     put(previous, PLATFORM_AT, start)
     for command in given:
         row = np.zeros_like(previous)
-        put(row, COMMAND_AT, command)
+        put(row, LAYOUT.command.start, command)
         step(previous, row, vehicle.parameters, substeps)
         yield row
         previous = row
@@ -149,4 +149,4 @@ def test_tick_rate_does_not_change_the_physics() -> None:
     repeated = (command for command in commands(SEED, 1500) for _ in range(4))
     fine = list(rows(vehicle, compiled(vehicle.step), repeated, 1))
     for row, same in zip(coarse, fine[3::4], strict=True):
-        assert row[VEHICLE_AT:].tobytes() == same[VEHICLE_AT:].tobytes()
+        assert row[LAYOUT.vehicle.start :].tobytes() == same[LAYOUT.vehicle.start :].tobytes()

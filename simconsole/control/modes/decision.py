@@ -1,6 +1,6 @@
 """The mode of this tick, and why: guards, the mode table, refusals shown for a while."""
 
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 from simconsole.control.modes.engage import GRANTED, engage_refusal
 from simconsole.control.modes.mode_table import outcome, reason_of
@@ -17,19 +17,9 @@ from simconsole.control.modes.triggers import (
 from simconsole.control.requests.commander import Controllers
 from simconsole.control.requests.control_settings import ControlSettings
 from simconsole.control.requests.person import Person
-from simconsole.control.requests.tick_context import Moment
+from simconsole.control.requests.tick_context import TickContext
 from simconsole.values.kernels import kernel
 from simconsole.values.signals import Mode, Reason
-
-_SHARED: Final = float(Mode.SHARED)
-_AUTONOMOUS: Final = float(Mode.AUTONOMOUS)
-_TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)
-_PERSON_ASKED: Final = float(Reason.PERSON_ASKED)
-_REMOTE_ASKED: Final = float(Reason.REMOTE_ASKED)
-_DEVICE_LOST: Final = float(Reason.DEVICE_LOST)
-_OPERATOR_ASKED: Final = float(Reason.OPERATOR_ASKED)
-_REFUSED_IMPLAUSIBLE: Final = float(Reason.REFUSED_IMPLAUSIBLE)
-_REFUSED_NOT_COMMANDER: Final = float(Reason.REFUSED_NOT_COMMANDER)
 
 
 class Decision(NamedTuple):
@@ -44,7 +34,7 @@ class Decision(NamedTuple):
 
 
 @kernel
-def decide(now: Moment, person: Person, controllers: Controllers, steering: bool, standing: bool) -> Decision:
+def decide(now: TickContext, person: Person, controllers: Controllers, steering: bool, standing: bool) -> Decision:
     """Decide the mode of this tick.
 
     Args:
@@ -71,46 +61,63 @@ def decide(now: Moment, person: Person, controllers: Controllers, steering: bool
         settings,
     )
     shared = engage if engage != GRANTED else manual
-    waited = mode == _TAKEOVER_REQUESTED and now.memory.mode_ticks + 1.0 >= settings.minimal_risk_ticks
+    waited = mode == Mode.TAKEOVER_REQUESTED and now.memory.mode_ticks + 1.0 >= settings.minimal_risk_ticks
     # A lost cockpit that is back ends the wait, not the request: autonomy is only ever granted by an act.
-    no_reaction = waited and not (now.before.reason == _DEVICE_LOST and person.trusted > 0.0)
+    no_reaction = waited and not (now.before.reason == Reason.DEVICE_LOST and person.trusted > 0.0)
     present = person_triggers(mode, person, steering, settings)
     present |= fault_triggers(link, controllers.events, no_reaction, standing)
     present |= asked_triggers(asked, manual, reset, engage, shared)
     after, trigger = outcome(mode, present)
     refusal = refusal_of(mode, after, asked, manual, reset, engage, shared)
     if refusal == GRANTED and controllers.unheard:
-        refusal = _REFUSED_NOT_COMMANDER
+        refusal = Reason.REFUSED_NOT_COMMANDER
     if trigger >= 0:
-        return Decision(after, _reason(after, trigger, asked), 1.0, refusal, 0.0, 1.0)
+        return Decision(
+            mode=after,
+            reason=_reason(after, trigger, asked),
+            changed=1.0,
+            refusal=refusal,
+            refusal_ticks=0.0,
+            wait_begins=1.0,
+        )
     reason = now.before.reason
     wait_begins = 0.0
-    if mode == _TAKEOVER_REQUESTED and asked.takeover > 0.0:
+    if mode == Mode.TAKEOVER_REQUESTED and asked.takeover > 0.0:
         # Asked for again, by somebody: then the request does not end with the cause that it had first. Where that was a
         # lost cockpit that is back by now, nobody is waited for any more: the new request begins a wait of its own.
-        wait_begins = 1.0 if reason == _DEVICE_LOST and person.trusted > 0.0 else 0.0
-        reason = _REMOTE_ASKED
-    if refusal == GRANTED and link.implausible_ticks > 0.0 and mode in (_SHARED, _AUTONOMOUS, _TAKEOVER_REQUESTED):
-        refusal = _REFUSED_IMPLAUSIBLE
+        wait_begins = 1.0 if reason == Reason.DEVICE_LOST and person.trusted > 0.0 else 0.0
+        reason = Reason.REMOTE_ASKED
+    driven = mode in (Mode.SHARED, Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED)
+    if refusal == GRANTED and link.implausible_ticks > 0.0 and driven:
+        refusal = Reason.REFUSED_IMPLAUSIBLE
     if refusal != GRANTED:
-        return Decision(mode, reason, 0.0, refusal, 0.0, wait_begins)
+        return Decision(
+            mode=mode, reason=reason, changed=0.0, refusal=refusal, refusal_ticks=0.0, wait_begins=wait_begins
+        )
     shown = now.memory.refusal_ticks + 1.0 < settings.refusal_ticks
     if now.before.refusal != GRANTED and shown:
-        return Decision(mode, reason, 0.0, now.before.refusal, now.memory.refusal_ticks + 1.0, wait_begins)
-    return Decision(mode, reason, 0.0, GRANTED, 0.0, wait_begins)
+        return Decision(
+            mode=mode,
+            reason=reason,
+            changed=0.0,
+            refusal=now.before.refusal,
+            refusal_ticks=now.memory.refusal_ticks + 1.0,
+            wait_begins=wait_begins,
+        )
+    return Decision(mode=mode, reason=reason, changed=0.0, refusal=GRANTED, refusal_ticks=0.0, wait_begins=wait_begins)
 
 
 @kernel
 def _reason(after: float, trigger: int, asked: Asked) -> float:
-    if after == _TAKEOVER_REQUESTED and asked.takeover > 0.0:
-        return _REMOTE_ASKED  # whatever was lost in the same tick: the request stays when that is back
+    if after == Mode.TAKEOVER_REQUESTED and asked.takeover > 0.0:
+        return Reason.REMOTE_ASKED  # whatever was lost in the same tick: the request stays when that is back
     reason = reason_of(trigger)
-    return _OPERATOR_ASKED if reason == _PERSON_ASKED and asked.by_person == 0.0 else reason
+    return Reason.OPERATOR_ASKED if reason == Reason.PERSON_ASKED and asked.by_person == 0.0 else reason
 
 
 @kernel
 def takeover_stage(mode: float, mode_ticks: float, settings: ControlSettings) -> float:
     """Return how urgently the person is asked to take over: 0 not, 1 asked, 2 escalated."""
-    if mode != _TAKEOVER_REQUESTED:
+    if mode != Mode.TAKEOVER_REQUESTED:
         return 0.0
     return 2.0 if mode_ticks >= settings.escalation_ticks else 1.0

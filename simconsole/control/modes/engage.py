@@ -7,21 +7,7 @@ from simconsole.control.requests.person import Person
 from simconsole.values.kernels import kernel
 from simconsole.values.signals import Link, Mode, Reason, RemoteCommand, RemoteKind, VehicleState
 
-_PARKED: Final = float(Mode.PARKED)
-_MANUAL: Final = float(Mode.MANUAL)
-_SHARED: Final = float(Mode.SHARED)
-_AUTONOMOUS: Final = float(Mode.AUTONOMOUS)
-_SPEED: Final = float(RemoteKind.SPEED)
-_TWIST: Final = float(RemoteKind.TWIST)
-
 GRANTED: Final = 0.0
-_NO_COMMAND: Final = float(Reason.REFUSED_NO_COMMAND)
-_NOT_STABLE: Final = float(Reason.REFUSED_NOT_STABLE)
-_BRAKE: Final = float(Reason.REFUSED_BRAKE_PRESSED)
-_TOO_FAST: Final = float(Reason.REFUSED_TOO_FAST)
-_LATERAL: Final = float(Reason.REFUSED_LATERAL_ACCELERATION)
-_NOT_ARMED: Final = float(Reason.REFUSED_NOT_ARMED)
-_DEVIATION: Final = float(Reason.REFUSED_DEVIATION)
 
 
 @kernel
@@ -48,23 +34,23 @@ def engage_refusal(
         settings: Limits.
     """
     if settings.person_required > 0.0 and person.trusted == 0.0:
-        return _NOT_ARMED
+        return Reason.REFUSED_NOT_ARMED
     if link.fresh == 0.0 or link.invalid > 0.0:
-        return _NO_COMMAND
-    well = mode in (_PARKED, _MANUAL, _SHARED, _AUTONOMOUS)
+        return Reason.REFUSED_NO_COMMAND
+    well = mode in (Mode.PARKED, Mode.MANUAL, Mode.SHARED, Mode.AUTONOMOUS)
     if link.fresh_ticks < (settings.engage_stable_ticks if well else settings.reengage_stable_ticks):
-        return _NOT_STABLE
+        return Reason.REFUSED_NOT_STABLE
     if person.brake >= settings.brake_override:
-        return _BRAKE
+        return Reason.REFUSED_BRAKE_PRESSED
     if not abs(vehicle.vx_mps) <= settings.engage_speed_max_mps:
-        return _TOO_FAST
+        return Reason.REFUSED_TOO_FAST
     if not abs(vehicle.ay_mps2) <= settings.engage_lateral_accel_mps2:
-        return _LATERAL
-    speed_commanded = remote.kind in (_SPEED, _TWIST)
+        return Reason.REFUSED_LATERAL_ACCELERATION
+    speed_commanded = remote.kind in (RemoteKind.SPEED, RemoteKind.TWIST)
     if speed_commanded and abs(remote.speed_mps - vehicle.vx_mps) > settings.engage_speed_deviation_mps:
-        return _DEVIATION
+        return Reason.REFUSED_DEVIATION
     if abs(vehicle.vx_mps) < settings.engage_deviation_speed_mps:
         return GRANTED
     if abs(offered_road_wheel_rad - road_wheel_rad) > settings.engage_road_wheel_deviation_rad:
-        return _DEVIATION
+        return Reason.REFUSED_DEVIATION
     return GRANTED

@@ -153,9 +153,6 @@ _TABLE: Final = tuple(tuple(float(REACTIONS[mode].get(trigger, mode)) for trigge
 _REASONS: Final = tuple(float(REASONS[trigger]) for trigger in Trigger)
 _TAKERS: Final = int(Trigger.NO_REACTION) + 1
 """The triggers below this one take authority from automation."""
-_MANUAL_ASKED: Final = int(Trigger.MANUAL_ASKED)
-_PARKED: Final = float(Mode.PARKED)
-_STOPPED: Final = float(Mode.STOPPED)
 
 
 class Outcome(NamedTuple):
@@ -194,7 +191,7 @@ def takes(mode: float, trigger: int) -> bool:
 
     Manual control that is asked for in a car that stands parked or stopped takes nothing: it is a step towards driving.
     """
-    if trigger == _MANUAL_ASKED and (mode in (_PARKED, _STOPPED)):
+    if trigger == Trigger.MANUAL_ASKED and mode in (Mode.PARKED, Mode.STOPPED):
         return False
     return trigger < _TAKERS and reacts(mode, trigger)
 

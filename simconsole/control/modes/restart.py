@@ -11,25 +11,13 @@ from typing import Final, NamedTuple
 
 from simconsole.control.requests.control_settings import ControlSettings
 from simconsole.control.requests.person import Person, mask
-from simconsole.control.requests.stops import slow
-from simconsole.control.requests.tick_context import Moment
+from simconsole.control.requests.stops import stands
+from simconsole.control.requests.tick_context import TickContext
 from simconsole.values.kernels import kernel
 from simconsole.values.signals import Button, DriverInput, Event, Mode, Notice, Reason
 
 NOT_ASKED: Final = -1.0
 GRANTED: Final = 0.0
-
-_EVENT: Final = int(Event.RESTART)
-_EVENT_EMERGENCY: Final = int(Event.EMERGENCY_STOP)
-_BUTTON: Final = int(Button.RESTART)
-_BUTTON_EMERGENCY: Final = int(Button.EMERGENCY_STOP)
-_EMERGENCY_STOP: Final = float(Mode.EMERGENCY_STOP)
-_REFUSED_EMERGENCY: Final = float(Reason.REFUSED_EMERGENCY)
-_REFUSED_WHEEL: Final = float(Reason.REFUSED_WHEEL_NOT_CENTRED)
-_REFUSED_PEDAL: Final = float(Reason.REFUSED_PEDAL_PRESSED)
-_CENTRING_WHEEL: Final = float(Notice.CENTRING_WHEEL)
-_CENTRE_WHEEL: Final = float(Notice.CENTRE_WHEEL)
-_RELEASE_PEDALS: Final = float(Notice.RELEASE_PEDALS)
 
 
 class Restart(NamedTuple):
@@ -42,24 +30,24 @@ class Restart(NamedTuple):
 
 
 @kernel
-def restart_of(now: Moment, person: Person) -> Restart:
+def restart_of(now: TickContext, person: Person) -> Restart:
     """Grant a restart, refuse it, or let it wait, at most for the profile's time."""
     waited = now.memory.restart_ticks
     events = mask(now.events.events)
     if waited > 0.0:
-        events |= _EVENT
+        events |= Event.RESTART
     hindrance = restart_refusal(now.before.mode, now.driver, person, events, now.settings)
     if hindrance == NOT_ASKED:
         return Restart(0.0, 0.0, 0.0, 0.0)
     if hindrance == GRANTED:
         return Restart(0.0, 1.0, 0.0, 0.0)
     centred = abs(now.driver.hand_wheel_rad) <= now.settings.restart_wheel_rad
-    stays = slow(now.vehicle, now.settings) or (centred and waited > 0.0)
-    if hindrance == _REFUSED_EMERGENCY or not stays or waited >= now.settings.restart_wait_ticks:
+    stays = stands(now.vehicle, now.settings) or (centred and waited > 0.0)
+    if hindrance == Reason.REFUSED_EMERGENCY or not stays or waited >= now.settings.restart_wait_ticks:
         return Restart(0.0, 0.0, hindrance, 0.0)
-    notice = _RELEASE_PEDALS
+    notice = Notice.RELEASE_PEDALS
     if not centred:
-        notice = _CENTRING_WHEEL if now.wheel_motor > 0.0 else _CENTRE_WHEEL
+        notice = Notice.CENTRING_WHEEL if now.wheel_motor > 0.0 else Notice.CENTRE_WHEEL
     return Restart(waited + 1.0, 0.0, 0.0, notice)
 
 
@@ -74,14 +62,15 @@ def restart_refusal(mode: float, driver: DriverInput, person: Person, events: in
         events: Mask of `Event`.
         settings: How far off the centre a centred wheel may be.
     """
-    if events & _EVENT == 0 and mask(driver.edges) & _BUTTON == 0:
+    if events & Event.RESTART == 0 and mask(driver.edges) & Button.RESTART == 0:
         return NOT_ASKED
-    if mode == _EMERGENCY_STOP or events & _EVENT_EMERGENCY != 0 or mask(driver.pressed) & _BUTTON_EMERGENCY != 0:
-        return _REFUSED_EMERGENCY
+    stop = events & Event.EMERGENCY_STOP != 0 or mask(driver.pressed) & Button.EMERGENCY_STOP != 0
+    if mode == Mode.EMERGENCY_STOP or stop:
+        return Reason.REFUSED_EMERGENCY
     if person.trusted == 0.0:
         return GRANTED
     if person.throttle >= settings.throttle_override or person.brake >= settings.brake_override:
-        return _REFUSED_PEDAL
+        return Reason.REFUSED_PEDAL_PRESSED
     if not driver.clutch < settings.throttle_override:
-        return _REFUSED_PEDAL
-    return GRANTED if abs(driver.hand_wheel_rad) <= settings.restart_wheel_rad else _REFUSED_WHEEL
+        return Reason.REFUSED_PEDAL_PRESSED
+    return GRANTED if abs(driver.hand_wheel_rad) <= settings.restart_wheel_rad else Reason.REFUSED_WHEEL_NOT_CENTRED

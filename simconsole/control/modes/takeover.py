@@ -13,8 +13,6 @@ from simconsole.values.kernels import kernel
 from simconsole.values.signals import Mode
 
 _UNREFERENCED: Final = -1.0
-_AUTONOMOUS: Final = float(Mode.AUTONOMOUS)
-_TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)
 
 
 class WheelWatch(NamedTuple):
@@ -72,4 +70,4 @@ def throttle_overrides(before: float, throttle: float, settings: ControlSettings
 @kernel
 def throttle_held(before_ticks: float, override: float, mode: float) -> float:
     """Return for how many ticks the accelerator has overridden a controller that drives; 0 while it does not."""
-    return before_ticks + 1.0 if override > 0.0 and mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED) else 0.0
+    return before_ticks + 1.0 if override > 0.0 and mode in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED) else 0.0

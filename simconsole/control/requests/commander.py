@@ -16,18 +16,9 @@ from simconsole.control.requests.control_settings import ControlSettings
 from simconsole.control.requests.link import watch_link
 from simconsole.control.requests.person import mask
 from simconsole.control.requests.remote import RemoteRequest, command_finite, remote_request
-from simconsole.control.requests.tick_context import Moment
+from simconsole.control.requests.tick_context import TickContext
 from simconsole.values.kernels import kernel
 from simconsole.values.signals import Arbitration, Commander, Event, EventInput, Link, Mode, RemoteCommand
-
-NOBODY: Final = float(Commander.NOBODY)
-ROS: Final = float(Commander.ROS)
-ECU: Final = float(Commander.ECU)
-
-_SHARED: Final = float(Mode.SHARED)
-_AUTONOMOUS: Final = float(Mode.AUTONOMOUS)
-_TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)
-_MINIMAL_RISK: Final = float(Mode.MINIMAL_RISK)
 
 _OF_THE_LINK: Final = int(Event.COMMANDER_LOST | Event.NO_ANSWER)
 _ALWAYS: Final = int(Event.EMERGENCY_STOP | Event.MARK)
@@ -52,31 +43,31 @@ class Controllers(NamedTuple):
 
 
 @kernel
-def look(now: Moment) -> Controllers:
+def assess(now: TickContext) -> Controllers:
     """Look at both controllers, by the same rules, and say which of them commands."""
     ros_link = watch_link(now.ros, now.ros_before, now.ros_age_before_ticks, now.vehicle, now.settings)
     ecu_link = watch_link(now.ecu, now.ecu_before, now.ecu_age_before_ticks, now.vehicle, now.settings)
     commander = commander_of(now.before, ros_link, ecu_link, now.settings)
-    by_ecu = commander == ECU
+    by_ecu = commander == Commander.ECU
     integral_mps2 = now.memory.speed_integral_mps2
     ros_offered = _offered(now.ros, ros_link, 0.0 if by_ecu else integral_mps2, now)
     ecu_offered = _offered(now.ecu, ecu_link, integral_mps2 if by_ecu else 0.0, now)
     return Controllers(
-        commander,
-        ros_link,
-        ecu_link,
-        ros_offered,
-        ecu_offered,
-        now.ecu if by_ecu else now.ros,
-        ecu_link if by_ecu else ros_link,
-        ecu_offered if by_ecu else ros_offered,
-        events_of(now.events, commander),
-        ecu_unheard(now.events, commander),
+        commander=commander,
+        ros_link=ros_link,
+        ecu_link=ecu_link,
+        ros_offered=ros_offered,
+        ecu_offered=ecu_offered,
+        remote=now.ecu if by_ecu else now.ros,
+        link=ecu_link if by_ecu else ros_link,
+        offered=ecu_offered if by_ecu else ros_offered,
+        events=events_of(now.events, commander),
+        unheard=ecu_unheard(now.events, commander),
     )
 
 
 @kernel
-def _offered(command: RemoteCommand, link: Link, integral_mps2: float, now: Moment) -> RemoteRequest:
+def _offered(command: RemoteCommand, link: Link, integral_mps2: float, now: TickContext) -> RemoteRequest:
     """Return what a controller asks for.
 
     A command that steers as it cannot be meant is refused whole: what is in force is held, except that it may slow the
@@ -89,7 +80,7 @@ def _offered(command: RemoteCommand, link: Link, integral_mps2: float, now: Mome
     if link.implausible_ticks == 0.0:
         return asked
     throttle, brake = now.command_before.throttle, now.command_before.brake
-    if now.before.mode == _SHARED:  # its own part: what is in force is the person's, too
+    if now.before.mode == Mode.SHARED:  # its own part: what is in force is the person's, too
         held_rad = now.before.remote_road_wheel_rad
         throttle, brake = now.before.remote_throttle, now.before.remote_brake
     direction = now.command_before.gear if now.command_before.automatic > 0.0 else asked.direction
@@ -112,15 +103,16 @@ def commander_of(before: Arbitration, ros: Link, ecu: Link, settings: ControlSet
         ecu: The ECU in this tick.
         settings: Whose commands are preferred.
     """
-    if before.commander != NOBODY and before.mode in (_SHARED, _AUTONOMOUS, _TAKEOVER_REQUESTED, _MINIMAL_RISK):
+    driven = before.mode in (Mode.SHARED, Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED, Mode.MINIMAL_RISK)
+    if driven and before.commander != Commander.NOBODY:
         return before.commander
     by_ros = ros.lease_ticks > 0.0
     by_ecu = ecu.lease_ticks > 0.0
     if by_ros and by_ecu:
         return settings.preferred_commander
     if by_ros:
-        return ROS
-    return ECU if by_ecu else NOBODY
+        return Commander.ROS
+    return Commander.ECU if by_ecu else Commander.NOBODY
 
 
 @kernel
@@ -128,7 +120,7 @@ def events_of(events: EventInput, commander: float) -> int:
     """Return the edges that count, as a mask of `Event`: a link that does not command cannot be lost."""
     ros = mask(events.events)
     ecu = mask(events.ecu_events)
-    if commander == ECU:
+    if commander == Commander.ECU:
         return (ros & ~_OF_THE_LINK) | ecu
     return ros | (ecu & _ALWAYS)
 
@@ -136,4 +128,4 @@ def events_of(events: EventInput, commander: float) -> int:
 @kernel
 def ecu_unheard(events: EventInput, commander: float) -> bool:
     """Return whether the ECU asked for something that does not count because it does not command."""
-    return commander != ECU and mask(events.ecu_events) & _ASKS != 0
+    return commander != Commander.ECU and mask(events.ecu_events) & _ASKS != 0

@@ -8,11 +8,6 @@ from simconsole.values.kernels import kernel
 from simconsole.values.signals import Link, LinkState, RemoteCommand, VehicleState
 
 _MANY: Final = 1e9
-_NEVER: Final = float(LinkState.NEVER)
-_UNSTEADY: Final = float(LinkState.UNSTEADY)
-_STEADY: Final = float(LinkState.STEADY)
-_STALE: Final = float(LinkState.STALE)
-_INVALID: Final = float(LinkState.INVALID)
 
 
 @kernel
@@ -33,7 +28,7 @@ def watch_link(
     """
     lease = before.lease_ticks - 1.0 if before.lease_ticks > 0.0 else 0.0
     if not command_finite(remote):
-        return _spoilt(before, lease)
+        return _not_finite(before, lease)
     refused = remote.refused - before.refused_seen
     if refused < 0.0:
         refused = 0.0
@@ -74,7 +69,7 @@ def watch_link(
 
 
 @kernel
-def _spoilt(before: Link, lease_ticks: float) -> Link:
+def _not_finite(before: Link, lease_ticks: float) -> Link:
     """Return the link after a command that is not finite: invalid, and nothing of the command is remembered."""
     return Link(
         sequence_seen=before.sequence_seen,
@@ -84,7 +79,7 @@ def _spoilt(before: Link, lease_ticks: float) -> Link:
         fresh=0.0,
         invalid=1.0,
         lease_ticks=lease_ticks,
-        state=_INVALID,
+        state=LinkState.INVALID,
         implausible=before.implausible,
         implausible_ticks=0.0,
     )
@@ -101,7 +96,7 @@ def _plausible_age(before: Link, age_before_ticks: float, settings: ControlSetti
 @kernel
 def _state(sequence: float, fresh: bool, invalid: bool, steady: bool) -> float:
     if invalid:
-        return _INVALID
+        return LinkState.INVALID
     if not fresh:
-        return _STALE if sequence > 0.0 else _NEVER
-    return _STEADY if steady else _UNSTEADY
+        return LinkState.STALE if sequence > 0.0 else LinkState.NEVER
+    return LinkState.STEADY if steady else LinkState.UNSTEADY

@@ -22,7 +22,7 @@ class Pedals(NamedTuple):
 
 
 @kernel
-def known(value: float, otherwise: float) -> float:
+def finite_or(value: float, otherwise: float) -> float:
     """Return `value` if it is finite, else `otherwise`."""
     return value if is_finite(value) else otherwise
 
@@ -33,9 +33,9 @@ def pedals_for(accel_mps2: float, travel: float, vehicle: VehicleState, settings
 
     Where the vehicle's own figures are missing, contradictory or not finite, the nominal ones of the profile serve.
     """
-    coast = clip(known(travel * vehicle.coast_accel_mps2, 0.0), -_MOST_MPS2, _MOST_MPS2)
+    coast = clip(finite_or(travel * vehicle.coast_accel_mps2, 0.0), -_MOST_MPS2, _MOST_MPS2)
     if accel_mps2 > coast:
-        full = known(travel * vehicle.full_throttle_accel_mps2, coast)
+        full = finite_or(travel * vehicle.full_throttle_accel_mps2, coast)
         span = full - coast
         if span < _LEAST_SPAN_MPS2 or span > _MOST_MPS2:
             span = settings.nominal_throttle_accel_mps2
@@ -48,8 +48,8 @@ def pedals_for(accel_mps2: float, travel: float, vehicle: VehicleState, settings
 @kernel
 def brake_for(accel_mps2: float, travel: float, vehicle: VehicleState, settings: ControlSettings) -> float:
     """Return the brake alone for a finite acceleration along the direction of travel, without the coasting band."""
-    coast = clip(known(travel * vehicle.coast_accel_mps2, 0.0), -_MOST_MPS2, _MOST_MPS2)
-    span = coast - known(travel * vehicle.full_brake_accel_mps2, coast)
+    coast = clip(finite_or(travel * vehicle.coast_accel_mps2, 0.0), -_MOST_MPS2, _MOST_MPS2)
+    span = coast - finite_or(travel * vehicle.full_brake_accel_mps2, coast)
     if span < _LEAST_SPAN_MPS2 or span > _MOST_MPS2:
         span = settings.nominal_brake_accel_mps2
     return clip((coast - accel_mps2) / span, 0.0, 1.0)

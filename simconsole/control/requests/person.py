@@ -41,4 +41,11 @@ def person_of(driver: DriverInput, held_road_wheel_rad: float, settings: Control
     accelerator = driver.throttle if is_finite(driver.throttle) else 0.0
     throttle = 0.0 if brake >= settings.brake_override else accelerator
     trusted = wheel_trusted and pedals_trusted and finite
-    return Person(1.0 if trusted else 0.0, 1.0 if wheel_trusted else 0.0, road_wheel_rad, throttle, brake, accelerator)
+    return Person(
+        trusted=1.0 if trusted else 0.0,
+        wheel_trusted=1.0 if wheel_trusted else 0.0,
+        road_wheel_rad=road_wheel_rad,
+        throttle=throttle,
+        brake=brake,
+        accelerator=accelerator,
+    )

@@ -6,19 +6,13 @@ pid_longitudinal_controller publishes them. A vehicle that rolls the wrong way i
 
 from typing import Final, NamedTuple
 
-from simconsole.control.requests.angles import gentle_angle
+from simconsole.control.requests.angles import limited_angle
 from simconsole.control.requests.control_settings import ControlSettings
-from simconsole.control.requests.longitudinal import Pedals, integrate, known, pedals_for
-from simconsole.control.requests.stops import travel_of
+from simconsole.control.requests.longitudinal import Pedals, finite_or, integrate, pedals_for
+from simconsole.control.requests.stops import travel_direction
 from simconsole.values.kernels import clip, is_finite, kernel
 from simconsole.values.signals import RemoteCommand, RemoteKind, VehicleState
 from simconsole.values.trigonometry import atan
-
-_ACCELERATION: Final = float(RemoteKind.ACCELERATION)
-_SPEED: Final = float(RemoteKind.SPEED)
-_TWIST: Final = float(RemoteKind.TWIST)
-_ACTUATION: Final = float(RemoteKind.ACTUATION)
-_POSE: Final = float(RemoteKind.POSE)
 
 _MOST_MPS: Final = 100.0
 _MOST_MPS2: Final = 20.0
@@ -52,7 +46,7 @@ def command_finite(remote: RemoteCommand) -> bool:
 @kernel
 def known_kind(kind: float) -> bool:
     """Return whether the command's kind is one that can be turned into a request."""
-    return kind in (_ACCELERATION, _SPEED, _TWIST, _ACTUATION, _POSE)
+    return kind in (RemoteKind.ACCELERATION, RemoteKind.SPEED, RemoteKind.TWIST, RemoteKind.ACTUATION, RemoteKind.POSE)
 
 
 @kernel
@@ -63,10 +57,10 @@ def implausible(remote: RemoteCommand, vehicle: VehicleState, settings: ControlS
     plausible at walking pace and a mistake of the sender at speed.
     """
     most_mps2 = settings.implausible_lateral_accel_mps2
-    if remote.kind == _TWIST:
-        speed_mps = clip(known(vehicle.vx_mps, 0.0), -_MOST_MPS, _MOST_MPS)
+    if remote.kind == RemoteKind.TWIST:
+        speed_mps = clip(finite_or(vehicle.vx_mps, 0.0), -_MOST_MPS, _MOST_MPS)
         return abs(speed_mps * remote.yaw_rate_radps) > most_mps2
-    return gentle_angle(remote.road_wheel_rad, most_mps2, vehicle, settings) != remote.road_wheel_rad
+    return limited_angle(remote.road_wheel_rad, most_mps2, vehicle, settings) != remote.road_wheel_rad
 
 
 @kernel
@@ -89,15 +83,15 @@ def remote_request(
         tick_s: Length of a tick in s.
     """
     direction = commanded_direction(remote)
-    if remote.kind == _ACTUATION:
+    if remote.kind == RemoteKind.ACTUATION:
         brake = clip(remote.brake, 0.0, 1.0)
         throttle = 0.0 if brake >= settings.brake_override else clip(remote.throttle, 0.0, 1.0)
         return RemoteRequest(clip(remote.road_wheel_rad, -_MOST_RAD, _MOST_RAD), throttle, brake, direction, 0.0)
-    if remote.kind == _POSE:
+    if remote.kind == RemoteKind.POSE:
         # Targets bypass steering and pedals (control/gate.py): a platform that reads them has neither.
         return RemoteRequest(0.0, 0.0, 0.0, direction, 0.0)
     road_wheel_rad = clip(remote.road_wheel_rad, -_MOST_RAD, _MOST_RAD)
-    if remote.kind == _TWIST:
+    if remote.kind == RemoteKind.TWIST:
         road_wheel_rad = twist_road_wheel(remote.speed_mps, remote.yaw_rate_radps, held_road_wheel_rad, settings)
     pedals, integral = _pedals(remote, direction, integral_mps2, vehicle, settings, tick_s)
     return RemoteRequest(road_wheel_rad, pedals.throttle, pedals.brake, direction, integral)
@@ -108,7 +102,7 @@ def commanded_direction(remote: RemoteCommand) -> float:
     """Return 1 (drive), -1 (reverse: by gear or, for speed and twist, by a negative speed) or 0 (neutral)."""
     if remote.direction == 0.0:
         return 0.0
-    backward = (remote.kind == _SPEED or remote.kind == _TWIST) and remote.speed_mps < 0.0
+    backward = (remote.kind == RemoteKind.SPEED or remote.kind == RemoteKind.TWIST) and remote.speed_mps < 0.0
     return -1.0 if backward or remote.direction < 0.0 else 1.0
 
 
@@ -138,17 +132,17 @@ def _pedals(
     settings: ControlSettings,
     tick_s: float,
 ) -> tuple[Pedals, float]:
-    travel = direction if direction != 0.0 else travel_of(vehicle)
-    along_mps = clip(known(travel * vehicle.vx_mps, 0.0), -_MOST_MPS, _MOST_MPS)
+    travel = direction if direction != 0.0 else travel_direction(vehicle)
+    along_mps = clip(finite_or(travel * vehicle.vx_mps, 0.0), -_MOST_MPS, _MOST_MPS)
     if along_mps < -_WRONG_WAY_MPS:
         return pedals_for(-settings.stop_decel_mps2, -travel, vehicle, settings), 0.0
-    by_speed = remote.kind != _ACCELERATION
+    by_speed = remote.kind != RemoteKind.ACCELERATION
     speed_mps = clip(abs(remote.speed_mps), 0.0, _MOST_MPS)
     stand = speed_mps < _STANDING_MPS if by_speed else remote.accel_mps2 <= 0.0
     if stand and abs(along_mps) < settings.standstill_speed_mps:
         return Pedals(0.0, settings.hold_brake), 0.0
     wanted = clip(remote.accel_mps2, -_MOST_MPS2, _MOST_MPS2)
-    error = wanted - clip(known(travel * vehicle.ax_mps2, wanted), -_MOST_MPS2, _MOST_MPS2)
+    error = wanted - clip(finite_or(travel * vehicle.ax_mps2, wanted), -_MOST_MPS2, _MOST_MPS2)
     free = True
     if by_speed:
         error = settings.speed_gain_per_s * (speed_mps - along_mps)

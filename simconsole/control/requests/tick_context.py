@@ -15,7 +15,7 @@ from simconsole.values.signals import (
 )
 
 
-class Moment(NamedTuple):
+class TickContext(NamedTuple):
     """One tick as arbitration finds it: what comes in, and what the tick before has left."""
 
     driver: DriverInput  # the person, calibrated, in this tick

@@ -20,7 +20,7 @@ from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.values.errors import DeviceError
 from simconsole.values.signals import NO_TORQUE
-from simconsole.values.state_vector import MOTOR_AT, PLATFORM_AT, TORQUE_AT, Snapshot
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT, Snapshot
 from simconsole.values.units import DEG_PER_RAD
 
 TURNED_DEG: Final = 3.0
@@ -189,7 +189,7 @@ class _Bench:
 
     def _step(self, torque_nm: float, enabled: float) -> None:
         row = np.zeros(PLATFORM_AT)
-        row[TORQUE_AT:MOTOR_AT] = NO_TORQUE._replace(torque_nm=torque_nm, ramp=1.0, enabled=enabled)
+        row[LAYOUT.torque.slice] = NO_TORQUE._replace(torque_nm=torque_nm, ramp=1.0, enabled=enabled)
         self._look()
         self.motor.publish(Snapshot(self._ticks, self._tick_hz, row))
         if self.motor.failure is not None:

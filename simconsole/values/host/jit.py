@@ -12,7 +12,9 @@ import shutil
 import sys
 import time
 import types
+from collections import namedtuple
 from collections.abc import Callable, Iterator
+from enum import EnumType, Flag
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -20,7 +22,9 @@ from typing import Any, Final, TypeVar
 
 import numpy as np
 
-from simconsole.values.kernels import forget, is_kernel, take
+from simconsole.values.host import lowering
+from simconsole.values.kernels import forget, is_kernel
+from simconsole.values.layout import Part, read, write
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -55,15 +59,16 @@ def digest(function: Callable[..., Any]) -> str:
         TypeError: it uses a global that is neither a kernel nor a constant.
     """
     text = hashlib.sha256(f"{function.__module__}.{function.__qualname__}{sys.version}".encode())
-    text.update(Path(__file__).read_bytes())
+    for source in (__file__, lowering.__file__):
+        text.update(Path(source).read_bytes())
     text.update(repr(function.__defaults__).encode())
     text.update(repr([(name, _type_stamp(kind)) for name, kind in function.__annotations__.items()]).encode())
     for code in _codes(function.__code__):
         text.update(code.co_code)
         text.update(repr([c for c in code.co_consts if not isinstance(c, types.CodeType)]).encode())
         text.update(repr((code.co_names, code.co_varnames)).encode())
-    for name in _global_names(function):
-        text.update(f"{name}={_stamp(function.__globals__[name], function)};".encode())
+    for name, value in sorted(_used(function).items()):
+        text.update(f"{name}={_stamp(value, function)};".encode())
     return text.hexdigest()[:16]
 
 
@@ -74,24 +79,35 @@ def _codes(code: types.CodeType) -> Iterator[types.CodeType]:
             yield from _codes(constant)
 
 
-def _global_names(function: Callable[..., Any]) -> list[str]:
+def _used(function: Callable[..., Any]) -> dict[str, Any]:
+    """Return what a function uses from around it, by name: globals, and variables of the function that made it."""
     instructions = (step for code in _codes(function.__code__) for step in dis.get_instructions(code))
-    used = {step.argval for step in instructions if step.opname == "LOAD_GLOBAL"}
-    return sorted(used & function.__globals__.keys())
+    names = {step.argval for step in instructions if step.opname == "LOAD_GLOBAL"}
+    used = {name: function.__globals__[name] for name in names & function.__globals__.keys()}
+    return used | _enclosed(function)
+
+
+def _enclosed(function: Callable[..., Any]) -> dict[str, Any]:
+    cells = function.__closure__ or ()
+    return {name: cell.cell_contents for name, cell in zip(function.__code__.co_freevars, cells, strict=True)}
 
 
 def _stamp(value: object, user: Callable[..., Any]) -> str:
-    """Return text that identifies the value of a global, the same in every process."""
-    if value is user or value is take or value is forget:
+    """Return text that identifies a value from around a kernel, the same in every process."""
+    if value is user or value is forget or value is read or value is write:
         return "itself"
     if is_kernel(value):
         return digest(value)
     if isinstance(value, bool | int | float | str | None):
         return repr(value)
+    if isinstance(value, Part):
+        return f"{value.start}{value.names}{_stamp(value.record, user)}"
     if isinstance(value, tuple):
         return f"({','.join(_stamp(item, user) for item in value)})"
     if isinstance(value, np.ndarray):
         return f"{value.dtype}{value.shape}{hashlib.sha256(value.tobytes()).hexdigest()}"
+    if isinstance(value, EnumType):
+        return f"{value.__name__}{_numbers(value)}"
     if isinstance(value, type):
         return _type_stamp(value)
     if isinstance(value, types.ModuleType | types.BuiltinFunctionType):
@@ -137,7 +153,8 @@ def _cached(twin: types.FunctionType, name: str, **options: bool) -> Any:
     """Return a dispatcher whose machine code is kept in the cache folder of this name.
 
     numba keys its cache by path, content and line of the source file too; the empty file in the folder takes its place,
-    so that the digest alone decides, and an installation finds what a checkout compiled.
+    so that the digest alone decides, and an installation finds what a checkout compiled. It would also key by the bytes
+    of enclosed values: those of a dispatcher are others in every process.
     """
     numba = _numba()
     folder = _own_folder(name)
@@ -145,7 +162,9 @@ def _cached(twin: types.FunctionType, name: str, **options: bool) -> Any:
     source.touch()
     twin.__code__ = twin.__code__.replace(co_filename=str(source), co_firstlineno=1)
     numba.config.CACHE_DIR = str(folder)
-    return numba.njit(cache=True, fastmath=False, error_model="numpy", **options)(twin)
+    dispatcher = numba.njit(cache=True, fastmath=False, error_model="numpy", **options)(twin)
+    dispatcher._cache._index_key = lambda signature, codegen: (signature, codegen.magic_tuple())
+    return dispatcher
 
 
 @cache
@@ -154,18 +173,32 @@ def _inner(function: Callable[..., Any]) -> Any:
 
 
 def _twin(function: Callable[..., Any]) -> types.FunctionType:
-    """Return a copy of a kernel in which the kernels that it calls are dispatchers."""
+    """Return a copy of a kernel that uses dispatchers for kernels, and numbers for members of enumerations."""
     if not is_kernel(function):
         raise TypeError(f"{function.__qualname__} is not a kernel")
-    namespace = dict(function.__globals__)
-    for name in _global_names(function):
-        value = namespace[name]
-        if is_kernel(value) and value is not function:
-            namespace[name] = _inner(value)
-    twin = types.FunctionType(function.__code__, namespace, function.__name__, function.__defaults__)
+    used = {name: _for_numba(value) if value is not function else value for name, value in _used(function).items()}
+    cells = tuple(types.CellType(used[name]) for name in function.__code__.co_freevars)
+    twin = types.FunctionType(
+        function.__code__, {**function.__globals__, **used}, function.__name__, function.__defaults__, cells
+    )
     twin.__module__ = function.__module__
     twin.__qualname__ = function.__qualname__
     return twin
+
+
+def _for_numba(value: Any) -> Any:
+    if is_kernel(value):
+        return _inner(value)
+    return _numbers(value) if isinstance(value, EnumType) else value
+
+
+@cache
+def _numbers(codes: EnumType) -> Any:
+    """Return the members of an enumeration as rows hold them: floats, of a mask ints."""
+    number = int if issubclass(codes, Flag) else float
+    names: Any = codes.__members__
+    members = {name: number(member) for name, member in names.items()}
+    return namedtuple(codes.__name__, members)(**members)
 
 
 def _own_folder(name: str) -> Path:
@@ -195,49 +228,5 @@ def _prune(base: Path) -> None:
 @cache
 def _numba() -> Any:
     numba: Any = import_module("numba")
-    _lower_take()
-    _lower_forget()
+    lowering.teach()
     return numba
-
-
-def _lower_take() -> None:
-    """Teach numba `kernels.take`: plain loads into a tuple, which compile faster than a generic slice."""
-    types: Any = import_module("numba.core.types")
-    cgutils: Any = import_module("numba.core.cgutils")
-    extending: Any = import_module("numba.extending")
-
-    def typing(_context: Any) -> Any:
-        def typer(row: Any, start: Any, count: Any) -> Any:
-            vector = isinstance(row, types.Array) and row.ndim == 1 and row.layout == "C"
-            if vector and isinstance(start, types.Integer) and isinstance(count, types.IntegerLiteral):
-                return types.UniTuple(row.dtype, count.literal_value)
-            return None  # numba then says that no such call is known
-
-        return typer
-
-    def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        row, start, _ = signature.args
-        data = context.make_array(row)(context, builder, arguments[0]).data
-        first = context.cast(builder, arguments[1], start, types.intp)
-        values = []
-        for index in range(signature.return_type.count):
-            at = builder.add(first, context.get_constant(types.intp, index))
-            values.append(context.unpack_value(builder, row.dtype, cgutils.gep(builder, data, at)))
-        return context.make_tuple(builder, signature.return_type, values)
-
-    extending.type_callable(take)(typing)
-    extending.lower_builtin(take, types.Array, types.Integer, types.IntegerLiteral)(lower)
-
-
-def _lower_forget() -> None:
-    """Teach numba `kernels.forget`: an empty instruction of which the compiler believes that it changes memory."""
-    types: Any = import_module("numba.core.types")
-    extending: Any = import_module("numba.extending")
-    ir: Any = import_module("llvmlite.ir")
-
-    def lower(context: Any, builder: Any, _signature: Any, _arguments: Any) -> Any:
-        builder.asm(ir.FunctionType(ir.VoidType(), []), "", "~{memory}", [], True)
-        return context.get_dummy_value()
-
-    extending.type_callable(forget)(lambda _context: lambda: types.none)
-    extending.lower_builtin(forget)(lower)

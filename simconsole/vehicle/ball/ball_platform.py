@@ -8,7 +8,7 @@ from simconsole.profiles.vehicle import BallProfile
 from simconsole.values.platform import Ground, Platform, Pose
 from simconsole.values.trigonometry import wrap_angle
 from simconsole.values.units import RAD_PER_DEG, STANDARD_GRAVITY_MPS2
-from simconsole.vehicle.ball.ball_step import BALL_WIDTH, BallParameters, BallState, step, vehicle_state
+from simconsole.vehicle.ball.ball_step import BALL, BallParameters, BallState, step, vehicle_state
 
 ROLLING_SHARE = 5.0 / 7.0
 """Acceleration of a solid sphere rolling down a slope, as a share of a sliding body's (inertia 2/5 m r2)."""
@@ -31,7 +31,7 @@ def build_ball(profile: BallProfile, pose: Pose, ground: Ground) -> Platform:
         gravity_x_mps2=-ROLLING_SHARE * gravity * ground.slope_x,
         gravity_y_mps2=-ROLLING_SHARE * gravity * ground.slope_y,
     )
-    initial = BallState(*(0.0,) * BALL_WIDTH)._replace(x_m=pose.x_m, y_m=pose.y_m, yaw_rad=wrap_angle(pose.yaw_rad))
+    initial = BallState(*(0.0,) * BALL.width)._replace(x_m=pose.x_m, y_m=pose.y_m, yaw_rad=wrap_angle(pose.yaw_rad))
     size = 2.0 * profile.radius_m
     return Platform(
         name="ball",

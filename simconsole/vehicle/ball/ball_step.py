@@ -8,9 +8,10 @@ spin, so a slope moves it with 5/7 of gravity.
 from math import sqrt
 from typing import Final, NamedTuple
 
-from simconsole.values.kernels import Row, approach, clip, is_finite, kernel, put, take
+from simconsole.values.kernels import Row, approach, clip, is_finite, kernel
+from simconsole.values.layout import Part, read, write
 from simconsole.values.signals import VehicleCommand, VehicleState
-from simconsole.values.state_vector import COMMAND_AT, COMMAND_WIDTH, PLATFORM_AT, VEHICLE_AT
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT
 from simconsole.values.trigonometry import atan2, cos, sin, wrap_angle
 
 STEP_S: Final = 0.001
@@ -49,8 +50,8 @@ class BallParameters(NamedTuple):
     gravity_y_mps2: float
 
 
-BALL_WIDTH: Final = len(BallState._fields)
-PARAMETERS_WIDTH: Final = len(BallParameters._fields)
+BALL: Final = Part(BallState, PLATFORM_AT)
+PARAMETERS: Final = Part(BallParameters)
 
 
 class Velocity(NamedTuple):
@@ -63,16 +64,16 @@ class Velocity(NamedTuple):
 @kernel
 def step(previous: Row, row: Row, parameters: Row, substeps: int) -> None:
     """Advance the ball by one tick: the platform interface of vehicle/platform.py."""
-    p = BallParameters(*take(parameters, 0, PARAMETERS_WIDTH))
-    command = VehicleCommand(*take(row, COMMAND_AT, COMMAND_WIDTH))
-    state = BallState(*take(previous, PLATFORM_AT, BALL_WIDTH))
+    p = read(parameters, PARAMETERS)
+    command = read(row, LAYOUT.command)
+    state = read(previous, BALL)
     brake = clip(command.brake, 0.0, 1.0) if is_finite(command.brake) else 0.0
     following = is_finite(command.target_speed_mps) and command.target_speed_mps > 0.0
     following = following and is_finite(command.target_x_m) and is_finite(command.target_y_m)
     for _ in range(substeps):
         state = follow(state, p, command, brake) if following else pushed(state, p, command, brake)
-    put(row, PLATFORM_AT, state)
-    put(row, VEHICLE_AT, vehicle_state(state, p, command.road_wheel_rad))
+    write(row, BALL, state)
+    write(row, LAYOUT.vehicle, vehicle_state(state, p, command.road_wheel_rad))
 
 
 @kernel
@@ -148,16 +149,16 @@ def rolled(s: BallState, p: BallParameters, v: Velocity, turn: float) -> BallSta
     """Return the state after rolling 1 ms with velocity `v` and turning by `turn`."""
     along = v.x_mps * cos(s.yaw_rad) + v.y_mps * sin(s.yaw_rad)
     return BallState(
-        s.x_m + STEP_S * v.x_mps,
-        s.y_m + STEP_S * v.y_mps,
-        wrap_angle(s.yaw_rad + turn),
-        v.x_mps,
-        v.y_mps,
-        turn / STEP_S,
-        s.rolled_rad + STEP_S * along / p.radius_m,
-        (v.x_mps - s.vx_map_mps) / STEP_S,
-        (v.y_mps - s.vy_map_mps) / STEP_S,
-        s.distance_m + STEP_S * sqrt(v.x_mps * v.x_mps + v.y_mps * v.y_mps),
+        x_m=s.x_m + STEP_S * v.x_mps,
+        y_m=s.y_m + STEP_S * v.y_mps,
+        yaw_rad=wrap_angle(s.yaw_rad + turn),
+        vx_map_mps=v.x_mps,
+        vy_map_mps=v.y_mps,
+        yaw_rate_radps=turn / STEP_S,
+        rolled_rad=s.rolled_rad + STEP_S * along / p.radius_m,
+        ax_map_mps2=(v.x_mps - s.vx_map_mps) / STEP_S,
+        ay_map_mps2=(v.y_mps - s.vy_map_mps) / STEP_S,
+        distance_m=s.distance_m + STEP_S * sqrt(v.x_mps * v.x_mps + v.y_mps * v.y_mps),
     )
 
 
@@ -171,26 +172,26 @@ def vehicle_state(s: BallState, p: BallParameters, road_wheel_rad: float) -> Veh
     coast = slope - p.rolling_mps2 * vx / (abs(vx) + ROLLING_MPS)
     angle = clip(road_wheel_rad, -p.max_road_wheel_rad, p.max_road_wheel_rad) if is_finite(road_wheel_rad) else 0.0
     return VehicleState(
-        s.x_m,
-        s.y_m,
-        p.slope_x * s.x_m + p.slope_y * s.y_m + p.radius_m,
-        s.yaw_rad,
-        wrap_angle(s.rolled_rad),
-        0.0,
-        vx,
-        s.vy_map_mps * c - s.vx_map_mps * d,
-        s.yaw_rate_radps,
-        s.ax_map_mps2 * c + s.ay_map_mps2 * d,
-        s.ay_map_mps2 * c - s.ax_map_mps2 * d,
-        angle,
-        0.0,
-        0.0,
-        1.0,
-        1.0,
-        0.0,
-        s.distance_m,
-        coast,
-        coast + p.max_accel_mps2,
-        coast - p.brake_mps2,
-        0.0,
+        x_m=s.x_m,
+        y_m=s.y_m,
+        z_m=p.slope_x * s.x_m + p.slope_y * s.y_m + p.radius_m,
+        yaw_rad=s.yaw_rad,
+        pitch_rad=wrap_angle(s.rolled_rad),
+        roll_rad=0.0,
+        vx_mps=vx,
+        vy_mps=s.vy_map_mps * c - s.vx_map_mps * d,
+        yaw_rate_radps=s.yaw_rate_radps,
+        ax_mps2=s.ax_map_mps2 * c + s.ay_map_mps2 * d,
+        ay_mps2=s.ay_map_mps2 * c - s.ax_map_mps2 * d,
+        road_wheel_rad=angle,
+        hand_wheel_torque_nm=0.0,
+        engine_radps=0.0,
+        engine_running=1.0,
+        gear=1.0,
+        clutch=0.0,
+        distance_m=s.distance_m,
+        coast_accel_mps2=coast,
+        full_throttle_accel_mps2=coast + p.max_accel_mps2,
+        full_brake_accel_mps2=coast - p.brake_mps2,
+        gear_fault=0.0,
     )

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from simconsole.values.host.jit import compiled_for_each
 from simconsole.values.kernels import put
 from simconsole.values.platform import Platform
-from simconsole.values.state_vector import COMMAND_AT, COMMAND_WIDTH, PLATFORM_AT, VEHICLE_AT, VEHICLE_WIDTH
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT
 
 Table = NDArray[np.float64]
 
@@ -35,7 +35,7 @@ class Fleet:
         self._parameters = np.array([platform.parameters for platform in platforms])
         self._rows = np.zeros((len(platforms), PLATFORM_AT + len(platforms[0].initial_state)))
         for row, platform in zip(self._rows, platforms, strict=True):
-            put(row, VEHICLE_AT, platform.initial_vehicle)
+            put(row, LAYOUT.vehicle.start, platform.initial_vehicle)
             put(row, PLATFORM_AT, platform.initial_state)
         self._before = self._rows.copy()
         self._step = compiled_for_each(platforms[0].step)
@@ -47,7 +47,7 @@ class Fleet:
     @property
     def vehicles(self) -> Table:
         """What others see: float64 [vehicles, fields of VehicleState], a copy."""
-        return self._rows[:, VEHICLE_AT : VEHICLE_AT + VEHICLE_WIDTH].copy()
+        return self._rows[:, LAYOUT.vehicle.slice].copy()
 
     @property
     def states(self) -> Table:
@@ -60,7 +60,7 @@ class Fleet:
         Raises:
             ValueError: another shape.
         """
-        _write(self._rows[:, COMMAND_AT : COMMAND_AT + COMMAND_WIDTH], commands)
+        _write(self._rows[:, LAYOUT.command.slice], commands)
 
     def restore(self, states: ArrayLike) -> None:
         """Put every vehicle into a state, float64 as `states`: to guess again from the same one, or from another.

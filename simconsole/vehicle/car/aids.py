@@ -84,7 +84,9 @@ def stability(car: Car, p: CarParameters, handbrake: float, step_s: float) -> fl
     wanted = 0.0
     if p.aids.stability != 0.0 and speed > STABILITY_FROM_MPS and handbrake < 0.3:
         wheelbase = p.body.cg_to_front_m + p.body.cg_to_rear_m
-        model = speed * car.steering.road_wheel_rad / (wheelbase * (1.0 + p.aids.understeer_s2pm2 * speed * speed))
+        model = (
+            speed * car.steering.road_wheel_rad / (wheelbase * (1.0 + p.aids.understeer_per_square_mps * speed * speed))
+        )
         most = p.aids.lateral_mps2 / speed
         error = clip(model, -most, most) - body.yaw_rate_radps
         beyond = error - clip(error, -DEAD_RADPS, DEAD_RADPS)
@@ -112,7 +114,7 @@ def hill_hold(car: Car, p: CarParameters, request: Request, axles: Axles, ratio:
     left = s.hold_left_s
     brake = s.hold_brake
     steep = abs(p.body.slope_x) + abs(p.body.slope_y) > HOLD_SLOPE
-    drive_n = car.shafts.clutch_impulse_nms * ratio * (p.gears.per_wheel_radius_pm * (1.0 / step_s))
+    drive_n = car.shafts.clutch_impulse_nms * ratio * (p.gears.per_wheel_radius_m * (1.0 / step_s))
     if p.aids.hill_hold != 0.0 and steep and request.brake > 0.1 and abs(car.body.vx_mps) < 0.05:
         # A foot that leaves the pedal slowly leaves its pressure behind.
         if left == 0.0 or request.brake > brake:
@@ -156,11 +158,11 @@ def brake_torques(car: Car, p: CarParameters, request: Request, axles: Axles, ai
     front_share = 0.0 if inwards else 1.0
     hand = request.handbrake * rear.handbrake_nm
     return Brakes(
-        fl * (pedal * front.brake_nm + front_share * to_left),
-        fr * (pedal * front.brake_nm + front_share * to_right),
-        low * pedal * rear.brake_nm + hand + (1.0 - front_share) * to_left * rl,
-        low * pedal * rear.brake_nm + hand + (1.0 - front_share) * to_right * rr,
-        fl,
-        fr,
-        low,
+        fl_nm=fl * (pedal * front.brake_nm + front_share * to_left),
+        fr_nm=fr * (pedal * front.brake_nm + front_share * to_right),
+        rl_nm=low * pedal * rear.brake_nm + hand + (1.0 - front_share) * to_left * rl,
+        rr_nm=low * pedal * rear.brake_nm + hand + (1.0 - front_share) * to_right * rr,
+        fl_share=fl,
+        fr_share=fr,
+        rear_share=low,
     )

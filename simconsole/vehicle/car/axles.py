@@ -1,13 +1,20 @@
 """The four wheels on the ground: where their contact patches slide, what their tyres push."""
 
-from typing import Final, NamedTuple
+from collections.abc import Callable
+from typing import Any, Final, NamedTuple
 
 from simconsole.values.kernels import kernel
 from simconsole.vehicle.car.parameters import AxleParameters, CarParameters, SteeringParameters
 from simconsole.vehicle.car.state import BodyState, Car, Wheel
-from simconsole.vehicle.car.steering import Heading, aligning_moment
+from simconsole.vehicle.car.steering import WheelDirections, aligning_moment
 from simconsole.vehicle.car.suspension import axle_roll, wheel_load
-from simconsole.vehicle.car.tyre import Tyre, tyre
+from simconsole.vehicle.car.tyre import Tyre
+
+TyreModel = Callable[..., Any]
+"""A kernel with the arguments of `tyre.tyre` that returns a `Tyre` or a record with the same fields and more."""
+
+KingpinMoment = Callable[[SteeringParameters, Any, float], float]
+"""A kernel that returns the moment about the kingpin, as `kingpin_moment`, from what the tyre's kernel returns."""
 
 LIGHT_SHARE: Final = 0.1
 """Of the static load below which a standing wheel is about to lift and keeps what it has."""
@@ -23,7 +30,7 @@ class Contact(NamedTuple):
     force_y_n: float
 
 
-class Grips(NamedTuple):
+class FrictionShares(NamedTuple):
     """Share of the ground's friction under each wheel."""
 
     fl: float
@@ -61,7 +68,8 @@ def kept_share(axle: AxleParameters, wheel: Wheel, step_s: float) -> float:
 
 
 @kernel
-def straight(
+def unsteered_tyre(
+    tyre: TyreModel,
     axle: AxleParameters,
     friction: float,
     wheel: Wheel,
@@ -91,7 +99,8 @@ def straight(
 
 
 @kernel
-def steered(
+def steered_tyre(
+    tyre: TyreModel,
     axle: AxleParameters,
     friction: float,
     wheel: Wheel,
@@ -108,15 +117,22 @@ def steered(
     # The contact patch stays on the ground while the wheel turns about it: its deflection turns back in the wheel.
     x = wheel.deflection_x_m + turned_rad * wheel.deflection_y_m
     y = wheel.deflection_y_m - turned_rad * x
-    seen = Wheel(wheel.radps, x, y, wheel.lift_m, wheel.lift_mps, wheel.brake_share)
+    seen = Wheel(
+        radps=wheel.radps,
+        deflection_x_m=x,
+        deflection_y_m=y,
+        lift_m=wheel.lift_m,
+        lift_mps=wheel.lift_mps,
+        brake_share=wheel.brake_share,
+    )
     along = vx_mps * c + vy_mps * s
-    on = straight(axle, friction, seen, along, vy_mps * c - vx_mps * s, camber_rad, side, step_s)
+    on = unsteered_tyre(tyre, axle, friction, seen, along, vy_mps * c - vx_mps * s, camber_rad, side, step_s)
     force_x = on.force_x_n * c - on.force_y_n * s
     return Contact(on.tyre, on.load_n, on.ground_mps, force_x, on.force_x_n * s + on.force_y_n * c)
 
 
 @kernel
-def rim_moment(p: SteeringParameters, tyre_force: Tyre, rolling_mps: float) -> float:
+def kingpin_moment(p: SteeringParameters, tyre_force: Tyre, rolling_mps: float) -> float:
     """Return one tyre's moment about its kingpin."""
     return aligning_moment(p, tyre_force.force_y_n, tyre_force.demand, rolling_mps)
 
@@ -141,13 +157,22 @@ def along_speed(body: BodyState, cg_height_m: float) -> float:
 
 
 @kernel
-def camber(axle: AxleParameters, body: BodyState, left: Wheel, right: Wheel) -> float:
+def inclination(axle: AxleParameters, body: BodyState, left: Wheel, right: Wheel) -> float:
     """Return the lean of an axle's wheels."""
     return body.roll_rad + axle.camber_gain * (body.roll_rad - axle_roll(axle, left.lift_m, right.lift_m))
 
 
 @kernel
-def push(car: Car, p: CarParameters, grips: Grips, points: Heading, turned_rad: float, step_s: float) -> Axles:
+def tyre_forces(
+    car: Car,
+    p: CarParameters,
+    grips: FrictionShares,
+    points: WheelDirections,
+    turned_rad: float,
+    step_s: float,
+    tyre: TyreModel,
+    rim_moment: KingpinMoment,
+) -> Axles:
     """Return the tyres one step later, with the front wheels pointing to `points`."""
     body = car.body
     front = p.front
@@ -155,31 +180,35 @@ def push(car: Car, p: CarParameters, grips: Grips, points: Heading, turned_rad: 
     vx = along_speed(body, p.body.cg_height_m)
     vy = side_speed(front, body, car.fl, car.fr)
     side = front.half_track_m * body.yaw_rate_radps
-    lean = camber(front, body, car.fl, car.fr)
+    lean = inclination(front, body, car.fl, car.fr)
     mu = front.friction_left * grips.fl
-    fl = steered(front, mu, car.fl, vx - side, vy, points.left_cos, points.left_sin, turned_rad, lean, 1.0, step_s)
+    fl = steered_tyre(
+        tyre, front, mu, car.fl, vx - side, vy, points.left_cos, points.left_sin, turned_rad, lean, 1.0, step_s
+    )
     mu = front.friction_right * grips.fr
-    fr = steered(front, mu, car.fr, vx + side, vy, points.right_cos, points.right_sin, turned_rad, lean, -1.0, step_s)
+    fr = steered_tyre(
+        tyre, front, mu, car.fr, vx + side, vy, points.right_cos, points.right_sin, turned_rad, lean, -1.0, step_s
+    )
     vy = side_speed(rear, body, car.rl, car.rr)
     side = rear.half_track_m * body.yaw_rate_radps
-    lean = camber(rear, body, car.rl, car.rr)
-    rl = straight(rear, rear.friction_left * grips.rl, car.rl, vx - side, vy, lean, 1.0, step_s)
-    rr = straight(rear, rear.friction_right * grips.rr, car.rr, vx + side, vy, lean, -1.0, step_s)
+    lean = inclination(rear, body, car.rl, car.rr)
+    rl = unsteered_tyre(tyre, rear, rear.friction_left * grips.rl, car.rl, vx - side, vy, lean, 1.0, step_s)
+    rr = unsteered_tyre(tyre, rear, rear.friction_right * grips.rr, car.rr, vx + side, vy, lean, -1.0, step_s)
     front_y = fl.force_y_n + fr.force_y_n
     rear_y = rl.force_y_n + rr.force_y_n
     steering = p.steering
-    aligning = rim_moment(steering, fl.tyre, car.fl.radps * front.radius_m) + rim_moment(
+    aligning = kingpin_moment(steering, fl.tyre, car.fl.radps * front.radius_m) + kingpin_moment(
         steering, fr.tyre, car.fr.radps * front.radius_m
     )
     return Axles(
-        fl,
-        fr,
-        rl,
-        rr,
-        (fl.force_x_n + fr.force_x_n) + (rl.force_x_n + rr.force_x_n),
-        front_y,
-        rear_y,
-        (front.ahead_m * front_y + rear.ahead_m * rear_y)
+        fl=fl,
+        fr=fr,
+        rl=rl,
+        rr=rr,
+        force_x_n=(fl.force_x_n + fr.force_x_n) + (rl.force_x_n + rr.force_x_n),
+        front_y_n=front_y,
+        rear_y_n=rear_y,
+        moment_nm=(front.ahead_m * front_y + rear.ahead_m * rear_y)
         + (front.half_track_m * (fr.force_x_n - fl.force_x_n) + rear.half_track_m * (rr.force_x_n - rl.force_x_n)),
-        aligning,
+        aligning_nm=aligning,
     )

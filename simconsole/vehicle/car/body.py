@@ -45,67 +45,69 @@ def stopped(rate: float, place: float, most: float) -> float:
 
 
 @kernel
-def move_axle(
+def axle_step(
     axle: AxleParameters, struts: Travel, left: Wheel, right: Wheel, on_left: Contact, on_right: Contact, step_s: float
 ) -> AxleMotion:
     """Return the wheels' vertical motion one step later. The links load them with the side force directly."""
     left_n = strut(axle, struts.left_m, struts.left_mps, struts.right_m)
     right_n = strut(axle, struts.right_m, struts.right_mps, struts.left_m)
-    lifted = (on_left.force_y_n + on_right.force_y_n) * (axle.link_arm_m * axle.roll_per_lift_radpm)
-    share = step_s * axle.per_wheel_mass_pkg
+    lifted = (on_left.force_y_n + on_right.force_y_n) * (axle.link_arm_m * axle.roll_rad_per_m)
+    share = step_s * axle.per_wheel_mass_kg
     left_mps = left.lift_mps + share * (on_left.load_n - axle.static_n - left_n + lifted)
     right_mps = right.lift_mps + share * (on_right.load_n - axle.static_n - right_n - lifted)
     left_m = clip(left.lift_m + step_s * left_mps, -MOST_LIFT_M, MOST_LIFT_M)
     right_m = clip(right.lift_m + step_s * right_mps, -MOST_LIFT_M, MOST_LIFT_M)
     return AxleMotion(
-        left_m,
-        stopped(left_mps, left_m, MOST_LIFT_M),
-        right_m,
-        stopped(right_mps, right_m, MOST_LIFT_M),
-        left_n + right_n,
-        axle.half_track_m * (left_n - right_n),
+        left_m=left_m,
+        left_mps=stopped(left_mps, left_m, MOST_LIFT_M),
+        right_m=right_m,
+        right_mps=stopped(right_mps, right_m, MOST_LIFT_M),
+        force_n=left_n + right_n,
+        moment_nm=axle.half_track_m * (left_n - right_n),
     )
 
 
 @kernel
-def move(car: Car, p: CarParameters, axles: Axles, step_s: float) -> Motion:
+def body_step(car: Car, p: CarParameters, axles: Axles, step_s: float) -> Motion:
     """Advance the body by one semi-implicit step: velocities from the forces, then the pose from the new velocities."""
     before = car.body
     body = p.body
-    front = move_axle(p.front, travel(p.front, before, car.fl, car.fr), car.fl, car.fr, axles.fl, axles.fr, step_s)
-    rear = move_axle(p.rear, travel(p.rear, before, car.rl, car.rr), car.rl, car.rr, axles.rl, axles.rr, step_s)
+    front = axle_step(p.front, travel(p.front, before, car.fl, car.fr), car.fl, car.fr, axles.fl, axles.fr, step_s)
+    rear = axle_step(p.rear, travel(p.rear, before, car.rl, car.rr), car.rl, car.rr, axles.rl, axles.rr, step_s)
     ahead = direction(before.yaw_rad)
     c = ahead.cos
     s = ahead.sin
     into_x = before.vx_mps - (body.wind_x_mps * c + body.wind_y_mps * s)
     into_y = before.vy_mps - (body.wind_y_mps * c - body.wind_x_mps * s)
     speed = sqrt(into_x * into_x + into_y * into_y)
-    air = body.drag_nsspmm * speed
+    air = body.drag_n_per_square_mps * speed
     gravity = body.gravity_plane_mps2
-    per_kg = body.per_mass_pkg
+    per_kg = body.per_mass_kg
     ax = (axles.force_x_n - air * into_x) * per_kg - gravity * (body.slope_x * c + body.slope_y * s)
     side_n = axles.front_y_n + axles.rear_y_n
-    beside = body.side_nsspmm * speed
+    beside = body.side_n_per_square_mps * speed
     ay = (side_n - beside * into_y) * per_kg - gravity * (body.slope_y * c - body.slope_x * s)
     # One after the other, not both from the old values: turning the body then neither adds nor takes energy.
     vx = before.vx_mps + step_s * (ax + before.yaw_rate_radps * before.vy_mps)
     vy = before.vy_mps + step_s * (ay - before.yaw_rate_radps * vx)
     # Both act at the middle of the wheelbase. Oblique air turns a slender body broadside on (Munk, NACA TR 184).
-    weathering = body.yaw_nsspm * into_x + beside * (0.5 * (body.cg_to_front_m - body.cg_to_rear_m))
+    weathering = body.yaw_nm_per_square_mps * into_x + beside * (0.5 * (body.cg_to_front_m - body.cg_to_rear_m))
     turning = axles.moment_nm + axles.aligning_nm - weathering * into_y
-    yaw_rate = before.yaw_rate_radps + turning * (step_s * body.per_yaw_inertia_pkgm2)
-    front_lift = body.front_lift_nsspmm * into_x * into_x
-    rear_lift = body.rear_lift_nsspmm * into_x * into_x
+    yaw_rate = before.yaw_rate_radps + turning * (step_s * body.per_yaw_inertia_kgm2)
+    front_lift = body.front_lift_n_per_square_mps * into_x * into_x
+    rear_lift = body.rear_lift_n_per_square_mps * into_x * into_x
     lifting = front.force_n + rear.force_n + front_lift + rear_lift
-    heave_mps = before.heave_mps + lifting * (step_s * body.per_sprung_pkg)
+    heave_mps = before.heave_mps + lifting * (step_s * body.per_sprung_kg)
     rolling = (
-        p.front.roll_arm_m * axles.front_y_n + p.rear.roll_arm_m * axles.rear_y_n + body.sway_npm * before.roll_rad
+        p.front.roll_arm_m * axles.front_y_n
+        + p.rear.roll_arm_m * axles.rear_y_n
+        + body.sway_nm_per_rad * before.roll_rad
     )
     rolling += front.moment_nm + rear.moment_nm
-    roll_radps = before.roll_radps + rolling * (step_s * body.per_roll_inertia_pkgm2)
+    roll_radps = before.roll_radps + rolling * (step_s * body.per_roll_inertia_kgm2)
     pitching = p.front.ahead_m * (front.force_n + front_lift) + p.rear.ahead_m * (rear.force_n + rear_lift)
     pitching += body.cg_height_m * axles.force_x_n
-    pitch_radps = before.pitch_radps - pitching * (step_s * body.per_pitch_inertia_pkgm2)
+    pitch_radps = before.pitch_radps - pitching * (step_s * body.per_pitch_inertia_kgm2)
     # base_link lies on the ground: it does not go along when the body rocks above standing tyres.
     on_ground_x = vx - body.cg_height_m * pitch_radps
     rocking = p.rear.roll_arm_m * roll_radps + p.rear.link_arm_m * axle_roll(p.rear, rear.left_mps, rear.right_mps)
@@ -114,20 +116,20 @@ def move(car: Car, p: CarParameters, axles: Axles, step_s: float) -> Motion:
     roll = clip(before.roll_rad + step_s * roll_radps, -MOST_LEAN_RAD, MOST_LEAN_RAD)
     pitch = clip(before.pitch_rad + step_s * pitch_radps, -MOST_LEAN_RAD, MOST_LEAN_RAD)
     moved = BodyState(
-        before.x_m + step_s * (on_ground_x * c - on_ground_y * s),
-        before.y_m + step_s * (on_ground_x * s + on_ground_y * c),
-        wrap_angle(before.yaw_rad + step_s * yaw_rate),
-        vx,
-        vy,
-        yaw_rate,
-        ax,
-        ay,
-        heave,
-        stopped(heave_mps, heave, MOST_LIFT_M),
-        roll,
-        stopped(roll_radps, roll, MOST_LEAN_RAD),
-        pitch,
-        stopped(pitch_radps, pitch, MOST_LEAN_RAD),
-        before.distance_m + step_s * sqrt(on_ground_x * on_ground_x + on_ground_y * on_ground_y),
+        x_m=before.x_m + step_s * (on_ground_x * c - on_ground_y * s),
+        y_m=before.y_m + step_s * (on_ground_x * s + on_ground_y * c),
+        yaw_rad=wrap_angle(before.yaw_rad + step_s * yaw_rate),
+        vx_mps=vx,
+        vy_mps=vy,
+        yaw_rate_radps=yaw_rate,
+        ax_mps2=ax,
+        ay_mps2=ay,
+        heave_m=heave,
+        heave_mps=stopped(heave_mps, heave, MOST_LIFT_M),
+        roll_rad=roll,
+        roll_radps=stopped(roll_radps, roll, MOST_LEAN_RAD),
+        pitch_rad=pitch,
+        pitch_radps=stopped(pitch_radps, pitch, MOST_LEAN_RAD),
+        distance_m=before.distance_m + step_s * sqrt(on_ground_x * on_ground_x + on_ground_y * on_ground_y),
     )
     return Motion(moved, front, rear)

@@ -15,15 +15,16 @@ from simconsole.profiles.vehicle import (
     GearboxProfile,
 )
 from simconsole.values.errors import ProfileError
-from simconsole.values.kernels import Row, put
+from simconsole.values.kernels import Row
+from simconsole.values.layout import Part, read, write
 from simconsole.values.platform import MOST_PATCHES, Ground, Platform, Pose
-from simconsole.values.state_vector import PLATFORM_AT
 from simconsole.values.trigonometry import wrap_angle
 from simconsole.values.units import MPS_PER_KMH, RAD_PER_DEG, RADPS_PER_RPM, STANDARD_GRAVITY_MPS2
-from simconsole.vehicle.car.car_step import STEP_S, load_car, step
+from simconsole.vehicle.car.car_step import STEP_S, step
 from simconsole.vehicle.car.outputs import vehicle_state
 from simconsole.vehicle.car.parameters import (
     NO_PATCH,
+    PARAMETERS,
     AidParameters,
     AxleParameters,
     BodyParameters,
@@ -33,7 +34,7 @@ from simconsole.vehicle.car.parameters import (
     PatchParameters,
     SteeringParameters,
 )
-from simconsole.vehicle.car.state import CAR_WIDTH, CarState
+from simconsole.vehicle.car.state import CAR, Car, CarState
 
 AIR_KGPM3: Final = 1.225
 """Density of air, ISO 2533 standard atmosphere at sea level."""
@@ -52,7 +53,7 @@ LIMIT_BAND_RPM: Final = 100.0
 def build_car(profile: CarProfile, pose: Pose, ground: Ground) -> Platform:
     """Return the car at rest with its engine idling, in neutral."""
     car = car_parameters(profile, ground)
-    initial = CarState(*(0.0,) * CAR_WIDTH)._replace(
+    initial = CarState(*(0.0,) * CAR.width)._replace(
         x_m=pose.x_m,
         y_m=pose.y_m,
         yaw_rad=wrap_angle(pose.yaw_rad),
@@ -66,14 +67,14 @@ def build_car(profile: CarProfile, pose: Pose, ground: Ground) -> Platform:
         rr_brake_share=1.0,
     )
     body = profile.body
-    row = np.zeros(PLATFORM_AT + CAR_WIDTH)
-    put(row, PLATFORM_AT, initial)
+    parameters = np.empty(PARAMETERS.width)
+    write(parameters, PARAMETERS, car)
     return Platform(
         name="car",
         state=CarState,
         initial_state=tuple(initial),
-        initial_vehicle=vehicle_state(load_car(row), car, 0.0),
-        parameters=np.array([value for group in car for value in group], dtype=np.float64),
+        initial_vehicle=vehicle_state(read(np.array(initial), Part(Car)), car, 0.0),
+        parameters=parameters,
         step=_step(profile),
         steering_ratio=profile.steering.ratio,
         max_road_wheel_rad=car.steering.max_road_wheel_rad,
@@ -98,7 +99,7 @@ def _step(profile: CarProfile) -> Callable[[Row, Row, Row, int], None]:
     from simconsole.vehicle.car.pac2002 import coefficients
     from simconsole.vehicle.car.tir_tyre import step_on
 
-    return step_on(coefficients(profile.tyre.coefficients))  # type: ignore[no-any-return]
+    return step_on(coefficients(profile.tyre.coefficients))
 
 
 def car_parameters(profile: CarProfile, ground: Ground) -> CarParameters:
@@ -142,21 +143,21 @@ def _body(
     arm = (front.roll_arm_m * rear.ahead_m - rear.roll_arm_m * front.ahead_m) / (rear.ahead_m - front.ahead_m)
     return BodyParameters(
         mass_kg=body.mass_kg,
-        per_mass_pkg=1.0 / body.mass_kg,
+        per_mass_kg=1.0 / body.mass_kg,
         moving_kg=body.mass_kg + 2.0 * (front.wheel_inertia_kgm2 + rear.wheel_inertia_kgm2) / driven_radius_m**2,
-        per_sprung_pkg=1.0 / sprung,
-        per_roll_inertia_pkgm2=1.0 / body.roll_inertia_kgm2,
-        per_pitch_inertia_pkgm2=1.0 / body.pitch_inertia_kgm2,
-        per_yaw_inertia_pkgm2=1.0 / body.yaw_inertia_kgm2,
+        per_sprung_kg=1.0 / sprung,
+        per_roll_inertia_kgm2=1.0 / body.roll_inertia_kgm2,
+        per_pitch_inertia_kgm2=1.0 / body.pitch_inertia_kgm2,
+        per_yaw_inertia_kgm2=1.0 / body.yaw_inertia_kgm2,
         cg_to_front_m=body.wheelbase_m * (1.0 - body.front_mass_share),
         cg_to_rear_m=body.wheelbase_m * body.front_mass_share,
         cg_height_m=body.cg_height_m,
-        drag_nsspmm=0.5 * AIR_KGPM3 * body.drag_area_m2,
-        front_lift_nsspmm=0.5 * AIR_KGPM3 * body.front_lift_area_m2,
-        rear_lift_nsspmm=0.5 * AIR_KGPM3 * body.rear_lift_area_m2,
-        side_nsspmm=0.5 * AIR_KGPM3 * body.side_area_m2,
-        yaw_nsspm=0.5 * AIR_KGPM3 * body.yaw_volume_m3,
-        sway_npm=body.mass_kg * _gravity(ground) * arm,
+        drag_n_per_square_mps=0.5 * AIR_KGPM3 * body.drag_area_m2,
+        front_lift_n_per_square_mps=0.5 * AIR_KGPM3 * body.front_lift_area_m2,
+        rear_lift_n_per_square_mps=0.5 * AIR_KGPM3 * body.rear_lift_area_m2,
+        side_n_per_square_mps=0.5 * AIR_KGPM3 * body.side_area_m2,
+        yaw_nm_per_square_mps=0.5 * AIR_KGPM3 * body.yaw_volume_m3,
+        sway_nm_per_rad=body.mass_kg * _gravity(ground) * arm,
         slope_x=ground.slope_x,
         slope_y=ground.slope_y,
         full_brake_n=min(2.0 * (front.brake_nm + rear.brake_nm) / driven_radius_m, _held_n(front) + _held_n(rear)),
@@ -184,14 +185,14 @@ def _steering(profile: CarProfile) -> SteeringParameters:
         rate_radps=steering.max_road_wheel_degps * RAD_PER_DEG,
         max_road_wheel_rad=steering.max_road_wheel_deg * RAD_PER_DEG,
         friction_rad=steering.friction_deg * RAD_PER_DEG,
-        compliance_radpnm=steering.compliance_deg_per_100nm * RAD_PER_DEG / 100.0,
+        compliance_rad_per_nm=steering.compliance_deg_per_100nm * RAD_PER_DEG / 100.0,
         ackermann=steering.ackermann_share * 0.5 * profile.front.track_m / profile.body.wheelbase_m,
         pneumatic_trail_m=steering.pneumatic_trail_m,
         per_trail_end=1.0 / TRAIL_END,
         caster_trail_m=steering.caster_trail_m,
         hand_torque_gain=share / steering.ratio,
-        hand_torque_gain_spm=per_mps / steering.ratio,
-        per_hand_torque_most_pnm=1.0 / steering.most_nm,
+        hand_torque_gain_per_mps=per_mps / steering.ratio,
+        per_hand_torque_most_nm=1.0 / steering.most_nm,
         hand_damping_nms=steering.damping_nms,
         hand_friction_nm=steering.rim_friction_nm,
     )
@@ -203,7 +204,7 @@ def _aids(aids: AidsProfile) -> AidParameters:
         traction=float(aids.traction_control),
         stability=float(aids.stability_control),
         hill_hold=float(aids.hill_hold),
-        understeer_s2pm2=1.0 / (aids.characteristic_speed_kmh * MPS_PER_KMH) ** 2,
+        understeer_per_square_mps=1.0 / (aids.characteristic_speed_kmh * MPS_PER_KMH) ** 2,
         lateral_mps2=aids.stability_lateral_mps2,
         stability_nms=aids.stability_nm_per_radps,
         stability_most_nm=aids.stability_nm,
@@ -227,14 +228,14 @@ def _axle(profile: CarProfile, axle: AxleProfile, ground: Ground, at_front: bool
     return AxleParameters(
         ahead_m=body.wheelbase_m * (1.0 - share) * (1.0 if at_front else -1.0),
         half_track_m=0.5 * axle.track_m,
-        roll_per_lift_radpm=1.0 / axle.track_m,
+        roll_rad_per_m=1.0 / axle.track_m,
         wheel_inertia_kgm2=0.5 * axle.wheel_inertia_kgm2,
-        per_wheel_inertia_pkgm2=2.0 / axle.wheel_inertia_kgm2,
-        spin_per_push_radpns=2.0 * axle.wheel_radius_m / axle.wheel_inertia_kgm2,
-        per_wheel_mass_pkg=2.0 / axle.unsprung_kg,
+        per_wheel_inertia_kgm2=2.0 / axle.wheel_inertia_kgm2,
+        spin_radps_per_newton_second=2.0 * axle.wheel_radius_m / axle.wheel_inertia_kgm2,
+        per_wheel_mass_kg=2.0 / axle.unsprung_kg,
         radius_m=axle.wheel_radius_m,
         static_n=static,
-        per_static_pn=1.0 / static,
+        per_static_n=1.0 / static,
         stiffness_x_per_m=axle.slip_stiffness / axle.relaxation_x_m,
         stiffness_y_per_m=axle.cornering_stiffness_per_rad / axle.relaxation_y_m,
         decay_x_per_m=1.0 / axle.relaxation_x_m,
@@ -266,38 +267,40 @@ def _axle(profile: CarProfile, axle: AxleProfile, ground: Ground, at_front: bool
 
 def _engine(engine: EngineProfile) -> EngineParameters:
     return EngineParameters(
-        engine.inertia_kgm2,
-        1.0 / engine.inertia_kgm2,
-        engine.drag_nm,
-        engine.drag_nm_per_1000rpm / (1000.0 * RADPS_PER_RPM),
-        engine.hold_nm,
-        engine.idle_rpm * RADPS_PER_RPM,
-        1.0 / (engine.idle_rpm * RADPS_PER_RPM),
-        engine.idle_gain_nm_per_rpm / RADPS_PER_RPM,
-        engine.idle_max_nm,
-        engine.stall_rpm * RADPS_PER_RPM,
-        engine.fire_rpm * RADPS_PER_RPM,
-        engine.starter_nm,
-        engine.limit_rpm * RADPS_PER_RPM,
-        1.0 / (LIMIT_BAND_RPM * RADPS_PER_RPM),
-        *_ramps(engine),
+        inertia_kgm2=engine.inertia_kgm2,
+        per_inertia_kgm2=1.0 / engine.inertia_kgm2,
+        drag_nm=engine.drag_nm,
+        drag_nms=engine.drag_nm_per_1000rpm / (1000.0 * RADPS_PER_RPM),
+        hold_nm=engine.hold_nm,
+        idle_radps=engine.idle_rpm * RADPS_PER_RPM,
+        per_idle_radps=1.0 / (engine.idle_rpm * RADPS_PER_RPM),
+        idle_gain_nms=engine.idle_gain_nm_per_rpm / RADPS_PER_RPM,
+        idle_max_nm=engine.idle_max_nm,
+        stall_radps=engine.stall_rpm * RADPS_PER_RPM,
+        fire_radps=engine.fire_rpm * RADPS_PER_RPM,
+        starter_nm=engine.starter_nm,
+        limit_radps=engine.limit_rpm * RADPS_PER_RPM,
+        per_limit_band_radps=1.0 / (LIMIT_BAND_RPM * RADPS_PER_RPM),
+        **_ramps(engine),
     )
 
 
-def _ramps(engine: EngineProfile) -> tuple[float, ...]:
-    """Return (speed, change of slope) of each corner of the curve, filled up to RAMPS with nothing."""
+def _ramps(engine: EngineProfile) -> dict[str, float]:
+    """Return speed and change of slope of each corner of the curve, filled up to RAMPS with nothing."""
     first = engine.curve[0]
     points = [(0.5 * first.at_rpm, 0.0)] + [(point.at_rpm, point.torque_nm) for point in engine.curve]
-    corners: list[float] = []
+    ramps: dict[str, float] = {}
     slope = 0.0
-    for index, (rpm, torque) in enumerate(points):
-        new = 0.0
-        if index + 1 < len(points):
-            after_rpm, after_torque = points[index + 1]
-            new = (after_torque - torque) / ((after_rpm - rpm) * RADPS_PER_RPM)
-        corners += [rpm * RADPS_PER_RPM, new - slope]
+    for index in range(RAMPS):
+        rpm = new = 0.0
+        if index < len(points):
+            rpm, torque = points[index]
+            if index + 1 < len(points):
+                after_rpm, after_torque = points[index + 1]
+                new = (after_torque - torque) / ((after_rpm - rpm) * RADPS_PER_RPM)
+        ramps |= {f"ramp_{index + 1}_radps": rpm * RADPS_PER_RPM, f"ramp_{index + 1}_nms": new - slope}
         slope = new
-    return (*corners, *(0.0,) * (2 * RAMPS - len(corners)))
+    return ramps
 
 
 def _gears(
@@ -320,7 +323,7 @@ def _gears(
         gears=float(len(box.forward)),
         synchro_radps=box.synchro_rpm * RADPS_PER_RPM,
         limit_radps=engine.limit_rpm * RADPS_PER_RPM,
-        per_wheel_radius_pm=1.0 / driven.radius_m,
+        per_wheel_radius_m=1.0 / driven.radius_m,
         shift_s=auto.shift_s,
         shift_pause_s=auto.shift_pause_s,
         up_radps=auto.up_rpm * RADPS_PER_RPM,
@@ -329,10 +332,10 @@ def _gears(
         down_per_throttle_radps=(auto.down_full_rpm - auto.down_rpm) * RADPS_PER_RPM,
         launch_from_radps=auto.launch_from_rpm * RADPS_PER_RPM,
         launch_to_radps=auto.launch_to_rpm * RADPS_PER_RPM,
-        per_launch_s=1.0 / ((auto.launch_to_rpm - auto.launch_from_rpm) * RADPS_PER_RPM),
+        per_launch_radps=1.0 / ((auto.launch_to_rpm - auto.launch_from_rpm) * RADPS_PER_RPM),
         lock_from_radps=auto.lock_from_rpm * RADPS_PER_RPM,
         lock_to_radps=auto.lock_to_rpm * RADPS_PER_RPM,
-        per_lock_s=1.0 / ((auto.lock_to_rpm - auto.lock_from_rpm) * RADPS_PER_RPM),
+        per_lock_radps=1.0 / ((auto.lock_to_rpm - auto.lock_from_rpm) * RADPS_PER_RPM),
         clutch_opening_per_s=1.0 / auto.clutch_opening_s,
         clutch_closing_per_s=1.0 / auto.clutch_closing_s,
         traction_n=_held_n(driven),

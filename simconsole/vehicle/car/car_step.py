@@ -1,146 +1,67 @@
 """One tick of the car: the order of its parts. Every part is a kernel of its own file."""
 
+from collections.abc import Callable
 from typing import Final
 
-from simconsole.values.kernels import Row, clip, forget, is_finite, kernel, put, take
+from simconsole.values.kernels import Row, clip, forget, is_finite, kernel
+from simconsole.values.layout import read, write
 from simconsole.values.signals import Request, VehicleCommand
-from simconsole.values.state_vector import COMMAND_AT, COMMAND_WIDTH, PLATFORM_AT, VEHICLE_AT
+from simconsole.values.state_vector import LAYOUT
 from simconsole.values.trigonometry import nearest
-from simconsole.vehicle.car.axles import Contact, Grips, push
-from simconsole.vehicle.car.body import move
-from simconsole.vehicle.car.driveline import turn
-from simconsole.vehicle.car.ground import grips_of
+from simconsole.vehicle.car.axles import Contact, FrictionShares, KingpinMoment, TyreModel, kingpin_moment, tyre_forces
+from simconsole.vehicle.car.body import body_step
+from simconsole.vehicle.car.driveline import driveline_step
+from simconsole.vehicle.car.ground import friction_shares
 from simconsole.vehicle.car.outputs import vehicle_state
-from simconsole.vehicle.car.parameters import (
-    AIDS_AT,
-    AIDS_WIDTH,
-    AXLE_WIDTH,
-    BODY_AT,
-    BODY_WIDTH,
-    ENGINE_AT,
-    ENGINE_WIDTH,
-    FRONT_AT,
-    GEARS_AT,
-    GEARS_WIDTH,
-    PATCH_1_AT,
-    PATCH_2_AT,
-    PATCH_3_AT,
-    PATCH_4_AT,
-    PATCH_WIDTH,
-    REAR_AT,
-    STEERING_AT,
-    STEERING_WIDTH,
-    AidParameters,
-    AxleParameters,
-    BodyParameters,
-    CarParameters,
-    EngineParameters,
-    GearParameters,
-    PatchParameters,
-    SteeringParameters,
-)
-from simconsole.vehicle.car.state import (
-    AID_WIDTH,
-    BOX_WIDTH,
-    SHAFT_WIDTH,
-    WHEEL_WIDTH,
-    AidState,
-    BodyState,
-    Car,
-    Gearbox,
-    ShaftState,
-    SteeringState,
-    Wheel,
-)
-from simconsole.vehicle.car.state import BODY_WIDTH as BODY_STATE_WIDTH
-from simconsole.vehicle.car.state import STEERING_WIDTH as STEERING_STATE_WIDTH
-from simconsole.vehicle.car.steering import hand_wheel_torque, heading, steer
+from simconsole.vehicle.car.parameters import PARAMETERS, AidParameters, CarParameters
+from simconsole.vehicle.car.state import CAR, Car, SteeringState, Wheel
+from simconsole.vehicle.car.steering import hand_wheel_torque, rack_rate, wheel_directions
+from simconsole.vehicle.car.tyre import tyre
 
 STEP_S: Final = 0.001
 """The car integrates at 1 ms whatever the tick; its stiffest mode (a wheel on its tyre) has a period of 30 ms."""
 
 MOST_GEARS: Final = 7.0
 
-RACK_AT: Final = PLATFORM_AT + BODY_STATE_WIDTH
-FL_AT: Final = RACK_AT + STEERING_STATE_WIDTH
-FR_AT: Final = FL_AT + WHEEL_WIDTH
-RL_AT: Final = FR_AT + WHEEL_WIDTH
-RR_AT: Final = RL_AT + WHEEL_WIDTH
-SHAFTS_AT: Final = RR_AT + WHEEL_WIDTH
-BOX_AT: Final = SHAFTS_AT + SHAFT_WIDTH
-AID_STATE_AT: Final = BOX_AT + BOX_WIDTH
-
 
 @kernel
 def load_parameters(parameters: Row) -> CarParameters:
-    """Return the groups of the parameter row, read anew."""
+    """Return the parameters, read anew."""
     forget()
-    return CarParameters(
-        BodyParameters(*take(parameters, BODY_AT, BODY_WIDTH)),
-        SteeringParameters(*take(parameters, STEERING_AT, STEERING_WIDTH)),
-        EngineParameters(*take(parameters, ENGINE_AT, ENGINE_WIDTH)),
-        GearParameters(*take(parameters, GEARS_AT, GEARS_WIDTH)),
-        AidParameters(*take(parameters, AIDS_AT, AIDS_WIDTH)),
-        AxleParameters(*take(parameters, FRONT_AT, AXLE_WIDTH)),
-        AxleParameters(*take(parameters, REAR_AT, AXLE_WIDTH)),
-        PatchParameters(*take(parameters, PATCH_1_AT, PATCH_WIDTH)),
-        PatchParameters(*take(parameters, PATCH_2_AT, PATCH_WIDTH)),
-        PatchParameters(*take(parameters, PATCH_3_AT, PATCH_WIDTH)),
-        PatchParameters(*take(parameters, PATCH_4_AT, PATCH_WIDTH)),
-    )
+    return read(parameters, PARAMETERS)
+
+
+def make_step(tyre: TyreModel, rim_moment: KingpinMoment) -> Callable[[Row, Row, Row, int], None]:
+    """Return the kernel that advances a car on such tyres by one tick: the platform interface of values/platform.py."""
+
+    @kernel
+    def step(previous: Row, row: Row, parameters: Row, substeps: int) -> None:
+        command = read(row, LAYOUT.command)
+        car = read(previous, CAR)
+        grips = friction_shares(car, load_parameters(parameters))
+        request = request_of(command, car)
+        for _ in range(substeps):
+            car = substep(car, parameters, grips, request, command, tyre, kingpin_moment)
+        write(row, CAR, car)
+        write(row, LAYOUT.vehicle, vehicle_state(car, load_parameters(parameters), command.automatic))
+
+    return step
 
 
 @kernel
-def load_car(row: Row) -> Car:
-    """Return the groups of the state in a row."""
-    return Car(
-        BodyState(*take(row, PLATFORM_AT, BODY_STATE_WIDTH)),
-        SteeringState(*take(row, RACK_AT, STEERING_STATE_WIDTH)),
-        Wheel(*take(row, FL_AT, WHEEL_WIDTH)),
-        Wheel(*take(row, FR_AT, WHEEL_WIDTH)),
-        Wheel(*take(row, RL_AT, WHEEL_WIDTH)),
-        Wheel(*take(row, RR_AT, WHEEL_WIDTH)),
-        ShaftState(*take(row, SHAFTS_AT, SHAFT_WIDTH)),
-        Gearbox(*take(row, BOX_AT, BOX_WIDTH)),
-        AidState(*take(row, AID_STATE_AT, AID_WIDTH)),
+def request_of(command: VehicleCommand, car: Car) -> Request:
+    """Return what a command asks of the car; an angle that is not finite leaves the rack where it is."""
+    return Request(
+        road_wheel_rad=command.road_wheel_rad if is_finite(command.road_wheel_rad) else car.steering.road_wheel_rad,
+        throttle=pedal(command.throttle),
+        brake=pedal(command.brake),
+        clutch=pedal(command.clutch),
+        handbrake=pedal(command.handbrake),
+        gear=lever(command.gear),
+        automatic=command.automatic,
+        turn_indicators=command.turn_indicators,
+        hazard_lights=command.hazard_lights,
     )
-
-
-@kernel
-def store_car(row: Row, car: Car) -> None:
-    """Write the state into a row."""
-    put(row, PLATFORM_AT, car.body)
-    put(row, RACK_AT, car.steering)
-    put(row, FL_AT, car.fl)
-    put(row, FR_AT, car.fr)
-    put(row, RL_AT, car.rl)
-    put(row, RR_AT, car.rr)
-    put(row, SHAFTS_AT, car.shafts)
-    put(row, BOX_AT, car.box)
-    put(row, AID_STATE_AT, car.aids)
-
-
-@kernel
-def step(previous: Row, row: Row, parameters: Row, substeps: int) -> None:
-    """Advance the car by one tick: the platform interface of vehicle/platform.py."""
-    command = VehicleCommand(*take(row, COMMAND_AT, COMMAND_WIDTH))
-    car = load_car(previous)
-    grips = grips_of(car, load_parameters(parameters))
-    request = Request(
-        command.road_wheel_rad if is_finite(command.road_wheel_rad) else car.steering.road_wheel_rad,
-        pedal(command.throttle),
-        pedal(command.brake),
-        pedal(command.clutch),
-        pedal(command.handbrake),
-        lever(command.gear),
-        command.automatic,
-        command.turn_indicators,
-        command.hazard_lights,
-    )
-    for _ in range(substeps):
-        car = substep(car, parameters, grips, request, command)
-    store_car(row, car)
-    put(row, VEHICLE_AT, vehicle_state(car, load_parameters(parameters), command.automatic))
 
 
 @kernel
@@ -162,50 +83,80 @@ def with_aids(p: CarParameters, command: VehicleCommand) -> CarParameters:
     """Return the parameters with the driver aids off that somebody has switched off."""
     aids = p.aids
     switched = AidParameters(
-        0.0 if command.anti_lock_off > 0.0 else aids.anti_lock,
-        0.0 if command.traction_off > 0.0 else aids.traction,
-        0.0 if command.stability_off > 0.0 else aids.stability,
-        aids.hill_hold,
-        aids.understeer_s2pm2,
-        aids.lateral_mps2,
-        aids.stability_nms,
-        aids.stability_most_nm,
+        anti_lock=0.0 if command.anti_lock_off > 0.0 else aids.anti_lock,
+        traction=0.0 if command.traction_off > 0.0 else aids.traction,
+        stability=0.0 if command.stability_off > 0.0 else aids.stability,
+        hill_hold=aids.hill_hold,
+        understeer_per_square_mps=aids.understeer_per_square_mps,
+        lateral_mps2=aids.lateral_mps2,
+        stability_nms=aids.stability_nms,
+        stability_most_nm=aids.stability_most_nm,
     )
     return CarParameters(
-        p.body, p.steering, p.engine, p.gears, switched, p.front, p.rear, p.patch_1, p.patch_2, p.patch_3, p.patch_4
+        body=p.body,
+        steering=p.steering,
+        engine=p.engine,
+        gears=p.gears,
+        aids=switched,
+        front=p.front,
+        rear=p.rear,
+        patch_1=p.patch_1,
+        patch_2=p.patch_2,
+        patch_3=p.patch_3,
+        patch_4=p.patch_4,
     )
 
 
 @kernel
-def substep(car: Car, parameters: Row, grips: Grips, request: Request, command: VehicleCommand) -> Car:
+def substep(
+    car: Car,
+    parameters: Row,
+    grips: FrictionShares,
+    request: Request,
+    command: VehicleCommand,
+    tyre: TyreModel,
+    rim_moment: KingpinMoment,
+) -> Car:
     """Advance the car by 1 ms: steer, push against the ground, turn the shafts, move."""
     rack = car.steering
     p = load_parameters(parameters)
     # The rack works against the tyres of the last step: their moment is part of the rack's torque.
     mean_rad = rack.road_wheel_rad + STEP_S * rack.road_wheel_radps
-    axles = push(car, p, grips, heading(p.steering, mean_rad), mean_rad - rack.road_wheel_rad, STEP_S)
+    points = wheel_directions(p.steering, mean_rad)
+    axles = tyre_forces(car, p, grips, points, mean_rad - rack.road_wheel_rad, STEP_S, tyre, kingpin_moment)
     moved = SteeringState(mean_rad, rack.road_wheel_radps, rack.hand_wheel_torque_nm)
-    rate = steer(p.steering, moved, request.road_wheel_rad, axles.aligning_nm)
+    rate = rack_rate(p.steering, moved, request.road_wheel_rad, axles.aligning_nm)
     torque = hand_wheel_torque(p.steering, axles.aligning_nm, rate, car.body.vx_mps)
-    line = turn(car, with_aids(load_parameters(parameters), command), request, axles, STEP_S)
-    motion = move(car, load_parameters(parameters), axles, STEP_S)
+    line = driveline_step(car, with_aids(load_parameters(parameters), command), request, axles, STEP_S)
+    motion = body_step(car, load_parameters(parameters), axles, STEP_S)
     front = motion.front
     rear = motion.rear
     brakes = line.brakes
     return Car(
-        motion.body,
-        SteeringState(mean_rad, rate, torque),
-        wheel(axles.fl, line.fl_radps, front.left_m, front.left_mps, brakes.fl_share),
-        wheel(axles.fr, line.fr_radps, front.right_m, front.right_mps, brakes.fr_share),
-        wheel(axles.rl, line.rl_radps, rear.left_m, rear.left_mps, brakes.rear_share),
-        wheel(axles.rr, line.rr_radps, rear.right_m, rear.right_mps, brakes.rear_share),
-        line.shafts,
-        line.box,
-        line.aids,
+        body=motion.body,
+        steering=SteeringState(mean_rad, rate, torque),
+        fl=wheel(axles.fl, line.fl_radps, front.left_m, front.left_mps, brakes.fl_share),
+        fr=wheel(axles.fr, line.fr_radps, front.right_m, front.right_mps, brakes.fr_share),
+        rl=wheel(axles.rl, line.rl_radps, rear.left_m, rear.left_mps, brakes.rear_share),
+        rr=wheel(axles.rr, line.rr_radps, rear.right_m, rear.right_mps, brakes.rear_share),
+        shafts=line.shafts,
+        box=line.box,
+        aids=line.aids,
     )
 
 
 @kernel
 def wheel(on_ground: Contact, radps: float, lift_m: float, lift_mps: float, brake_share: float) -> Wheel:
     """Return a wheel after its step."""
-    return Wheel(radps, on_ground.tyre.deflection_x_m, on_ground.tyre.deflection_y_m, lift_m, lift_mps, brake_share)
+    return Wheel(
+        radps=radps,
+        deflection_x_m=on_ground.tyre.deflection_x_m,
+        deflection_y_m=on_ground.tyre.deflection_y_m,
+        lift_m=lift_m,
+        lift_mps=lift_mps,
+        brake_share=brake_share,
+    )
+
+
+step: Final = make_step(tyre, kingpin_moment)
+"""The step of a car whose tyres the profile describes itself."""

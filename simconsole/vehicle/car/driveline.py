@@ -7,7 +7,7 @@ from simconsole.values.signals import Request
 from simconsole.vehicle.car.aids import Brakes, brake_torques, hill_hold, stability, traction
 from simconsole.vehicle.car.axles import Axles, Contact
 from simconsole.vehicle.car.engine import EngineDrive, engine_drive
-from simconsole.vehicle.car.gearbox import bite, gear_ratio, matched_throttle, work_gearbox
+from simconsole.vehicle.car.gearbox import bite, gear_ratio, gearbox_step, matched_throttle
 from simconsole.vehicle.car.parameters import AxleParameters, CarParameters
 from simconsole.vehicle.car.powertrain import Capacity, Inertia, Shafts, braked, solve_shafts
 from simconsole.vehicle.car.state import AidState, Car, Gearbox, ShaftState, Wheel
@@ -38,14 +38,14 @@ def clutch_torque(engine_radps: float, car: CarParameters, box: Gearbox) -> floa
     torque = bite(car.gears, box.clutch) * car.gears.clutch_nm
     if box.lever_adopted != 0.0:
         return torque
-    turning = engine_radps * car.engine.per_idle_s
+    turning = engine_radps * car.engine.per_idle_radps
     return torque * clip((turning - ANTI_STALL_FROM) * (1.0 / (ANTI_STALL_TO - ANTI_STALL_FROM)), 0.0, 1.0)
 
 
 @kernel
 def spun(axle: AxleParameters, wheel: Wheel, on_ground: Contact, step_s: float) -> float:
     """Return the spin of a wheel after its tyre's force, before its brake."""
-    return wheel.radps - on_ground.tyre.force_x_n * (step_s * axle.spin_per_push_radpns)
+    return wheel.radps - on_ground.tyre.force_x_n * (step_s * axle.spin_radps_per_newton_second)
 
 
 @kernel
@@ -55,12 +55,12 @@ def friction_nms(axle: AxleParameters, brake_nm: float, on_ground: Contact, step
 
 
 @kernel
-def turn(car: Car, p: CarParameters, request: Request, axles: Axles, step_s: float) -> Driveline:
+def driveline_step(car: Car, p: CarParameters, request: Request, axles: Axles, step_s: float) -> Driveline:
     """Return the driveline one step later, under the tyre forces of `axles`."""
     at_rear = p.gears.rear_driven != 0.0
     before = car.shafts
     mean = 0.5 * (car.rl.radps + car.rr.radps) if at_rear else 0.5 * (car.fl.radps + car.fr.radps)
-    box = work_gearbox(p.gears, car.box, request, before.engine_radps, mean, car.body.vx_mps, step_s)
+    box = gearbox_step(p.gears, car.box, request, before.engine_radps, mean, car.body.vx_mps, step_s)
     clutch_nm = clutch_torque(before.engine_radps, p, box)
     driven_axle = p.rear if at_rear else p.front
     left = axles.rl if at_rear else axles.fl
@@ -81,38 +81,38 @@ def turn(car: Car, p: CarParameters, request: Request, axles: Axles, step_s: flo
     rl_nms = friction_nms(p.rear, brakes.rl_nm, axles.rl, step_s)
     rr_nms = friction_nms(p.rear, brakes.rr_nm, axles.rr, step_s)
     most = Capacity(
-        step_s * drive.friction_nm,
-        step_s * clutch_nm,
-        rl_nms if at_rear else fl_nms,
-        rr_nms if at_rear else fr_nms,
-        step_s * p.gears.lock_nm,
-        p.gears.lock_share,
+        engine_nms=step_s * drive.friction_nm,
+        clutch_nms=step_s * clutch_nm,
+        left_nms=rl_nms if at_rear else fl_nms,
+        right_nms=rr_nms if at_rear else fr_nms,
+        lock_nms=step_s * p.gears.lock_nm,
+        lock_share=p.gears.lock_share,
     )
-    shafts = turn_driven(car, p, drive, rl if at_rear else fl, rr if at_rear else fr, ratio, most, step_s)
+    shafts = shafts_step(car, p, drive, rl if at_rear else fl, rr if at_rear else fr, ratio, most, step_s)
     if at_rear:
         rl = shafts.left_radps
         rr = shafts.right_radps
-        fl = braked(fl, p.front.per_wheel_inertia_pkgm2, fl_nms)
-        fr = braked(fr, p.front.per_wheel_inertia_pkgm2, fr_nms)
+        fl = braked(fl, p.front.per_wheel_inertia_kgm2, fl_nms)
+        fr = braked(fr, p.front.per_wheel_inertia_kgm2, fr_nms)
     else:
         fl = shafts.left_radps
         fr = shafts.right_radps
-        rl = braked(rl, p.rear.per_wheel_inertia_pkgm2, rl_nms)
-        rr = braked(rr, p.rear.per_wheel_inertia_pkgm2, rr_nms)
+        rl = braked(rl, p.rear.per_wheel_inertia_kgm2, rl_nms)
+        rr = braked(rr, p.rear.per_wheel_inertia_kgm2, rr_nms)
     kept = ShaftState(
-        shafts.engine_radps,
-        drive.running,
-        shafts.engine_impulse_nms,
-        shafts.clutch_impulse_nms,
-        shafts.left_impulse_nms,
-        shafts.right_impulse_nms,
-        shafts.lock_impulse_nms,
+        engine_radps=shafts.engine_radps,
+        engine_running=drive.running,
+        engine_impulse_nms=shafts.engine_impulse_nms,
+        clutch_impulse_nms=shafts.clutch_impulse_nms,
+        left_impulse_nms=shafts.left_impulse_nms,
+        right_impulse_nms=shafts.right_impulse_nms,
+        lock_impulse_nms=shafts.lock_impulse_nms,
     )
-    return Driveline(box, kept, brakes, aids, fl, fr, rl, rr)
+    return Driveline(box=box, shafts=kept, brakes=brakes, aids=aids, fl_radps=fl, fr_radps=fr, rl_radps=rl, rr_radps=rr)
 
 
 @kernel
-def turn_driven(
+def shafts_step(
     car: Car,
     p: CarParameters,
     drive: EngineDrive,
@@ -126,15 +126,15 @@ def turn_driven(
     s = car.shafts
     driven = p.rear if p.gears.rear_driven != 0.0 else p.front
     speeds = Shafts(
-        s.engine_radps + drive.torque_nm * (step_s * p.engine.per_inertia_pkgm2),
-        left_radps,
-        right_radps,
-        s.engine_impulse_nms,
-        s.clutch_impulse_nms,
-        s.left_impulse_nms,
-        s.right_impulse_nms,
-        s.lock_impulse_nms,
+        engine_radps=s.engine_radps + drive.torque_nm * (step_s * p.engine.per_inertia_kgm2),
+        left_radps=left_radps,
+        right_radps=right_radps,
+        engine_impulse_nms=s.engine_impulse_nms,
+        clutch_impulse_nms=s.clutch_impulse_nms,
+        left_impulse_nms=s.left_impulse_nms,
+        right_impulse_nms=s.right_impulse_nms,
+        lock_impulse_nms=s.lock_impulse_nms,
     )
-    flywheel = Inertia(p.engine.inertia_kgm2, p.engine.per_inertia_pkgm2)
-    wheel = Inertia(driven.wheel_inertia_kgm2, driven.per_wheel_inertia_pkgm2)
+    flywheel = Inertia(p.engine.inertia_kgm2, p.engine.per_inertia_kgm2)
+    wheel = Inertia(driven.wheel_inertia_kgm2, driven.per_wheel_inertia_kgm2)
     return solve_shafts(speeds, ratio, flywheel, wheel, most)

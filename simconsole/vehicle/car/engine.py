@@ -34,7 +34,7 @@ def full_torque(p: EngineParameters, speed_radps: float) -> float:
         + ramp(speed_radps, p.ramp_8_radps, p.ramp_8_nms)
     )
     friction = engine_friction(p, speed_radps)
-    cut = clip((p.limit_radps - speed_radps) * p.per_limit_band_s, 0.0, 1.0)
+    cut = clip((p.limit_radps - speed_radps) * p.per_limit_band_radps, 0.0, 1.0)
     return (torque + friction) * cut - friction
 
 
@@ -47,7 +47,7 @@ def engine_friction(p: EngineParameters, speed_radps: float) -> float:
 @kernel
 def above_idle(p: EngineParameters, speed_radps: float) -> float:
     """Return 0 at idle speed and below, 1 where a closed throttle gives the full engine brake: half as fast again."""
-    return clip((speed_radps - p.idle_radps) * (2.0 * p.per_idle_s), 0.0, 1.0)
+    return clip((speed_radps - p.idle_radps) * (2.0 * p.per_idle_radps), 0.0, 1.0)
 
 
 @kernel

@@ -6,16 +6,10 @@ engaged gear and the automatic clutch stay until the person takes them back: by 
 lever where the gearbox is while the clutch is closed.
 """
 
-from typing import Final
-
 from simconsole.values.kernels import approach, clip, kernel
 from simconsole.values.signals import GearFault, Request
 from simconsole.vehicle.car.parameters import GearParameters
 from simconsole.vehicle.car.state import Gearbox
-
-GRIND: Final = float(GearFault.GRIND)
-MONEY_SHIFT: Final = float(GearFault.MONEY_SHIFT)
-MISSED: Final = float(GearFault.MISSED)
 
 BACKWARDS_RADPS = -40.0
 """How fast a gear may turn the engine's side backwards when it goes in: rolling at a slow walking pace."""
@@ -50,25 +44,41 @@ def bite(p: GearParameters, clutch: float) -> float:
 
 
 @kernel
-def by_lever(
+def by_person(
     p: GearParameters, box: Gearbox, lever: float, pedal: float, engine_radps: float, wheel_radps: float
 ) -> Gearbox:
     """Return the gearbox under the person's lever and clutch pedal."""
     if lever == box.gear:
-        return Gearbox(lever, pedal, 1.0, lever, 0.0, box.since_shift_s, 0.0)
+        return Gearbox(
+            gear=lever,
+            clutch=pedal,
+            lever_adopted=1.0,
+            wanted_gear=lever,
+            shift_left_s=0.0,
+            since_shift_s=box.since_shift_s,
+            gear_fault=0.0,
+        )
     ratio = gear_ratio(p, lever)
     speed = ratio * wheel_radps
     free = pedal >= p.bite_open or abs(speed - engine_radps) < p.synchro_radps
     fault = 0.0
     if lever != 0.0:
         if not free:
-            fault += GRIND
+            fault += GearFault.GRIND
         if speed >= p.limit_radps:
-            fault += MONEY_SHIFT
+            fault += GearFault.MONEY_SHIFT
         if ratio == 0.0 or speed <= BACKWARDS_RADPS:
-            fault += MISSED
+            fault += GearFault.MISSED
     gear = lever if fault == 0.0 else 0.0
-    return Gearbox(gear, pedal, 1.0, gear, 0.0, 0.0, fault)
+    return Gearbox(
+        gear=gear,
+        clutch=pedal,
+        lever_adopted=1.0,
+        wanted_gear=gear,
+        shift_left_s=0.0,
+        since_shift_s=0.0,
+        gear_fault=fault,
+    )
 
 
 @kernel
@@ -80,7 +90,7 @@ def gear_for(p: GearParameters, box: Gearbox, direction: float, throttle: float,
         return -1.0 if vx_mps < ROLLING_MPS else 0.0
     if vx_mps < -ROLLING_MPS:
         return 0.0
-    wheel = vx_mps * p.per_wheel_radius_pm
+    wheel = vx_mps * p.per_wheel_radius_m
     up = p.up_radps + p.up_per_throttle_radps * throttle
     if box.gear < 1.0:
         gear = 1.0
@@ -108,9 +118,9 @@ def automatic_clutch(p: GearParameters, box: Gearbox, engine_radps: float, wheel
     """
     closed = 0.0
     if box.shift_left_s <= 0.0 and box.gear != 0.0:
-        launch = (engine_radps - p.launch_from_radps) * p.per_launch_s
+        launch = (engine_radps - p.launch_from_radps) * p.per_launch_radps
         speed = gear_ratio(p, box.gear) * wheel_radps
-        lock = (speed - p.lock_from_radps) * p.per_lock_s
+        lock = (speed - p.lock_from_radps) * p.per_lock_radps
         closed = clip(launch if launch > lock else lock, 0.0, 1.0)
     target = p.bite_open - closed * (p.bite_open - p.bite_closed)
     if closed == 1.0:
@@ -139,7 +149,7 @@ def matched_throttle(
 
 
 @kernel
-def by_itself(
+def by_automatic(
     p: GearParameters, box: Gearbox, wanted: float, engine_radps: float, wheel_radps: float, step_s: float
 ) -> Gearbox:
     """Return the gearbox under the automatic: a shift opens the clutch, changes the gear half-way and closes again."""
@@ -157,13 +167,29 @@ def by_itself(
     elif wanted != gear:
         target = wanted
         left = p.shift_s
-    shifted = Gearbox(gear, box.clutch, 0.0, target, left, since, 0.0)
+    shifted = Gearbox(
+        gear=gear,
+        clutch=box.clutch,
+        lever_adopted=0.0,
+        wanted_gear=target,
+        shift_left_s=left,
+        since_shift_s=since,
+        gear_fault=0.0,
+    )
     clutch = automatic_clutch(p, shifted, engine_radps, wheel_radps, step_s)
-    return Gearbox(gear, clutch, 0.0, target, left, since, 0.0)
+    return Gearbox(
+        gear=gear,
+        clutch=clutch,
+        lever_adopted=0.0,
+        wanted_gear=target,
+        shift_left_s=left,
+        since_shift_s=since,
+        gear_fault=0.0,
+    )
 
 
 @kernel
-def work_gearbox(
+def gearbox_step(
     p: GearParameters,
     box: Gearbox,
     request: Request,
@@ -175,11 +201,19 @@ def work_gearbox(
     """Advance clutch and gears by one step: automatic, person, or the wait in between."""
     if request.automatic != 0.0:
         wanted = gear_for(p, box, request.gear, request.throttle, vx_mps)
-        return by_itself(p, box, wanted, engine_radps, wheel_radps, step_s)
+        return by_automatic(p, box, wanted, engine_radps, wheel_radps, step_s)
     closed = box.gear == 0.0 or (box.clutch <= p.bite_closed and box.shift_left_s <= 0.0)
     taken_back = request.clutch >= p.bite_open or (request.gear == box.gear and closed)
     if box.lever_adopted != 0.0 or taken_back:
-        return by_lever(p, box, request.gear, request.clutch, engine_radps, wheel_radps)
-    kept = by_itself(p, box, box.gear, engine_radps, wheel_radps, step_s)
+        return by_person(p, box, request.gear, request.clutch, engine_radps, wheel_radps)
+    kept = by_automatic(p, box, box.gear, engine_radps, wheel_radps, step_s)
     clutch = request.clutch if request.clutch > kept.clutch else kept.clutch
-    return Gearbox(kept.gear, clutch, 0.0, kept.wanted_gear, kept.shift_left_s, kept.since_shift_s, 0.0)
+    return Gearbox(
+        gear=kept.gear,
+        clutch=clutch,
+        lever_adopted=0.0,
+        wanted_gear=kept.wanted_gear,
+        shift_left_s=kept.shift_left_s,
+        since_shift_s=kept.since_shift_s,
+        gear_fault=0.0,
+    )

@@ -2,7 +2,7 @@
 
 from simconsole.values.kernels import kernel
 from simconsole.values.trigonometry import direction
-from simconsole.vehicle.car.axles import Grips
+from simconsole.vehicle.car.axles import FrictionShares
 from simconsole.vehicle.car.parameters import CarParameters, PatchParameters
 from simconsole.vehicle.car.state import Car
 
@@ -19,7 +19,7 @@ def on_patch(patch: PatchParameters, x_m: float, y_m: float, share: float) -> fl
 
 
 @kernel
-def grip_at(p: CarParameters, x_m: float, y_m: float) -> float:
+def share_at(p: CarParameters, x_m: float, y_m: float) -> float:
     """Return the share of the ground's friction at a place in map: that of the last patch there."""
     share = on_patch(p.patch_1, x_m, y_m, 1.0)
     share = on_patch(p.patch_2, x_m, y_m, share)
@@ -28,15 +28,15 @@ def grip_at(p: CarParameters, x_m: float, y_m: float) -> float:
 
 
 @kernel
-def grips_of(car: Car, p: CarParameters) -> Grips:
+def friction_shares(car: Car, p: CarParameters) -> FrictionShares:
     """Return the share of the ground's friction under each wheel."""
     if p.patch_1.from_x_m <= p.patch_1.to_x_m:
-        return found_grips(car, p)
-    return Grips(1.0, 1.0, 1.0, 1.0)
+        return _shares_on_patches(car, p)
+    return FrictionShares(1.0, 1.0, 1.0, 1.0)
 
 
 @kernel
-def found_grips(car: Car, p: CarParameters) -> Grips:
+def _shares_on_patches(car: Car, p: CarParameters) -> FrictionShares:
     """Return the same where there is a patch at all."""
     body = car.body
     ahead = direction(body.yaw_rad)
@@ -44,9 +44,9 @@ def found_grips(car: Car, p: CarParameters) -> Grips:
     front = p.front.half_track_m
     x = body.x_m + (p.front.ahead_m - p.rear.ahead_m) * ahead.cos
     y = body.y_m + (p.front.ahead_m - p.rear.ahead_m) * ahead.sin
-    return Grips(
-        grip_at(p, x - front * ahead.sin, y + front * ahead.cos),
-        grip_at(p, x + front * ahead.sin, y - front * ahead.cos),
-        grip_at(p, body.x_m - rear * ahead.sin, body.y_m + rear * ahead.cos),
-        grip_at(p, body.x_m + rear * ahead.sin, body.y_m - rear * ahead.cos),
+    return FrictionShares(
+        share_at(p, x - front * ahead.sin, y + front * ahead.cos),
+        share_at(p, x + front * ahead.sin, y - front * ahead.cos),
+        share_at(p, body.x_m - rear * ahead.sin, body.y_m + rear * ahead.cos),
+        share_at(p, body.x_m + rear * ahead.sin, body.y_m - rear * ahead.cos),
     )

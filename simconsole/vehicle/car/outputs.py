@@ -16,7 +16,7 @@ SMOOTH_MPS: Final = 0.3
 """Speed over which rolling resistance changes its direction in the forecasts (not in the car)."""
 
 
-class Lie(NamedTuple):
+class RoadAndWind(NamedTuple):
     """How the ground's plane and the wind lie to the car."""
 
     slope_along: float
@@ -34,7 +34,7 @@ class Pedals(NamedTuple):
 
 
 @kernel
-def lie_of(body: BodyParameters, yaw_rad: float) -> Lie:
+def road_and_wind(body: BodyParameters, yaw_rad: float) -> RoadAndWind:
     """Return how they lie to a car that points to `yaw_rad`."""
     ahead = direction(yaw_rad)
     c = ahead.cos
@@ -42,11 +42,11 @@ def lie_of(body: BodyParameters, yaw_rad: float) -> Lie:
     along = body.slope_x * c + body.slope_y * s
     wind_mps = body.wind_x_mps * c + body.wind_y_mps * s
     aside = body.slope_y * c - body.slope_x * s
-    return Lie(along, wind_mps, atan(along / sqrt(1.0 + aside * aside)), atan(aside))
+    return RoadAndWind(along, wind_mps, atan(along / sqrt(1.0 + aside * aside)), atan(aside))
 
 
 @kernel
-def pedals(car: Car, p: CarParameters, lie: Lie, automatic: float) -> Pedals:
+def pedals(car: Car, p: CarParameters, lie: RoadAndWind, automatic: float) -> Pedals:
     """Return what released pedals, full throttle and full brake would give now.
 
     Steady balance of forces in the gear in force, along the body (in reverse gear throttle is negative, brake
@@ -58,7 +58,7 @@ def pedals(car: Car, p: CarParameters, lie: Lie, automatic: float) -> Pedals:
     gear = car.box.wanted_gear if automatic != 0.0 else car.box.gear
     way = -1.0 if gear < 0.0 else 1.0
     speed = way * along_speed(car.body, body.cg_height_m)
-    leverage = way * gear_ratio(gears, gear) * gears.per_wheel_radius_pm
+    leverage = way * gear_ratio(gears, gear) * gears.per_wheel_radius_m
     grip = 1.0 if automatic != 0.0 else bite(gears, car.box.clutch)
     held = grip * gears.clutch_nm
     shaft = leverage * speed
@@ -71,7 +71,7 @@ def pedals(car: Car, p: CarParameters, lie: Lie, automatic: float) -> Pedals:
     load = body.mass_kg * body.gravity_plane_mps2
     air = speed - way * lie.wind_mps
     rolling = p.rear.rolling_resistance * load * speed / (abs(speed) + SMOOTH_MPS)
-    outside = -way * lie.slope_along * load - rolling - body.drag_nsspmm * air * abs(air)
+    outside = -way * lie.slope_along * load - rolling - body.drag_n_per_square_mps * air * abs(air)
     return Pedals(
         way * (outside - drag) * per_mass,
         way * (outside + clip(push, -gears.traction_n, gears.traction_n)) * per_mass,
@@ -88,32 +88,32 @@ def vehicle_state(car: Car, p: CarParameters, automatic: float) -> VehicleState:
     body = p.body
     now = car.body
     # Level and calm is what most fleets drive on.
-    lie = Lie(0.0, 0.0, 0.0, 0.0)
+    lie = RoadAndWind(0.0, 0.0, 0.0, 0.0)
     if body.slope_x != 0.0 or body.slope_y != 0.0 or body.wind_x_mps != 0.0 or body.wind_y_mps != 0.0:
-        lie = lie_of(body, now.yaw_rad)
+        lie = road_and_wind(body, now.yaw_rad)
     forecast = pedals(car, p, lie, automatic)
     return VehicleState(
-        now.x_m,
-        now.y_m,
-        body.rise_x * now.x_m + body.rise_y * now.y_m,
-        now.yaw_rad,
+        x_m=now.x_m,
+        y_m=now.y_m,
+        z_m=body.rise_x * now.x_m + body.rise_y * now.y_m,
+        yaw_rad=now.yaw_rad,
         # ISO 8855: pitch is positive nose down, roll is positive left side up.
-        now.pitch_rad - lie.up_rad,
-        now.roll_rad + lie.left_up_rad,
-        along_speed(now, body.cg_height_m),
-        side_speed(p.rear, now, car.rl, car.rr),
-        now.yaw_rate_radps,
-        now.ax_mps2,
-        now.ay_mps2,
-        car.steering.road_wheel_rad,
-        car.steering.hand_wheel_torque_nm,
-        car.shafts.engine_radps,
-        car.shafts.engine_running,
-        car.box.gear,
-        car.box.clutch,
-        now.distance_m,
-        forecast.coast_mps2,
-        forecast.full_throttle_mps2,
-        forecast.full_brake_mps2,
-        car.box.gear_fault,
+        pitch_rad=now.pitch_rad - lie.up_rad,
+        roll_rad=now.roll_rad + lie.left_up_rad,
+        vx_mps=along_speed(now, body.cg_height_m),
+        vy_mps=side_speed(p.rear, now, car.rl, car.rr),
+        yaw_rate_radps=now.yaw_rate_radps,
+        ax_mps2=now.ax_mps2,
+        ay_mps2=now.ay_mps2,
+        road_wheel_rad=car.steering.road_wheel_rad,
+        hand_wheel_torque_nm=car.steering.hand_wheel_torque_nm,
+        engine_radps=car.shafts.engine_radps,
+        engine_running=car.shafts.engine_running,
+        gear=car.box.gear,
+        clutch=car.box.clutch,
+        distance_m=now.distance_m,
+        coast_accel_mps2=forecast.coast_mps2,
+        full_throttle_accel_mps2=forecast.full_throttle_mps2,
+        full_brake_accel_mps2=forecast.full_brake_mps2,
+        gear_fault=car.box.gear_fault,
     )

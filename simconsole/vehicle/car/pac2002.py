@@ -273,7 +273,14 @@ def pure_y(p: Pac2002, s: Slip, alpha_rad: float) -> Side:
     k = stiffness_y(p, s.load_n, s.camber_rad)
     b = k / (c * d)
     lift = s.load_n * ((p.pvy1 + p.pvy2 * dfz) * p.lvy + (p.pvy3 + p.pvy4 * dfz) * lean) * scale
-    return Side(d * sin(c * bend(b * angle, e)) + lift, d, k, b * c, shift + lift / k, lift)
+    return Side(
+        force_n=d * sin(c * bend(b * angle, e)) + lift,
+        peak_n=d,
+        stiffness_n=k,
+        bc=b * c,
+        shift=shift + lift / k,
+        lift_n=lift,
+    )
 
 
 @kernel

@@ -1,9 +1,12 @@
-"""What stays constant over a drive, in SI, ready for the kernels; `assembly.py` computes it from the profile.
+"""What stays constant over a drive, in SI, ready for the kernels; `car_platform.py` computes it from the profile.
 
-Whatever the kernels divide by is here as its reciprocal, `per_...`: a division costs them as much as ten products.
+Whatever the kernels divide by is here as its reciprocal: `per_mass_kg` is 1 / mass_kg. A division costs them as much
+as ten products.
 """
 
 from typing import Final, NamedTuple
+
+from simconsole.values.layout import Part
 
 
 class AxleParameters(NamedTuple):
@@ -11,14 +14,14 @@ class AxleParameters(NamedTuple):
 
     ahead_m: float  # of the centre of gravity, negative: behind
     half_track_m: float
-    roll_per_lift_radpm: float  # of the axle, per difference of its wheels' lifts
+    roll_rad_per_m: float  # of the axle, per difference of its wheels' lifts
     wheel_inertia_kgm2: float
-    per_wheel_inertia_pkgm2: float
-    spin_per_push_radpns: float  # by which a force at the ground changes a wheel's speed: radius over inertia
-    per_wheel_mass_pkg: float
+    per_wheel_inertia_kgm2: float
+    spin_radps_per_newton_second: float  # by which a force at the ground changes a wheel's speed: radius over inertia
+    per_wheel_mass_kg: float
     radius_m: float
     static_n: float  # load of one wheel at rest on this ground
-    per_static_pn: float
+    per_static_n: float
     stiffness_x_per_m: float  # slip stiffness / relaxation length
     stiffness_y_per_m: float
     decay_x_per_m: float  # 1 / relaxation length
@@ -51,19 +54,19 @@ class EngineParameters(NamedTuple):
     """The engine. Full-throttle torque is a sum of ramps: one slope from each speed upwards."""
 
     inertia_kgm2: float
-    per_inertia_pkgm2: float
+    per_inertia_kgm2: float
     drag_nm: float
     drag_nms: float
     hold_nm: float
     idle_radps: float
-    per_idle_s: float
+    per_idle_radps: float
     idle_gain_nms: float
     idle_max_nm: float
     stall_radps: float
     fire_radps: float
     starter_nm: float
     limit_radps: float
-    per_limit_band_s: float
+    per_limit_band_radps: float
     ramp_1_radps: float
     ramp_1_nms: float
     ramp_2_radps: float
@@ -100,7 +103,7 @@ class GearParameters(NamedTuple):
     gears: float
     synchro_radps: float
     limit_radps: float
-    per_wheel_radius_pm: float
+    per_wheel_radius_m: float
     shift_s: float
     shift_pause_s: float
     up_radps: float
@@ -109,10 +112,10 @@ class GearParameters(NamedTuple):
     down_per_throttle_radps: float
     launch_from_radps: float  # engine speed at which the automatic clutch begins to bite
     launch_to_radps: float
-    per_launch_s: float
+    per_launch_radps: float
     lock_from_radps: float  # gearbox speed at which it begins to close
     lock_to_radps: float
-    per_lock_s: float
+    per_lock_radps: float
     clutch_opening_per_s: float
     clutch_closing_per_s: float
     traction_n: float  # what the ground holds under the driven wheels
@@ -125,21 +128,23 @@ class BodyParameters(NamedTuple):
     """Body, aerodynamics and the plane of the ground."""
 
     mass_kg: float
-    per_mass_pkg: float
+    per_mass_kg: float
     moving_kg: float  # with what the spin of the wheels adds
-    per_sprung_pkg: float
-    per_roll_inertia_pkgm2: float
-    per_pitch_inertia_pkgm2: float
-    per_yaw_inertia_pkgm2: float
+    per_sprung_kg: float
+    per_roll_inertia_kgm2: float
+    per_pitch_inertia_kgm2: float
+    per_yaw_inertia_kgm2: float
     cg_to_front_m: float
     cg_to_rear_m: float
     cg_height_m: float
-    drag_nsspmm: float  # force per squared speed
-    front_lift_nsspmm: float  # positive: up
-    rear_lift_nsspmm: float
-    side_nsspmm: float  # side force per speed of the air and its part from the side
-    yaw_nsspm: float  # moment about the middle of the wheelbase per speeds of the air along and from the side
-    sway_npm: float  # sprung weight times the mean roll arm, per rad: rolling lets the body down
+    drag_n_per_square_mps: float  # force per squared speed
+    front_lift_n_per_square_mps: float  # positive: up
+    rear_lift_n_per_square_mps: float
+    side_n_per_square_mps: float  # side force per speed of the air and its part from the side
+    yaw_nm_per_square_mps: (
+        float  # moment about the middle of the wheelbase per speeds of the air along and from the side
+    )
+    sway_nm_per_rad: float  # sprung weight times the mean roll arm, per rad: rolling lets the body down
     slope_x: float
     slope_y: float
     full_brake_n: float  # of all four wheels, at most what the ground holds
@@ -158,14 +163,14 @@ class SteeringParameters(NamedTuple):
     rate_radps: float
     max_road_wheel_rad: float
     friction_rad: float  # deviation that friction holds
-    compliance_radpnm: float  # by which the tyres' moment turns the wheels
+    compliance_rad_per_nm: float  # by which the tyres' moment turns the wheels
     ackermann: float  # share of the ideal times half of track over wheelbase
     pneumatic_trail_m: float
     per_trail_end: float  # 1 / demand at which the pneumatic trail is gone
     caster_trail_m: float
     hand_torque_gain: float  # share that the assistance leaves / ratio, standing
-    hand_torque_gain_spm: float  # more of it per speed
-    per_hand_torque_most_pnm: float  # 1 / torque towards which the assistance bends
+    hand_torque_gain_per_mps: float  # more of it per speed
+    per_hand_torque_most_nm: float  # 1 / torque towards which the assistance bends
     hand_damping_nms: float  # per road-wheel rate
     hand_friction_nm: float
 
@@ -177,7 +182,7 @@ class AidParameters(NamedTuple):
     traction: float
     stability: float
     hill_hold: float
-    understeer_s2pm2: float  # of the yaw rate that ESC expects: r = v d / (L (1 + k v^2))
+    understeer_per_square_mps: float  # of the yaw rate that ESC expects: r = v d / (L (1 + k v^2))
     lateral_mps2: float  # which ESC takes for the most that the ground gives
     stability_nms: float  # brake torque per yaw rate beyond the dead band
     stability_most_nm: float
@@ -194,24 +199,6 @@ class PatchParameters(NamedTuple):
 
 
 NO_PATCH: Final = PatchParameters(1.0, -1.0, 1.0, -1.0, 1.0)
-BODY_AT: Final = 0
-BODY_WIDTH: Final = len(BodyParameters._fields)
-STEERING_AT: Final = BODY_AT + BODY_WIDTH
-STEERING_WIDTH: Final = len(SteeringParameters._fields)
-ENGINE_AT: Final = STEERING_AT + STEERING_WIDTH
-ENGINE_WIDTH: Final = len(EngineParameters._fields)
-GEARS_AT: Final = ENGINE_AT + ENGINE_WIDTH
-GEARS_WIDTH: Final = len(GearParameters._fields)
-AIDS_AT: Final = GEARS_AT + GEARS_WIDTH
-AIDS_WIDTH: Final = len(AidParameters._fields)
-FRONT_AT: Final = AIDS_AT + AIDS_WIDTH
-AXLE_WIDTH: Final = len(AxleParameters._fields)
-REAR_AT: Final = FRONT_AT + AXLE_WIDTH
-PATCH_1_AT: Final = REAR_AT + AXLE_WIDTH
-PATCH_WIDTH: Final = len(PatchParameters._fields)
-PATCH_2_AT: Final = PATCH_1_AT + PATCH_WIDTH
-PATCH_3_AT: Final = PATCH_2_AT + PATCH_WIDTH
-PATCH_4_AT: Final = PATCH_3_AT + PATCH_WIDTH
 
 
 class CarParameters(NamedTuple):
@@ -228,3 +215,7 @@ class CarParameters(NamedTuple):
     patch_2: PatchParameters
     patch_3: PatchParameters
     patch_4: PatchParameters
+
+
+PARAMETERS: Final = Part(CarParameters)
+"""Where they lie in the parameter row."""

@@ -52,14 +52,14 @@ def slowed(s: Shafts, flywheel: Inertia, wheel: Inertia, most: Capacity) -> Shaf
     left_nms = clip(s.left_impulse_nms + s.left_radps * wheel.kgm2, -most.left_nms, most.left_nms)
     right_nms = clip(s.right_impulse_nms + s.right_radps * wheel.kgm2, -most.right_nms, most.right_nms)
     return Shafts(
-        s.engine_radps - (engine_nms - s.engine_impulse_nms) * flywheel.per_kgm2,
-        s.left_radps - (left_nms - s.left_impulse_nms) * wheel.per_kgm2,
-        s.right_radps - (right_nms - s.right_impulse_nms) * wheel.per_kgm2,
-        engine_nms,
-        s.clutch_impulse_nms,
-        left_nms,
-        right_nms,
-        s.lock_impulse_nms,
+        engine_radps=s.engine_radps - (engine_nms - s.engine_impulse_nms) * flywheel.per_kgm2,
+        left_radps=s.left_radps - (left_nms - s.left_impulse_nms) * wheel.per_kgm2,
+        right_radps=s.right_radps - (right_nms - s.right_impulse_nms) * wheel.per_kgm2,
+        engine_impulse_nms=engine_nms,
+        clutch_impulse_nms=s.clutch_impulse_nms,
+        left_impulse_nms=left_nms,
+        right_impulse_nms=right_nms,
+        lock_impulse_nms=s.lock_impulse_nms,
     )
 
 
@@ -80,7 +80,14 @@ def coupled(s: Shafts, ratio: float, clutch_kgm2: float, flywheel: Inertia, whee
         right = right - (lock_nms - s.lock_impulse_nms) * wheel.per_kgm2
     engine = s.engine_radps - more * flywheel.per_kgm2
     return Shafts(
-        engine, left, right, s.engine_impulse_nms, clutch_nms, s.left_impulse_nms, s.right_impulse_nms, lock_nms
+        engine_radps=engine,
+        left_radps=left,
+        right_radps=right,
+        engine_impulse_nms=s.engine_impulse_nms,
+        clutch_impulse_nms=clutch_nms,
+        left_impulse_nms=s.left_impulse_nms,
+        right_impulse_nms=s.right_impulse_nms,
+        lock_impulse_nms=lock_nms,
     )
 
 
@@ -107,7 +114,16 @@ def solve_shafts(before: Shafts, ratio: float, flywheel: Inertia, wheel: Inertia
     engine = before.engine_radps - (friction + clutch) * flywheel.per_kgm2
     left = before.left_radps + (half * clutch - left_brake + lock) * wheel.per_kgm2
     right = before.right_radps + (half * clutch - right_brake - lock) * wheel.per_kgm2
-    start = Shafts(engine, left, right, friction, clutch, left_brake, right_brake, lock)
+    start = Shafts(
+        engine_radps=engine,
+        left_radps=left,
+        right_radps=right,
+        engine_impulse_nms=friction,
+        clutch_impulse_nms=clutch,
+        left_impulse_nms=left_brake,
+        right_impulse_nms=right_brake,
+        lock_impulse_nms=lock,
+    )
     # Clutch and lock do not change what the other has found. While everything turns, engine friction and brakes are at
     # their bounds: then they find after the first sweep that nothing has changed, and it is the solution.
     shafts = slowed(start, flywheel, wheel, most)
@@ -124,18 +140,18 @@ def solve_shafts(before: Shafts, ratio: float, flywheel: Inertia, wheel: Inertia
         sweeps += 1.0
     # The brake holds: what rounding left is not motion, and the tyre asks whether its wheel is held.
     return Shafts(
-        shafts.engine_radps,
-        0.0 if abs(shafts.left_impulse_nms) < most.left_nms else shafts.left_radps,
-        0.0 if abs(shafts.right_impulse_nms) < most.right_nms else shafts.right_radps,
-        shafts.engine_impulse_nms,
-        shafts.clutch_impulse_nms,
-        shafts.left_impulse_nms,
-        shafts.right_impulse_nms,
-        shafts.lock_impulse_nms,
+        engine_radps=shafts.engine_radps,
+        left_radps=0.0 if abs(shafts.left_impulse_nms) < most.left_nms else shafts.left_radps,
+        right_radps=0.0 if abs(shafts.right_impulse_nms) < most.right_nms else shafts.right_radps,
+        engine_impulse_nms=shafts.engine_impulse_nms,
+        clutch_impulse_nms=shafts.clutch_impulse_nms,
+        left_impulse_nms=shafts.left_impulse_nms,
+        right_impulse_nms=shafts.right_impulse_nms,
+        lock_impulse_nms=shafts.lock_impulse_nms,
     )
 
 
 @kernel
-def braked(wheel_radps: float, per_inertia_pkgm2: float, capacity_nms: float) -> float:
+def braked(wheel_radps: float, per_inertia_kgm2: float, capacity_nms: float) -> float:
     """Return the speed of a free-running wheel after its brake: at most to exactly 0."""
-    return approach(wheel_radps, 0.0, capacity_nms * per_inertia_pkgm2)
+    return approach(wheel_radps, 0.0, capacity_nms * per_inertia_kgm2)

@@ -2,6 +2,9 @@
 
 from typing import Final, NamedTuple
 
+from simconsole.values.layout import Part
+from simconsole.values.state_vector import PLATFORM_AT
+
 
 class BodyState(NamedTuple):
     """Pose of base_link in map; motion of the centre of gravity along the body; lift and lean above the ground's plane.
@@ -158,10 +161,5 @@ class CarState(NamedTuple):
     hold_brake: float
 
 
-CAR_WIDTH: Final = len(CarState._fields)
-BODY_WIDTH: Final = len(BodyState._fields)
-STEERING_WIDTH: Final = len(SteeringState._fields)
-WHEEL_WIDTH: Final = len(Wheel._fields)
-SHAFT_WIDTH: Final = len(ShaftState._fields)
-BOX_WIDTH: Final = len(Gearbox._fields)
-AID_WIDTH: Final = len(AidState._fields)
+CAR: Final = Part(Car, PLATFORM_AT)
+"""Where the state lies in a row."""

@@ -14,7 +14,7 @@ SLOW_RADPS = 0.01
 """Road-wheel rate around which the friction at the rim gets its direction."""
 
 
-class Heading(NamedTuple):
+class WheelDirections(NamedTuple):
     """Cosine and sine of both front wheels' angles."""
 
     left_cos: float
@@ -24,20 +24,20 @@ class Heading(NamedTuple):
 
 
 @kernel
-def steer(p: SteeringParameters, rack: SteeringState, command_rad: float, moment_nm: float) -> float:
+def rack_rate(p: SteeringParameters, rack: SteeringState, command_rad: float, moment_nm: float) -> float:
     """Return the rate of the rack in road-wheel rad/s after one step.
 
     A critically damped second-order rack (implicit, stable at any stiffness) whose dry friction holds it exactly
     where it is as long as the deviation is below `friction_rad`. The tyres' moment turns it through its compliance.
     """
-    target = clip(command_rad + p.compliance_radpnm * moment_nm, -p.max_road_wheel_rad, p.max_road_wheel_rad)
+    target = clip(command_rad + p.compliance_rad_per_nm * moment_nm, -p.max_road_wheel_rad, p.max_road_wheel_rad)
     rate = (rack.road_wheel_radps + p.rack_pull_radps * (target - rack.road_wheel_rad)) * p.rack_ease
     held = p.rack_pull_radps * p.friction_rad * p.rack_ease
     return clip(approach(rate, 0.0, held), -p.rate_radps, p.rate_radps)
 
 
 @kernel
-def heading(p: SteeringParameters, mean_rad: float) -> Heading:
+def wheel_directions(p: SteeringParameters, mean_rad: float) -> WheelDirections:
     """Return where the front wheels point: the inner one further, cot(left) - cot(right) = -track / wheelbase."""
     mean = direction(mean_rad)
     c = mean.cos
@@ -46,7 +46,7 @@ def heading(p: SteeringParameters, mean_rad: float) -> Heading:
     right = c + p.ackermann * s
     per_left = 1.0 / sqrt(left * left + s * s)
     per_right = 1.0 / sqrt(right * right + s * s)
-    return Heading(left * per_left, s * per_left, right * per_right, s * per_right)
+    return WheelDirections(left * per_left, s * per_left, right * per_right, s * per_right)
 
 
 @kernel
@@ -63,7 +63,7 @@ def aligning_moment(p: SteeringParameters, force_y_n: float, demand: float, roll
 @kernel
 def hand_wheel_torque(p: SteeringParameters, moment_nm: float, road_wheel_radps: float, speed_mps: float) -> float:
     """Return the torque at the rim in N m, left-positive: the assistance leaves less of it the more there is."""
-    carried = (p.hand_torque_gain + p.hand_torque_gain_spm * clip(abs(speed_mps), 0.0, 50.0)) * moment_nm
-    bent = carried / (1.0 + abs(carried) * p.per_hand_torque_most_pnm)
+    carried = (p.hand_torque_gain + p.hand_torque_gain_per_mps * clip(abs(speed_mps), 0.0, 50.0)) * moment_nm
+    bent = carried / (1.0 + abs(carried) * p.per_hand_torque_most_nm)
     dry = p.hand_friction_nm * road_wheel_radps / (abs(road_wheel_radps) + SLOW_RADPS)
     return bent - p.hand_damping_nms * road_wheel_radps - dry

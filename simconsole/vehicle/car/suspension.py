@@ -53,4 +53,4 @@ def wheel_load(axle: AxleParameters, wheel: Wheel) -> float:
 @kernel
 def axle_roll(axle: AxleParameters, left: float, right: float) -> float:
     """Return the roll of an axle, positive left side up, from the lifts of its wheels (or its rate from theirs)."""
-    return (left - right) * axle.roll_per_lift_radpm
+    return (left - right) * axle.roll_rad_per_m

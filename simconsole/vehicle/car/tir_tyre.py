@@ -4,19 +4,18 @@ The deflection over its relaxation length is the slip that PAC2002 is asked for:
 standstill. Beyond `slide_demand` (the profile's `sliding_share`) the deflection slides along with the force it has.
 """
 
+from collections.abc import Callable
 from functools import cache
 from math import sqrt
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
-from simconsole.profiles.tyre import NEEDED, ONE, ZERO
-from simconsole.values.kernels import clip, kernel, rebound
-from simconsole.vehicle.car.axles import rim_moment
-from simconsole.vehicle.car.car_step import step
+from simconsole.values.kernels import Row, clip, kernel
+from simconsole.vehicle.car.axles import TyreModel
+from simconsole.vehicle.car.car_step import make_step
 from simconsole.vehicle.car.pac2002 import (
     LEAST_LOAD_N,
     Pac2002,
     Slip,
-    pac2002,
     peak_x,
     peak_y,
     steady,
@@ -25,10 +24,7 @@ from simconsole.vehicle.car.pac2002 import (
 )
 from simconsole.vehicle.car.parameters import AxleParameters, SteeringParameters
 from simconsole.vehicle.car.steering import ROLLING_MPS
-from simconsole.vehicle.car.tyre import PEAK_DEMAND, tyre
-
-COEFFICIENTS: Final = Pac2002(*(1.0,) * len(NEEDED + ZERO + ONE))
-"""Takes the place of a tyre's own, which `step_on` puts here."""
+from simconsole.vehicle.car.tyre import PEAK_DEMAND
 
 MOST_NOMINAL: Final = 2.0
 """Nominal loads above which a tyre slides at the same deflection as there."""
@@ -45,76 +41,88 @@ class TirForce(NamedTuple):
     moment_nm: float  # as it rolls ahead
 
 
-@kernel
-def tir_tyre(
-    axle: AxleParameters,
-    friction: float,
-    load_n: float,
-    slip_x_mps: float,
-    slip_y_mps: float,
-    wheel_radps: float,
-    deflection_x_m: float,
-    deflection_y_m: float,
-    camber_rad: float,
-    side: float,
-    step_s: float,
-) -> TirForce:
-    """Advance the deflection by one step and return the force: `tyre`, with PAC2002 for the curve.
+def make_tyre(p: Pac2002) -> TyreModel:
+    """Return the kernel of a tyre with these coefficients, in place of `tyre.tyre`.
 
-    The deflection fades over the way that the wheel travels, du/dt = -V - |Vx| u / L: in steady motion u / L is then
-    the slip as PAC2002 has it, over the speed of travel, and nothing was divided by that speed. Over the speed of
-    rolling, as `tyre` has it, 10 % of slip would be 11 % when braking. A wheel that the brake holds is a spring.
+    It advances the deflection by one step and returns the force. The deflection fades over the way that the wheel
+    travels, du/dt = -V - |Vx| u / L: in steady motion u / L is then the slip as PAC2002 has it, over the speed of
+    travel, and nothing was divided by that speed. Over the speed of rolling, as `tyre` has it, 10 % of slip would be
+    11 % when braking. A wheel that the brake holds is a spring.
 
     Plysteer and conicity belong to the side on which the tyre was measured: on the other it is mounted mirrored.
     """
-    way = step_s * abs(slip_x_mps + wheel_radps * axle.radius_m) if wheel_radps != 0.0 else 0.0
-    x = (deflection_x_m - step_s * slip_x_mps) / (1.0 + way * axle.decay_x_per_m)
-    y = (deflection_y_m - step_s * slip_y_mps) / (1.0 + way * axle.decay_y_per_m)
-    load = load_n if load_n > LEAST_LOAD_N else LEAST_LOAD_N
-    along = x * axle.decay_x_per_m
-    across = -y * axle.decay_y_per_m
-    # Stiffness over load falls without end: under an impact the patch would slide only when it is out of sight.
-    usual = clip(load, LEAST_LOAD_N, MOST_NOMINAL * COEFFICIENTS.fnomin)
-    firm_x = stiffness_x(COEFFICIENTS, usual) * along
-    firm_y = stiffness_y(COEFFICIENTS, usual, camber_rad) * across
-    s = Slip(along, across, usual, camber_rad, friction)
-    share_x = firm_x / peak_x(COEFFICIENTS, s)
-    share_y = firm_y / peak_y(COEFFICIENTS, s)
-    demand = sqrt(share_x * share_x + share_y * share_y)
-    if demand > axle.slide_demand:
-        share = axle.slide_demand / demand
-        x = x * share
-        y = y * share
-        demand = axle.slide_demand
-    turned = side * COEFFICIENTS.tyreside
-    across = -turned * y * axle.decay_y_per_m
-    given = pac2002(COEFFICIENTS, Slip(x * axle.decay_x_per_m, across, load, turned * camber_rad, friction))
-    damping = axle.locked_damping_nspm
-    if wheel_radps != 0.0:
-        held = clip(1.0 - demand / PEAK_DEMAND, 0.0, 1.0)
-        damping = axle.damping_nspm * held * held
-    touching = clip(load_n * (1.0 / LEAST_LOAD_N), 0.0, 1.0)
-    rate = damping * clip(load_n * axle.per_static_pn, 0.0, 4.0) * (1.0 / step_s)
-    force_x = given.x_n * touching + rate * (x - deflection_x_m)
-    force_y = turned * given.y_n * touching + rate * (y - deflection_y_m)
-    force = sqrt(force_x * force_x + force_y * force_y)
-    limit = touching * (given.peak_x_n if given.peak_x_n > given.peak_y_n else given.peak_y_n)
-    if force > limit:
-        share = limit / force
-        force_x = force_x * share
-        force_y = force_y * share
-    return TirForce(force_x, force_y, x, y, demand, turned * given.moment_nm * touching)
+    force_of = steady(p)
+
+    @kernel
+    def tir_tyre(
+        axle: AxleParameters,
+        friction: float,
+        load_n: float,
+        slip_x_mps: float,
+        slip_y_mps: float,
+        wheel_radps: float,
+        deflection_x_m: float,
+        deflection_y_m: float,
+        camber_rad: float,
+        side: float,
+        step_s: float,
+    ) -> TirForce:
+        way = step_s * abs(slip_x_mps + wheel_radps * axle.radius_m) if wheel_radps != 0.0 else 0.0
+        x = (deflection_x_m - step_s * slip_x_mps) / (1.0 + way * axle.decay_x_per_m)
+        y = (deflection_y_m - step_s * slip_y_mps) / (1.0 + way * axle.decay_y_per_m)
+        load = load_n if load_n > LEAST_LOAD_N else LEAST_LOAD_N
+        along = x * axle.decay_x_per_m
+        across = -y * axle.decay_y_per_m
+        # Stiffness over load falls without end: under an impact the patch would slide only when it is out of sight.
+        usual = clip(load, LEAST_LOAD_N, MOST_NOMINAL * p.fnomin)
+        firm_x = stiffness_x(p, usual) * along
+        firm_y = stiffness_y(p, usual, camber_rad) * across
+        s = Slip(along, across, usual, camber_rad, friction)
+        share_x = firm_x / peak_x(p, s)
+        share_y = firm_y / peak_y(p, s)
+        demand = sqrt(share_x * share_x + share_y * share_y)
+        if demand > axle.slide_demand:
+            share = axle.slide_demand / demand
+            x = x * share
+            y = y * share
+            demand = axle.slide_demand
+        turned = side * p.tyreside
+        across = -turned * y * axle.decay_y_per_m
+        given = force_of(p, Slip(x * axle.decay_x_per_m, across, load, turned * camber_rad, friction))
+        damping = axle.locked_damping_nspm
+        if wheel_radps != 0.0:
+            held = clip(1.0 - demand / PEAK_DEMAND, 0.0, 1.0)
+            damping = axle.damping_nspm * held * held
+        touching = clip(load_n * (1.0 / LEAST_LOAD_N), 0.0, 1.0)
+        rate = damping * clip(load_n * axle.per_static_n, 0.0, 4.0) * (1.0 / step_s)
+        force_x = given.x_n * touching + rate * (x - deflection_x_m)
+        force_y = turned * given.y_n * touching + rate * (y - deflection_y_m)
+        force = sqrt(force_x * force_x + force_y * force_y)
+        limit = touching * (given.peak_x_n if given.peak_x_n > given.peak_y_n else given.peak_y_n)
+        if force > limit:
+            share = limit / force
+            force_x = force_x * share
+            force_y = force_y * share
+        return TirForce(
+            force_x_n=force_x,
+            force_y_n=force_y,
+            deflection_x_m=x,
+            deflection_y_m=y,
+            demand=demand,
+            moment_nm=turned * given.moment_nm * touching,
+        )
+
+    return tir_tyre
 
 
 @kernel
-def tir_moment(p: SteeringParameters, tyre_force: TirForce, rolling_mps: float) -> float:
+def tir_kingpin_moment(p: SteeringParameters, tyre_force: TirForce, rolling_mps: float) -> float:
     """Return the moment about the kingpin: the tyre's own, which turns over when it rolls back, and the caster's."""
     way = rolling_mps / (abs(rolling_mps) + ROLLING_MPS)
     return tyre_force.moment_nm * way - tyre_force.force_y_n * p.caster_trail_m
 
 
 @cache
-def step_on(coefficients: Pac2002) -> Any:
+def step_on(coefficients: Pac2002) -> Callable[[Row, Row, Row, int], None]:
     """Return the car's step on this tyre. Equal coefficients give the same step: it compiles once."""
-    own = rebound(tir_tyre, {id(COEFFICIENTS): coefficients, id(pac2002): steady(coefficients)})
-    return rebound(step, {id(tyre): own, id(rim_moment): tir_moment})
+    return make_step(make_tyre(coefficients), tir_kingpin_moment)

@@ -76,7 +76,7 @@ def tyre(
     per_fade = 1.0 / (fade_x * fade_y)  # one division for both
     x = (deflection_x_m - step_s * slip_x_mps) * (fade_y * per_fade)
     y = (deflection_y_m - step_s * slip_y_mps - rolled * lean) * (fade_x * per_fade)
-    over = clip(load_n * axle.per_static_pn, 0.0, 4.0) - 1.0
+    over = clip(load_n * axle.per_static_n, 0.0, 4.0) - 1.0
     grip = friction * falling(axle.friction_fall, over)
     firm = falling(axle.stiffness_fall, over)
     stiffness_x = axle.stiffness_x_per_m * firm

@@ -3,7 +3,7 @@ import math
 import pytest
 
 from simconsole.control.requests.control_settings import ControlSettings
-from simconsole.control.requests.longitudinal import Pedals, brake_for, integrate, known, pedals_for
+from simconsole.control.requests.longitudinal import Pedals, brake_for, finite_or, integrate, pedals_for
 from simconsole.values.signals import VehicleState
 
 STATE = VehicleState(*(0.0,) * len(VehicleState._fields))
@@ -87,4 +87,4 @@ def test_the_coasting_band_ends_where_braking_begins(control: ControlSettings) -
 
 
 def test_known_replaces_only_what_is_not_finite() -> None:
-    assert [known(value, 7.0) for value in (1.5, math.nan, math.inf, -math.inf)] == [1.5, 7.0, 7.0, 7.0]
+    assert [finite_or(value, 7.0) for value in (1.5, math.nan, math.inf, -math.inf)] == [1.5, 7.0, 7.0, 7.0]

@@ -19,7 +19,7 @@ from simconsole.devices.force_feedback.simulated_wheel import HANDS_OFF, Simulat
 from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.values.errors import DeviceError
 from simconsole.values.signals import NO_SAMPLE, NO_TORQUE, DeviceSample
-from simconsole.values.state_vector import MOTOR_AT, PLATFORM_AT, TORQUE_AT, Snapshot
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT, Snapshot
 
 FORCE = ForceFeedback(max_torque_nm=4.0)
 HZ = 250
@@ -54,7 +54,7 @@ class Log:
 
 def shot(tick: int, torque_nm: float, enabled: float = 1.0) -> Snapshot:
     row = np.zeros(PLATFORM_AT)
-    row[TORQUE_AT:MOTOR_AT] = NO_TORQUE._replace(torque_nm=torque_nm, ramp=1.0, enabled=enabled)
+    row[LAYOUT.torque.slice] = NO_TORQUE._replace(torque_nm=torque_nm, ramp=1.0, enabled=enabled)
     return Snapshot(tick, HZ, row)
 
 

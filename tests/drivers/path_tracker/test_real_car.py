@@ -10,7 +10,7 @@ from simconsole.profiles.vehicle import VehicleProfile
 from simconsole.values.host.jit import compiled
 from simconsole.values.platform import Ground, Pose
 from simconsole.values.signals import VehicleCommand, VehicleState
-from simconsole.values.state_vector import COMMAND_AT, PLATFORM_AT, TORQUE_AT, VEHICLE_AT
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT
 from simconsole.vehicle.platforms import build
 from simconsole.world.course import Course
 
@@ -30,12 +30,12 @@ def test_a_lap_in_the_hatchback_keeps_the_bars(course: Course) -> None:
     car = build(load("vehicles", "hatchback", VehicleProfile), Pose(0.0, 0.0, 0.0), Ground(1.0, 0.0, 0.0))  # type: ignore[arg-type]
     step, tracker = compiled(car.step), Tracker(course)
     row = np.zeros(PLATFORM_AT + len(car.initial_state))
-    row[VEHICLE_AT:TORQUE_AT], row[PLATFORM_AT:] = car.initial_vehicle, car.initial_state
+    row[LAYOUT.vehicle.slice], row[PLATFORM_AT:] = car.initial_vehicle, car.initial_state
     wheel = accel = 0.0
     lateral: list[float] = []
     tick = 0
     while (tracker.s_m or 0.0) < course.length_m:
-        vehicle = VehicleState(*row[VEHICLE_AT:TORQUE_AT].tolist())
+        vehicle = VehicleState(*row[LAYOUT.vehicle.slice].tolist())
         if tick % TICKS_PER_COMMAND == 0:
             motion = (vehicle.vx_mps, vehicle.vy_mps, vehicle.yaw_rate_radps)
             answer = tracker.step(VehicleMotion(vehicle.x_m, vehicle.y_m, vehicle.yaw_rad, *motion))
@@ -43,7 +43,7 @@ def test_a_lap_in_the_hatchback_keeps_the_bars(course: Course) -> None:
             lateral.append(tracker.lateral_m)
         throttle, brake = pedals(accel, vehicle)
         after = row.copy()
-        after[COMMAND_AT:VEHICLE_AT] = NOTHING._replace(
+        after[LAYOUT.command.slice] = NOTHING._replace(
             road_wheel_rad=wheel, throttle=throttle, brake=brake, gear=1.0, automatic=1.0
         )
         step(row, after, car.parameters, 1000 // TICK_HZ)

@@ -4,6 +4,8 @@ import os
 import subprocess
 import sys
 import types
+from collections.abc import Callable
+from enum import IntEnum, IntFlag
 from pathlib import Path
 from typing import NamedTuple
 
@@ -12,11 +14,31 @@ import pytest
 
 from simconsole.values.host import jit as compiling
 from simconsole.values.host.jit import compiled, digest, plain
-from simconsole.values.kernels import Row, kernel, take
+from simconsole.values.kernels import Row, kernel
+from simconsole.values.layout import Part, read
+from tests.paths import ROOT
 
 SCALE = 2.0
-WIDTH = 3
 TABLE = (1.0, 2.0, 4.0)
+
+
+class Triple(NamedTuple):
+    a: float
+    b: float
+    c: float
+
+
+class Level(IntEnum):
+    LOW = 1
+    HIGH = 2
+
+
+class Bits(IntFlag):
+    FIRST = 1
+    SECOND = 2
+
+
+TRIPLE = Part(Triple, 1)
 
 
 @kernel
@@ -25,9 +47,42 @@ def scaled(value: float) -> float:
 
 
 @kernel
-def summed(row: Row, start: int) -> float:
-    a, b, c = take(row, start, WIDTH)
-    return scaled(a) + b * TABLE[1] + c
+def summed(row: Row, factor: float) -> float:
+    values = read(row, TRIPLE)
+    return scaled(values.a) + values.b * TABLE[1] + values.c * factor
+
+
+@kernel
+def classified(level: float, bits: int) -> float:
+    """Use members of an enumeration as numbers: compare, return and mask them."""
+    if level in (Level.LOW, 7.0) and bits & Bits.SECOND:
+        return Level.HIGH
+    return 0.5
+
+
+def make_curve(slope: Callable[[float], float], steepness: float) -> Callable[[float], float]:
+    """Return a kernel that encloses another one and a number."""
+
+    @kernel
+    def curve(value: float) -> float:
+        return slope(value) * steepness
+
+    return curve
+
+
+@kernel
+def applied(function: Callable[[float], float], value: float) -> float:
+    return function(value) + 1.0
+
+
+def make_both(first: Callable[[float], float], second: Callable[[float], float]) -> Callable[[float], float]:
+    """Return a kernel that hands what it encloses to another kernel."""
+
+    @kernel
+    def both(value: float) -> float:
+        return applied(first, value) * applied(second, value)
+
+    return both
 
 
 class Point(NamedTuple):
@@ -65,23 +120,23 @@ def altered(function: types.FunctionType, **replaced: object) -> types.FunctionT
 def test_twin_gives_what_the_plain_function_gives() -> None:
     row = np.array([0.5, 1.5, 2.5, 3.5, 4.5])
     assert plain(summed) is summed
-    for start in (0, 1, 2):
-        assert compiled(summed)(row, start) == summed(row, start)
+    for factor in (0.0, 1.0, -2.5):
+        assert compiled(summed)(row, factor) == summed(row, factor)
 
 
 def test_compiled_code_is_cached_for_the_entry_only(own_cache: Path) -> None:
-    compiled(summed)(np.ones(3), 0)
+    compiled(summed)(np.ones(4), 0.0)
     assert [folder.name for folder in own_cache.iterdir()] == [digest(summed)]
     assert list((own_cache / digest(summed)).rglob("*.nbc"))
 
 
 def test_compiled_code_is_found_from_another_place(tmp_path: Path) -> None:
-    compiled(summed)(np.ones(3), 0)
+    compiled(summed)(np.ones(4), 0.0)
     assert isinstance(summed, types.FunctionType)
     moved = altered(summed)
     moved.__code__ = summed.__code__.replace(co_filename=str(tmp_path / "moved.py"), co_firstlineno=99)
     twin = compiled(moved)
-    assert twin(np.ones(3), 0) == summed(np.ones(3), 0)
+    assert twin(np.ones(4), 0.0) == summed(np.ones(4), 0.0)
     assert sum(twin.stats.cache_hits.values()) == 1  # type: ignore[attr-defined]  # it is a dispatcher of numba
 
 
@@ -93,7 +148,7 @@ def test_digest_follows_callees_and_constants() -> None:
     assert digest(altered(summed, SCALE=3.0)) == before, "a constant it does not use"
     assert digest(altered(summed, scaled=other_scaled)) != before, "a constant of a kernel that it calls"
     assert digest(altered(summed, TABLE=(1.0, 2.5, 4.0))) != before
-    assert digest(altered(summed, WIDTH=2)) != before
+    assert digest(altered(summed, TRIPLE=Part(Triple, 2))) != before
 
 
 def test_digest_follows_records_that_a_kernel_is_only_given() -> None:
@@ -129,6 +184,51 @@ def test_digest_is_the_same_in_another_process() -> None:
     environment = {**os.environ, "PYTHONHASHSEED": "7", "PYTHONPATH": os.pathsep.join(sys.path)}
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment)
     assert done.stdout.strip() == digest(sin)
+
+
+def test_members_of_enumerations_are_their_numbers() -> None:
+    for level, bits in ((1.0, 2), (1.0, 1), (2.0, 2), (7.0, 3)):
+        assert compiled(classified)(level, bits) == classified(level, bits)
+    assert classified(1.0, 2) == 2.0
+
+
+def test_digest_follows_the_values_of_an_enumeration() -> None:
+    assert isinstance(classified, types.FunctionType)
+    assert digest(altered(classified, Level=IntEnum("Level", {"LOW": 1, "HIGH": 3}))) != digest(classified)
+    assert digest(altered(classified, Level=IntEnum("Level", {"LOW": 1, "HIGH": 2}))) == digest(classified)
+
+
+def test_kernel_sees_what_its_factory_was_given() -> None:
+    gentle, steep = make_curve(scaled, 3.0), make_curve(make_curve(scaled, 0.5), 4.0)
+    for curve, expected in ((gentle, 6.0), (steep, 4.0), (make_both(gentle, steep), 35.0)):
+        assert curve(1.0) == expected
+        assert compiled(curve)(1.0) == expected
+
+
+def test_digest_follows_what_a_kernel_encloses() -> None:
+    assert isinstance(scaled, types.FunctionType)
+    gentle = digest(make_curve(scaled, 3.0))
+    assert digest(make_curve(scaled, 3.0)) == gentle
+    assert digest(make_curve(scaled, 4.0)) != gentle
+    assert digest(make_curve(altered(scaled, SCALE=3.0), 3.0)) != gentle
+    with pytest.raises(TypeError, match="neither a kernel nor a constant"):
+        digest(make_curve(lambda value: value, 3.0))
+
+
+CALLS_A_CLOSURE = """
+from simconsole.values.host.jit import compiled
+from tests.values.host.test_jit import make_both, make_curve, scaled
+twin = compiled(make_both(make_curve(scaled, 3.0), scaled))
+print(twin(1.0), sum(twin.stats.cache_hits.values()))
+"""
+
+
+def test_compiled_closure_is_found_by_another_process() -> None:
+    assert compiled(make_both(make_curve(scaled, 3.0), scaled))(1.0) == 21.0
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    command = [sys.executable, "-c", CALLS_A_CLOSURE]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, env=environment)
+    assert done.stdout.split() == ["21.0", "1"]
 
 
 def test_only_kernels_and_constants_are_accepted() -> None:

@@ -12,7 +12,7 @@ import pytest
 from simconsole.values.host.jit import compiled
 from simconsole.values.kernels import put
 from simconsole.values.platform import Ground, Platform, Pose
-from simconsole.values.state_vector import COMMAND_AT, COMMAND_WIDTH, PLATFORM_AT, VEHICLE_AT, VEHICLE_WIDTH
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT
 from simconsole.vehicle.batch.fleet import Fleet
 from tests.samples import Sample
 from tests.vehicle.driving import LEVEL, platform
@@ -55,10 +55,10 @@ def differing(vehicles: list[Platform], seed: int, substeps: int = 3) -> list[tu
         vehicles_now, states_now = fleet.vehicles, fleet.states
         for index, (vehicle, command) in enumerate(zip(vehicles, asked, strict=True)):
             previous = rows[index].copy()
-            put(rows[index], COMMAND_AT, command)
+            put(rows[index], LAYOUT.command.start, command)
             step(previous, rows[index], vehicle.parameters, substeps)
             alone = rows[index]
-            seen = alone[VEHICLE_AT : VEHICLE_AT + VEHICLE_WIDTH].tobytes() == vehicles_now[index].tobytes()
+            seen = alone[LAYOUT.vehicle.slice].tobytes() == vehicles_now[index].tobytes()
             if not seen or alone[PLATFORM_AT:].tobytes() != states_now[index].tobytes():
                 found.append((tick, index))
     moving = np.abs(fleet.states - states).max(axis=1)
@@ -84,7 +84,7 @@ def test_another_platform_needs_nothing_of_its_own() -> None:
 def test_a_fleet_can_be_put_back_to_try_again() -> None:
     fleet = Fleet([platform()] * 9)
     before = fleet.states
-    command = np.zeros((9, COMMAND_WIDTH))
+    command = np.zeros((9, LAYOUT.command.width))
     command[:, 1], command[:, 5], command[:, 6] = np.linspace(0.0, 1.0, 9), 1.0, 1.0
     fleet.command(command)
     fleet.step(1500)
@@ -100,7 +100,7 @@ def test_what_is_no_fleet_is_refused() -> None:
         Fleet([platform(), platform("ball")])
     with pytest.raises(ValueError, match="at least one"):
         Fleet([])
-    with pytest.raises(ValueError, match=rf"shape \(3,\), must be \(2, {COMMAND_WIDTH}\)"):
+    with pytest.raises(ValueError, match=rf"shape \(3,\), must be \(2, {LAYOUT.command.width}\)"):
         Fleet([platform(ground=LEVEL)] * 2).command(np.zeros(3))
 
 

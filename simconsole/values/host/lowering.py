@@ -1,0 +1,98 @@
+"""What numba is taught: the kernel primitives that are no kernels themselves."""
+
+from importlib import import_module
+from typing import Any
+
+from simconsole.values.kernels import forget
+from simconsole.values.layout import Part, read, write
+
+
+def teach() -> None:
+    """Teach numba `kernels.forget`, `layout.read` and `layout.write`; once in a process."""
+    _teach_forget()
+    _teach_parts()
+
+
+def _teach_forget() -> None:
+    """An empty instruction of which the compiler believes that it changes memory."""
+    types: Any = import_module("numba.core.types")
+    extending: Any = import_module("numba.extending")
+    ir: Any = import_module("llvmlite.ir")
+
+    def lower(context: Any, builder: Any, _signature: Any, _arguments: Any) -> Any:
+        builder.asm(ir.FunctionType(ir.VoidType(), []), "", "~{memory}", [], True)
+        return context.get_dummy_value()
+
+    extending.type_callable(forget)(lambda _context: lambda: types.none)
+    extending.lower_builtin(forget)(lower)
+
+
+def _teach_parts() -> None:
+    """Plain loads into tuples, and plain stores: they compile faster than slices."""
+    types: Any = import_module("numba.core.types")
+    models: Any = import_module("numba.core.datamodel.models")
+    imputils: Any = import_module("numba.core.imputils")
+    extending: Any = import_module("numba.extending")
+
+    class PartType(types.Type):  # type: ignore[misc]  # numba is not typed
+        """One part: a constant that takes no room at run time."""
+
+        def __init__(self, part: Part[Any]) -> None:
+            self.part = part
+            super().__init__(name=f"Part({part.record.__module__}.{part.record.__qualname__}, {part.start})")
+
+    def record_type(part: Part[Any]) -> Any:
+        fields = [record_type(inner) for inner in part.inner] or [types.float64] * part.width
+        return types.BaseTuple.from_types(fields, part.record)
+
+    def is_vector(row: Any) -> bool:
+        return isinstance(row, types.Array) and (row.dtype, row.ndim, row.layout) == (types.float64, 1, "C")
+
+    extending.typeof_impl.register(Part)(lambda part, _context: PartType(part))
+    extending.register_model(PartType)(models.OpaqueModel)
+    imputils.lower_constant(PartType)(lambda context, *_: context.get_dummy_value())
+
+    @extending.type_callable(read)  # type: ignore[untyped-decorator]
+    def type_read(_context: Any) -> Any:
+        def typer(row: Any, part: Any) -> Any:
+            return record_type(part.part) if is_vector(row) and isinstance(part, PartType) else None
+
+        return typer
+
+    @extending.type_callable(write)  # type: ignore[untyped-decorator]
+    def type_write(_context: Any) -> Any:
+        def typer(row: Any, part: Any, record: Any) -> Any:
+            fits = is_vector(row) and isinstance(part, PartType) and isinstance(record, types.BaseNamedTuple)
+            return types.none if fits and record.instance_class is part.part.record else None
+
+        return typer
+
+    @extending.lower_builtin(read, types.Array, PartType)  # type: ignore[untyped-decorator]
+    def lower_read(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        array = signature.args[0]
+        data = context.make_array(array)(context, builder, arguments[0]).data
+
+        def load(part: Part[Any]) -> Any:
+            values = [load(inner) for inner in part.inner] or [
+                context.unpack_value(builder, array.dtype, builder.gep(data, [context.get_constant(types.intp, at)]))
+                for at in range(part.start, part.stop)
+            ]
+            return context.make_tuple(builder, record_type(part), values)
+
+        return load(signature.args[1].part)
+
+    @extending.lower_builtin(write, types.Array, PartType, types.BaseNamedTuple)  # type: ignore[untyped-decorator]
+    def lower_write(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        array, part, record = signature.args
+        data = context.make_array(array)(context, builder, arguments[0]).data
+
+        def floats(kind: Any, value: Any) -> Any:
+            if isinstance(kind, types.BaseTuple):
+                for index, field in enumerate(kind):
+                    yield from floats(field, builder.extract_value(value, index))
+            else:
+                yield context.cast(builder, value, kind, array.dtype)
+
+        for at, value in enumerate(floats(record, arguments[2]), part.part.start):
+            context.pack_value(builder, array.dtype, value, builder.gep(data, [context.get_constant(types.intp, at)]))
+        return context.get_dummy_value()

@@ -1,0 +1,69 @@
+"""Places of records in a vector: they follow from the fields, in plain Python and compiled."""
+
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from simconsole.values.host.jit import compiled
+from simconsole.values.kernels import Row, kernel
+from simconsole.values.layout import Part, lay_out, read, write
+
+
+class Point(NamedTuple):
+    x_m: float
+    y_m: float
+
+
+class Line(NamedTuple):
+    """Of two records, and not of the same class."""
+
+    begin: Point
+    end: Point
+    width: "Width"
+
+
+class Width(NamedTuple):
+    width_m: float
+
+
+class Drawing(NamedTuple):
+    point: Part[Point]
+    line: Part[Line]
+
+
+DRAWING = lay_out(Drawing)
+SHIFTED = Part(Line, 3)
+
+
+@kernel
+def turned(row: Row, other: Row) -> float:
+    """Copy the line backwards into another row; return the x of the point."""
+    line = read(row, DRAWING.line)
+    write(other, SHIFTED, Line(line.end, Point(line.begin.x_m, 7.0), Width(1)))
+    return read(row, DRAWING.point).x_m
+
+
+def test_parts_lie_one_behind_the_other() -> None:
+    assert [(part.start, part.width, part.stop) for part in DRAWING] == [(0, 2, 2), (2, 5, 7)]
+    assert DRAWING.line.names == ("begin.x_m", "begin.y_m", "end.x_m", "end.y_m", "width.width_m")
+    assert DRAWING.line.slice == slice(2, 7)
+    assert (DRAWING.point.at("y_m"), DRAWING.line.at("end.x_m"), SHIFTED.at("end.x_m")) == (1, 4, 5)
+    with pytest.raises(ValueError, match="not in tuple"):
+        DRAWING.point.at("z_m")
+
+
+def test_what_is_written_is_read_and_nothing_else_is_touched() -> None:
+    row = np.arange(10.0)
+    line = Line(Point(20.0, 30.0), Point(40.0, 50.0), Width(60.0))
+    write(row, SHIFTED, line)
+    assert row.tolist() == [0.0, 1.0, 2.0, 20.0, 30.0, 40.0, 50.0, 60.0, 8.0, 9.0]
+    assert read(row, SHIFTED) == line
+    assert all(type(value) is float for value in read(row, SHIFTED).begin)
+
+
+def test_compiled_code_reads_and_writes_the_same() -> None:
+    row = np.arange(7.0)
+    slow, fast = np.full(9, -1.0), np.full(9, -1.0)
+    assert compiled(turned)(row, fast) == turned(row, slow) == 0.0
+    assert fast.tolist() == slow.tolist() == [-1.0, -1.0, -1.0, 4.0, 5.0, 2.0, 7.0, 1.0, -1.0]
