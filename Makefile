@@ -1,6 +1,6 @@
 # Everything this project does with one command. `make` alone lists it.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test long faults mutation lint format wheel clean
+.PHONY: help setup demo test long fresh faults mutation lint format wheel clean
 BIN := .venv/bin
 
 help:  ## This list
@@ -18,6 +18,10 @@ test: setup lint  ## All checks: format, lint, types, import contracts, tests
 long: setup  ## The random and long checks at their full size, with seeds drawn anew: docs/long-run.md; hours
 	scripts/system-packages
 	$(BIN)/pytest --long --timeout 0 --write-faults --write-long-run --numprocesses 2 --dist worksteal
+	scripts/fresh-machine
+
+fresh:  ## `make demo` and `make test` on bare Debian systems, stable and unstable; as root; an hour
+	scripts/fresh-machine
 
 faults: setup  ## The fault cases, and what they measured into docs/faults.md; minutes
 	scripts/system-packages

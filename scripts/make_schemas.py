@@ -5,8 +5,10 @@ An editor that knows the schema completes keys and shows bounds:
 """
 
 import argparse
+import inspect
 import json
 from pathlib import Path
+from typing import Any
 
 import msgspec
 
@@ -31,9 +33,19 @@ def schemas() -> dict[str, str]:
     """Return the text of each schema by its file name."""
     dialect = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
     return {
-        f"{kind}.schema.json": json.dumps(dialect | msgspec.json.schema(profile), indent=1) + "\n"
+        f"{kind}.schema.json": json.dumps(dialect | unindented(msgspec.json.schema(profile)), indent=1) + "\n"
         for kind, profile in KINDS.items()
     }
+
+
+def unindented(part: Any) -> Any:
+    """Return a part of a schema, its descriptions without their docstrings' indentation: Python 3.12 keeps that."""
+    if isinstance(part, dict):
+        return {
+            key: inspect.cleandoc(value) if key == "description" and isinstance(value, str) else unindented(value)
+            for key, value in part.items()
+        }
+    return [unindented(one) for one in part] if isinstance(part, list) else part
 
 
 def main() -> None:

@@ -88,7 +88,7 @@ def test_metadata_names_licence_python_and_libraries(wheel: Path) -> None:
         assert any(entry.endswith("/LICENSE") for entry in archive.namelist())
     assert metadata["Version"] == __version__
     assert metadata["License-Expression"] == "Apache-2.0"
-    assert metadata["Requires-Python"] == "<3.14,>=3.11"
+    assert metadata["Requires-Python"] == "<3.15,>=3.11"
     assert "# simconsole" in str(metadata.get_payload())
 
 

@@ -183,7 +183,8 @@ def fetch(folder: Path) -> Path:
     if hashlib.sha256(archive.read_bytes()).hexdigest() != SHA256:
         raise SystemExit(f"{archive.name} is not the archive known here")
     with tarfile.open(archive) as packed:
-        packed.extractall(folder, filter="data")
+        packed.extraction_filter = getattr(tarfile, "data_filter", None)  # came with Python 3.11.4
+        packed.extractall(folder)
     return folder / f"roslibpy-{VERSION}"
 
 

@@ -299,11 +299,12 @@ class ClientProtocol:
                     goal = self.goals[operation.id] = Goal(self, operation.action, operation.id, operation.args)
                     pursue(goal)
             case CancelActionGoal():
-                unwanted = self.goals.get(operation.id)
-                if unwanted is not None:
-                    unwanted.cancelled = True
-            case _:
-                pass
+                self._cancel(operation)
+
+    def _cancel(self, operation: CancelActionGoal) -> None:
+        unwanted = self.goals.get(operation.id)
+        if unwanted is not None:
+            unwanted.cancelled = True
 
     def _serve(self, operation: CallService) -> None:
         handler = self._services.get(operation.service)
