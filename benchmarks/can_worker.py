@@ -1,8 +1,8 @@
-"""How much of a core the CAN station needs: ten messages out at 100 Hz each, one command in at 50 Hz, log included.
+"""How much of a core the CAN worker needs: ten messages out at 100 Hz each, one command in at 50 Hz, log included.
 
-Run: python benchmarks/can_station.py [--for S] [--interface udp_multicast|virtual]
+Run: python benchmarks/can_worker.py [--for S] [--interface udp_multicast|virtual]
 
-The station is the paced drive's own loop (`canbus.station.serve`) in this process, fed with a recorded row at 250 Hz;
+The worker is the paced drive's own loop (`canbus.worker.serve`) in this process, fed with a recorded row at 250 Hz;
 the ECU is `simconsole can send` in a process of its own (on udp_multicast). The core's share is this process's CPU
 time over wall time, start-up excluded. Beside it: the same loop with nothing to send, which is what waiting costs.
 """
@@ -60,7 +60,7 @@ class Ticks:
 
 
 def measure(profile: CanProfile, count: int, duration_s: float, folder: Path) -> dict[str, float]:
-    """Return the station's share of a core and what it did."""
+    """Return the worker's share of a core and what it did."""
     node = TenMessages(profile, count)
     port = CanPort(profile, node.transmit_ids, node.receive_ids, logs=log_paths(profile, folder))
     end_s = time.monotonic() + duration_s

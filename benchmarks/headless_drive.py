@@ -24,7 +24,7 @@ from simconsole.session.lifecycle import LogRecorder, warm_up
 from simconsole.session.pacing import UnpacedPacer
 from simconsole.session.resolution import load_scenario, resolve
 from simconsole.tick.assembly import assemble
-from simconsole.tick.loop import Cast, run
+from simconsole.tick.loop import Components, run
 from simconsole.values.host.jit import compiled
 from simconsole.values.state_vector import INPUT_WIDTH
 
@@ -60,7 +60,7 @@ def main() -> None:
             commands = ScriptedCommands(scenario.remote, scenario.events, console.tick_hz)
             with LogWriter(Path(folder) / "drive.log", header(console.columns, console.tick_hz)) as log:
                 began = time.perf_counter()
-                run(console, start, Cast(devices, commands, LogRecorder(log), (), UnpacedPacer()), ticks)
+                run(console, start, Components(devices, commands, LogRecorder(log), (), UnpacedPacer()), ticks)
                 factors.append(given.seconds / (time.perf_counter() - began))
             with LogWriter(Path(folder) / "base.log", header(console.columns, console.tick_hz)) as log:
                 row = np.zeros(console.width)

@@ -89,5 +89,5 @@ def test_tick_page_names_a_place_for_every_step() -> None:
 
 def test_finder_of_names_sees_what_is_missing() -> None:
     names = defined(ROOT / "simconsole" / "drive.py")
-    assert {"run", "Cast", "Cast.devices", "Recorder.write"} <= names
+    assert {"run", "Components", "Components.devices", "Recorder.write"} <= names
     assert "walk" not in names

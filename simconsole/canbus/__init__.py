@@ -1,1 +1,1 @@
-"""The console on a CAN bus: codec, protection, schedule and node without a bus; port, station and tools with one."""
+"""The console on a CAN bus: codec, protection, schedule and node without a bus; port, worker and tools with one."""

@@ -106,7 +106,7 @@ def _command(commands: Any, name: str, does: str, summary: str) -> argparse.Argu
 
 def _driving(commands: Any) -> None:
     demo = _command(commands, "demo", "demo:demo", "the whole way once, with no hardware: person, autopilot, report")
-    demo.add_argument("--realtime", action="store_true", help="pace it, with every station in its own process")
+    demo.add_argument("--realtime", action="store_true", help="pace it, with every worker in its own process")
     demo.add_argument("--out", metavar="DIR", help="where the bundle goes (default: out/demo-TIME)")
 
     drive = _command(commands, "drive", "drive:drive", "drive a session")

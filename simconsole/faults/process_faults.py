@@ -73,15 +73,15 @@ class RaisingCommands:
         return self._source.take(tick)
 
 
-class RaisingStation:
-    """A station that raises while the fault is on."""
+class RaisingOutput:
+    """An output that raises while the fault is on."""
 
     def __init__(self, switches: Sequence[Switched]) -> None:
         self._switches = switches
 
     def publish(self, snapshot: Snapshot) -> None:
         """Raise, or see nothing."""
-        raise_if(self._switches, "station")
+        raise_if(self._switches, "output")
 
 
 def raise_if(switches: Sequence[Switched], part: str) -> None:

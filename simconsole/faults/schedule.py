@@ -1,8 +1,8 @@
 """Faults put into a drive: the clock that says which are on, and the layers that each kind acts through. Pure.
 
-`SERVES` is the one place that knows what a kind does to whom: a layer takes the cast of a drive and its own faults and
-returns the cast with something put around a member. What comes out of a layer is what the recorder keeps, so a replay
-needs no faults; the row tells which were on (`events.faults`, a bit for each place in the list).
+`SERVES` is the one place that knows what a kind does to whom: a layer takes the components of a drive and its own
+faults and returns them with something put around one. What comes out of a layer is what the recorder keeps, so a replay
+needs no faults; the state vector tells which were on (`events.faults`, a bit for each place in the list).
 """
 
 from collections.abc import Callable, Sequence
@@ -11,11 +11,11 @@ from typing import Final, NamedTuple, get_args
 from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.faults.cockpit_faults import FaultyDevices, Switched
 from simconsole.faults.command_faults import FaultyCommands
-from simconsole.faults.process_faults import RaisingCommands, RaisingDevices, RaisingStation, StallingPace
+from simconsole.faults.process_faults import RaisingCommands, RaisingDevices, RaisingOutput, StallingPace
 from simconsole.profiles import faults as kinds
 from simconsole.profiles.faults import Fault, Onset
 from simconsole.tick.assembly import ResolvedSession
-from simconsole.tick.loop import Cast
+from simconsole.tick.loop import Components
 from simconsole.values.signals import Button, Event, Mode
 from simconsole.values.state_vector import Snapshot
 
@@ -83,39 +83,39 @@ class Setting(NamedTuple):
     tick_hz: int
 
 
-Layer = Callable[[Cast, Sequence[Armed], Setting], Cast]
+Layer = Callable[[Components, Sequence[Armed], Setting], Components]
 
 
-def devices(cast: Cast, armed: Sequence[Armed], setting: Setting) -> Cast:
+def devices(components: Components, armed: Sequence[Armed], setting: Setting) -> Components:
     """Put device faults between the devices and the console."""
     cockpit, tick_hz = setting.resolved.cockpit, setting.tick_hz
-    faulty = FaultyDevices(cast.devices, armed, cockpit, cockpit_settings(cockpit, tick_hz), tick_hz)
-    return cast._replace(devices=faulty)
+    faulty = FaultyDevices(components.devices, armed, cockpit, cockpit_settings(cockpit, tick_hz), tick_hz)
+    return components._replace(devices=faulty)
 
 
-def controllers(cast: Cast, armed: Sequence[Armed], setting: Setting) -> Cast:
+def controllers(components: Components, armed: Sequence[Armed], setting: Setting) -> Components:
     """Put command faults between the controllers and the arbiter."""
     ros = [entry for entry in armed if entry.fault.controller == "ros"]  # type: ignore[union-attr]  # CommandFault
     can = [entry for entry in armed if entry.fault.controller == "can"]  # type: ignore[union-attr]  # CommandFault
-    return cast._replace(
-        commands=FaultyCommands(cast.commands, ros, setting.tick_hz) if ros else cast.commands,
-        ecu=FaultyCommands(cast.ecu, can, setting.tick_hz) if can else cast.ecu,
+    return components._replace(
+        commands=FaultyCommands(components.commands, ros, setting.tick_hz) if ros else components.commands,
+        ecu=FaultyCommands(components.ecu, can, setting.tick_hz) if can else components.ecu,
     )
 
 
-def process(cast: Cast, armed: Sequence[Armed], setting: Setting) -> Cast:
+def process(before: Components, armed: Sequence[Armed], setting: Setting) -> Components:
     """Let the loop stand still, and its parts raise."""
     switches: dict[str, list[Switched]] = {}
     for fault, switch in armed:
         if isinstance(fault, kinds.Raises):
             switches.setdefault(fault.part, []).append(switch)
     stalls = [(fault.stall_ms, switch) for fault, switch in armed if isinstance(fault, kinds.Stall)]
-    return cast._replace(
-        pace=StallingPace(cast.pace, stalls) if stalls else cast.pace,
-        devices=RaisingDevices(cast.devices, switches["devices"]) if "devices" in switches else cast.devices,
-        commands=RaisingCommands(cast.commands, switches["ros"]) if "ros" in switches else cast.commands,
-        ecu=RaisingCommands(cast.ecu, switches["can"]) if "can" in switches else cast.ecu,
-        stations=((*cast.stations, RaisingStation(switches["stations"])) if "stations" in switches else cast.stations),
+    return before._replace(
+        pace=StallingPace(before.pace, stalls) if stalls else before.pace,
+        devices=RaisingDevices(before.devices, switches["devices"]) if "devices" in switches else before.devices,
+        commands=RaisingCommands(before.commands, switches["ros"]) if "ros" in switches else before.commands,
+        ecu=RaisingCommands(before.ecu, switches["can"]) if "can" in switches else before.ecu,
+        outputs=(*before.outputs, RaisingOutput(switches["stations"])) if "stations" in switches else before.outputs,
     )
 
 
@@ -127,18 +127,18 @@ SERVES: Final[dict[type[Onset], Layer]] = {
 """The layer of every kind of fault."""
 
 
-def with_faults(cast: Cast, resolved: ResolvedSession, tick_hz: int) -> Cast:
-    """Return the cast of a drive with the faults of its scenario put in; the cast itself where there are none.
+def with_faults(components: Components, resolved: ResolvedSession, tick_hz: int) -> Components:
+    """Return the components of a drive with the faults of its scenario put in; the same where there are none.
 
     Raises:
         ProfileError: a fault cannot happen to this cockpit.
     """
     faults = resolved.session.scenario.faults
     if not faults:
-        return cast
+        return components
     clock = FaultClock(faults, tick_hz)
     for layer in dict.fromkeys(SERVES.values()):
         armed = [entry for entry in clock.armed if SERVES[type(entry.fault)] is layer]
         if armed:
-            cast = layer(cast, armed, Setting(resolved, tick_hz))
-    return cast._replace(faults=clock)
+            components = layer(components, armed, Setting(resolved, tick_hz))
+    return components._replace(faults=clock)

@@ -1,4 +1,4 @@
-"""Shared memory between the core and its stations: mmap files in a run folder that only this user can read.
+"""Shared memory between the core and its workers: mmap files in a run folder that only this user can read.
 
 One writer and any number of readers a file; nobody waits for anybody. A record carries its number before and after
 its content, written in that order and read in the opposite one: a reader that sees both equal has a whole record.
@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simconsole.processes.lifetimes import undone
-from simconsole.values.errors import StationError
+from simconsole.values.errors import WorkerError
 from simconsole.values.kernels import Row
 from simconsole.values.signals import Event
 
@@ -54,12 +54,12 @@ class Ring:
         try:
             descriptor = os.open(path, flags | getattr(os, "O_CLOEXEC", 0))
         except OSError as error:
-            raise StationError(f"{path}: shared memory cannot be opened: {error.strerror}") from None
+            raise WorkerError(f"{path}: shared memory cannot be opened: {error.strerror}") from None
         try:
             access = mmap.ACCESS_WRITE if writable else mmap.ACCESS_READ
             self._memory = mmap.mmap(descriptor, size, access=access)
         except (OSError, ValueError) as error:
-            raise StationError(f"{path}: shared memory of {size} bytes cannot be mapped: {error}") from None
+            raise WorkerError(f"{path}: shared memory of {size} bytes cannot be mapped: {error}") from None
         finally:
             os.close(descriptor)
         self._head: NDArray[np.int64] = np.frombuffer(self._memory, np.int64, HEADER_WORDS)
@@ -73,7 +73,7 @@ class Ring:
         """Make a ring's file (mode 0600) and return its writer.
 
         Raises:
-            StationError: the file is there already or cannot be made.
+            WorkerError: the file is there already or cannot be made.
         """
         size = 8 * (HEADER_WORDS + capacity * (RECORD_HEAD_WORDS + width + 1))
         try:
@@ -83,7 +83,7 @@ class Ring:
             finally:
                 os.close(descriptor)
         except OSError as error:
-            raise StationError(f"{path}: shared memory cannot be made: {error.strerror}") from None
+            raise WorkerError(f"{path}: shared memory cannot be made: {error.strerror}") from None
         ring = cls(path, width, capacity, writable=True)
         ring._head[1], ring._head[2], ring._head[3] = width, capacity, 0
         ring._head[0] = MAGIC  # last: a reader that sees it sees a whole header
@@ -94,15 +94,15 @@ class Ring:
         """Open a ring that somebody else made.
 
         Raises:
-            StationError: not there, or no ring of this layout.
+            WorkerError: not there, or no ring of this layout.
         """
         try:
             with path.open("rb") as file:
                 head = np.frombuffer(file.read(8 * HEADER_WORDS), np.int64)
         except OSError as error:
-            raise StationError(f"{path}: shared memory cannot be opened: {error.strerror}") from None
+            raise WorkerError(f"{path}: shared memory cannot be opened: {error.strerror}") from None
         if len(head) != HEADER_WORDS or head[0] != MAGIC or head[1] < 1 or head[2] < 1:
-            raise StationError(f"{path}: not a ring of this version")
+            raise WorkerError(f"{path}: not a ring of this version")
         return cls(path, int(head[1]), int(head[2]), writable)
 
     @property
@@ -195,7 +195,7 @@ def make_run_folder() -> Path:
     """Return a new folder of mode 0700 for this process's files; folders of dead owners are removed first.
 
     Raises:
-        StationError: it cannot be made.
+        WorkerError: it cannot be made.
     """
     return _make(_base())
 
@@ -207,7 +207,7 @@ def temporary_folder() -> Iterator[Path]:
     Where a signal ends the process at once it is gone, too; where the process is killed, at the next `sweep`.
 
     Raises:
-        StationError: it cannot be made.
+        WorkerError: it cannot be made.
     """
     folder = _make(Path(tempfile.gettempdir()))
     try:
@@ -225,7 +225,7 @@ def _make(base: Path) -> Path:
             _owned[folder] = os.open(folder, os.O_RDONLY)
             _lock(_owned[folder])
     except OSError as error:
-        raise StationError(f"{base}: no folder can be made there: {error.strerror}") from None
+        raise WorkerError(f"{base}: no folder can be made there: {error.strerror}") from None
     return folder
 
 

@@ -1,14 +1,15 @@
-"""Stations: the processes around the core, and the warden that keeps them.
+"""Workers: the processes around the core, and the supervisor that keeps them.
 
-The core starts one process, the warden. The warden starts every station, restarts those that die, and when the core
-tells it to, or is gone, however it ended (lifetimes.py), it ends them all and removes the run folder. So a restart
-never costs the tick loop a fork, and nothing outlives the core: a station whose warden is gone ends by itself.
+The core starts one process, the supervisor. The supervisor starts every worker and restarts those that die. When the
+core tells it to end, or is gone, however it ended (lifetimes.py), it ends them all and removes the run folder. So a
+restart never costs the tick loop a fork, and nothing outlives the core: a worker whose supervisor is gone ends by
+itself.
 
 ::
 
-    core ──stdin──> warden ──stdin──> bridge, hud, scene
+    core ──stdin──> supervisor ──stdin──> bridge, hud, scene
 
-Run as `python -m simconsole.processes.supervisor warden` or `... station`, with the description as one line on
+Run as `python -m simconsole.processes.supervisor supervisor` or `... worker`, with the description as one line on
 standard input.
 """
 
@@ -26,7 +27,7 @@ import msgspec
 
 from simconsole.processes.lifetimes import ORPHAN_S, close_pipe, end, follow_parent, read_told, spawn
 from simconsole.processes.shared_memory import remove_run_folder
-from simconsole.values.errors import SimConsoleError, StationError, one_line
+from simconsole.values.errors import SimConsoleError, WorkerError, one_line
 from simconsole.values.host.files import write_atomically
 from simconsole.values.state_vector import Snapshot
 
@@ -35,15 +36,15 @@ BACK_OFF_S: Final = (0.05, 0.2, 1.0, 5.0)
 """Wait before a restart, by how many came before it within HEALTHY_S; the last one goes on."""
 HEALTHY_S: Final = 10.0
 PATIENCE_S: Final = 3.0
-"""How long a station may take to end before it is killed; a scene has a file to finish."""
-WARDEN_S: Final = 2.5 * ORPHAN_S
-"""How long a warden whose core is gone may take to end its stations and to remove the run folder."""
+"""How long a worker may take to end before it is killed; a scene has a file to finish."""
+SUPERVISOR_END_S: Final = 2.5 * ORPHAN_S
+"""How long a supervisor whose core is gone may take to end its workers and to remove the run folder."""
 LOOKS_PER_S: Final = 5
-STATUS: Final = "stations.json"
+STATUS: Final = "workers.json"
 
 
-class StationSpec(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """One station: `target` is `module:function`, called with (folder, arguments, stop)."""
+class WorkerSpec(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """One worker: `target` is `module:function`, called with (folder, arguments, stop)."""
 
     name: str
     target: str
@@ -51,99 +52,99 @@ class StationSpec(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     environment: dict[str, str | None] = {}  # laid over the core's; None removes
 
 
-class WardenSpec(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What the warden looks after."""
+class SupervisorSpec(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What the supervisor looks after."""
 
     folder: str
-    stations: list[StationSpec]
+    workers: list[WorkerSpec]
     patience_s: float
 
 
-class StationCall(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What a station process is told."""
+class WorkerCall(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What a worker process is told."""
 
     folder: str
-    station: StationSpec
+    worker: WorkerSpec
     patience_s: float
 
 
-class StationStatus(msgspec.Struct, frozen=True, kw_only=True):
-    """What the warden says of one station."""
+class WorkerStatus(msgspec.Struct, frozen=True, kw_only=True):
+    """What the supervisor says of one worker."""
 
     process_id: int
     restarts: int
 
 
-class Supervisor:
-    """The core's side: starts the warden, looks after it without ever waiting, ends it."""
+class SupervisorHandle:
+    """The core's side: starts the supervisor, looks after it without ever waiting, ends it."""
 
-    def __init__(self, folder: Path, stations: Sequence[StationSpec], patience_s: float = PATIENCE_S) -> None:
+    def __init__(self, folder: Path, workers: Sequence[WorkerSpec], patience_s: float = PATIENCE_S) -> None:
         self.folder = folder
-        self._spec = WardenSpec(folder=str(folder), stations=list(stations), patience_s=patience_s)
-        # Taken now: SDL's settings for the core, made later, are not the stations'.
+        self._spec = SupervisorSpec(folder=str(folder), workers=list(workers), patience_s=patience_s)
+        # Taken now: SDL's settings for the core, made later, are not the workers'.
         self._environment = dict(os.environ)
-        self._warden: subprocess.Popen[bytes] | None = None
-        self._last_status: dict[str, StationStatus] = {}
-        self.warden_restarts = 0
+        self._process: subprocess.Popen[bytes] | None = None
+        self._last_status: dict[str, WorkerStatus] = {}
+        self.supervisor_restarts = 0
 
     def start(self) -> None:
-        """Start the warden, which starts the stations.
+        """Start the supervisor, which starts the workers.
 
         Raises:
-            StationError: it cannot be started.
+            WorkerError: it cannot be started.
         """
-        self._warden = _spawn("warden", self._spec, self._environment)
+        self._process = _spawn("supervisor", self._spec, self._environment)
 
     def publish(self, snapshot: Snapshot) -> None:
-        """As a reader of snapshots: a few times a second, see that the warden lives, or start another."""
+        """As a reader of snapshots: a few times a second, see that the supervisor lives, or start another."""
         if snapshot.tick % max(1, snapshot.tick_hz // LOOKS_PER_S) == 0:
             self.look()
 
     def look(self) -> None:
-        """Start another warden if this one died. Its stations have ended by themselves."""
-        if self._warden is None or self._warden.poll() is None:
+        """Start another supervisor if this one died. Its workers have ended by themselves."""
+        if self._process is None or self._process.poll() is None:
             return
-        self.warden_restarts += 1
-        close_pipe(self._warden)
+        self.supervisor_restarts += 1
+        close_pipe(self._process)
         try:
             self.start()
-        except StationError:
+        except WorkerError:
             return  # the next look tries again: a drive does not end for its spectators
 
     def alive(self) -> bool:
-        """Return whether the warden runs."""
-        return self._warden is not None and self._warden.poll() is None
+        """Return whether the supervisor runs."""
+        return self._process is not None and self._process.poll() is None
 
-    def status(self) -> dict[str, StationStatus]:
-        """Return what the warden last said of the stations, by name; empty before it has. Good after `stop` too."""
+    def status(self) -> dict[str, WorkerStatus]:
+        """Return what the supervisor last said of the workers, by name; empty before it has. Good after `stop` too."""
         try:
-            return msgspec.json.decode((self.folder / STATUS).read_bytes(), type=dict[str, StationStatus])
+            return msgspec.json.decode((self.folder / STATUS).read_bytes(), type=dict[str, WorkerStatus])
         except (OSError, msgspec.DecodeError):
             return self._last_status
 
     def counters(self) -> dict[str, int]:
-        """Return how often each station was restarted, for the summary."""
+        """Return how often each worker was restarted, for the summary."""
         return {name: status.restarts for name, status in self.status().items()}
 
     def stop(self, at_once: Callable[[], bool] = lambda: False) -> None:
-        """End warden and stations; afterwards the run folder is gone. Twice is harmless.
+        """End supervisor and workers; afterwards the run folder is gone. Twice is harmless.
 
         Where `at_once()` says so they have nothing to finish, and ORPHAN_S instead of their patience.
         """
-        warden, self._warden = self._warden, None
-        if warden is None:
+        process, self._process = self._process, None
+        if process is None:
             return
         self._last_status = self.status()
-        end([warden], self._spec.patience_s * 2, at_once, WARDEN_S)
+        end([process], self._spec.patience_s * 2, at_once, SUPERVISOR_END_S)
         remove_run_folder(self.folder)
 
 
-class _Kept:
-    """One station as the warden sees it."""
+class _KeptWorker:
+    """One worker as the supervisor sees it."""
 
-    def __init__(self, spec: StationSpec, warden: WardenSpec) -> None:
+    def __init__(self, spec: WorkerSpec, supervisor: SupervisorSpec) -> None:
         self.spec = spec
-        self._call = StationCall(folder=warden.folder, station=spec, patience_s=warden.patience_s)
+        self._call = WorkerCall(folder=supervisor.folder, worker=spec, patience_s=supervisor.patience_s)
         self.process: subprocess.Popen[bytes] | None = None
         self.restarts = 0
         self._failures = 0
@@ -151,15 +152,15 @@ class _Kept:
         self._next_s = 0.0
 
     def look(self, now_s: float) -> bool:
-        """Start the station if it should run and does not; return whether something changed."""
+        """Start the worker if it should run and does not; return whether something changed."""
         if self.process is None:
             if now_s < self._next_s:
                 return False
             environment = _laid_over(os.environ, self.spec.environment)
             self._started_s = now_s
             try:
-                self.process = _spawn("station", self._call, environment)
-            except StationError:
+                self.process = _spawn("worker", self._call, environment)
+            except WorkerError:
                 self._back_off(now_s)
             return True
         if self.process.poll() is None:
@@ -177,41 +178,41 @@ class _Kept:
         self.restarts += 1
 
 
-def warden(spec: WardenSpec, stop: Callable[[], bool], hurry: Callable[[], bool]) -> None:
-    """Keep the stations of `spec` running until `stop`; then end them, soon with `hurry`, and remove the run folder."""
-    kept = [_Kept(station, spec) for station in spec.stations]
+def supervise(spec: SupervisorSpec, stop: Callable[[], bool], hurry: Callable[[], bool]) -> None:
+    """Keep the workers of `spec` running until `stop`; then end them, soon with `hurry`, and remove the run folder."""
+    kept = [_KeptWorker(worker, spec) for worker in spec.workers]
     try:
         while not stop():
-            changed = [station.look(time.monotonic()) for station in kept]
+            changed = [worker.look(time.monotonic()) for worker in kept]
             if any(changed):
                 _write_status(Path(spec.folder), kept)
             time.sleep(POLL_S)
     finally:
-        end([station.process for station in kept if station.process is not None], spec.patience_s, hurry)
-        if stop():  # else this warden broke, and the core's next one needs the folder
+        end([worker.process for worker in kept if worker.process is not None], spec.patience_s, hurry)
+        if stop():  # else this supervisor broke, and the core's next one needs the folder
             remove_run_folder(Path(spec.folder))
 
 
-def run_station(folder: Path, spec: StationSpec, stop: Callable[[], bool]) -> None:
+def run_worker(folder: Path, spec: WorkerSpec, stop: Callable[[], bool]) -> None:
     """Call the function that `spec` names.
 
     Raises:
-        StationError: there is no such function.
+        WorkerError: there is no such function.
     """
     module, _, function = spec.target.partition(":")
     try:
         program = getattr(importlib.import_module(module), function)
     except (ImportError, AttributeError) as error:
-        raise StationError(f"station {spec.name}: {spec.target} cannot be loaded: {error}") from None
+        raise WorkerError(f"worker {spec.name}: {spec.target} cannot be loaded: {error}") from None
     program(folder, spec.arguments, stop)
 
 
-def _write_status(folder: Path, kept: list[_Kept]) -> None:
+def _write_status(folder: Path, kept: list[_KeptWorker]) -> None:
     status = {
-        station.spec.name: StationStatus(
-            process_id=0 if station.process is None else station.process.pid, restarts=station.restarts
+        worker.spec.name: WorkerStatus(
+            process_id=0 if worker.process is None else worker.process.pid, restarts=worker.restarts
         )
-        for station in kept
+        for worker in kept
     }
     try:
         write_atomically(folder / STATUS, msgspec.json.encode(status), durable=False)
@@ -224,7 +225,7 @@ def _spawn(role: str, spec: object, environment: Mapping[str, str]) -> "subproce
         told = msgspec.json.encode(spec) + b"\n"
         return spawn(["-m", "simconsole.processes.supervisor", role], told=told, environment=environment)
     except OSError as error:
-        raise StationError(f"{role}: cannot be started: {error.strerror}") from None
+        raise WorkerError(f"{role}: cannot be started: {error.strerror}") from None
 
 
 def _laid_over(environment: Mapping[str, str], changes: Mapping[str, str | None]) -> dict[str, str]:
@@ -236,18 +237,18 @@ def _laid_over(environment: Mapping[str, str], changes: Mapping[str, str | None]
 
 
 def main(words: list[str]) -> int:
-    """Be the warden or a station."""
+    """Be the supervisor or a worker."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the core's; the pipe tells when to end
     line = read_told()
     if not line:
         return 1
     try:
-        if words == ["warden"]:
-            core = follow_parent(None, WARDEN_S)
-            warden(msgspec.json.decode(line, type=WardenSpec), core.wants_end, core.is_gone)
+        if words == ["supervisor"]:
+            core = follow_parent(None, SUPERVISOR_END_S)
+            supervise(msgspec.json.decode(line, type=SupervisorSpec), core.wants_end, core.is_gone)
         else:
-            call = msgspec.json.decode(line, type=StationCall)
-            run_station(Path(call.folder), call.station, follow_parent(call.patience_s).wants_end)
+            call = msgspec.json.decode(line, type=WorkerCall)
+            run_worker(Path(call.folder), call.worker, follow_parent(call.patience_s).wants_end)
     except (SimConsoleError, OSError, MemoryError) as error:
         print(f"simconsole {' '.join(words)}: {one_line(error)}", file=sys.stderr)
         return SimConsoleError.exit_code

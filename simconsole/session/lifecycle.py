@@ -71,13 +71,13 @@ def drive(
         state = run(
             console,
             state,
-            opened.cast,
+            opened.components,
             ticks,
             lambda snapshot: interrupt.raised or watch(snapshot) or opened.finished(snapshot),
             resolved.session.mode.start == "on_request",
         )
         if interrupt.raised:
-            state = come_to_rest(console, state, opened.cast.recorder)
+            state = come_to_rest(console, state, opened.components.recorder)
         wall_s = time.monotonic() - began_s
         summary = {
             "wall_s": wall_s,

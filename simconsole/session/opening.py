@@ -1,4 +1,4 @@
-"""Who takes part in a session: opens the cast that the profile names, for headless and for paced drives."""
+"""Who takes part in a session: opens the components that the profile names, for headless and for paced drives."""
 
 import secrets
 import time
@@ -12,7 +12,7 @@ from simconsole.bridge.console.operator_acts import summarise_acts
 from simconsole.faults.schedule import with_faults
 from simconsole.processes.lifetimes import Interrupt, end, tell_to_end, undone
 from simconsole.processes.shared_memory import make_run_folder, remove_run_folder
-from simconsole.processes.supervisor import Supervisor
+from simconsole.processes.supervisor import SupervisorHandle
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.session import SessionProfile
 from simconsole.session.lockstep import STAND_S, LockstepLink, start_autopilot
@@ -24,19 +24,19 @@ from simconsole.session.paced import (
     bridge_summary,
     can_summary,
     make_memory,
-    station_latencies,
-    station_specs,
     wait_for_can,
+    worker_latencies,
+    worker_specs,
 )
 from simconsole.session.pacing import Pacer, UnpacedPacer, realtime_hints
 from simconsole.session.seat import open_seating
 from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.tick.isolation import isolated
-from simconsole.tick.loop import Cast, Recorder, Standby
+from simconsole.tick.loop import Components, Recorder, Standby
 from simconsole.values.errors import BridgeError, ProfileError
-from simconsole.values.latency import Ledger
-from simconsole.values.protocols import CommandSource, NobodyCommands, Station
+from simconsole.values.latency import LatencyStatistics
+from simconsole.values.protocols import CommandSource, NobodyCommands, Output
 from simconsole.values.state_vector import Snapshot
 
 LOOKED_AT = 16
@@ -52,9 +52,9 @@ if TYPE_CHECKING:
 
 
 class Opened(NamedTuple):
-    """A cast that is ready to drive."""
+    """The components of a drive, ready to run."""
 
-    cast: Cast
+    components: Components
     finished: Callable[[Snapshot], bool]
     summary: Callable[[], dict[str, Any]]
     bridge_url: str | None = None
@@ -79,7 +79,7 @@ def open_headless(
     """
     check_commander(resolved.session)
     commands: CommandSource = NobodyCommands()
-    stations: tuple[Station, ...] = ()
+    outputs: tuple[Output, ...] = ()
     pace = UnpacedPacer()
     standby: tuple[Standby, ...] = (_idle,)
     counters: Callable[[], dict[str, Any]] = dict
@@ -87,26 +87,32 @@ def open_headless(
     acts: Callable[[], list[dict[str, Any]]] = list
     if resolved.session.mode.pacing == "lockstep":
         link = _open_lockstep(resolved, console, bundle, interrupt, stack)
-        commands, stations, counters, acts, standby = link, (link,), link.counters, link.acts, (link.stand,)
+        commands, outputs, counters, acts, standby = link, (link,), link.counters, link.acts, (link.stand,)
     elif resolved.session.features.autopilot is not None:
         raise ProfileError("mode.pacing: value free: lockstep or realtime, where features.autopilot drives")
     can = _open_can(resolved, console, bundle, stack)
     if can is not None:
-        stations, of_can = (*stations, can), can.summary
+        outputs, of_can = (*outputs, can), can.summary
     seating = open_seating(resolved, console, stack)
-    outputs = (*seating.stations, *stations)
-    cast = Cast(
-        seating.devices, commands, recorder, outputs, pace, seating.seat, ecu=can or NobodyCommands(),
+    components = Components(
+        devices=seating.devices,
+        commands=commands,
+        recorder=recorder,
+        outputs=(*seating.outputs, *outputs),
+        pace=pace,
+        seat=seating.seat,
+        ecu=can or NobodyCommands(),
         standby=(*standby, *(() if can is None else (can.listen,))),
-    )  # fmt: skip
-    ledger = Ledger(time.monotonic_ns, console.tick_hz, every=LOOKED_AT)
-    cast = isolated(with_faults(cast, resolved, console.tick_hz), UnpacedPacer)._replace(ledger=ledger)
+    )
+    latencies = LatencyStatistics(time.monotonic_ns, console.tick_hz, every=LOOKED_AT)
+    faulty = with_faults(components, resolved, console.tick_hz)
+    components = isolated(faulty, UnpacedPacer)._replace(latencies=latencies)
 
     def summary() -> dict[str, Any]:
         own = {**counters(), **of_can(), **summarise_acts(acts())}
-        return {**pace.summary(), **own, "latency_us": ledger.summary_us()}
+        return {**pace.summary(), **own, "latency_us": latencies.summary_us()}
 
-    return Opened(cast, seating.finished, summary)
+    return Opened(components, seating.finished, summary)
 
 
 def open_realtime(
@@ -122,9 +128,9 @@ def open_realtime(
     A raised `interrupt` ends all waiting.
 
     Raises:
-        StationError: shared memory or the stations cannot be had.
-        BridgeError: the bridge station does not listen.
-        CanError: the CAN station does not open its bus.
+        WorkerError: shared memory or the workers cannot be had.
+        BridgeError: the bridge worker does not listen.
+        CanError: the CAN worker does not open its bus.
         ProfileError: the session's commander has no way in.
         DeviceError: a device is missing.
     """
@@ -138,15 +144,15 @@ def open_realtime(
     opening.enter_context(undone(lambda: remove_run_folder(folder)))
     ring, port, keys = make_memory(folder, console)
     ecu = add_can_memory(resolved, console, folder)
-    supervisor = Supervisor(folder, station_specs(resolved, console, folder, bundle, drive))
+    supervisor = SupervisorHandle(folder, worker_specs(resolved, console, folder, bundle, drive))
     programs: list[Popen[bytes]] = []
     stack.callback(end, programs, PROGRAM_END_S)
     stack.callback(supervisor.stop, lambda: ring.is_empty)
     stack.callback(tell_to_end, programs)
     supervisor.start()
-    opening.close()  # from here on the warden removes the folder, however the core ends
+    opening.close()  # from here on the supervisor removes the folder, however the core ends
 
-    address = _await_stations(
+    address = _await_workers(
         resolved.session,
         folder,
         lambda url, course, bridge: programs.append(start_autopilot(url, course, bridge, drive, token)),
@@ -157,28 +163,34 @@ def open_realtime(
     seating = open_seating(resolved, console, stack, keys if with_window else None)
     missing = stack.enter_context(realtime_hints())
     pace = Pacer(console.tick_hz)
-    outputs = (*seating.stations, ring, supervisor)
-    standby = (supervisor.publish, port.stand, *((ecu.stand,) if isinstance(ecu, CommandPort) else ()))
-    cast = Cast(seating.devices, port, recorder, outputs, pace, seating.seat, ecu=ecu, standby=standby)
-    ledger = Ledger(time.monotonic_ns, console.tick_hz)
-    cast = isolated(with_faults(cast, resolved, console.tick_hz), lambda: Pacer(console.tick_hz))._replace(
-        ledger=ledger
+    components = Components(
+        devices=seating.devices,
+        commands=port,
+        recorder=recorder,
+        outputs=(*seating.outputs, ring, supervisor),
+        pace=pace,
+        seat=seating.seat,
+        ecu=ecu,
+        standby=(supervisor.publish, port.stand, *((ecu.stand,) if isinstance(ecu, CommandPort) else ())),
     )
+    latencies = LatencyStatistics(time.monotonic_ns, console.tick_hz)
+    faulty = with_faults(components, resolved, console.tick_hz)
+    components = isolated(faulty, lambda: Pacer(console.tick_hz))._replace(latencies=latencies)
 
     def summary() -> dict[str, Any]:
         kept = {**bridge_summary(folder), **can_summary(folder), **acts_summary(folder)}
-        stations = {"station_restarts": supervisor.counters(), **kept}
-        latency = {**ledger.summary_us(), **station_latencies(folder)}
-        return {**pace.summary(), **stations, "latency_us": latency, "not_granted": missing}
+        workers = {"station_restarts": supervisor.counters(), **kept}
+        latency = {**latencies.summary_us(), **worker_latencies(folder)}
+        return {**pace.summary(), **workers, "latency_us": latency, "not_granted": missing}
 
-    return Opened(cast, seating.finished, summary, address)
+    return Opened(components, seating.finished, summary, address)
 
 
-def _await_stations(
+def _await_workers(
     session: SessionProfile,
     folder: Path,
     start: Callable[[str, str, BridgeProfile], None],
-    supervisor: Supervisor,
+    supervisor: SupervisorHandle,
     check: Callable[[], None],
 ) -> str | None:
     """Wait until every way in is open, starting the session's own autopilot; return where the bridge is."""
@@ -198,7 +210,7 @@ def _await_stations(
 
 
 def _check_address(profile: BridgeProfile) -> None:
-    """Listen for a moment where the bridge will: a taken port is one line now, not a station that dies and dies."""
+    """Listen for a moment where the bridge will: a taken port is one line now, not a worker that dies and dies."""
     from simconsole.bridge.ros2.node import check
     from simconsole.bridge.transport.message_files import load_registry
     from simconsole.bridge.transport.sockets import listen

@@ -1,4 +1,4 @@
-"""A paced drive's outputs and inputs: shared memory, the stations behind it, and the programs beside them."""
+"""A paced drive's outputs and inputs: shared memory, the workers behind it, and the programs beside them."""
 
 import time
 from collections.abc import Callable
@@ -10,7 +10,7 @@ import numpy as np
 
 from simconsole.bridge.console.operator_acts import summarise_acts
 from simconsole.processes.shared_memory import EventCounters, Ring
-from simconsole.processes.supervisor import StationSpec
+from simconsole.processes.supervisor import WorkerSpec
 from simconsole.session.scene_job import LIVE_SCENE, scene_job
 from simconsole.session.worker_programs import (
     ACTS,
@@ -43,8 +43,8 @@ PROGRAMS: Final = "simconsole.session.worker_programs"
 START_PATIENCE_S = 20.0
 
 
-class RingStation:
-    """Publishes every tick into the ring: the only thing the core does for all stations together."""
+class RingOutput:
+    """Publishes every tick into the ring: the only thing the core does for all workers together."""
 
     hop = Hop.PUBLISH
 
@@ -57,12 +57,12 @@ class RingStation:
         return self._ring.newest == 0
 
     def publish(self, snapshot: Snapshot) -> None:
-        """Copy one row; its second stamp tells when, for the ledger."""
+        """Copy one row; its second stamp tells when, for the latency statistics."""
         self._ring.write(snapshot.row, snapshot.tick, time.monotonic_ns())
 
 
 class CommandPort:
-    """A station's command slot and event counters, read once a tick. Ages are whole ticks since receipt."""
+    """A worker's command slot and event counters, read once a tick. Ages are whole ticks since receipt."""
 
     def __init__(self, slot: Ring, events: EventCounters, tick_hz: int) -> None:
         self._slot = slot
@@ -111,24 +111,24 @@ class KeyPort:
         return int(record.values[0]), age_ns * self._tick_hz // NS_PER_S
 
 
-def make_memory(folder: Path, console: Console) -> tuple[RingStation, CommandPort, KeyPort]:
+def make_memory(folder: Path, console: Console) -> tuple[RingOutput, CommandPort, KeyPort]:
     """Make every file of the run folder, as their writers' side or readers' side in the core.
 
     Raises:
-        StationError: one cannot be made.
+        WorkerError: one cannot be made.
     """
     snapshots = Ring.create(folder / SNAPSHOTS, console.width, SNAPSHOT_CAPACITY)
     command = Ring.create(folder / COMMAND, LAYOUT.ros.width, SLOT_CAPACITY)
     keys = Ring.create(folder / KEYS, 1, SLOT_CAPACITY)
     events = EventCounters.create(folder / EVENTS)
-    return RingStation(snapshots), CommandPort(command, events, console.tick_hz), KeyPort(keys, console.tick_hz)
+    return RingOutput(snapshots), CommandPort(command, events, console.tick_hz), KeyPort(keys, console.tick_hz)
 
 
 def add_can_memory(resolved: ResolvedSession, console: Console, folder: Path) -> CommandSource:
-    """Make the CAN station's files where the session has one; return where the ECU's commands come from.
+    """Make the CAN worker's files where the session has one; return where the ECU's commands come from.
 
     Raises:
-        StationError: one cannot be made.
+        WorkerError: one cannot be made.
     """
     if resolved.session.outputs.can is None:
         return NobodyCommands()
@@ -136,10 +136,10 @@ def add_can_memory(resolved: ResolvedSession, console: Console, folder: Path) ->
     return CommandPort(slot, EventCounters.create(folder / CAN_EVENTS), console.tick_hz)
 
 
-def station_specs(
+def worker_specs(
     resolved: ResolvedSession, console: Console, folder: Path, bundle: Path, drive: str
-) -> list[StationSpec]:
-    """Return the stations that the session's outputs name; writes what they need into the run folder.
+) -> list[WorkerSpec]:
+    """Return the workers that the session's outputs name; writes what they need into the run folder.
 
     `drive` is the nonce of the drive.
     """
@@ -153,7 +153,7 @@ def station_specs(
             "drive": drive,
             "bundle": str(bundle.absolute()),
         }
-        specs.append(StationSpec(name="bridge", target=f"{PROGRAMS}:bridge", arguments=arguments))
+        specs.append(WorkerSpec(name="bridge", target=f"{PROGRAMS}:bridge", arguments=arguments))
     if outputs.can is not None:
         from simconsole.canbus.messages import wheel_columns
 
@@ -163,7 +163,7 @@ def station_specs(
             "wheels": wheel_columns(console.columns),
             "bundle": str(bundle.absolute()),
         }
-        specs.append(StationSpec(name="canbus", target=f"{PROGRAMS}:canbus", arguments=arguments))
+        specs.append(WorkerSpec(name="canbus", target=f"{PROGRAMS}:canbus", arguments=arguments))
     if outputs.hud is not None:
         arguments = {
             "profile": msgspec.to_builtins(outputs.hud),
@@ -172,7 +172,7 @@ def station_specs(
             "can": outputs.can is not None,
             "bridge": outputs.bridge is not None,
         }
-        specs.append(StationSpec(name="hud", target=f"{PROGRAMS}:hud", arguments=arguments))
+        specs.append(WorkerSpec(name="hud", target=f"{PROGRAMS}:hud", arguments=arguments))
     if outputs.scene is not None:
         from simconsole.scene.viewer.job import save_job
 
@@ -183,12 +183,12 @@ def station_specs(
             "tick_hz": tick_hz,
             "bridge": outputs.bridge is not None,
         }
-        specs.append(StationSpec(name="scene", target=f"{PROGRAMS}:scene", arguments=arguments))
+        specs.append(WorkerSpec(name="scene", target=f"{PROGRAMS}:scene", arguments=arguments))
     return specs
 
 
 def bridge_address(folder: Path, alive: Callable[[], bool], patience_s: float = START_PATIENCE_S) -> str:
-    """Wait until the bridge station listens and return its address.
+    """Wait until the bridge worker listens and return its address.
 
     Raises:
         BridgeError: it does not listen in time.
@@ -202,7 +202,7 @@ def bridge_address(folder: Path, alive: Callable[[], bool], patience_s: float = 
 
 
 def wait_for_can(folder: Path, alive: Callable[[], bool], patience_s: float = START_PATIENCE_S) -> None:
-    """Wait until the CAN station has opened its bus.
+    """Wait until the CAN worker has opened its bus.
 
     Raises:
         CanError: it does not in time.
@@ -212,11 +212,11 @@ def wait_for_can(folder: Path, alive: Callable[[], bool], patience_s: float = ST
         if (folder / CAN_STATUS).exists():
             return
         time.sleep(0.02)
-    raise CanError("the CAN bus is not open; the station's own message stands above")
+    raise CanError("the CAN bus is not open; the worker's own message stands above")
 
 
-def station_latencies(folder: Path) -> dict[str, Any]:
-    """Return what the stations last said of their hops, at most a second old: `receive, hud`."""
+def worker_latencies(folder: Path) -> dict[str, Any]:
+    """Return what the workers last said of their hops, at most a second old: `receive, hud`."""
     found = {}
     for name in ("bridge", "canbus", "hud"):
         try:
@@ -237,7 +237,7 @@ def acts_summary(folder: Path) -> dict[str, Any]:
 
 
 def bridge_summary(folder: Path) -> dict[str, Any]:
-    """Return what the bridge station last counted, at most a second old; empty without one."""
+    """Return what the bridge worker last counted, at most a second old; empty without one."""
     try:
         return {"bridge": msgspec.json.decode((folder / COUNTS).read_bytes())}
     except (OSError, msgspec.DecodeError):
@@ -245,7 +245,7 @@ def bridge_summary(folder: Path) -> dict[str, Any]:
 
 
 def can_summary(folder: Path) -> dict[str, Any]:
-    """Return what the CAN station last said of itself, at most a second old; empty without one."""
+    """Return what the CAN worker last said of itself, at most a second old; empty without one."""
     try:
         return {"can": msgspec.json.decode((folder / CAN_STATUS).read_bytes())}
     except (OSError, msgspec.DecodeError):

@@ -114,7 +114,7 @@ class UnpacedPacer:
 def realtime_hints() -> Iterator[list[str]]:
     """Ask the system for punctual ticks where it may be asked, and take it back afterwards; yield what is missing.
 
-    First in, first out scheduling (reset on fork, so that no station inherits it), locked memory, a timer slack of
+    First in, first out scheduling (reset on fork, so that no worker inherits it), locked memory, a timer slack of
     1 ns and a garbage collector that leaves alone what was made before the drive. All of it is optional.
     """
     gc.collect()

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 Ticks = NDArray[np.int64]
 
 LIVE_SCENE: Final = "scene.live.rrd"
-"""What a paced drive's scene station records; the whole scene, made from the log, takes its place."""
+"""What a paced drive's scene worker records; the whole scene, made from the log, takes its place."""
 
 
 def scene_job(resolved: ResolvedSession, rows: Row, ticks: Ticks, columns: tuple[str, ...], tick_hz: int) -> "Job":

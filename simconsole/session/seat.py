@@ -12,7 +12,7 @@ from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import ProfileError
 from simconsole.values.host.jit import compiled
-from simconsole.values.protocols import DeviceSource, NobodySeated, Seat, Station
+from simconsole.values.protocols import DeviceSource, NobodySeated, Output, Seat
 from simconsole.values.state_vector import Snapshot
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ class Seating(NamedTuple):
 
     devices: DeviceSource
     seat: Seat | None = None
-    stations: tuple[Station, ...] = ()
+    outputs: tuple[Output, ...] = ()
     finished: Callable[[Snapshot], bool] = lambda snapshot: False
 
 
@@ -99,7 +99,7 @@ def _with_motor(devices: DeviceSource, cockpit: CockpitProfile, force: ForceFeed
 
     motor = WheelMotor(opened(), force, lambda snapshot: time.monotonic(), _say)
     stack.callback(motor.close)
-    return Seating(MotorisedSource(devices, motor, replugged), stations=(motor,))
+    return Seating(MotorisedSource(devices, motor, replugged), outputs=(motor,))
 
 
 def _open_person(resolved: ResolvedSession, console: Console, stack: ExitStack) -> Seating:

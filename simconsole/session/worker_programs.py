@@ -1,4 +1,4 @@
-"""What each station process does: its room's own loop, between the ring and the slots. The only glue of its kind.
+"""What each worker process does: its room's own loop, between the ring and the slots. The only glue of its kind.
 
 Every function takes (folder, arguments, stop) as `simconsole.processes.supervisor` calls it, and waits for nothing but
 its room.
@@ -21,7 +21,7 @@ from simconsole.profiles.view import HudProfile
 from simconsole.values.host.files import write_atomically
 from simconsole.values.kernels import Row
 from simconsole.values.labels import LINK_DOWN
-from simconsole.values.latency import Hop, Ledger
+from simconsole.values.latency import Hop, LatencyStatistics
 from simconsole.values.signals import RemoteCommand
 from simconsole.values.state_vector import LAYOUT, Snapshot
 from simconsole.values.units import NS_PER_S
@@ -166,7 +166,7 @@ def scene(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> 
 
 
 class _Watch:
-    """Reads what a station last wrote of itself; one that writes no more says nothing."""
+    """Reads what a worker last wrote of itself; one that writes no more says nothing."""
 
     LOOK_S: Final = 0.2
     SILENT_S: Final = 3.0
@@ -196,7 +196,7 @@ class _Watch:
 
 
 class CanWatch(_Watch):
-    """Says whether the CAN bus is up; silence of its station counts as down."""
+    """Says whether the CAN bus is up; silence of its worker counts as down."""
 
     def __call__(self) -> bool:
         """Return whether it is up."""
@@ -212,14 +212,14 @@ class LinkWatch(_Watch):
 
 
 class Receipts:
-    """A station's pages of the latency ledger, written out once a second."""
+    """A worker's pages of the latency statistics, written out once a second."""
 
     SAVE_NS: Final = NS_PER_S
 
     def __init__(self, path: Path, clock_ns: Callable[[], int] = time.monotonic_ns) -> None:
         self._path = path
         self._clock_ns = clock_ns
-        self._ledger = Ledger(clock_ns)
+        self._latencies = LatencyStatistics(clock_ns)
         self._number = 0
         self._fresh = False
         self._saved_ns = clock_ns()
@@ -229,14 +229,14 @@ class Receipts:
         self._fresh = record.number != self._number
         if self._fresh:
             self._number = record.number
-            self._ledger.received(record.second_stamp)
+            self._latencies.received(record.second_stamp)
             self._save()
 
     def drawn(self) -> None:
         """Note that the picture of the record received last is on the screen."""
         if self._fresh:
             self._fresh = False
-            self._ledger.mark(Hop.DRAW)
+            self._latencies.mark(Hop.DRAW)
 
     def _save(self) -> None:
         now_ns = self._clock_ns()
@@ -244,7 +244,7 @@ class Receipts:
             return
         self._saved_ns = now_ns
         with contextlib.suppress(OSError):  # the run folder is gone: the core has ended
-            write_atomically(self._path, msgspec.json.encode(self._ledger.summary_us()), durable=False)
+            write_atomically(self._path, msgspec.json.encode(self._latencies.summary_us()), durable=False)
 
 
 class NewestOnce:

@@ -1,7 +1,7 @@
 """An exception in a part of a drive never ends it: the part falls silent, and the arbiter does the rest.
 
 Devices that raise are devices that are gone, and so they are where the person in the seat does; a controller whose
-source raises is a controller that was lost; a station or a recorder that raises sees nothing more; a pace that raises
+source raises is a controller that was lost; an output or a recorder that raises sees nothing more; a pace that raises
 is a loop that stood still, and another one takes its place. Each is told once, on standard error.
 """
 
@@ -9,24 +9,24 @@ import contextlib
 import sys
 from collections.abc import Callable
 
-from simconsole.tick.loop import Cast, Pace, Recorder, Standby
-from simconsole.values.protocols import CommandSource, DeviceSource, Seat, Station
+from simconsole.tick.loop import Components, Pace, Recorder, Standby
+from simconsole.values.protocols import CommandSource, DeviceSource, Output, Seat
 from simconsole.values.signals import NO_COMMAND, NO_SAMPLE, DeviceSample, Event, EventInput, RemoteCommand
 from simconsole.values.state_vector import Snapshot
 
 
-def isolated(cast: Cast, spare: Callable[[], Pace]) -> Cast:
-    """Return the cast of a drive with each part kept from the others; `spare` makes a pace for one that has failed."""
-    seat = None if cast.seat is None else IsolatedSeat(cast.seat)
-    return cast._replace(
-        devices=IsolatedDevices(cast.devices, seat),
-        commands=IsolatedCommands(cast.commands, "ROS"),
-        recorder=IsolatedRecorder(cast.recorder),
-        stations=[IsolatedStation(station) for station in cast.stations],
-        pace=IsolatedPace(cast.pace, spare),
+def isolated(components: Components, spare: Callable[[], Pace]) -> Components:
+    """Return the components of a drive with each kept from the others; `spare` makes a pace for one that has failed."""
+    seat = None if components.seat is None else IsolatedSeat(components.seat)
+    return components._replace(
+        devices=IsolatedDevices(components.devices, seat),
+        commands=IsolatedCommands(components.commands, "ROS"),
+        recorder=IsolatedRecorder(components.recorder),
+        outputs=[IsolatedOutput(output) for output in components.outputs],
+        pace=IsolatedPace(components.pace, spare),
         seat=seat,
-        ecu=IsolatedCommands(cast.ecu, "CAN"),
-        standby=[IsolatedStandby(standby) for standby in cast.standby],
+        ecu=IsolatedCommands(components.ecu, "CAN"),
+        standby=[IsolatedStandby(standby) for standby in components.standby],
     )
 
 
@@ -160,20 +160,20 @@ class IsolatedCommands:
             return NO_COMMAND, EventInput(float(Event.COMMANDER_LOST))
 
 
-class IsolatedStation:
-    """A station; once it raised, it sees nothing more."""
+class IsolatedOutput:
+    """An output; once it raised, it sees nothing more."""
 
-    def __init__(self, station: Station) -> None:
-        self._station = station
-        self._told = Told(type(station).__name__)
-        if hasattr(station, "hop"):
-            self.hop = station.hop
+    def __init__(self, output: Output) -> None:
+        self._output = output
+        self._told = Told(type(output).__name__)
+        if hasattr(output, "hop"):
+            self.hop = output.hop
 
     def publish(self, snapshot: Snapshot) -> None:
         """Show it one tick."""
         if self._told.failed:
             return
         try:
-            self._station.publish(snapshot)
+            self._output.publish(snapshot)
         except Exception as error:  # noqa: BLE001  nobody who only looks may stop the car
             self._told.tell(error)

@@ -4,8 +4,8 @@ from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple, Protocol
 
 from simconsole.tick.advance import Console, ConsoleState, advance
-from simconsole.values.latency import Hop, Ledger, unheard
-from simconsole.values.protocols import CommandSource, DeviceSource, NobodyCommands, Seat, Station
+from simconsole.values.latency import Hop, LatencyStatistics, unheard
+from simconsole.values.protocols import CommandSource, DeviceSource, NobodyCommands, Output, Seat
 from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE, Button, Event, EventInput
 from simconsole.values.state_vector import Snapshot, TickInputs
 
@@ -46,67 +46,67 @@ _BUTTON_PAUSE: Final = int(Button.PAUSE)
 _BUTTON_EMERGENCY: Final = int(Button.EMERGENCY_STOP)
 
 
-class Cast(NamedTuple):
+class Components(NamedTuple):
     """Everyone who takes part in a drive."""
 
     devices: DeviceSource
     commands: CommandSource  # of the ROS side
     recorder: Recorder
-    stations: Sequence[Station]
+    outputs: Sequence[Output]
     pace: Pace
     seat: Seat | None = None
     faults: Faults | None = None
     ecu: CommandSource = NobodyCommands()
-    ledger: Ledger | None = None
+    latencies: LatencyStatistics | None = None
     standby: Sequence[Standby] = ()  # called again and again while simulated time stands
 
 
 def run(
     console: Console,
     state: ConsoleState,
-    cast: Cast,
+    components: Components,
     ticks: int,
     finished: Callable[[Snapshot], bool] = lambda snapshot: False,
     on_request: bool = False,
 ) -> ConsoleState:
     """Drive until `ticks` have passed or `finished` says so; return the last state.
 
-    The order is fixed: pace, seat, faults, devices, commands, advance, recorder, stations. Everything that enters
+    The order is fixed: pace, seat, faults, devices, commands, advance, recorder, outputs. Everything that enters
     `advance` is in the row that the recorder keeps, so that the drive replays. A tick with the event PAUSE is the last
     one before simulated time stands; the one with START goes on after it. With `on_request` the first tick pauses.
     """
     carried = _PAUSE if on_request else 0
     carried_ecu = 0
     snapshot = Snapshot(state.tick, console.tick_hz, state.row)
-    end, ledger = state.tick + ticks, cast.ledger
-    stations = [(station, getattr(station, "hop", Hop.OTHERS)) for station in cast.stations]
+    end, latencies = state.tick + ticks, components.latencies
+    outputs = [(output, getattr(output, "hop", Hop.OTHERS)) for output in components.outputs]
     while state.tick < end and not finished(snapshot):
-        raised = cast.pace.wait()
-        if cast.seat is not None:
-            cast.seat.act(snapshot)
+        raised = components.pace.wait()
+        if components.seat is not None:
+            components.seat.act(snapshot)
         coming = state.tick + 1
-        mark = unheard if ledger is None else ledger.begin(coming)
-        faults = 0.0 if cast.faults is None else cast.faults.turn(coming, snapshot)
-        sample = cast.devices.poll(coming)
-        if ledger is not None:
-            ledger.sample(sample)
+        mark = unheard if latencies is None else latencies.begin(coming)
+        faults = 0.0 if components.faults is None else components.faults.turn(coming, snapshot)
+        sample = components.devices.poll(coming)
+        if latencies is not None:
+            latencies.sample(sample)
         mark(Hop.READ)
-        ros, events = cast.commands.take(coming)
-        ecu, ecu_events = cast.ecu.take(coming)
+        ros, events = components.commands.take(coming)
+        ecu, ecu_events = components.ecu.take(coming)
         mark(Hop.TAKE)
         carried |= int(events.events) | raised
         if carried & _START:
             carried &= ~_PAUSE
         edges = EventInput(float(carried), faults, float(int(ecu_events.events) | carried_ecu))
         state, snapshot = advance(state, TickInputs(sample, ros, edges, ecu), console, mark)
-        recorded = cast.recorder.write(snapshot)
+        recorded = components.recorder.write(snapshot)
         mark(Hop.RECORD)
-        for station, hop in stations:
-            station.publish(snapshot)
+        for output, hop in outputs:
+            output.publish(snapshot)
             mark(hop)
         carried_ecu = 0
         if carried & _PAUSE:
-            carried, carried_ecu = _stand(console, state, cast, snapshot, finished)
+            carried, carried_ecu = _stand(console, state, components, snapshot, finished)
         else:
             carried = _PAUSE if int(snapshot.driver.edges) & _BUTTON_PAUSE else 0
         carried |= recorded
@@ -134,7 +134,11 @@ def come_to_rest(console: Console, state: ConsoleState, recorder: Recorder) -> C
 
 
 def _stand(
-    console: Console, state: ConsoleState, cast: Cast, snapshot: Snapshot, finished: Callable[[Snapshot], bool]
+    console: Console,
+    state: ConsoleState,
+    components: Components,
+    snapshot: Snapshot,
+    finished: Callable[[Snapshot], bool],
 ) -> tuple[int, int]:
     """Let simulated time stand until somebody starts it; return the edges for the next tick, of ROS and of the ECU.
 
@@ -143,13 +147,13 @@ def _stand(
     """
     held, collected, collected_ecu = int(snapshot.driver.pressed), 0, 0
     while not finished(snapshot):
-        cast.pace.wait()  # a loop that stands cannot stall
-        for stand in cast.standby:
+        components.pace.wait()  # a loop that stands cannot stall
+        for stand in components.standby:
             stand(snapshot)
         coming = state.tick + 1
-        sample = cast.devices.poll(coming)
-        ros, events = cast.commands.take(coming)
-        ecu, ecu_events = cast.ecu.take(coming)
+        sample = components.devices.poll(coming)
+        ros, events = components.commands.take(coming)
+        ecu, ecu_events = components.ecu.take(coming)
         collected |= int(events.events)
         collected_ecu |= int(ecu_events.events)
         seen = advance(state, TickInputs(sample, ros, NO_EVENTS, ecu), console)[1]  # only to read the buttons

@@ -14,7 +14,7 @@
     |       +-- FrameError      below its messages: answered with a close code
     +-- CanError                the CAN bus, a DBC or a frame
     +-- RecordingError          a bundle or log that cannot be read
-    +-- StationError            a consumer process or its shared memory
+    +-- WorkerError            a consumer process or its shared memory
 
 The command line prints the message on one line and exits with `exit_code`; a traceback means a bug.
 """
@@ -85,5 +85,5 @@ class RecordingError(SimConsoleError):
     """A bundle or log is missing, truncated before its first tick, altered or of another version."""
 
 
-class StationError(SimConsoleError):
-    """A station process or the shared memory that feeds it cannot be opened."""
+class WorkerError(SimConsoleError):
+    """A worker process or the shared memory that feeds it cannot be opened."""

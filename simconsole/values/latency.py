@@ -1,4 +1,4 @@
-"""The latency ledger: how long each hop takes on the way from a hand on the wheel to its torque and its picture.
+"""The latency statistics: how long each hop takes on the way from a hand on the wheel to its torque and its picture.
 
 Stamps are wall-clock: they stay out of the rows, so that equal drives stay equal bytes, and end as percentiles in the
 bundle's manifest and in the report. Pure: the clock comes in.
@@ -33,7 +33,7 @@ class Hop(StrEnum):
     PUBLISH = "publish"  # in shared memory
     EXCHANGE = "exchange"  # in lockstep: published, and the controller's answer waited for
     OTHERS = "others"  # readers of snapshots without a hop of their own
-    RECEIVE = "receive"  # by a station, since it was in shared memory
+    RECEIVE = "receive"  # by a worker, since it was in shared memory
     DRAW = "draw"  # on the screen, since it was received
 
 
@@ -82,7 +82,7 @@ def unheard(hop: Hop) -> None:
     """A mark that nobody wants: what a tick gets that is not looked at."""
 
 
-class Ledger:
+class LatencyStatistics:
     """Times of the hops of one process."""
 
     def __init__(self, clock_ns: Callable[[], int], tick_hz: int = 1, every: int = 1) -> None:

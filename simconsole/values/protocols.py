@@ -23,14 +23,15 @@ class CommandSource(Protocol):
         """Return the newest command, its age in whole ticks, and all edges since the last call."""
 
 
-class Station(Protocol):
+class Output(Protocol):
     """A reader of snapshots. It must not block and must not raise into the loop.
 
-    One with an attribute `hop` (`ledger.Hop`) is timed under that name in the latency ledger, every other as "others".
+    One with an attribute `hop` (`latency.Hop`) is timed under that name in the latency statistics, every other one as
+    "others".
     """
 
     def publish(self, snapshot: Snapshot) -> None:
-        """See one tick; a station with its own rate ignores what it does not need."""
+        """See one tick; an output with its own rate ignores what it does not need."""
 
 
 class Seat(Protocol):

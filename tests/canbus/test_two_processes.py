@@ -108,8 +108,8 @@ def test_bus_that_is_not_there_refuses_the_drive(tmp_path: Path) -> None:
         _, err = drive.communicate(timeout=PATIENCE_S)
     assert drive.returncode == 2
     first, *_, last = err.splitlines()
-    assert first.startswith("simconsole station: CAN socketcan can97: cannot be opened")
-    assert last == "simconsole drive: the CAN bus is not open; the station's own message stands above"
+    assert first.startswith("simconsole worker: CAN socketcan can97: cannot be opened")
+    assert last == "simconsole drive: the CAN bus is not open; the worker's own message stands above"
 
 
 def test_what_monitor_kept_is_replayed_and_heard_again(port: int, codec: Codec, tmp_path: Path) -> None:

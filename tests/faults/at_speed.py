@@ -14,7 +14,7 @@ from simconsole.session.pacing import UnpacedPacer
 from simconsole.session.resolution import override, resolve
 from simconsole.tick.advance import Console, ConsoleState
 from simconsole.tick.assembly import ResolvedSession, assemble
-from simconsole.tick.loop import Cast, run
+from simconsole.tick.loop import Components, run
 from simconsole.values.host.jit import compiled
 from simconsole.values.protocols import CommandSource
 from simconsole.values.signals import (
@@ -96,8 +96,8 @@ class Ready(NamedTuple):
         """Drive on with another controller."""
         console, ticks = self.console, round(seconds * self.console.tick_hz)
         recorder = MemoryRecorder(ticks, console.width)
-        cast = Cast(Seated(self.resolved, console.tick_hz), controller, recorder, (), UnpacedPacer())
-        run(console, ConsoleState(self.state.tick, self.state.row.copy()), cast, ticks)
+        components = Components(Seated(self.resolved, console.tick_hz), controller, recorder, (), UnpacedPacer())
+        run(console, ConsoleState(self.state.tick, self.state.row.copy()), components, ticks)
         return Driven(np.vstack((self.state.row, recorder.rows)), console.columns, console.platform.wheelbase_m)
 
 
@@ -108,8 +108,8 @@ def ready(tick_hz: int) -> Ready:
     console, state = assemble(resolved, compiled)
     ticks = round(READY_S * tick_hz)
     recorder = MemoryRecorder(ticks, console.width)
-    cast = Cast(Seated(resolved, tick_hz), Steady(tick_hz), recorder, (), UnpacedPacer())
-    state = run(console, state, cast, ticks)
+    components = Components(Seated(resolved, tick_hz), Steady(tick_hz), recorder, (), UnpacedPacer())
+    state = run(console, state, components, ticks)
     snapshot = Snapshot(state.tick, tick_hz, state.row)
     assert snapshot.arbitration.mode == Mode.AUTONOMOUS, Reason(int(snapshot.arbitration.reason))
     assert snapshot.vehicle.vx_mps > 0.9 * SPEED_MPS

@@ -21,9 +21,9 @@ from simconsole.session.resolution import resolve
 from simconsole.tick.advance import Console, ConsoleState
 from simconsole.tick.assembly import ResolvedSession, assemble
 from simconsole.tick.isolation import isolated
-from simconsole.tick.loop import Cast, Pace, run
+from simconsole.tick.loop import Components, Pace, run
 from simconsole.values.host.jit import compiled
-from simconsole.values.protocols import Station
+from simconsole.values.protocols import Output
 from simconsole.values.signals import (
     NO_COMMAND,
     NO_EVENTS,
@@ -235,7 +235,7 @@ class Circuit:
         faults: Sequence[Fault] = (),
         crew: Crew = AUTOPILOT,
         pace: Pace | None = None,
-        stations: Sequence[Station] = (),
+        outputs: Sequence[Output] = (),
         controller: InlineTracker | None = None,
     ) -> Driven:
         """Drive on from a state."""
@@ -255,10 +255,10 @@ class Circuit:
             if crew.by_hand
             else Person(resolved, copy(self.tracker) if crew.attentive else None, ratio)
         )
-        cast = Cast(person, tracker, recorder, (tracker, person, *stations), pace or UnpacedPacer())
+        components = Components(person, tracker, recorder, (tracker, person, *outputs), pace or UnpacedPacer())
         if state.tick:
             tracker.publish(start)
-        run(self.console, state, isolated(with_faults(cast, resolved, HZ), UnpacedPacer), round(seconds * HZ))
+        run(self.console, state, isolated(with_faults(components, resolved, HZ), UnpacedPacer), round(seconds * HZ))
         return Driven(recorder.rows, state.tick + 1, self.console.columns, self.course)
 
     def state_at(self, distance_m: float) -> ConsoleState:

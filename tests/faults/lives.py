@@ -37,7 +37,7 @@ HUD, SCENE = "{width_px: 320, height_px: 240, rate_hz: 10}", "{rate_hz: 5, flush
 
 
 def write_session(
-    folder: Path, port: int, *, autopilot: bool = True, pacing: str = "realtime", stations: bool = True
+    folder: Path, port: int, *, autopilot: bool = True, pacing: str = "realtime", workers: bool = True
 ) -> Path:
     """A drive whose person asks for autonomy twice a second."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -46,8 +46,8 @@ def write_session(
         title=folder.name,
         autopilot="urban" if autopilot else "null",
         port=port,
-        hud=HUD if stations and pacing == "realtime" else "null",
-        scene=SCENE if stations else "null",
+        hud=HUD if workers and pacing == "realtime" else "null",
+        scene=SCENE if workers else "null",
         pacing=pacing,
     )
     path = folder / "session.yaml"

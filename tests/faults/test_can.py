@@ -30,7 +30,7 @@ from simconsole.session.pacing import UnpacedPacer
 from simconsole.session.resolution import load_session, override, resolve
 from simconsole.session.worker_programs import CanWatch
 from simconsole.tick.assembly import assemble
-from simconsole.tick.loop import Cast, run
+from simconsole.tick.loop import Components, run
 from simconsole.values.errors import CanError
 from simconsole.values.host.jit import plain
 from simconsole.values.kernels import Row
@@ -130,9 +130,9 @@ def drive(codec: Codec, profile: CanProfile) -> Iterator[Callable[..., Driven]]:
             stack.callback(ecu_port.close)
             on_bus, rows = OnBus(node, port), Rows()
             link = InlineCan(on_bus)
-            stations = (link, EcuSeat(codec, ecu_port, fault))
-            cast = Cast(NobodySeated(), NobodyCommands(), rows, stations, UnpacedPacer(), ecu=link)
-            run(console, state, cast, TICKS)
+            outputs = (link, EcuSeat(codec, ecu_port, fault))
+            components = Components(NobodySeated(), NobodyCommands(), rows, outputs, UnpacedPacer(), ecu=link)
+            run(console, state, components, TICKS)
             return Driven(np.array(rows.rows), on_bus)
 
         yield go
@@ -275,7 +275,7 @@ def test_c02_bus_off_is_reported_and_the_drive_goes_on(drive: Callable[..., Driv
 
 @pytest.mark.fault("C02")
 def test_c02_state_of_the_bus_stands_on_the_drivers_cluster(profile: CanProfile, codec: Codec, tmp_path: Path) -> None:
-    """From the station's own word over its file to the lamp in the draw list: up, off, up again."""
+    """From the worker's own word over its file to the lamp in the draw list: up, off, up again."""
     yard = FallingYard("send", 1, down_s=20.0)
     port = CanPort(profile, codec.ids("CONSOLE"), codec.ids("ECU"), clock_s=lambda: yard.now_s, opener=yard.open)
     on_bus = OnBus(CanNode(codec, profile, 250), port)

@@ -77,7 +77,7 @@ def test_p05_wall_clock_that_jumps_by_an_hour_changes_not_one_bit(tmp_path: Path
 
 
 class Sleeper:
-    """A station that really holds the loop up, once."""
+    """A output that really holds the loop up, once."""
 
     def __init__(self, tick: int, sleep_s: float) -> None:
         self._tick, self._sleep_s = tick, sleep_s
@@ -94,7 +94,7 @@ def test_p06_loop_that_really_stands_for_half_a_second_is_answered_in_its_next_t
     state = track.state_at(PLACES["bend"])
     held = state.tick + 100
     pacer = Pacer(HZ)
-    driven = track.drive(state, 8.0, pace=pacer, stations=(Sleeper(held, 0.5),))
+    driven = track.drive(state, 8.0, pace=pacer, outputs=(Sleeper(held, 0.5),))
     stalled = driven.column("events.events").astype(int) & int(Event.LOOP_STALL) != 0
     after = held - state.tick  # the row of the tick after it
     assert stalled[after]
@@ -115,6 +115,6 @@ def test_p06_a_person_at_the_wheel_is_stopped_too_and_has_it_back_at_once() -> N
     track = circuit()
     state = track.state_at(PLACES["bend"])
     crew = BY_HAND._replace(attentive=True)
-    driven = track.drive(state, 8.0, crew=crew, pace=Pacer(HZ), stations=(Sleeper(state.tick + 250, 0.3),))
+    driven = track.drive(state, 8.0, crew=crew, pace=Pacer(HZ), outputs=(Sleeper(state.tick + 250, 0.3),))
     assert driven.modes[:3] == [Mode.MANUAL, Mode.MINIMAL_RISK, Mode.MANUAL]
     assert driven.reasons[0] == Reason.LOOP_STALL

@@ -49,7 +49,7 @@ def modes_of(bundle: Path) -> set[float]:
 def next_drive_is_manual(folder: Path, port: int, seconds: float = 3.0, temporary: Path | None = None) -> None:
     """Drive on the same port with nobody but a person who asks for autonomy again and again."""
     wait_for_port(port)
-    session = write_session(folder, port, autopilot=False, stations=False)
+    session = write_session(folder, port, autopilot=False, workers=False)
     command = ("drive", session, "--for", seconds, "--out", folder / "bundle", "--json")
     with Running(folder, *command, **({} if temporary is None else {"TMPDIR": str(temporary)})) as running:
         done = running.end()
@@ -60,7 +60,7 @@ def next_drive_is_manual(folder: Path, port: int, seconds: float = 3.0, temporar
 @pytest.mark.fault("P02")
 def test_the_autopilot_of_a_killed_drive_does_not_drive_the_next_one(tmp_path: Path) -> None:
     port = free_port()
-    session = write_session(tmp_path / "first", port, stations=False)
+    session = write_session(tmp_path / "first", port, workers=False)
     with living(tmp_path / "first", "first", "drive", session, "--out", tmp_path / "bundle") as life:
         autopilot = life.wait_for(PROGRAM)
         kill_all_but(life, autopilot)
@@ -87,7 +87,7 @@ def test_each_child_reads_a_pipe_that_its_parent_alone_holds(tmp_path: Path) -> 
     session = write_session(tmp_path / "first", free_port())
     with living(tmp_path / "first", "held", "drive", session, "--out", tmp_path / "bundle") as life:
         life.wait_for(PROGRAM)
-        wait_until(lambda: len(life.family()) == 6, "core, warden, three stations, autopilot")
+        wait_until(lambda: len(life.family()) == 6, "core, supervisor, three workers, autopilot")
         children = {process: said for process, said in life.family().items() if process != life.core}
         assert all(any(word in said for word in HELD) for said in children.values())
         for process in children:
@@ -112,7 +112,7 @@ def test_each_server_refuses_a_program_that_another_drive_started(edge: Callable
 @pytest.mark.fault("P02")
 def test_an_autopilot_of_another_drive_ends_at_once_and_drives_nobody(tmp_path: Path) -> None:
     port = free_port()
-    session = write_session(tmp_path, port, autopilot=False, stations=False)
+    session = write_session(tmp_path, port, autopilot=False, workers=False)
     with Running(tmp_path, "drive", session, "--for", 8, "--out", tmp_path / "bundle", "--json") as running:
         wait_for_port_taken(port)
         done = simconsole("autopilot", "--url", f"ws://127.0.0.1:{port}", "--wait", 3600, **{DRIVE_VARIABLE: "0" * 32})
@@ -256,7 +256,7 @@ def assert_whole_or_none(bundle: Path, twice: bool) -> None:
 
 @pytest.mark.fault("P11")
 def test_a_closed_terminal_ends_a_drive_in_order(tmp_path: Path) -> None:
-    session = write_session(tmp_path, free_port(), stations=False)
+    session = write_session(tmp_path, free_port(), workers=False)
     ours, theirs = os.openpty()
     process = subprocess.Popen(
         words("drive", session, "--out", tmp_path / "bundle", "--json"),

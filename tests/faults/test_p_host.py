@@ -75,7 +75,7 @@ with realtime_hints():
     frozen = gc.get_freeze_count()
     gc.callbacks.append(litter.collected)
     litter.last_ns = time.process_time_ns()
-    driven = track.drive(state, ticks / 250, crew=BY_HAND, stations=(litter,))
+    driven = track.drive(state, ticks / 250, crew=BY_HAND, outputs=(litter,))
     gc.callbacks.remove(litter.collected)
 print(json.dumps({
     "frozen": frozen, "heap": 2 * len(heap), "whole_ns": whole_ns, "took_ns": litter.took_ns,
@@ -236,10 +236,10 @@ def core_ns(pid: int) -> int:
 def test_p09_a_scene_that_is_frozen_costs_the_core_nothing_and_then_goes_on(tmp_path: Path, measured: Measured) -> None:
     """Stopped for longer than the ring holds. rerun's viewers read the file; they reach no process of ours."""
     with drive(tmp_path, FROZEN) as driven:
-        wait_until(lambda: driven.stations().keys() == {"scene"}, "the scene")
+        wait_until(lambda: driven.workers().keys() == {"scene"}, "the scene")
         live = driven.bundle / "scene.live.rrd"
         wait_until(lambda: live.exists() and driven.tick() > TICK_HZ, "a scene that records")
-        scene = driven.stations()["scene"].process_id
+        scene = driven.workers()["scene"].process_id
         cost = {}
         for frozen in (False, True):
             if frozen:
@@ -253,7 +253,7 @@ def test_p09_a_scene_that_is_frozen_costs_the_core_nothing_and_then_goes_on(tmp_
         os.kill(scene, signal.SIGCONT)
         wait_until(lambda: live.stat().st_size > size, "the scene going on")
         grown = resident_bytes(scene) - before
-        assert driven.stations()["scene"].process_id == scene, "the same one"
+        assert driven.workers()["scene"].process_id == scene, "the same one"
         os.kill(scene, signal.SIGSTOP)
         driven.running.interrupt_group()
         done = driven.running.end()

@@ -53,11 +53,11 @@ def follow(folder, arguments, stop):
 
 @pytest.fixture
 def programs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
-    """Name of a module of station functions that stations of this test can import."""
+    """Name of a module of worker functions that workers of this test can import."""
     (tmp_path / "programs").mkdir()
-    (tmp_path / "programs" / "station_test_programs.py").write_text(PROGRAMS)
+    (tmp_path / "programs" / "worker_test_programs.py").write_text(PROGRAMS)
     monkeypatch.syspath_prepend(tmp_path / "programs")
-    return "station_test_programs"
+    return "worker_test_programs"
 
 
 @pytest.fixture

@@ -15,7 +15,7 @@ import pytest
 from simconsole.processes import lifetimes
 from simconsole.processes.lifetimes import ORPHAN_S, close_pipe, end, end_with_parent, handled, spawn
 from simconsole.processes.shared_memory import temporary_folder
-from simconsole.processes.supervisor import WARDEN_S
+from simconsole.processes.supervisor import SUPERVISOR_END_S
 from tests.faults.lives import holders, marked, standard_input
 from tests.patience import wait_until
 
@@ -49,7 +49,7 @@ def wait_for_file(path: Path) -> None:
 
 
 def test_the_bar_of_a_second_has_room_for_all_who_end_one_after_the_other() -> None:
-    assert ORPHAN_S < WARDEN_S < 1.0
+    assert ORPHAN_S < SUPERVISOR_END_S < 1.0
 
 
 def test_a_child_ends_at_the_end_of_the_pipe_whatever_it_does(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ import pytest
 
 from simconsole.processes import shared_memory
 from simconsole.processes.shared_memory import EventCounters, Ring, make_run_folder, remove_run_folder, sweep
-from simconsole.values.errors import StationError
+from simconsole.values.errors import WorkerError
 from simconsole.values.signals import Event
 
 Wait = Callable[[Callable[[], object]], None]
@@ -104,7 +104,7 @@ def test_a_writer_killed_inside_a_record_leaves_the_one_before(tmp_path: Path) -
     record = reader.latest()
     assert record is not None
     assert record.number == 6
-    again = Ring.open(tmp_path / "slot", writable=True)  # the restarted station
+    again = Ring.open(tmp_path / "slot", writable=True)  # the restarted worker
     again.write(np.full(2, 70.0), 70)
     record = reader.latest()
     assert record is not None
@@ -163,7 +163,7 @@ def test_a_flood_leaves_the_newest_command_with_its_own_receipt(tmp_path: Path) 
 @pytest.mark.parametrize("content", [b"", b"\0" * 64, b"x" * 200])
 def test_what_is_no_ring_is_refused(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "ring").write_bytes(content)
-    with pytest.raises(StationError, match="not a ring of this version"):
+    with pytest.raises(WorkerError, match="not a ring of this version"):
         Ring.open(tmp_path / "ring")
 
 
@@ -171,15 +171,15 @@ def test_what_is_no_ring_is_refused(tmp_path: Path, content: bytes) -> None:
 def test_a_ring_whose_header_lies_is_refused(tmp_path: Path, width: int, capacity: int) -> None:
     ring = Ring.create(tmp_path / "ring", 4, 4)
     ring._head[1], ring._head[2] = width, capacity
-    with pytest.raises(StationError, match="ring: "):
+    with pytest.raises(WorkerError, match="ring: "):
         Ring.open(tmp_path / "ring")
 
 
 def test_opening_and_making_fail_in_one_line(tmp_path: Path) -> None:
-    with pytest.raises(StationError, match="cannot be opened: No such file"):
+    with pytest.raises(WorkerError, match="cannot be opened: No such file"):
         Ring.open(tmp_path / "ring")
     Ring.create(tmp_path / "ring", 1, 1)
-    with pytest.raises(StationError, match="cannot be made: File exists"):
+    with pytest.raises(WorkerError, match="cannot be made: File exists"):
         Ring.create(tmp_path / "ring", 1, 1)
 
 
@@ -188,7 +188,7 @@ def test_full_shared_memory_is_an_error_not_a_bus_error(tmp_path: Path, monkeypa
         raise OSError(errno.ENOSPC, "No space left on device")
 
     monkeypatch.setattr(os, "posix_fallocate", full)
-    with pytest.raises(StationError, match="cannot be made: No space left on device"):
+    with pytest.raises(WorkerError, match="cannot be made: No space left on device"):
         Ring.create(tmp_path / "ring", 140, 1024)
 
 
@@ -227,7 +227,7 @@ def test_an_emergency_stop_is_never_dropped(tmp_path: Path) -> None:
 def test_edges_outlive_their_writer(tmp_path: Path) -> None:
     reader = EventCounters.create(tmp_path / "events")
     EventCounters.open(tmp_path / "events", writable=True).raise_events(Event.EMERGENCY_STOP)
-    again = EventCounters.open(tmp_path / "events", writable=True)  # the restarted station
+    again = EventCounters.open(tmp_path / "events", writable=True)  # the restarted worker
     again.raise_events(Event.MARK)
     assert reader.take() == Event.EMERGENCY_STOP | Event.MARK
 

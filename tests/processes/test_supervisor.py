@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from simconsole.processes.shared_memory import Ring, make_run_folder
-from simconsole.processes.supervisor import StationSpec, Supervisor
-from simconsole.values.errors import StationError
+from simconsole.processes.supervisor import SupervisorHandle, WorkerSpec
+from simconsole.values.errors import WorkerError
 from simconsole.values.state_vector import Snapshot
 from tests import patience
 
@@ -26,14 +26,14 @@ import json, sys, time
 from pathlib import Path
 import numpy as np
 from simconsole.processes import shared_memory
-from simconsole.processes.supervisor import StationSpec, Supervisor
+from simconsole.processes.supervisor import WorkerSpec, SupervisorHandle
 base, specs = Path(sys.argv[1]), json.loads(sys.argv[2])
 shared_memory._base = lambda: base
 folder = shared_memory.make_run_folder()
 ring = shared_memory.Ring.create(folder / "snapshots", 8, 64)
-supervisor = Supervisor(folder, [StationSpec(**spec) for spec in specs], patience_s=0.3)
+supervisor = SupervisorHandle(folder, [WorkerSpec(**spec) for spec in specs], patience_s=0.3)
 supervisor.start()
-print(folder, supervisor._warden.pid, flush=True)
+print(folder, supervisor._process.pid, flush=True)
 while True:
     ring.write(np.full(8, ring.newest + 1.0), ring.newest + 1)
     time.sleep(0.001)
@@ -41,7 +41,7 @@ while True:
 
 
 def said(folder: Path, name: str) -> dict[str, Any] | None:
-    """What the station of this name last said of itself."""
+    """What the worker of this name last said of itself."""
     try:
         found: dict[str, Any] = json.loads((folder / f"{name}.json").read_text())
     except FileNotFoundError:
@@ -49,17 +49,17 @@ def said(folder: Path, name: str) -> dict[str, Any] | None:
     return found
 
 
-def station(programs: str, name: str, function: str = "beat", **arguments: object) -> StationSpec:
-    return StationSpec(name=name, target=f"{programs}:{function}", arguments={"name": name, **arguments})
+def worker(programs: str, name: str, function: str = "beat", **arguments: object) -> WorkerSpec:
+    return WorkerSpec(name=name, target=f"{programs}:{function}", arguments={"name": name, **arguments})
 
 
 @pytest.fixture
-def start(run_base: Path) -> Iterator[Callable[..., Supervisor]]:
-    """Start stations in a run folder; ended with the test."""
-    started: list[Supervisor] = []
+def start(run_base: Path) -> Iterator[Callable[..., SupervisorHandle]]:
+    """Start workers in a run folder; ended with the test."""
+    started: list[SupervisorHandle] = []
 
-    def start(*specs: StationSpec, folder: Path | None = None, patience_s: float = PATIENCE_S) -> Supervisor:
-        started.append(Supervisor(folder or make_run_folder(), specs, patience_s))
+    def start(*specs: WorkerSpec, folder: Path | None = None, patience_s: float = PATIENCE_S) -> SupervisorHandle:
+        started.append(SupervisorHandle(folder or make_run_folder(), specs, patience_s))
         started[-1].start()
         return started[-1]
 
@@ -69,11 +69,11 @@ def start(run_base: Path) -> Iterator[Callable[..., Supervisor]]:
     assert list(run_base.iterdir()) == []
 
 
-def test_stations_run_in_their_own_processes_and_end_in_order(
-    start: Callable[..., Supervisor], programs: str, tmp_path: Path, wait_until: Wait, is_running: IsRunning
+def test_workers_run_in_their_own_processes_and_end_in_order(
+    start: Callable[..., SupervisorHandle], programs: str, tmp_path: Path, wait_until: Wait, is_running: IsRunning
 ) -> None:
     goodbye = tmp_path / "goodbye"
-    specs = (station(programs, "one", goodbye=str(goodbye)), station(programs, "two", port=9090))
+    specs = (worker(programs, "one", goodbye=str(goodbye)), worker(programs, "two", port=9090))
     supervisor = start(*specs, patience_s=patience.PATIENCE_S)
     wait_until(lambda: said(supervisor.folder, "one") and said(supervisor.folder, "two"))
     one, two = said(supervisor.folder, "one"), said(supervisor.folder, "two")
@@ -94,8 +94,8 @@ def test_stations_run_in_their_own_processes_and_end_in_order(
     supervisor.stop()
 
 
-def test_ctrl_c_is_the_cores(start: Callable[..., Supervisor], programs: str, wait_until: Wait) -> None:
-    supervisor = start(station(programs, "one"))
+def test_ctrl_c_is_the_cores(start: Callable[..., SupervisorHandle], programs: str, wait_until: Wait) -> None:
+    supervisor = start(worker(programs, "one"))
     wait_until(lambda: said(supervisor.folder, "one"))
     one = said(supervisor.folder, "one")
     assert one is not None
@@ -103,13 +103,13 @@ def test_ctrl_c_is_the_cores(start: Callable[..., Supervisor], programs: str, wa
     assert one["group"] != os.getpgid(0)  # a terminal sends its Ctrl-C to the core's group only
 
 
-def test_stations_have_the_environment_from_before_the_cores_own_settings(
+def test_workers_have_the_environment_from_before_the_cores_own_settings(
     run_base: Path, programs: str, wait_until: Wait, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delenv("SDL_VIDEODRIVER", raising=False)
     monkeypatch.setenv("EXTRA", "from the core")
-    given = with_environment(station(programs, "given"), {"SDL_VIDEODRIVER": "offscreen", "EXTRA": None})
-    supervisor = Supervisor(make_run_folder(), [station(programs, "plain"), given])
+    given = with_environment(worker(programs, "given"), {"SDL_VIDEODRIVER": "offscreen", "EXTRA": None})
+    supervisor = SupervisorHandle(make_run_folder(), [worker(programs, "plain"), given])
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")  # as the core sets for its joysticks
     supervisor.start()
     try:
@@ -121,27 +121,31 @@ def test_stations_have_the_environment_from_before_the_cores_own_settings(
         supervisor.stop()
 
 
-def with_environment(spec: StationSpec, environment: dict[str, str | None]) -> StationSpec:
-    return StationSpec(name=spec.name, target=spec.target, arguments=spec.arguments, environment=environment)
+def with_environment(spec: WorkerSpec, environment: dict[str, str | None]) -> WorkerSpec:
+    return WorkerSpec(name=spec.name, target=spec.target, arguments=spec.arguments, environment=environment)
 
 
 def test_nothing_is_imported_from_the_working_directory(
-    start: Callable[..., Supervisor], programs: str, tmp_path: Path, wait_until: Wait, monkeypatch: pytest.MonkeyPatch
+    start: Callable[..., SupervisorHandle],
+    programs: str,
+    tmp_path: Path,
+    wait_until: Wait,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     (tmp_path / "cwd").mkdir()
     (tmp_path / "cwd" / "msgspec.py").write_text("raise SystemExit('a file of the user was run')")
     monkeypatch.chdir(tmp_path / "cwd")
-    supervisor = start(station(programs, "one"))
+    supervisor = start(worker(programs, "one"))
     wait_until(lambda: said(supervisor.folder, "one"))
     assert supervisor.counters() == {"one": 0}
 
 
-def test_a_killed_station_is_restarted_while_the_core_goes_on(
-    start: Callable[..., Supervisor], programs: str, wait_until: Wait
+def test_a_killed_worker_is_restarted_while_the_core_goes_on(
+    start: Callable[..., SupervisorHandle], programs: str, wait_until: Wait
 ) -> None:
     folder = make_run_folder()
     ring = Ring.create(folder / "snapshots", 8, 64)
-    supervisor = start(station(programs, "quiet"), station(programs, "reader", "follow"), folder=folder)
+    supervisor = start(worker(programs, "quiet"), worker(programs, "reader", "follow"), folder=folder)
 
     def drive_until(condition: Callable[[], object]) -> None:
         def tick() -> object:
@@ -161,48 +165,48 @@ def test_a_killed_station_is_restarted_while_the_core_goes_on(
     drive_until(lambda: supervisor.counters().get("reader", 0) >= 2)
     assert said(supervisor.folder, "quiet") == quiet
     assert supervisor.counters()["quiet"] == 0
-    assert supervisor.warden_restarts == 0
+    assert supervisor.supervisor_restarts == 0
     assert not (supervisor.folder / "torn").exists()
 
 
-def test_a_station_that_keeps_failing_is_counted_and_holds_up_nobody(
-    start: Callable[..., Supervisor], programs: str, wait_until: Wait, capfd: pytest.CaptureFixture[str]
+def test_a_worker_that_keeps_failing_is_counted_and_holds_up_nobody(
+    start: Callable[..., SupervisorHandle], programs: str, wait_until: Wait, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    missing = StationSpec(name="missing", target=f"{programs}:no_such_function")
-    supervisor = start(station(programs, "crash", "crash"), missing, station(programs, "good"))
+    missing = WorkerSpec(name="missing", target=f"{programs}:no_such_function")
+    supervisor = start(worker(programs, "crash", "crash"), missing, worker(programs, "good"))
     wait_until(lambda: supervisor.counters().get("crash", 0) >= 2 and supervisor.counters().get("missing", 0) >= 2)
     wait_until(lambda: said(supervisor.folder, "good"))
     assert supervisor.counters()["good"] == 0
     supervisor.stop()
     errors = capfd.readouterr().err
-    assert "simconsole station: station missing: station_test_programs:no_such_function cannot be loaded" in errors
+    assert "simconsole worker: worker missing: worker_test_programs:no_such_function cannot be loaded" in errors
     assert "RuntimeError: as asked" in errors
     assert "Fatal Python error" not in errors
 
 
-def test_a_killed_warden_is_replaced_and_nothing_of_it_stays(
-    start: Callable[..., Supervisor], programs: str, wait_until: Wait, is_running: IsRunning
+def test_a_killed_supervisor_is_replaced_and_nothing_of_it_stays(
+    start: Callable[..., SupervisorHandle], programs: str, wait_until: Wait, is_running: IsRunning
 ) -> None:
-    supervisor = start(station(programs, "one"), station(programs, "stuck", "stuck"))
+    supervisor = start(worker(programs, "one"), worker(programs, "stuck", "stuck"))
     wait_until(lambda: said(supervisor.folder, "one") and said(supervisor.folder, "stuck"))
     before = [(said(supervisor.folder, name) or {})["pid"] for name in ("one", "stuck")]
-    warden = supervisor._warden
-    assert warden is not None
-    warden.kill()
+    supervise = supervisor._process
+    assert supervise is not None
+    supervise.kill()
     wait_until(lambda: not supervisor.alive())
     supervisor.look()
     assert supervisor.alive()
-    assert supervisor.warden_restarts == 1
+    assert supervisor.supervisor_restarts == 1
     wait_until(lambda: not any(is_running(process_id) for process_id in before))
     wait_until(lambda: (said(supervisor.folder, "one") or {})["pid"] not in before)
 
 
-def test_a_warden_that_cannot_be_started_again_does_not_end_the_drive(
-    start: Callable[..., Supervisor], programs: str, wait_until: Wait, monkeypatch: pytest.MonkeyPatch
+def test_a_supervisor_that_cannot_be_started_again_does_not_end_the_drive(
+    start: Callable[..., SupervisorHandle], programs: str, wait_until: Wait, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    supervisor = start(station(programs, "one"))
-    assert supervisor._warden is not None
-    supervisor._warden.kill()
+    supervisor = start(worker(programs, "one"))
+    assert supervisor._process is not None
+    supervisor._process.kill()
     wait_until(lambda: not supervisor.alive())
     with monkeypatch.context() as patch:
         patch.setattr(sys, "executable", "/nowhere/python")
@@ -212,10 +216,10 @@ def test_a_warden_that_cannot_be_started_again_does_not_end_the_drive(
     assert supervisor.alive()
 
 
-def test_a_station_that_will_not_end_is_killed(
-    start: Callable[..., Supervisor], programs: str, wait_until: Wait, is_running: IsRunning
+def test_a_worker_that_will_not_end_is_killed(
+    start: Callable[..., SupervisorHandle], programs: str, wait_until: Wait, is_running: IsRunning
 ) -> None:
-    supervisor = start(station(programs, "stuck", "stuck"), station(programs, "stopped"))
+    supervisor = start(worker(programs, "stuck", "stuck"), worker(programs, "stopped"))
     wait_until(lambda: said(supervisor.folder, "stuck") and said(supervisor.folder, "stopped"))
     pids = [(said(supervisor.folder, name) or {})["pid"] for name in ("stuck", "stopped")]
     os.kill(pids[1], signal.SIGSTOP)
@@ -225,8 +229,8 @@ def test_a_station_that_will_not_end_is_killed(
 
 def test_an_interpreter_that_is_not_there_is_one_line(run_base: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "executable", "/nowhere/python")
-    supervisor = Supervisor(make_run_folder(), [])
-    with pytest.raises(StationError, match="warden: cannot be started: No such file"):
+    supervisor = SupervisorHandle(make_run_folder(), [])
+    with pytest.raises(WorkerError, match="supervisor: cannot be started: No such file"):
         supervisor.start()
 
 
@@ -241,10 +245,10 @@ def test_killing_the_core_leaves_no_process_mapping_or_file(
     )
     assert core.stdout is not None
     try:
-        folder_name, warden = core.stdout.readline().decode().rsplit(" ", 1)
+        folder_name, supervise = core.stdout.readline().decode().rsplit(" ", 1)
         folder = Path(folder_name)
         wait_until(lambda: said(folder, "one") and said(folder, "two"))
-        processes = [int(warden), *((said(folder, name) or {})["pid"] for name in ("one", "two"))]
+        processes = [int(supervise), *((said(folder, name) or {})["pid"] for name in ("one", "two"))]
         assert all(is_running(process_id) for process_id in processes)
     finally:
         core.kill()
@@ -255,7 +259,7 @@ def test_killing_the_core_leaves_no_process_mapping_or_file(
     assert mappings_of(folder) == []
 
 
-def test_killing_core_and_warden_at_once_leaves_no_process_and_the_next_start_no_file(
+def test_killing_core_and_supervisor_at_once_leaves_no_process_and_the_next_start_no_file(
     run_base: Path, programs: str, wait_until: Wait, is_running: IsRunning
 ) -> None:
     specs = [{"name": "one", "target": f"{programs}:stuck", "arguments": {"name": "one"}}]
@@ -265,15 +269,15 @@ def test_killing_core_and_warden_at_once_leaves_no_process_and_the_next_start_no
     )
     assert core.stdout is not None
     try:
-        folder_name, warden = core.stdout.readline().decode().rsplit(" ", 1)
+        folder_name, supervise = core.stdout.readline().decode().rsplit(" ", 1)
         wait_until(lambda: said(Path(folder_name), "one"))
         one = (said(Path(folder_name), "one") or {})["pid"]
     finally:
-        os.kill(int(warden), signal.SIGKILL)
+        os.kill(int(supervise), signal.SIGKILL)
         core.kill()
         core.wait()
         core.stdout.close()
-    wait_until(lambda: not is_running(one) and not is_running(int(warden)))
+    wait_until(lambda: not is_running(one) and not is_running(int(supervise)))
     own = make_run_folder()
     assert list(run_base.iterdir()) == [own]
     own.rmdir()
@@ -294,18 +298,18 @@ def mappings_of(folder: Path) -> list[str]:
 WITHOUT_FILES = """
 import resource, sys
 from pathlib import Path
-from simconsole.processes import supervisor as stations
+from simconsole.processes import supervisor
 def fail(*_):
     resource.setrlimit(resource.RLIMIT_NOFILE, (3, 3))
     Path("/dev/null").open()
-stations.run_station = fail
-sys.exit(stations.main(["station"]))
+supervisor.run_worker = fail
+sys.exit(supervisor.main(["worker"]))
 """
 
 
-def test_a_station_that_may_open_no_more_files_is_one_line(tmp_path: Path) -> None:
-    call = {"folder": str(tmp_path), "patience_s": 1.0, "station": {"name": "x", "target": "none:none"}}
+def test_a_worker_that_may_open_no_more_files_is_one_line(tmp_path: Path) -> None:
+    call = {"folder": str(tmp_path), "patience_s": 1.0, "worker": {"name": "x", "target": "none:none"}}
     words = [sys.executable, "-c", WITHOUT_FILES]
     done = subprocess.run(words, input=json.dumps(call) + "\n", capture_output=True, text=True, check=False)
     assert done.returncode == 2
-    assert done.stderr == "simconsole station: OSError: [Errno 24] Too many open files: '/dev/null'\n"
+    assert done.stderr == "simconsole worker: OSError: [Errno 24] Too many open files: '/dev/null'\n"

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from simconsole.processes.shared_memory import Ring
-from simconsole.processes.supervisor import STATUS, StationStatus
+from simconsole.processes.supervisor import STATUS, WorkerStatus
 from simconsole.recording.bundles.bundle import open_bundle, verify
 from simconsole.recording.bundles.log import LogTable
 from simconsole.recording.bundles.replay_bundle import replay_bundle
@@ -26,10 +26,10 @@ from tests.patience import Stopwatch, wait_until
 from tests.samples import Measured
 
 TICK_HZ = 250
-STATIONS = {"bridge", "hud", "scene"}
+WORKERS = {"bridge", "hud", "scene"}
 SESSION = """\
 schema: 1
-title: Every station
+title: Every worker
 environment: {world: urban}
 scenario: {vehicle: hatchback}
 features: {autopilot: urban}
@@ -52,7 +52,7 @@ ASKS = "points:\n  - {time_s: 0.0, throttle: 0, brake: 0, clutch: 0, hand_wheel_
 )
 PLAIN = """\
 schema: 1
-title: One station
+title: One worker
 scenario: {vehicle: hatchback}
 outputs: {bridge: {port: 0}, hud: null, scene: null, report: false}
 devices:
@@ -63,7 +63,7 @@ mode: {pacing: realtime, tick_hz: 250}
 
 
 class Drive:
-    """A running drive, seen through its run folder, as any station sees it."""
+    """A running drive, seen through its run folder, as any worker sees it."""
 
     def __init__(self, running: Running, bundle: Path) -> None:
         self.running = running
@@ -106,28 +106,28 @@ class Drive:
         snapshot = self.now()
         return 0.0 if snapshot is None else snapshot.vehicle.vx_mps
 
-    def stations(self) -> dict[str, StationStatus]:
+    def workers(self) -> dict[str, WorkerStatus]:
         self.ended()
         try:
-            return msgspec.json.decode((self.folder / STATUS).read_bytes(), type=dict[str, StationStatus])
+            return msgspec.json.decode((self.folder / STATUS).read_bytes(), type=dict[str, WorkerStatus])
         except OSError:
             return {}
 
     def family(self) -> set[int]:
-        """Every process of this drive but the core: warden, stations, autopilot."""
+        """Every process of this drive but the core: supervisor, workers, autopilot."""
         found, parents = set[int](), {self.core}
         while parents:
             parents = {pid for pid, parent in processes().items() if parent in parents} - found
             found |= parents
         return found
 
-    def kill_station(self, name: str) -> None:
+    def kill_worker(self, name: str) -> None:
         """Kill one and wait until another runs in its place, while the drive goes on."""
-        before, tick = self.stations()[name], self.tick()
+        before, tick = self.workers()[name], self.tick()
         os.kill(before.process_id, signal.SIGKILL)
 
         def restarted() -> bool:
-            now = self.stations()[name]
+            now = self.workers()[name]
             return now.restarts > before.restarts and now.process_id not in (0, before.process_id)
 
         wait_until(restarted, f"{name} again")
@@ -161,7 +161,7 @@ def drive(folder: Path, text: str) -> Iterator[Drive]:
 
 
 class Disturbed(NamedTuple):
-    """One drive in which every station was killed once, ended by Ctrl-C."""
+    """One drive in which every worker was killed once, ended by Ctrl-C."""
 
     family: set[int]
     folder: Path
@@ -176,12 +176,12 @@ class Disturbed(NamedTuple):
 def disturbed(tmp_path_factory: pytest.TempPathFactory) -> Disturbed:
     folder = tmp_path_factory.mktemp("disturbed")
     with drive(folder, PASSENGER) as driven:
-        wait_until(lambda: set(driven.stations()) == STATIONS, "all stations")
+        wait_until(lambda: set(driven.workers()) == WORKERS, "all workers")
         wait_until(lambda: driven.mode() == Mode.AUTONOMOUS and driven.speed_mps() > 2.0, "autonomy at speed")
         family = driven.family()
-        driven.kill_station("bridge")
-        driven.kill_station("hud")
-        driven.kill_station("scene")
+        driven.kill_worker("bridge")
+        driven.kill_worker("hud")
+        driven.kill_worker("scene")
         wait_until(lambda: driven.mode() == Mode.STOPPED, "the safe stop")
         family |= driven.family()
         driven.running.interrupt_group()
@@ -191,8 +191,8 @@ def disturbed(tmp_path_factory: pytest.TempPathFactory) -> Disturbed:
 
 
 @pytest.mark.fault("P10")
-def test_each_killed_station_is_restarted_and_the_drive_goes_on(disturbed: Disturbed) -> None:
-    assert set(disturbed.results["station_restarts"]) == STATIONS
+def test_each_killed_worker_is_restarted_and_the_drive_goes_on(disturbed: Disturbed) -> None:
+    assert set(disturbed.results["station_restarts"]) == WORKERS
     assert all(count >= 1 for count in disturbed.results["station_restarts"].values())
     ticks = disturbed.table.ticks
     assert ticks.tolist() == list(range(1, len(ticks) + 1)), "no tick was lost"
@@ -236,7 +236,7 @@ def test_the_bundle_tells_the_latency_of_each_hop_in_all_processes(disturbed: Di
 
 
 def test_nothing_outlives_a_drive_that_was_interrupted(disturbed: Disturbed) -> None:
-    assert len(disturbed.family) >= 5, "warden, three stations, autopilot"
+    assert len(disturbed.family) >= 5, "supervisor, three workers, autopilot"
     wait_until(lambda: not disturbed.family & set(processes()), "the end of every process")
     assert not disturbed.folder.exists()
 
@@ -244,7 +244,7 @@ def test_nothing_outlives_a_drive_that_was_interrupted(disturbed: Disturbed) -> 
 @pytest.mark.fault("P02")
 def test_nothing_outlives_a_core_that_was_killed(tmp_path: Path, measured: Measured) -> None:
     with drive(tmp_path, PERSON) as driven:
-        wait_until(lambda: set(driven.stations()) == STATIONS, "all stations")
+        wait_until(lambda: set(driven.workers()) == WORKERS, "all workers")
         wait_until(lambda: len(driven.family()) >= 5 and driven.tick() > TICK_HZ, "a second of driving")
         family, tick, parents = driven.family(), driven.tick(), processes()
         # Why all of them end within ORPHAN_S of each other: the pipe that each one reads has no other end but this.
@@ -265,7 +265,7 @@ def test_nothing_outlives_a_core_that_was_killed(tmp_path: Path, measured: Measu
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_ends_the_drive_in_order(tmp_path: Path, number: signal.Signals) -> None:
     with drive(tmp_path, PLAIN) as driven:
-        wait_until(lambda: set(driven.stations()) == {"bridge"} and driven.tick() > 10, "driving")
+        wait_until(lambda: set(driven.workers()) == {"bridge"} and driven.tick() > 10, "driving")
         family = driven.family()
         os.kill(driven.core, number)
         done = driven.running.end()

@@ -34,14 +34,14 @@ def test_wheel_without_force_feedback_drives_on_and_says_so(capsys: pytest.Captu
         assert ages[-1] == 0.0, "back by identity, its motor asked for anew"
 
 
-def test_cockpit_without_the_section_has_no_motor_station() -> None:
+def test_cockpit_without_the_section_has_no_motor_worker() -> None:
     resolved = session("sdl")
     bare = msgspec.structs.replace(resolved, cockpit=msgspec.structs.replace(resolved.cockpit, force_feedback=None))
     with ExitStack() as stack:
         stack.callback(VirtualCockpit(bare.cockpit).close)
         console, _ = assemble(bare, plain)
         seating = open_seating(bare, console, stack)
-        assert seating.stations == ()
+        assert seating.outputs == ()
         assert console.force_feedback is None
 
 
@@ -49,7 +49,7 @@ def test_simulated_person_sits_at_a_wheel_with_a_motor() -> None:
     resolved = session("virtual")
     with ExitStack() as stack:
         seating = open_seating(resolved, assemble(resolved, plain)[0], stack)
-        (motor,) = seating.stations
+        (motor,) = seating.outputs
         assert isinstance(motor, WheelMotor)
         assert isinstance(seating.devices, MotorisedSource)
         assert seating.devices.poll(1).wheel_motor == 1.0

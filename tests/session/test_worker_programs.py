@@ -1,4 +1,4 @@
-"""What the driver's display knows of CAN bus and bridge: what the station last wrote, and that it still writes."""
+"""What the driver's display knows of CAN bus and bridge: what the worker last wrote, and that it still writes."""
 
 import os
 from pathlib import Path
@@ -6,7 +6,7 @@ from pathlib import Path
 from simconsole.session.worker_programs import CanWatch, LinkWatch
 
 
-def test_bus_is_up_only_while_its_station_says_so(tmp_path: Path) -> None:
+def test_bus_is_up_only_while_its_worker_says_so(tmp_path: Path) -> None:
     path, clock = tmp_path / "can.json", [100.0]
     watch = CanWatch(path, lambda: clock[0], lambda: clock[0])
 
@@ -27,7 +27,7 @@ def test_bus_is_up_only_while_its_station_says_so(tmp_path: Path) -> None:
     write('{"up": true}')
     assert look(0.21)
     assert look(2.5)
-    assert not look(0.5), "a station that writes no more"
+    assert not look(0.5), "a worker that writes no more"
     write("{")
     assert not look(0.21)
 

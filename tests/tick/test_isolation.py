@@ -21,7 +21,7 @@ from simconsole.session.resolution import override, resolve
 from simconsole.tick.advance import ConsoleState
 from simconsole.tick.assembly import assemble
 from simconsole.tick.isolation import isolated
-from simconsole.tick.loop import Cast, come_to_rest, run
+from simconsole.tick.loop import Components, come_to_rest, run
 from simconsole.values.host.jit import compiled
 from simconsole.values.kernels import Row
 from simconsole.values.signals import NO_COMMAND, NO_SAMPLE, Event, EventInput, Mode, Reason, RemoteCommand
@@ -54,20 +54,20 @@ class Broken:
 
 @pytest.mark.fault("P12")
 def test_each_part_is_kept_from_the_others(capsys: pytest.CaptureFixture[str]) -> None:
-    devices, ros, can, station = Broken(), Broken(), Broken(), Broken()
-    cast = isolated(Cast(devices, ros, Broken(), [station], UnpacedPacer(), ecu=can), UnpacedPacer)
+    devices, ros, can, output = Broken(), Broken(), Broken(), Broken()
+    components = isolated(Components(devices, ros, Broken(), [output], UnpacedPacer(), ecu=can), UnpacedPacer)
     taken = []
     for tick in (1, 2, 3):
-        assert cast.devices.poll(tick) == NO_SAMPLE
-        taken.append((cast.commands.take(tick), cast.ecu.take(tick)))
-        cast.stations[0].publish(Snapshot(tick, 250, NO_SAMPLE))  # type: ignore[arg-type]  # nobody looks at it
+        assert components.devices.poll(tick) == NO_SAMPLE
+        taken.append((components.commands.take(tick), components.ecu.take(tick)))
+        components.outputs[0].publish(Snapshot(tick, 250, NO_SAMPLE))  # type: ignore[arg-type]  # nobody looks at it
     assert [command for pair in taken for command, _ in pair] == [NO_COMMAND] * 6
     assert [events.events for pair in taken for _, events in pair] == [float(Event.COMMANDER_LOST)] * 2 + [0.0] * 4
-    assert (devices.calls, ros.calls, can.calls, station.calls) == (3, 1, 1, 1), "devices may come back"
+    assert (devices.calls, ros.calls, can.calls, output.calls) == (3, 1, 1, 1), "devices may come back"
     told = capsys.readouterr().err.splitlines()
     assert len(told) == 4
     assert told[0] == "simconsole: the cockpit failed: RuntimeError: broken"
-    cast.devices.close()
+    components.devices.close()
     assert devices.calls == -1
 
 
@@ -76,9 +76,9 @@ def test_an_interrupt_is_no_failure() -> None:
         def take(self, tick: int) -> NoReturn:
             raise KeyboardInterrupt
 
-    cast = isolated(Cast(Broken(), Interrupted(), Broken(), [], UnpacedPacer()), UnpacedPacer)
+    components = isolated(Components(Broken(), Interrupted(), Broken(), [], UnpacedPacer()), UnpacedPacer)
     with pytest.raises(KeyboardInterrupt):
-        cast.commands.take(1)
+        components.commands.take(1)
 
 
 def test_what_nobody_reads_is_no_failure_of_the_drive(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -87,7 +87,10 @@ def test_what_nobody_reads_is_no_failure_of_the_drive(monkeypatch: pytest.Monkey
             raise BrokenPipeError
 
     monkeypatch.setattr("sys.stderr", Closed())
-    assert isolated(Cast(Broken(), Broken(), Broken(), [], UnpacedPacer()), UnpacedPacer).devices.poll(1) == NO_SAMPLE
+    assert (
+        isolated(Components(Broken(), Broken(), Broken(), [], UnpacedPacer()), UnpacedPacer).devices.poll(1)
+        == NO_SAMPLE
+    )
 
 
 HZ = 250
@@ -139,12 +142,12 @@ class Person:
         self.recorder = MemoryRecorder(round(2 * SECONDS * HZ), self.console.width)
         self.stood: list[Snapshot] = []
 
-    def cast(self) -> Cast:
-        return Cast(self.devices, Silent(), self.recorder, (), UnpacedPacer())
+    def components(self) -> Components:
+        return Components(self.devices, Silent(), self.recorder, (), UnpacedPacer())
 
-    def drive(self, cast: Cast, seconds: float = SECONDS) -> ConsoleState:
-        cast = isolated(cast, UnpacedPacer)
-        return run(self.console, self.state, cast, round(seconds * HZ), lambda snapshot: len(self.stood) > 100)
+    def drive(self, components: Components, seconds: float = SECONDS) -> ConsoleState:
+        components = isolated(components, UnpacedPacer)
+        return run(self.console, self.state, components, round(seconds * HZ), lambda snapshot: len(self.stood) > 100)
 
     def column(self, name: str) -> np.ndarray:
         return self.recorder.rows[: self.recorder.ticks, self.console.columns.index(name)]
@@ -168,7 +171,7 @@ def told_once(capsys: pytest.CaptureFixture[str], part: str) -> None:
 @pytest.mark.fault("P12")
 def test_a_seat_that_raises_is_a_person_who_is_gone(capsys: pytest.CaptureFixture[str]) -> None:
     person, seat = Person(), Failing()
-    person.drive(person.cast()._replace(seat=seat))
+    person.drive(person.components()._replace(seat=seat))
     modes, speed = person.column("arbitration.mode"), person.column("vehicle.vx_mps")
     assert modes[FAILS_AT - 2] == Mode.MANUAL
     assert speed[FAILS_AT - 2] > 2.0, "the accelerator is down, and the script would keep it there"
@@ -184,7 +187,7 @@ def test_a_seat_that_raises_is_a_person_who_is_gone(capsys: pytest.CaptureFixtur
 @pytest.mark.fault("P12")
 def test_a_pace_that_raises_is_a_loop_that_stood_still_and_another_goes_on(capsys: pytest.CaptureFixture[str]) -> None:
     person, pace = Person(), Failing()
-    state = person.drive(person.cast()._replace(pace=pace))
+    state = person.drive(person.components()._replace(pace=pace))
     assert state.tick == round(SECONDS * HZ)
     modes = person.column("arbitration.mode")
     assert modes[FAILS_AT - 2] == Mode.MANUAL
@@ -206,7 +209,7 @@ def test_a_recorder_that_raises_ends_the_log_and_not_the_drive(capsys: pytest.Ca
             if int(snapshot.events.events) & Event.RECORDING_FAILED:
                 alarms.append(snapshot.tick)
 
-    state = person.drive(person.cast()._replace(recorder=recorder, stations=(Watcher(),)))
+    state = person.drive(person.components()._replace(recorder=recorder, outputs=(Watcher(),)))
     assert state.tick == round(SECONDS * HZ) == seen[-1]
     assert person.recorder.ticks == FAILS_AT - 1, "a log with a hole would be worse"
     assert alarms == list(range(FAILS_AT + 1, state.tick + 1)), "from the next tick on"
@@ -223,8 +226,8 @@ def test_one_of_standby_that_raises_keeps_nobody_else_from_being_served(capsys: 
         calls.append(snapshot.tick)
         raise RuntimeError("broken")
 
-    cast = person.cast()._replace(commands=Silent(pause_at=4 * HZ), standby=(broken, person.stood.append))
-    person.drive(cast)
+    components = person.components()._replace(commands=Silent(pause_at=4 * HZ), standby=(broken, person.stood.append))
+    person.drive(components)
     assert calls == [4 * HZ]
     assert len(person.stood) == 101
     told_once(capsys, broken.__qualname__)
@@ -234,7 +237,7 @@ def test_one_of_standby_that_raises_keeps_nobody_else_from_being_served(capsys: 
 @pytest.mark.parametrize("seconds", [0.1, 5.0])
 def test_a_drive_that_is_ended_comes_to_rest_in_the_log(seconds: float) -> None:
     person = Person()
-    state = person.drive(person.cast(), seconds)
+    state = person.drive(person.components(), seconds)
     driven = state.tick
     state = come_to_rest(person.console, state, person.recorder)
     events = person.column("events.events").astype(int)

@@ -16,7 +16,7 @@ from simconsole.session.pacing import UnpacedPacer
 from simconsole.session.resolution import resolve
 from simconsole.tick.advance import Console, advance_row
 from simconsole.tick.assembly import assemble
-from simconsole.tick.loop import Cast, run
+from simconsole.tick.loop import Components, run
 from simconsole.values.host.jit import compiled
 from simconsole.values.protocols import NobodySeated
 from simconsole.values.signals import (
@@ -82,8 +82,8 @@ def go() -> Callable[..., Driven]:
         devices = ScriptSource(script, cockpit_settings(resolved.cockpit, HZ), tick_hz=HZ)
         recorder, operator = MemoryRecorder(round(seconds * HZ), console.width), Operator(plan)
         stood: list[Snapshot] = []
-        cast = Cast(devices, operator, recorder, (), UnpacedPacer(), standby=(stood.append,))
-        run(console, state, cast, round(seconds * HZ), lambda snapshot: len(stood) > 1000, on_request)
+        components = Components(devices, operator, recorder, (), UnpacedPacer(), standby=(stood.append,))
+        run(console, state, components, round(seconds * HZ), lambda snapshot: len(stood) > 1000, on_request)
         return Driven(console, recorder, state.row, operator.looks)
 
     return drive
@@ -201,9 +201,9 @@ def test_a_failed_recording_is_an_event_of_every_tick_after_it_and_changes_nothi
     for fails_at in (100, 10_000):
         recorder = FailingRecorder(300, console.width, fails_at)
         shown: list[Snapshot] = []
-        station = SimpleNamespace(publish=shown.append)
-        cast = Cast(NobodySeated(), Operator({(200, 1): Event.MARK}), recorder, (station,), UnpacedPacer())
-        run(console, state, cast, 300)
+        output = SimpleNamespace(publish=shown.append)
+        components = Components(NobodySeated(), Operator({(200, 1): Event.MARK}), recorder, (output,), UnpacedPacer())
+        run(console, state, components, 300)
         rows.append(recorder.rows)
         if fails_at == 100:
             assert [snapshot.tick for snapshot in shown if snapshot.recording_failed] == list(range(101, 301))

@@ -1,4 +1,4 @@
-"""The latency ledger: an injected delay is found at its own hop and nowhere else. Every clock here is made up."""
+"""The latency statistics: an injected delay is found at its own hop and nowhere else. Every clock here is made up."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -10,15 +10,15 @@ import pytest
 from simconsole.processes.shared_memory import Record, Ring
 from simconsole.profiles.session import Devices, ModeSection, Scenario, SessionProfile
 from simconsole.session.lockstep import LockstepLink
-from simconsole.session.paced import RingStation, station_latencies
+from simconsole.session.paced import RingOutput, worker_latencies
 from simconsole.session.pacing import UnpacedPacer
 from simconsole.session.resolution import resolve
 from simconsole.session.worker_programs import LATENCY, NewestOnce, Receipts
 from simconsole.tick.advance import Console, ConsoleState
 from simconsole.tick.assembly import assemble
-from simconsole.tick.loop import Cast, run
+from simconsole.tick.loop import Components, run
 from simconsole.values.host.jit import plain
-from simconsole.values.latency import Histogram, Hop, Ledger
+from simconsole.values.latency import Histogram, Hop, LatencyStatistics
 from simconsole.values.protocols import NobodyCommands, NobodySeated
 from simconsole.values.signals import NO_SAMPLE, DeviceSample, EventInput, RemoteCommand
 from simconsole.values.state_vector import LAYOUT, PLATFORM_AT, Snapshot
@@ -82,7 +82,7 @@ class Recorder:
 
 
 class Reader:
-    """A station; one of the class below has a hop of its own."""
+    """A worker; one of the class below has a hop of its own."""
 
     def __init__(self, clock: Clock, hop: Hop) -> None:
         self._clock, self._hop = clock, hop
@@ -107,7 +107,7 @@ def built() -> tuple[Console, ConsoleState]:
 
 def driven(
     built: tuple[Console, ConsoleState], spent_ns: dict[Hop, int], age_ticks: float = 0.0, every: int = 1
-) -> tuple[Ledger, list[bytes]]:
+) -> tuple[LatencyStatistics, list[bytes]]:
     console, state = built
     clock = Clock(spent_ns)
 
@@ -125,12 +125,14 @@ def driven(
             lambda previous, row, settings, tick_s: row[LAYOUT.torque.start : PLATFORM_AT].fill(0.0), Hop.FORCE_FEEDBACK
         ),
     )
-    ledger = Ledger(clock.read, console.tick_hz, every)
+    latencies = LatencyStatistics(clock.read, console.tick_hz, every)
     readers = (Named(clock, Hop.TORQUE), Named(clock, Hop.PUBLISH), Reader(clock, Hop.OTHERS))
     recorder = Recorder(clock)
-    cast = Cast(Wheel(clock, age_ticks), Commands(clock), recorder, readers, UnpacedPacer(), ledger=ledger)
-    run(console, state, cast, TICKS)
-    return ledger, recorder.rows
+    components = Components(
+        Wheel(clock, age_ticks), Commands(clock), recorder, readers, UnpacedPacer(), latencies=latencies
+    )
+    run(console, state, components, TICKS)
+    return latencies, recorder.rows
 
 
 def test_every_hop_of_a_tick_is_counted_by_itself(built: tuple[Console, ConsoleState]) -> None:
@@ -157,11 +159,11 @@ def test_a_device_that_is_late_is_found_at_the_device(built: tuple[Console, Cons
 
 
 def test_a_cockpit_that_is_not_there_has_no_age() -> None:
-    ledger = Ledger(lambda: 0)
-    ledger.sample(NO_SAMPLE)
-    assert ledger.summary_us() == {}
-    ledger.sample(NO_SAMPLE._replace(pedals_age_ticks=2.0))
-    assert list(ledger.summary_us()) == ["device"]
+    latencies = LatencyStatistics(lambda: 0)
+    latencies.sample(NO_SAMPLE)
+    assert latencies.summary_us() == {}
+    latencies.sample(NO_SAMPLE._replace(pedals_age_ticks=2.0))
+    assert list(latencies.summary_us()) == ["device"]
 
 
 def test_the_clock_leaves_no_trace_in_the_rows(built: tuple[Console, ConsoleState]) -> None:
@@ -185,7 +187,7 @@ def record(number: int, published_ns: int) -> Record:
 @pytest.mark.parametrize(
     ("receive_ns", "draw_ns"), [(400_000, 2_000_000), (7_400_000, 2_000_000), (400_000, 9_000_000)]
 )
-def test_a_station_that_is_late_is_found_at_receive_or_at_draw(tmp_path: Path, receive_ns: int, draw_ns: int) -> None:
+def test_a_worker_that_is_late_is_found_at_receive_or_at_draw(tmp_path: Path, receive_ns: int, draw_ns: int) -> None:
     clock = Clock({})
     receipts = Receipts(tmp_path / f"{LATENCY}.hud.json", clock.read)
     for number in range(1, 200):
@@ -197,22 +199,22 @@ def test_a_station_that_is_late_is_found_at_receive_or_at_draw(tmp_path: Path, r
         receipts.received(record(number, published_ns))  # the same again: neither received nor drawn
         receipts.drawn()
         clock.now_ns += 10_000_000
-    found = station_latencies(tmp_path)
+    found = worker_latencies(tmp_path)
     assert list(found) == ["receive, hud", "draw, hud"]
     assert found["receive, hud"]["max"] == receive_ns / 1e3
     assert found["draw, hud"]["max"] == draw_ns / 1e3
     assert 80 < found["draw, hud"]["count"] < 200, "saved once a second, each picture once"
 
 
-def test_stations_that_said_nothing_have_no_pages(tmp_path: Path) -> None:
+def test_workers_that_said_nothing_have_no_statistics(tmp_path: Path) -> None:
     (tmp_path / f"{LATENCY}.bridge.json").write_text("{")
-    assert station_latencies(tmp_path) == {}
+    assert worker_latencies(tmp_path) == {}
 
 
-def test_the_ring_tells_a_station_when_it_was_published(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_ring_tells_a_worker_when_it_was_published(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("simconsole.session.paced.time.monotonic_ns", lambda: 987_654_321)
     ring = Ring.create(tmp_path / "ring", 3, 4)
-    RingStation(ring).publish(Snapshot(7, 250, np.array([1.0, 2.0, 3.0])))
+    RingOutput(ring).publish(Snapshot(7, 250, np.array([1.0, 2.0, 3.0])))
     seen: list[Record] = []
     newest = NewestOnce(Ring.open(tmp_path / "ring"), 250, seen.append)
     snapshot = newest()
@@ -222,7 +224,7 @@ def test_the_ring_tells_a_station_when_it_was_published(tmp_path: Path, monkeypa
     assert len(seen) == 1
 
 
-def test_a_full_disk_of_the_run_folder_harms_no_station(tmp_path: Path) -> None:
+def test_a_full_disk_of_the_run_folder_harms_no_worker(tmp_path: Path) -> None:
     clock = Clock({})
     receipts = Receipts(tmp_path / "gone" / f"{LATENCY}.hud.json", clock.read)
     clock.now_ns += 2_000_000_000
@@ -230,7 +232,7 @@ def test_a_full_disk_of_the_run_folder_harms_no_station(tmp_path: Path) -> None:
     (tmp_path / "gone").mkdir()
     clock.now_ns += 2_000_000_000
     receipts.received(record(2, clock.now_ns))
-    found = station_latencies(tmp_path / "gone")
+    found = worker_latencies(tmp_path / "gone")
     assert found["receive, hud"]["count"] == 2, "counted all the same, and saved when it can be"
 
 

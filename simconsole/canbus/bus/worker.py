@@ -1,4 +1,4 @@
-"""The node on its bus: as a station process beside a paced drive, and inline in a headless one."""
+"""The node on its bus: as a worker process beside a paced drive, and inline in a headless one."""
 
 import time
 from collections.abc import Callable
@@ -16,7 +16,7 @@ from simconsole.values.state_vector import Snapshot
 
 DBC: Final = "simconsole.dbc"
 _CYCLE_S: Final = 0.001
-"""How long the station waits for a frame before it looks again for a tick that should be there by now."""
+"""How long the worker waits for a frame before it looks again for a tick that should be there by now."""
 _LONGEST_S: Final = 0.1
 _STATUS_S: Final = 1.0
 _FRAMES_MAX: Final = 64
@@ -85,7 +85,7 @@ def serve(
     on_status: OnStatus,
     stop: Callable[[], bool],
 ) -> None:
-    """Be the CAN station until `stop`. No tick, no frame: a console that hangs falls silent on the bus.
+    """Be the CAN worker until `stop`. No tick, no frame: a console that hangs falls silent on the bus.
 
     Args:
         on_bus: node and open port; closed by the caller.
@@ -93,7 +93,7 @@ def serve(
         on_command: takes each changed command and its receipt.
         on_events: takes a mask of `signals.Event`.
         on_status: takes `OnBus.status` about once a second, when the bus goes off or comes back, and at the end.
-        stop: ends the station.
+        stop: ends the worker.
     """
     node, clock_ns = on_bus.node, time.monotonic_ns
     written = node.command

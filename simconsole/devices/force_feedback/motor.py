@@ -111,7 +111,7 @@ class SimulatedWheelPort:
 
 
 class WheelMotor:
-    """A `Station` that turns each tick's torque into the device's effect."""
+    """An `Output` that turns each tick's torque into the device's effect."""
 
     hop = Hop.TORQUE
 

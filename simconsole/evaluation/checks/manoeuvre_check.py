@@ -19,7 +19,7 @@ from simconsole.session.pacing import UnpacedPacer
 from simconsole.session.resolution import resolve
 from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession, assemble
-from simconsole.tick.loop import Cast, run
+from simconsole.tick.loop import Components, run
 from simconsole.values.errors import ProfileError
 from simconsole.values.host.jit import compiled
 from simconsole.values.protocols import NobodyCommands
@@ -79,13 +79,15 @@ def _drive(scenario: ScenarioProfile, resolved: ResolvedSession, attempt: Attemp
         run(console, state, _scripted(scenario, resolved, recorder, console), ticks)
         return recorder
     seat = PilotDevices(attempt.pilot, cockpit_settings(resolved.cockpit, console.tick_hz))
-    cast = Cast(seat, NobodyCommands(), recorder, (), UnpacedPacer(), seat)
-    run(console, state, cast, ticks, lambda snapshot: seat.finished)
+    components = Components(seat, NobodyCommands(), recorder, outputs=(), pace=UnpacedPacer(), seat=seat)
+    run(console, state, components, ticks, lambda snapshot: seat.finished)
     return recorder
 
 
-def _scripted(scenario: ScenarioProfile, resolved: ResolvedSession, recorder: MemoryRecorder, console: Console) -> Cast:
+def _scripted(
+    scenario: ScenarioProfile, resolved: ResolvedSession, recorder: MemoryRecorder, console: Console
+) -> Components:
     if scenario.script is None:
         raise ProfileError(f"{scenario.title}: script: value missing: a script that the manoeuvre can watch")
     source = ScriptSource(scenario.script, cockpit_settings(resolved.cockpit, console.tick_hz), tick_hz=console.tick_hz)
-    return Cast(source, NobodyCommands(), recorder, (), UnpacedPacer())
+    return Components(source, NobodyCommands(), recorder, outputs=(), pace=UnpacedPacer())

@@ -24,7 +24,7 @@ from simconsole.session.resolution import load_scenario, resolve
 from simconsole.tick.advance import Console
 from simconsole.tick.assembly import assemble
 from simconsole.tick.isolation import isolated
-from simconsole.tick.loop import Cast, Recorder, run
+from simconsole.tick.loop import Components, Recorder, run
 from simconsole.values.errors import ProfileError
 from simconsole.values.host.files import replaced
 from simconsole.values.host.jit import compiled
@@ -104,10 +104,10 @@ def drive_scenario(scenario: ScenarioProfile, recorder_of: Callable[[Console], R
     recorder = recorder_of(console)
     commands = ScriptedCommands(scenario.remote, scenario.events, tick_hz)
     ecu = ScriptedCommands(scenario.ecu, scenario.ecu_events, tick_hz)
-    cast = Cast(devices, commands, recorder, (), UnpacedPacer(), ecu=ecu)
-    cast = isolated(with_faults(cast, resolved, tick_hz), UnpacedPacer)
-    cast = cast._replace(recorder=recorder)  # here a recorder that fails is a failure
-    run(console, state, cast, round(scenario.duration_s * tick_hz))
+    components = Components(devices, commands, recorder, outputs=(), pace=UnpacedPacer(), ecu=ecu)
+    components = isolated(with_faults(components, resolved, tick_hz), UnpacedPacer)
+    components = components._replace(recorder=recorder)  # here a recorder that fails is a failure
+    run(console, state, components, round(scenario.duration_s * tick_hz))
     return recorder
 
 

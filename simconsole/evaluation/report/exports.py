@@ -17,8 +17,8 @@ from simconsole.world.course import Course
 
 REPORT: Final = "report.html"
 SCENE: Final = "scene.rrd"
-STATION_LOGS: Final = ("can.blf", "can.log", "topics.mcap")
-"""What stations recorded beside the log."""
+WORKER_LOGS: Final = ("can.blf", "can.log", "topics.mcap")
+"""What workers recorded beside the log."""
 
 
 def write_exports(folder: Path, report: bool = True, scene: bool = True) -> dict[str, Any]:
@@ -28,7 +28,7 @@ def write_exports(folder: Path, report: bool = True, scene: bool = True) -> dict
 
     Raises:
         RecordingError: not a bundle.
-        StationError: the scene's process failed.
+        WorkerError: the scene's process failed.
     """
     with undone(lambda: remove_half_made(folder)):
         return _write_exports(folder, report, scene)
@@ -42,7 +42,7 @@ def _write_exports(folder: Path, report: bool, scene: bool) -> dict[str, Any]:
         metrics = _report(folder, resolved, table, bundle.manifest.summary, report)
         if pending is not None:
             pending.result()
-    made = ((name, (folder / name).exists()) for name in STATION_LOGS)
+    made = ((name, (folder / name).exists()) for name in WORKER_LOGS)
     for name, wanted in ((REPORT, report), (SCENE, scene), *made):
         if wanted:
             add_export(folder, name)
@@ -63,7 +63,7 @@ def write_scene(folder: Path) -> Path:
 
     Raises:
         RecordingError: not a bundle.
-        StationError: the process that writes it failed.
+        WorkerError: the process that writes it failed.
     """
     bundle = open_bundle(folder)
     _scene(folder, recorded_session(bundle), bundle.log.table())

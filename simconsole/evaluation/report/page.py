@@ -79,8 +79,8 @@ def write_report(
             reports of one drive are to be equal.
         first_tick: number of the first row's tick.
         faults: names of the scenario's faults, in their order.
-        latency_us: p50, p99, max and count of each hop, as the ledger sums it up; not among the metrics, it differs
-            between equal drives.
+        latency_us: p50, p99, max and count of each hop (LatencyStatistics.summary_us). They differ between equal
+            drives, so they are not among the metrics.
 
     Raises:
         RecordingError: an empty drive, rows that do not fit the columns, or a file that cannot be written.

@@ -15,7 +15,7 @@ from simconsole.hud.screen import Screen, screen_of
 from simconsole.hud.view import HudMemory, HudSettings, HudView, view
 from simconsole.hud.window.raster import Painter
 from simconsole.profiles.view import HudProfile
-from simconsole.values.errors import StationError
+from simconsole.values.errors import WorkerError
 from simconsole.values.key_codes import Key
 from simconsole.values.state_vector import Snapshot
 
@@ -82,7 +82,7 @@ class Window:
 
         Raises:
             ProfileError: the screen is too small or too far away to be read.
-            StationError: no window can be opened here.
+            WorkerError: no window can be opened here.
         """
         self._screen: Screen = screen_of(profile)
         check_screen(self._screen, "hud")
@@ -99,7 +99,7 @@ class Window:
             pygame.display.init()
             self._surface = pygame.display.set_mode((self._screen.width_px, self._screen.height_px), flags)
         except pygame.error as problem:
-            raise StationError(f"hud: no window can be opened: {problem}") from None
+            raise WorkerError(f"hud: no window can be opened: {problem}") from None
         pygame.display.set_caption("simconsole")
         if profile.fullscreen:
             pygame.mouse.set_visible(False)

@@ -13,7 +13,7 @@ from simconsole.processes.shared_memory import temporary_folder
 from simconsole.scene.entities import world_shapes
 from simconsole.scene.timeline import Memory, piece
 from simconsole.scene.viewer.job import Job, load_job, save_job
-from simconsole.values.errors import SimConsoleError, StationError
+from simconsole.values.errors import SimConsoleError, WorkerError
 from simconsole.values.host.files import replaced
 
 PIECE_S: Final = 60.0
@@ -24,7 +24,7 @@ def export(job: Job, path: Path) -> None:
     """Write `job` to `path` with rerun. Call it only in a process that nothing else depends on.
 
     Raises:
-        StationError: the file cannot be written whole.
+        WorkerError: the file cannot be written whole.
     """
     from simconsole.scene.viewer.rerun_view import RerunView
 
@@ -46,7 +46,7 @@ def export_apart(job: Job, path: Path, deadline_s: float = 60.0) -> None:
     """Run `export` in a process of its own and wait for it, but never longer than `deadline_s`.
 
     Raises:
-        StationError: it failed or took too long; what it said is in the message.
+        WorkerError: it failed or took too long; what it said is in the message.
     """
     with temporary_folder() as folder, (folder / "said").open("w+b") as said:
         job_path = folder / "job.npz"
@@ -55,18 +55,18 @@ def export_apart(job: Job, path: Path, deadline_s: float = 60.0) -> None:
         try:
             process = spawn(words, stderr=said.fileno())
         except OSError as error:
-            raise StationError(f"{path}: the scene was not written: {error.strerror}") from None
+            raise WorkerError(f"{path}: the scene was not written: {error.strerror}") from None
         try:
             process.wait(deadline_s)
         except subprocess.TimeoutExpired:
-            raise StationError(f"{path}: the scene was not written within {deadline_s:g} s") from None
+            raise WorkerError(f"{path}: the scene was not written within {deadline_s:g} s") from None
         finally:
             end([process], 0.0)
         said.seek(0)
         lines = said.read().decode("utf-8", "replace").strip().splitlines()
     if process.returncode != 0:
         reason = (lines or [f"exit status {process.returncode}"])[-1]
-        raise StationError(f"{path}: the scene was not written: {reason}")
+        raise WorkerError(f"{path}: the scene was not written: {reason}")
 
 
 def main(arguments: list[str]) -> int:

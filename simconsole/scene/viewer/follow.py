@@ -39,7 +39,7 @@ def follow(ports: Ports, job: Job, path: Path) -> None:
         path: the file to write.
 
     Raises:
-        StationError: the file cannot be written.
+        WorkerError: the file cannot be written.
     """
     os.environ.setdefault("RUST_LOG", QUIET)
     from simconsole.scene.viewer.rerun_view import RerunView

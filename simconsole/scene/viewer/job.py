@@ -10,7 +10,7 @@ import numpy as np
 from simconsole.profiles.view import SceneProfile
 from simconsole.scene.entities import Array, Dimensions
 from simconsole.scene.timeline import NEEDED, Ticks
-from simconsole.values.errors import StationError
+from simconsole.values.errors import WorkerError
 from simconsole.world.drawing import Drawing
 from simconsole.world.drawing_layers import Light
 
@@ -33,7 +33,7 @@ def save_job(path: Path, job: Job) -> None:
     """Write a job; of its rows only the columns that the scene reads.
 
     Raises:
-        StationError: the file cannot be written.
+        WorkerError: the file cannot be written.
     """
     columns = tuple(name for name in job.columns if name in NEEDED)
     rows = job.rows[:, [job.columns.index(name) for name in columns]]
@@ -51,14 +51,14 @@ def save_job(path: Path, job: Job) -> None:
         with path.open("wb") as file:
             np.savez(file, **content)
     except OSError as problem:
-        raise StationError(f"{path}: cannot be written: {problem.strerror}") from None
+        raise WorkerError(f"{path}: cannot be written: {problem.strerror}") from None
 
 
 def load_job(path: Path) -> Job:
     """Read a job.
 
     Raises:
-        StationError: missing, or not a scene job.
+        WorkerError: missing, or not a scene job.
     """
     try:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as content:
@@ -72,9 +72,9 @@ def load_job(path: Path) -> Job:
                 msgspec.json.decode(content["profile"].tobytes(), type=SceneProfile),
             )
     except OSError as problem:
-        raise StationError(f"{path}: cannot be read: {problem.strerror or problem}") from None
+        raise WorkerError(f"{path}: cannot be read: {problem.strerror or problem}") from None
     except (BadZipFile, ValueError, KeyError, TypeError, EOFError) as problem:
-        raise StationError(f"{path}: is not a scene job: {problem}") from None
+        raise WorkerError(f"{path}: is not a scene job: {problem}") from None
 
 
 def _packed(drawing: Drawing) -> dict[str, Any]:

@@ -32,7 +32,7 @@ from simconsole.scene.entities import (
 )
 from simconsole.scene.timeline import PLOTS, TAKEOVER_WORDS, Entry, Lane, Piece, Strip, Ticks
 from simconsole.scene.viewer.blueprint import MAP, TIMELINE, blueprint
-from simconsole.values.errors import StationError
+from simconsole.values.errors import WorkerError
 from simconsole.values.labels import mode_words
 
 APPLICATION: Final = "simconsole"
@@ -56,7 +56,7 @@ class RerunView:
                 each call of `add` and entity, so a recording without an end has none; viewers read both.
 
         Raises:
-            StationError: the file cannot be written.
+            WorkerError: the file cannot be written.
         """
         import rerun as rr
 
@@ -67,7 +67,7 @@ class RerunView:
             layout = blueprint(profile, dimensions.scale, None if world is None else world.path)
             self._stream.save(path, default_blueprint=layout, write_footer=index)
         except (OSError, RuntimeError) as problem:
-            raise StationError(f"{path}: the scene cannot be written: {problem}") from None
+            raise WorkerError(f"{path}: the scene cannot be written: {problem}") from None
         self._still("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
         self._still(f"{MAP}/path/driven", rr.LineStrips2D.from_fields(draw_order=2.0))
         self._still(f"{MAP}/ego", rr.Points2D.from_fields(draw_order=3.0))
@@ -98,7 +98,7 @@ class RerunView:
         """Write what is still queued, but never wait longer than the profile says.
 
         Raises:
-            StationError: the queue could not be written in time; the file holds what came before.
+            WorkerError: the queue could not be written in time; the file holds what came before.
         """
         self._flush()
         self._stream.disconnect()
@@ -107,7 +107,7 @@ class RerunView:
         try:
             self._stream.flush(timeout_sec=self._flush_s)
         except (RuntimeError, TimeoutError, ValueError) as problem:
-            raise StationError(f"the scene was not written whole within {self._flush_s:g} s: {problem}") from None
+            raise WorkerError(f"the scene was not written whole within {self._flush_s:g} s: {problem}") from None
 
     def _still(self, path: str, *shapes: Any) -> None:
         self._stream.log(path, *shapes, static=True)

@@ -1,4 +1,4 @@
-"""The station's loop and the inline node, on a virtual bus with an ECU beside them."""
+"""The worker's loop and the inline node, on a virtual bus with an ECU beside them."""
 
 import threading
 from collections.abc import Callable, Iterator
@@ -74,7 +74,7 @@ def test_inline_flood_takes_a_bounded_number_of_frames_a_tick(
     assert on_bus.port.counters().received == 64
 
 
-class Station:
+class Worker:
     """`serve` in a thread, fed by the test."""
 
     def __init__(self, on_bus: OnBus) -> None:
@@ -104,51 +104,51 @@ class Station:
         self._thread.join()
 
 
-def test_station_sends_takes_commands_and_reports(
+def test_worker_sends_takes_commands_and_reports(
     on_bus: OnBus, ecu_port: CanPort, codec: Codec, snapshot: Snapshots
 ) -> None:
-    station, ecu = Station(on_bus), Ecu(codec, Wish(accel_mps2=1.0, request=5))
+    worker, ecu = Worker(on_bus), Ecu(codec, Wish(accel_mps2=1.0, request=5))
     try:
         began_ns = stamp_ns()
-        station.snapshots.append(snapshot(0))
+        worker.snapshots.append(snapshot(0))
         wait_until(lambda: ecu_port.receive(0.0) is not None, "a frame")
         for _ in range(15):
             ecu_port.send(ecu.command())
-        wait_until(lambda: len(station.commands) == 14 and station.events != 0, "every command")
+        wait_until(lambda: len(worker.commands) == 14 and worker.events != 0, "every command")
     finally:
-        station.end()
-    command, receipt_ns = station.commands[-1]
+        worker.end()
+    command, receipt_ns = worker.commands[-1]
     assert command.sequence == 14
     assert receipt_ns is not None
     assert began_ns < receipt_ns < stamp_ns()
-    assert station.events == Event.EMERGENCY_STOP
-    assert station.statuses[0]["up"] is True
-    assert station.statuses[-1]["node"]["accepted"] == 14
-    assert station.statuses[-1]["command_state"] in (Check.OK.name, Check.NO_NEW_DATA.name)
+    assert worker.events == Event.EMERGENCY_STOP
+    assert worker.statuses[0]["up"] is True
+    assert worker.statuses[-1]["node"]["accepted"] == 14
+    assert worker.statuses[-1]["command_state"] in (Check.OK.name, Check.NO_NEW_DATA.name)
 
 
-def test_station_tells_at_once_when_the_bus_goes_off(
+def test_worker_tells_at_once_when_the_bus_goes_off(
     on_bus: OnBus, snapshot: Snapshots, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    station = Station(on_bus)
+    worker = Worker(on_bus)
     try:
-        station.snapshots.append(snapshot(0))
-        wait_until(lambda: len(station.statuses) == 1, "the first status")
+        worker.snapshots.append(snapshot(0))
+        wait_until(lambda: len(worker.statuses) == 1, "the first status")
         monkeypatch.setattr("simconsole.canbus.bus.worker._STATUS_S", 1e6)  # never again by its turn
         on_bus.port._down("a test")
-        wait_until(lambda: len(station.statuses) == 2, "the second status")
+        wait_until(lambda: len(worker.statuses) == 2, "the second status")
     finally:
-        station.end()
-    assert [status["up"] for status in station.statuses[:2]] == [True, False]
-    assert station.statuses[1]["down_reason"] == "a test"
+        worker.end()
+    assert [status["up"] for status in worker.statuses[:2]] == [True, False]
+    assert worker.statuses[1]["down_reason"] == "a test"
 
 
-def test_station_without_new_ticks_is_silent(on_bus: OnBus, ecu_port: CanPort, snapshot: Snapshots) -> None:
-    station = Station(on_bus)
+def test_worker_without_new_ticks_is_silent(on_bus: OnBus, ecu_port: CanPort, snapshot: Snapshots) -> None:
+    worker = Worker(on_bus)
     try:
-        station.snapshots.append(snapshot(0))
+        worker.snapshots.append(snapshot(0))
         wait_until(lambda: on_bus.node.counters().sent == 6, "the frames of a tick")
         pause(0.1)
         assert on_bus.node.counters().sent == 6
     finally:
-        station.end()
+        worker.end()

@@ -24,7 +24,7 @@ def bare(short: Path, tmp_path: Path) -> Path:
 
 def test_exports_are_listed_and_change_nothing_of_the_drive(bare: Path) -> None:
     log = (bare / "drive.log").read_bytes()
-    (bare / LIVE_SCENE).write_bytes(b"what a scene station saw")
+    (bare / LIVE_SCENE).write_bytes(b"what a scene worker saw")
     metrics = write_exports(bare)
     assert metrics["duration_s"] == 3.0
     driven_m = open_bundle(bare).log.table().column("vehicle.distance_m")[-1]

@@ -11,7 +11,7 @@ from simconsole.scene.entities import Dimensions
 from simconsole.scene.timeline import NEEDED, PLOTS
 from simconsole.scene.viewer.export import export_apart, main
 from simconsole.scene.viewer.job import Job, load_job, save_job
-from simconsole.values.errors import StationError
+from simconsole.values.errors import WorkerError
 from tests.scene.drives import COLUMNS, job
 
 WORLD = {"/world/road/surface", "/world/road/paint", "/world/road/edges", "/world/road/centre", "/world/road/ground",
@@ -123,16 +123,16 @@ def test_missing_files_are_one_clear_line(tmp_path: Path, capsys: pytest.Capture
     assert "none.npz: cannot be read" in capsys.readouterr().err
     assert main([]) == 2
     assert "usage" in capsys.readouterr().err
-    with pytest.raises(StationError, match=r"job\.npz: cannot be written"):
+    with pytest.raises(WorkerError, match=r"job\.npz: cannot be written"):
         save_job(tmp_path / "nowhere" / "job.npz", job(1))
 
 
 def test_a_folder_that_is_not_there_leaves_a_clear_line(tmp_path: Path) -> None:
-    with pytest.raises(StationError, match=r"scene\.rrd.*(cannot|not) be written|was not written"):
+    with pytest.raises(WorkerError, match=r"scene\.rrd.*(cannot|not) be written|was not written"):
         export_apart(job(10), tmp_path / "nowhere" / "scene.rrd")
 
 
 def test_an_export_that_hangs_is_ended(tmp_path: Path) -> None:
-    with pytest.raises(StationError, match=r"was not written within 0\.001 s"):
+    with pytest.raises(WorkerError, match=r"was not written within 0\.001 s"):
         export_apart(job(10), tmp_path / "scene.rrd", deadline_s=0.001)
     assert not (tmp_path / "scene.rrd").exists()
