@@ -106,10 +106,10 @@ def bare_rate(round_trips: int) -> float:
 
 
 def main() -> None:
-    words = argparse.ArgumentParser()
-    words.add_argument("--round-trips", type=int, default=5000, help="in each round")
-    words.add_argument("--rounds", type=int, default=5)
-    given = words.parse_args()
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--round-trips", type=int, default=5000, help="in each round")
+    parser.add_argument("--rounds", type=int, default=5)
+    given = parser.parse_args()
     bridge, bare = [], []
     for number in range(given.rounds):
         bridge.append(bridge_rate(given.round_trips))

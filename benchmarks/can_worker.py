@@ -84,10 +84,10 @@ def measure(profile: CanProfile, count: int, duration_s: float, folder: Path) ->
 
 def main() -> None:
     """Print one line for each case and one JSON object."""
-    words = argparse.ArgumentParser()
-    words.add_argument("--for", dest="duration_s", type=float, default=10.0)
-    words.add_argument("--interface", default="udp_multicast", choices=("udp_multicast", "virtual"))
-    options = words.parse_args()
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--for", dest="duration_s", type=float, default=10.0)
+    parser.add_argument("--interface", default="udp_multicast", choices=("udp_multicast", "virtual"))
+    options = parser.parse_args()
     profile = CanProfile(interface=options.interface, port=43_999)
     ecu = [sys.executable, "-m", "simconsole", "can", "send", "--port", str(profile.port)]
     results = {}

@@ -43,9 +43,9 @@ def timed(ticks: int, before: Callable[[int], None], work: Callable[[int], objec
 
 def main() -> None:
     """Print one line for each case and one JSON object."""
-    words = argparse.ArgumentParser()
-    words.add_argument("--ticks", type=int, default=5000)
-    ticks = words.parse_args().ticks
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--ticks", type=int, default=5000)
+    ticks = parser.parse_args().ticks
     cockpit = load("devices", "t500rs_th8rs", CockpitProfile)
     numbers = cockpit_settings(cockpit, TICK_HZ)
     plugged = VirtualCockpit(cockpit)

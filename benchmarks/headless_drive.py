@@ -41,10 +41,10 @@ def header(columns: tuple[str, ...], tick_hz: int) -> LogHeader:
 
 
 def main() -> None:
-    words = argparse.ArgumentParser()
-    words.add_argument("--seconds", type=float, default=60.0, help="simulated seconds a round")
-    words.add_argument("--rounds", type=int, default=5)
-    given = words.parse_args()
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--seconds", type=float, default=60.0, help="simulated seconds a round")
+    parser.add_argument("--rounds", type=int, default=5)
+    given = parser.parse_args()
     os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
     scenario, _ = load_scenario("hand_over")
     resolved = resolve(scenario.session)

@@ -130,10 +130,10 @@ def together(vehicle: Platform, cars: int, substeps: int) -> Steps:
 
 
 def main() -> None:
-    words = argparse.ArgumentParser()
-    words.add_argument("--rounds", type=int, default=7)
-    words.add_argument("--cars", type=int, default=1000)
-    given = words.parse_args()
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--rounds", type=int, default=7)
+    parser.add_argument("--cars", type=int, default=1000)
+    given = parser.parse_args()
     os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
     vehicle = build(load("vehicles", "hatchback", CarProfile), Pose(0.0, 0.0, 0.0), Ground(1.0, 0.0, 0.0))
     runs: dict[str, tuple[Steps, int]] = {name: (steps, 200) for name, steps in peers().items()}

@@ -36,11 +36,11 @@ def scaled(image: Image.Image) -> Image.Image:
 
 def main() -> None:
     """Read the bundle, draw both halves, write the picture."""
-    words = argparse.ArgumentParser(description=__doc__)
-    words.add_argument("bundle", type=Path)
-    words.add_argument("picture", type=Path)
-    words.add_argument("--at", type=float, default=60.0, metavar="S", help="moment that the instruments show")
-    given = words.parse_args()
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("bundle", type=Path)
+    parser.add_argument("picture", type=Path)
+    parser.add_argument("--at", type=float, default=60.0, metavar="S", help="moment that the instruments show")
+    given = parser.parse_args()
     bundle = open_bundle(given.bundle)
     resolved, table = recorded_session(bundle), bundle.log.table()
     with tempfile.TemporaryDirectory() as folder:

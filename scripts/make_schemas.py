@@ -50,9 +50,9 @@ def unindented(part: Any) -> Any:
 
 def main() -> None:
     """Write every schema."""
-    words = argparse.ArgumentParser(description=__doc__)
-    words.add_argument("folder", type=Path, nargs="?", default=FOLDER)
-    given = words.parse_args()
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path, nargs="?", default=FOLDER)
+    given = parser.parse_args()
     given.folder.mkdir(parents=True, exist_ok=True)
     for name, text in schemas().items():
         (given.folder / name).write_text(text, encoding="utf-8")

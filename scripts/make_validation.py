@@ -117,10 +117,10 @@ def _oracles(found: dict[str, dict[str, float]]) -> str:
 
 def main() -> None:
     """Measure and write."""
-    words = argparse.ArgumentParser(description=__doc__)
-    words.add_argument("page", type=Path, nargs="?", default=PAGE)
-    words.add_argument("--json", action="store_true")
-    given = words.parse_args()
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("page", type=Path, nargs="?", default=PAGE)
+    parser.add_argument("--json", action="store_true")
+    given = parser.parse_args()
     names = ("ackermann", "bicycle", "static_loads", "energy", "mirror", "convergence")
     found: dict[str, dict[str, Any]] = {name: getattr(oracles, name)() for name in names}
     compared = compare()

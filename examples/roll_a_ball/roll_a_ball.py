@@ -18,9 +18,9 @@ PATIENCE_S = 60.0
 
 def main() -> None:
     """Connect, set the speed, roll."""
-    words = argparse.ArgumentParser(description="Roll a ball round a square, over rosbridge.")
-    words.add_argument("--url", default="ws://127.0.0.1:9090")
-    with BridgeClient(words.parse_args().url, comes_back=False) as client:
+    parser = argparse.ArgumentParser(description="Roll a ball round a square, over rosbridge.")
+    parser.add_argument("--url", default="ws://127.0.0.1:9090")
+    with BridgeClient(parser.parse_args().url, comes_back=False) as client:
         client.advertise("/ball/desired_speed", "std_msgs/Float64")
         client.advertise("/ball/desired_pose", "geometry_msgs/PoseStamped")
         client.advertise("/console/request", "std_msgs/String")

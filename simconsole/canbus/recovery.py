@@ -1,4 +1,4 @@
-"""What a bus says of itself, in words; and when one that went off is tried again.
+"""What a bus says of itself, as text, and when one that went off is tried again.
 
 After the first time, then after twice as long each, up to the last.
 """
@@ -20,9 +20,9 @@ _ERRORS: Final = {
 """Classes of an error frame: the bits of its id (linux/can/error.h)."""
 
 
-def error_words(can_id: int) -> str:
+def error_label(can_id: int) -> str:
     """Return what an error frame's id says."""
-    return ", ".join(words for bit, words in _ERRORS.items() if can_id & bit) or "unspecified error"
+    return ", ".join(label for bit, label in _ERRORS.items() if can_id & bit) or "unspecified error"
 
 
 class Seldom:

@@ -1,1 +1,1 @@
-"""What each command does. main.py reads the words; the other modules, imported only when needed, do the work."""
+"""What each command does. main.py reads the arguments; the other modules, imported only when needed, do the work."""

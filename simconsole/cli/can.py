@@ -14,7 +14,7 @@ _DIRECTIONS = {"drive": 1.0, "neutral": 0.0, "reverse": -1.0}
 _INDICATORS = {"left": 1.0, "off": 0.0, "right": -1.0}
 
 
-def can(words: Namespace) -> Outcome:
+def can(options: Namespace) -> Outcome:
     """Do one of the three until interrupted or its time is over.
 
     Raises:
@@ -26,30 +26,30 @@ def can(words: Namespace) -> Outcome:
     from simconsole.canbus.ecu import Wish
     from simconsole.canbus.messages import REQUESTS
 
-    profile, codec = _profile(words), load_codec()
-    if words.action == "monitor":
-        logs = () if words.file is None else (Path(words.file),)
-        results = monitor(profile, codec, say=_say, duration_s=words.duration_s, logs=logs)
+    profile, codec = _profile(options), load_codec()
+    if options.action == "monitor":
+        logs = () if options.file is None else (Path(options.file),)
+        results = monitor(profile, codec, say=_say, duration_s=options.duration_s, logs=logs)
         return Outcome(0 if results["messages"] else 1, results, "" if results["messages"] else "nothing was heard")
-    if words.action == "replay":
-        if words.file is None:
+    if options.action == "replay":
+        if options.file is None:
             raise CanError("can replay: value missing: --file FILE, a log")
-        if not 0.01 <= words.speed <= 100.0:
-            raise CanError(f"--speed: value {words.speed:g}: 0.01 to 100")
-        results = replay(profile, codec, Path(words.file), node=words.node, speed=words.speed)
-        return Outcome(0, results, f"sent {results['sent']} frames of {words.node}, left out {results['left_out']}")
+        if not 0.01 <= options.speed <= 100.0:
+            raise CanError(f"--speed: value {options.speed:g}: 0.01 to 100")
+        results = replay(profile, codec, Path(options.file), node=options.node, speed=options.speed)
+        return Outcome(0, results, f"sent {results['sent']} frames of {options.node}, left out {results['left_out']}")
     names = {event.name: number for number, event in REQUESTS.items()}
     wish = Wish(
-        road_wheel_rad=words.road_wheel_deg * RAD_PER_DEG,
-        accel_mps2=words.accel_mps2,
-        speed_mps=words.speed_mps,
-        direction=_DIRECTIONS[words.direction],
-        turn_indicators=_INDICATORS[words.turn_indicators],
-        hazard_lights=float(words.hazard_lights),
-        engage=words.engage,
-        request=names.get(words.request or "", 0),
+        road_wheel_rad=options.road_wheel_deg * RAD_PER_DEG,
+        accel_mps2=options.accel_mps2,
+        speed_mps=options.speed_mps,
+        direction=_DIRECTIONS[options.direction],
+        turn_indicators=_INDICATORS[options.turn_indicators],
+        hazard_lights=float(options.hazard_lights),
+        engage=options.engage,
+        request=names.get(options.request or "", 0),
     )
-    results = send(profile, codec, wish, duration_s=words.duration_s)
+    results = send(profile, codec, wish, duration_s=options.duration_s)
     text = f"sent {results['sent']} commands, heard {results['heard']} frames, speed {results['speed_mps']} m/s"
     return Outcome(0, results, text)
 
@@ -58,8 +58,13 @@ def _say(line: str) -> None:
     print(line, flush=True)
 
 
-def _profile(words: Namespace) -> CanProfile:
-    plain = {"interface": words.interface, "channel": words.channel, "port": words.port, "bitrate_bps": words.bitrate}
+def _profile(options: Namespace) -> CanProfile:
+    plain = {
+        "interface": options.interface,
+        "channel": options.channel,
+        "port": options.port,
+        "bitrate_bps": options.bitrate,
+    }
     given = {key: value for key, value in plain.items() if value is not None}
     try:
         return msgspec.convert(given, CanProfile)

@@ -12,17 +12,19 @@ from simconsole.evaluation.checks.scenario_check import Verdict, check_scenario
 from simconsole.processes.lifetimes import end_with_parent
 
 
-def check(words: Namespace) -> Outcome:
+def check(options: Namespace) -> Outcome:
     """Drive every scenario; code 1 if one breaks a bound or leaves its golden."""
-    if words.jobs > 1:
-        with ProcessPoolExecutor(words.jobs, get_context("spawn"), end_with_parent) as pool:
-            verdicts = list(pool.map(check_scenario, words.scenarios, [words.update_golden] * len(words.scenarios)))
+    if options.jobs > 1:
+        with ProcessPoolExecutor(options.jobs, get_context("spawn"), end_with_parent) as pool:
+            verdicts = list(
+                pool.map(check_scenario, options.scenarios, [options.update_golden] * len(options.scenarios))
+            )
     else:
-        verdicts = [check_scenario(scenario, words.update_golden) for scenario in words.scenarios]
-    if words.junit:
-        _write_junit(Path(words.junit), verdicts)
-    if words.report:
-        _write_report(Path(words.report), verdicts)
+        verdicts = [check_scenario(scenario, options.update_golden) for scenario in options.scenarios]
+    if options.junit:
+        _write_junit(Path(options.junit), verdicts)
+    if options.report:
+        _write_report(Path(options.report), verdicts)
     passed = all(verdict.passed for verdict in verdicts)
     results: dict[str, Any] = {"passed": passed, "scenarios": [_results(verdict) for verdict in verdicts]}
     return Outcome(0 if passed else 1, results, "\n".join(_line(verdict) for verdict in verdicts))

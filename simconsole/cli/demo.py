@@ -11,13 +11,13 @@ from simconsole.session.lifecycle import drive
 from simconsole.session.resolution import load_session, override, resolve
 
 
-def demo(words: Namespace) -> Outcome:
+def demo(options: Namespace) -> Outcome:
     """Drive the demo session, write report and scene, and print what came of it."""
     session = load_session("demo")
-    if words.realtime:
+    if options.realtime:
         session = override(session, mode={"pacing": "realtime"})
     resolved = resolve(session)
-    folder = Path(words.out) if words.out else Path("out") / time.strftime("demo-%Y%m%d-%H%M%S")
+    folder = Path(options.out) if options.out else Path("out") / time.strftime("demo-%Y%m%d-%H%M%S")
     length_m = 0.0 if resolved.world is None else resolved.world.length_m
     with Progress("driving", length_m) as progress:
         result = drive(resolved, folder, progress.watch)

@@ -10,38 +10,38 @@ from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load
 
 
-def devices(words: Namespace) -> Outcome:
+def devices(options: Namespace) -> Outcome:
     """Do one of them; `check` and `feel` have code 1 when the cockpit could not drive as it is.
 
     Raises:
         DeviceError: a device is missing or in a mode that cannot drive, or a step of a calibration failed.
         ProfileError: the cockpit's profile cannot be used.
     """
-    cockpit = load("devices", words.cockpit, CockpitProfile)
-    if words.action == "list":
-        results = list_devices(cockpit, say=print, virtual=words.virtual)
+    cockpit = load("devices", options.cockpit, CockpitProfile)
+    if options.action == "list":
+        results = list_devices(cockpit, say=print, virtual=options.virtual)
         return Outcome(1 if results["missing_roles"] else 0, results)
-    if words.action == "check":
+    if options.action == "check":
         show = _Redrawn().show if sys.stderr.isatty() else None
-        results = check_devices(cockpit, say=print, duration_s=words.duration_s, virtual=words.virtual, show=show)
+        results = check_devices(cockpit, say=print, duration_s=options.duration_s, virtual=options.virtual, show=show)
         return Outcome(0 if results["ok"] else 1, results)
-    if words.action == "calibrate":
+    if options.action == "calibrate":
         from simconsole.devices.setup.calibration_dialogue import calibrate_devices
 
-        path = Path(words.out or "cockpit.yaml")
-        return Outcome(0, calibrate_devices(cockpit, path, say=_say, virtual=cockpit if words.virtual else None))
-    if words.action == "feel":
+        path = Path(options.out or "cockpit.yaml")
+        return Outcome(0, calibrate_devices(cockpit, path, say=_say, virtual=cockpit if options.virtual else None))
+    if options.action == "feel":
         from simconsole.devices.setup.force_feedback_check import check_force_feedback
 
-        results = check_force_feedback(cockpit, say=_say, strength=words.strength / 100.0, virtual=words.virtual)
+        results = check_force_feedback(cockpit, say=_say, strength=options.strength / 100.0, virtual=options.virtual)
         return Outcome(0 if results["ok"] else 1, results)
     results = record_devices(
         cockpit,
-        Path(words.out or "trace.csv"),
+        Path(options.out or "trace.csv"),
         say=print,
-        duration_s=words.duration_s,
-        name=words.cockpit,
-        virtual=words.virtual,
+        duration_s=options.duration_s,
+        name=options.cockpit,
+        virtual=options.virtual,
     )
     return Outcome(0, results)
 

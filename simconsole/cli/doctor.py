@@ -13,7 +13,7 @@ from simconsole.cli.outcome import Outcome, table
 LIBRARIES = ("numpy", "numba", "pygame-ce", "websockets", "msgspec", "orjson", "rerun-sdk", "matplotlib", "pyyaml")
 
 
-def doctor(words: Namespace) -> Outcome:
+def doctor(options: Namespace) -> Outcome:
     """Report versions and what of the machine the console could use. Nothing found here stops a headless drive."""
     found = {
         "simconsole": __version__,

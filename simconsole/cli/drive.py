@@ -14,11 +14,11 @@ from simconsole.session.resolution import load_session, override, resolve
 from simconsole.values.errors import DeviceNotFound, ProfileError
 
 
-def drive(words: Namespace) -> Outcome:
+def drive(options: Namespace) -> Outcome:
     """Drive the named session with the options of the command line laid over it."""
-    session = _with_options(load_session(words.session), words)
-    resolved = resolve(session, words.cockpit)
-    folder = Path(words.out) if words.out else Path("out") / time.strftime("drive-%Y%m%d-%H%M%S")
+    session = _with_options(load_session(options.session), options)
+    resolved = resolve(session, options.cockpit)
+    folder = Path(options.out) if options.out else Path("out") / time.strftime("drive-%Y%m%d-%H%M%S")
     with Progress("driving", resolved.world.length_m if resolved.world else 0.0) as progress:
         try:
             result = drive_session(resolved, folder, progress.watch)
@@ -27,17 +27,17 @@ def drive(words: Namespace) -> Outcome:
     return finish(result, report=session.outputs.report, scene=session.outputs.scene is not None)
 
 
-def _with_options(session: SessionProfile, words: Namespace) -> SessionProfile:
-    if words.duration_s is not None:
-        if not math.isfinite(words.duration_s):
-            raise ProfileError(f"command line: --for: value {words.duration_s}: a finite number of seconds")
-        session = override(session, scenario={"duration_s": words.duration_s})
-    if words.driver is not None:
-        devices = {"driver": words.driver}
-        if words.driver == "keyboard":
+def _with_options(session: SessionProfile, options: Namespace) -> SessionProfile:
+    if options.duration_s is not None:
+        if not math.isfinite(options.duration_s):
+            raise ProfileError(f"command line: --for: value {options.duration_s}: a finite number of seconds")
+        session = override(session, scenario={"duration_s": options.duration_s})
+    if options.driver is not None:
+        devices = {"driver": options.driver}
+        if options.driver == "keyboard":
             devices["cockpit"] = "keyboard"  # keys are not the axes of the session's wheel
         session = override(session, devices=devices)
-    if words.headless:
+    if options.headless:
         pacing = "free" if session.mode.pacing == "realtime" else session.mode.pacing
         session = override(session, outputs={"hud": None}, mode={"pacing": pacing})
     return session

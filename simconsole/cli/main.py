@@ -1,4 +1,4 @@
-"""The command line: words in, one command run, an exit code out.
+"""The command line: arguments in, one command run, an exit code out.
 
 Exit codes: 0 good, 1 the check failed, 2 bad usage or a bad file, 130 interrupted. `--json` makes the last line on
 standard output one JSON object with the results. No heavy library is imported here: each command names the function
@@ -46,39 +46,39 @@ def parser() -> argparse.ArgumentParser:
 
 def main(arguments: list[str] | None = None) -> int:
     """Run one command and return its exit code. Errors a user can cause are one line on standard error."""
-    words = parser().parse_args(arguments)
-    signals = SIGNALS if words.command in _AT_ONCE else SIGNALS[1:]
+    options = parser().parse_args(arguments)
+    signals = SIGNALS if options.command in _AT_ONCE else SIGNALS[1:]
     if arguments is None:
         act_promptly()
         handle(interrupted, signals)
-        code = _run(words)
+        code = _run(options)
         ignore_signals()  # all is done, and the code is decided while Python still takes itself down
         if code == INTERRUPTED:
             end_at_once(code)  # somebody waits for that
         return code
     with handled(interrupted, signals):
-        return _run(words)
+        return _run(options)
 
 
-def _run(words: argparse.Namespace) -> int:
-    module, function = words.does.split(":")
+def _run(options: argparse.Namespace) -> int:
+    module, function = options.does.split(":")
     try:
-        outcome = getattr(import_module(f"simconsole.cli.{module}"), function)(words)
+        outcome = getattr(import_module(f"simconsole.cli.{module}"), function)(options)
     except SimConsoleError as error:
-        _print(f"simconsole {words.command}: {error}", sys.stderr)
-        if words.json:
+        _print(f"simconsole {options.command}: {error}", sys.stderr)
+        if options.json:
             _print_json({"error": str(error)})
         return error.exit_code
     except (MemoryError, OSError, ImportError) as error:  # the machine's limits, files, libraries: no bug of ours
-        _print(f"simconsole {words.command}: {one_line(error)}", sys.stderr)
-        if words.json:
+        _print(f"simconsole {options.command}: {one_line(error)}", sys.stderr)
+        if options.json:
             _print_json({"error": one_line(error)})
         return SimConsoleError.exit_code
     except KeyboardInterrupt:
         return INTERRUPTED
     if outcome.text:
         _print(outcome.text)
-    if words.json:
+    if options.json:
         _print_json(outcome.results)
     return int(outcome.code)
 

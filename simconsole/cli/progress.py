@@ -7,7 +7,7 @@ from types import TracebackType
 from typing import Final, Self
 
 from simconsole.cli.outcome import RECORDING_FAILED
-from simconsole.values.labels import mode_words
+from simconsole.values.labels import mode_label
 from simconsole.values.signals import Mode
 from simconsole.values.state_vector import Snapshot
 from simconsole.values.units import KMH_PER_MPS
@@ -45,7 +45,7 @@ class Progress:
             way = f"{vehicle.distance_m:7.1f} m" + (f" of {self._length_m:.0f} m" if self._length_m else "")
             speed = f"{vehicle.vx_mps * KMH_PER_MPS:5.1f} km/h"
             alarm = f"  {RECORDING_FAILED}" if snapshot.recording_failed else ""
-            self._write(f"{self._what}: {snapshot.t_s:7.1f} s  {way}  {speed}  {mode_words(float(mode))}{alarm}")
+            self._write(f"{self._what}: {snapshot.t_s:7.1f} s  {way}  {speed}  {mode_label(float(mode))}{alarm}")
         return False
 
     def _write(self, line: str) -> None:

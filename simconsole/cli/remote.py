@@ -17,25 +17,25 @@ def own_token() -> str | None:
     return os.environ.pop(TOKEN_VARIABLE, None)
 
 
-def autopilot(words: Namespace) -> Outcome:
+def autopilot(options: Namespace) -> Outcome:
     """Follow a course over rosbridge until the console closes the connection, or ends where it started this program.
 
     Raises:
         ProfileError: a topic is renamed in no way.
         OtherDriveError: the console there is not the one that started this program.
     """
-    stop = follow_parent(END_S).wants_end if words.attached else None
+    stop = follow_parent(END_S).wants_end if options.attached else None
     from simconsole.drivers.autopilot.program import run
 
     results = run(
-        words.url,
-        words.course,
+        options.url,
+        options.course,
         stop=stop,
-        namespace=words.namespace,
-        rename=_renamed(words.rename),
-        patience_s=words.wait,
+        namespace=options.namespace,
+        rename=_renamed(options.rename),
+        patience_s=options.wait,
         token=own_token(),
-        certificate=words.certificate,
+        certificate=options.certificate,
         drive=os.environ.pop(DRIVE_VARIABLE, None),
     )
     return Outcome(0, results, table([(name, str(value)) for name, value in results.items()]))

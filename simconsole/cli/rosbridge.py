@@ -10,12 +10,12 @@ from simconsole.processes.lifetimes import INTERRUPTED
 from simconsole.processes.shared_memory import temporary_folder
 
 
-def bridge(words: Namespace) -> Outcome:
-    """Do what `words.action` names."""
-    return {"serve": serve, "check": check, "bench": bench, "cert": cert}[words.action](words)
+def bridge(options: Namespace) -> Outcome:
+    """Do what `options.action` names."""
+    return {"serve": serve, "check": check, "bench": bench, "cert": cert}[options.action](options)
 
 
-def serve(words: Namespace) -> Outcome:
+def serve(options: Namespace) -> Outcome:
     """Serve rosbridge on a standing car that nobody sits in, in real time, until interrupted; nothing is kept."""
     from simconsole.bridge.ros2.node import check as check_ros2
     from simconsole.bridge.transport.credentials import load_access, load_tls
@@ -24,21 +24,21 @@ def serve(words: Namespace) -> Outcome:
     from simconsole.session.lifecycle import drive
     from simconsole.session.resolution import load_session, override, resolve
 
-    certificate = words.certificate
+    certificate = options.certificate
     section = {
-        "host": words.host,
-        "port": words.port,
-        "tokens": words.tokens,
+        "host": options.host,
+        "port": options.port,
+        "tokens": options.tokens,
         "certificate": certificate,
         "certificate_key": None if certificate is None else str(Path(certificate).with_suffix(".key")),
-        "trust_network": words.trust_network,
-        "transport": words.transport,
-        "ros2": {} if words.ros2 else None,
-        "messages": words.messages,
+        "trust_network": options.trust_network,
+        "transport": options.transport,
+        "ros2": {} if options.ros2 else None,
+        "messages": options.messages,
     }
     session = override(load_session("bridge"), outputs={"bridge": section})
-    if words.duration_s is not None:
-        session = override(session, scenario={"duration_s": words.duration_s})
+    if options.duration_s is not None:
+        session = override(session, scenario={"duration_s": options.duration_s})
     if session.outputs.bridge is not None:
         # Here and not only in the server's own process: a refusal shall be one line, at once.
         load_access(session.outputs.bridge)
@@ -52,11 +52,11 @@ def serve(words: Namespace) -> Outcome:
     return Outcome(code, result.summary, f"served {result.ticks} ticks, lateness {result.summary['lateness']}")
 
 
-def check(words: Namespace) -> Outcome:
-    """Try how the server at `words.url` behaves where rosbridge servers differ; 1 if it deviates anywhere."""
+def check(options: Namespace) -> Outcome:
+    """Try how the server at `options.url` behaves where rosbridge servers differ; 1 if it deviates anywhere."""
     from simconsole.bridge.tools import conformance
 
-    url = words.url or f"ws://{words.host}:{words.port}"
+    url = options.url or f"ws://{options.host}:{options.port}"
     rows = conformance.check(url, own_token())
     passed = sum(row.passed for row in rows)
     lines = [
@@ -66,11 +66,11 @@ def check(words: Namespace) -> Outcome:
     return Outcome(0 if passed == len(rows) else 1, results, f"{table(lines)}\n{passed} of {len(rows)} pass")
 
 
-def bench(words: Namespace) -> Outcome:
-    """Measure what our server carries, beside a bare broker and the server at `words.url` if one is given."""
+def bench(options: Namespace) -> Outcome:
+    """Measure what our server carries, beside a bare broker and the server at `options.url` if one is given."""
     from simconsole.bridge.tools import bench, bench_load, bench_peers
 
-    found = bench.bench(url=words.url, seconds=words.duration_s or 1.0)
+    found = bench.bench(url=options.url, seconds=options.duration_s or 1.0)
     rates_hz = {case: figures.rate_hz for case, figures in found.items()}
     rows, lines = [], []
     for case, figures in sorted(found.items(), key=lambda pair: (pair[0].message, pair[0].subscribers)):
@@ -103,17 +103,17 @@ def bench(words: Namespace) -> Outcome:
     return Outcome(0, {"clients": bench_peers.library(), "rows": rows, "load": load._asdict()}, table(lines))
 
 
-def cert(words: Namespace) -> Outcome:
+def cert(options: Namespace) -> Outcome:
     """Write a self-signed certificate for `--host`, its key and a control token, readable by their owner alone."""
     from simconsole.cli.certificate import make, write_private
 
-    folder = Path(words.out)
+    folder = Path(options.out)
     folder.mkdir(parents=True, exist_ok=True)
     certificate, key, tokens = folder / "bridge.pem", folder / "bridge.key", folder / "bridge.tokens"
-    written = make(words.host)
+    written = make(options.host)
     certificate.write_bytes(written.certificate)
     write_private(key, written.key)
     write_private(tokens, f"control {secrets.token_urlsafe(24)}\n".encode())
     paths = {"certificate": str(certificate), "key": str(key), "tokens": str(tokens)}
-    command = f"simconsole bridge serve --host {words.host} --tokens {tokens} --certificate {certificate}"
+    command = f"simconsole bridge serve --host {options.host} --tokens {tokens} --certificate {certificate}"
     return Outcome(0, {**paths, "until": written.until}, f"good until {written.until}; serve with\n{command}")

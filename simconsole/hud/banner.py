@@ -45,7 +45,7 @@ class Alert(IntEnum):
     NO_DATA = 8
 
 
-ALERT_WORDS: Final[dict[Alert, tuple[str, str]]] = {
+ALERT_LABELS: Final[dict[Alert, tuple[str, str]]] = {
     Alert.RECORDING_FAILED: ("RECORDING FAILED", "drive is not kept"),
     Alert.TAKE_OVER: ("TAKE OVER", "take the wheel"),
     Alert.MINIMAL_RISK: ("CAR IS STOPPING", "steer or brake"),
@@ -58,8 +58,8 @@ ALERT_WORDS: Final[dict[Alert, tuple[str, str]]] = {
 
 def alert_of(view: HudView) -> Alert:
     """Return the one alert to show."""
-    found = Alert.NOTICE if view.notice_words else Alert.NONE
-    if view.refusal_words:
+    found = Alert.NOTICE if view.notice_label else Alert.NONE
+    if view.refusal_label:
         found = Alert.REFUSED
     if view.recording_failed:
         found = Alert.RECORDING_FAILED
@@ -89,11 +89,11 @@ def _field(view: HudView, alert: Alert) -> tuple[Colour, Colour]:
 
 
 def banner(view: HudView, alert: Alert, box: Box) -> list[DrawItem]:
-    """Return the mode: its shape, its words, and why it is so. Always there, always in this place (rule 4)."""
+    """Return the mode: its shape, its label, and why it is so. Always there, always in this place (rule 4)."""
     if view.stale:
         return [
             Rect(box, PANEL, "banner", 0.12 * box.h),
-            Text(box.cx, box.cy, "MODE UNKNOWN", 0.3 * box.h, MUTED, "mode.words", arcmin=DRIVING_ARCMIN),
+            Text(box.cx, box.cy, "MODE UNKNOWN", 0.3 * box.h, MUTED, "mode.label", arcmin=DRIVING_ARCMIN),
         ]
     strong = alert in (Alert.TAKE_OVER_NOW, Alert.EMERGENCY, Alert.MINIMAL_RISK)
     ground, ink = _field(view, alert) if strong else (PANEL, TEXT)
@@ -101,25 +101,25 @@ def banner(view: HudView, alert: Alert, box: Box) -> list[DrawItem]:
     side = 0.68 * box.h
     shape = Box(box.x + 0.28 * box.h, box.cy - 0.5 * side, side, side)
     left = shape.right + 0.3 * box.h
-    cap = fit_cap_px(view.mode_words, 0.36 * box.h, 0.56 * box.w)
+    cap = fit_cap_px(view.mode_label, 0.36 * box.h, 0.56 * box.w)
     items: list[DrawItem] = [Rect(box, ground, "banner", 0.12 * box.h)]
     if not strong:
         items.append(Rect(Box(box.x, box.y, 0.07 * box.h, box.h), accent, "banner.edge"))
     items += mode_shape(view.mode, shape, accent, ground)
-    items.append(Text(left, box.cy, view.mode_words, cap, ink, "mode.words", "l", DRIVING_ARCMIN))
+    items.append(Text(left, box.cy, view.mode_label, cap, ink, "mode.label", "l", DRIVING_ARCMIN))
     room = box.right - 0.3 * box.h - left - 1.02 * 0.56 * box.w
-    if view.reason_words:
+    if view.reason_label:
         field = Box(box.right - 0.3 * box.h - room, box.y, room, box.h)
-        items += _reason(view.reason_words, field, ink if strong else MUTED)
+        items += _reason(view.reason_label, field, ink if strong else MUTED)
     return items
 
 
-def _reason(words: str, box: Box, ink: Colour) -> list[DrawItem]:
+def _reason(text: str, box: Box, ink: Colour) -> list[DrawItem]:
     """Return the reason, on one line or two."""
-    lines = [words]
-    half = fit_cap_px(words, 0.15 * box.h, box.w)
+    lines = [text]
+    half = fit_cap_px(text, 0.15 * box.h, box.w)
     if half < 0.15 * box.h:
-        parts = words.split()
+        parts = text.split()
         cut = min(range(1, len(parts)), key=lambda i: abs(len(" ".join(parts[:i])) - len(" ".join(parts[i:]))))
         lines = [" ".join(parts[:cut]), " ".join(parts[cut:])]
     cap = min(fit_cap_px(line, 0.15 * box.h, box.w) for line in lines)
@@ -137,11 +137,11 @@ def _accent(mode: float) -> Colour:
 
 
 def slot(view: HudView, alert: Alert, box: Box, screen: Screen) -> list[DrawItem]:
-    """Return the alert, or nothing. A take-over spans every screen; the words stand on each of them."""
+    """Return the alert, or nothing. A take-over spans every screen; the text stands on each of them."""
     if alert is Alert.NONE:
         return _trip(view, box)
     if alert in (Alert.NOTICE, Alert.REFUSED):
-        return _line(view.refusal_words or view.notice_words, box)
+        return _line(view.refusal_label or view.notice_label, box)
     ground, ink = _field(view, alert)
     safe = screen.safe()
     items: list[DrawItem] = [Rect(Box(safe.x, box.y, safe.w, box.h), ground, "alert", 0.1 * box.h)]
@@ -155,26 +155,26 @@ def _trip(view: HudView, box: Box) -> list[DrawItem]:
     seconds = int(view.t_s)
     cells = (("TIME", f"{seconds // 60:02d}:{seconds % 60:02d}"), ("DISTANCE", f"{0.001 * view.distance_m:.2f} km"))
     items: list[DrawItem] = [Rect(box, PANEL, "trip", 0.12 * box.h)]
-    for index, (name, words) in enumerate(cells):
+    for index, (name, text) in enumerate(cells):
         x = box.x + (0.3 * box.h if index == 0 else 0.5 * box.w)
         cap = 0.17 * box.h
         value = x + text_width_px(name, cap) + 0.25 * box.h
         items.append(Text(x, box.cy, name, cap, MUTED, "trip.name", "l", SECONDARY_ARCMIN))
-        items.append(Text(value, box.cy, words, 0.28 * box.h, TEXT, "trip.value", "l", DRIVING_ARCMIN))
+        items.append(Text(value, box.cy, text, 0.28 * box.h, TEXT, "trip.value", "l", DRIVING_ARCMIN))
     return items
 
 
 def _headline(view: HudView, alert: Alert, box: Box, ink: Colour, ground: Colour) -> list[DrawItem]:
-    head, todo = ALERT_WORDS[alert]
+    head, todo = ALERT_LABELS[alert]
     if alert is Alert.RECORDING_FAILED:  # it stands to the end of the drive, and hides no answer meanwhile
-        todo = view.refusal_words or view.notice_words or todo
+        todo = view.refusal_label or view.notice_label or todo
     side = 0.62 * box.h
     items = exclamation(Box(box.x + 0.3 * box.h, box.y + 0.12 * box.h, side, side), ink, ground, "alert.shape")
     left = box.x + 0.3 * box.h + side + 0.3 * box.h
     counted = alert in (Alert.TAKE_OVER, Alert.TAKE_OVER_NOW)
     room = box.right - left - (1.3 if counted else 0.3) * box.h
     cap = fit_cap_px(head, 0.32 * box.h, room)
-    items.append(Text(left, box.y + 0.29 * box.h, head, cap, ink, "alert.words", "l", DRIVING_ARCMIN))
+    items.append(Text(left, box.y + 0.29 * box.h, head, cap, ink, "alert.label", "l", DRIVING_ARCMIN))
     below = fit_cap_px(todo, 0.17 * box.h, room)
     items.append(Text(left, box.y + 0.67 * box.h, todo, below, ink, "alert.todo", "l", DRIVING_ARCMIN))
     return items + (_countdown(view, box, ink) if counted else [])
@@ -193,15 +193,15 @@ def _countdown(view: HudView, box: Box, ink: Colour) -> list[DrawItem]:
     return items
 
 
-def _line(words: str, box: Box) -> list[DrawItem]:
+def _line(text: str, box: Box) -> list[DrawItem]:
     field = box.row(0.1, 0.9)
     side = 0.6 * field.h
     sign = Box(field.x + 0.4 * field.h, field.cy - 0.5 * side, side, side)
     left = sign.right + 0.3 * field.h
-    cap = fit_cap_px(words, 0.26 * field.h, field.right - left - 0.3 * field.h)
+    cap = fit_cap_px(text, 0.26 * field.h, field.right - left - 0.3 * field.h)
     return [
         Rect(field, PANEL, "alert", 0.12 * field.h),
         Rect(field, CAUTION, "alert.edge", 0.12 * field.h, max(2.0, 0.03 * field.h)),
         *exclamation(sign, CAUTION, BACKGROUND, "alert.shape"),
-        Text(left, field.cy, words, cap, TEXT, "alert.words", "l", DRIVING_ARCMIN),
+        Text(left, field.cy, text, cap, TEXT, "alert.label", "l", DRIVING_ARCMIN),
     ]

@@ -1,6 +1,6 @@
 """The driver's instrument cluster: `layout` turns a view into a draw list. Pure; no graphics library.
 
-Top to bottom inside the safe area: who drives (mode in words and shape), one slot for the one alert, then pedals,
+Top to bottom inside the safe area: who drives (mode as label and shape), one slot for the one alert, then pedals,
 dial and steering side by side, then a strip of lamps. Each thing has one place at all times.
 """
 
@@ -17,9 +17,9 @@ from simconsole.values.labels import (
     LINK_COMMANDER,
     LINK_CONNECTING,
     LINK_NOBODY,
-    mode_words,
-    notice_words,
-    reason_words,
+    mode_label,
+    notice_label,
+    reason_label,
 )
 from simconsole.values.signals import Mode, Notice, Reason
 
@@ -105,12 +105,12 @@ def sample_views() -> list[HudView]:
     """Return a view of every mode, reason, take-over stage and of stale data, with the widest numbers."""
     wide = HudView(shown_kmh=288, rpm=6500.0, engine_running=True, gear="6", automatic=True, distance_m=123456.0)
     wide = wide._replace(t_s=36000.0, link_age_s=0.9, remote_lateral=1.0, throttle=1.0, brake=1.0, clutch=1.0)
-    views = [wide._replace(mode=float(mode), mode_words=mode_words(mode)) for mode in Mode]
+    views = [wide._replace(mode=float(mode), mode_label=mode_label(mode)) for mode in Mode]
     for reason in Reason:
-        words = reason_words(reason)
-        views.append(wide._replace(reason_words=words, refusal_words=words))
-    views += [wide._replace(notice_words=notice_words(notice)) for notice in Notice]
-    asked = wide._replace(mode=float(Mode.TAKEOVER_REQUESTED), mode_words=mode_words(Mode.TAKEOVER_REQUESTED))
+        text = reason_label(reason)
+        views.append(wide._replace(reason_label=text, refusal_label=text))
+    views += [wide._replace(notice_label=notice_label(notice)) for notice in Notice]
+    asked = wide._replace(mode=float(Mode.TAKEOVER_REQUESTED), mode_label=mode_label(Mode.TAKEOVER_REQUESTED))
     views += [asked._replace(takeover_stage=stage, remaining_s=10.0) for stage in (1, 2)]
     validities = (0.0, 1.0, 2.0, 3.0, 4.0)
     views += [wide._replace(wheel_validity=v, pedals_validity=v, shifter_validity=v) for v in validities]
@@ -119,6 +119,6 @@ def sample_views() -> list[HudView]:
     views += [wide._replace(can_up=True, link=link) for link in (LINK_NOBODY, LINK_COMMANDER, LINK_CONNECTING)]
     views += [wide._replace(force=force, can_up=up) for force, up in (("limit", False), ("lost", True), ("on", None))]
     views += [wide._replace(turn_indicators=1.0), wide._replace(turn_indicators=-1.0), wide._replace(hazard_lights=1.0)]
-    views += [wide._replace(lever_words=words) for words in ("two gears", "not now")]
+    views += [wide._replace(lever_label=text) for text in ("two gears", "not now")]
     views += [wide._replace(link_age_s=None, handbrake=1.0, engine_running=False, road_wheel_rad=-0.6)]
     return [*views, wide._replace(stale=True)]

@@ -22,7 +22,7 @@ from simconsole.hud.draw import (
 from simconsole.hud.screen import DRIVING_ARCMIN, SECONDARY_ARCMIN
 from simconsole.hud.shapes import exclamation
 from simconsole.hud.view import HudView
-from simconsole.values.labels import LINK_CONNECTING, LINK_DOWN, LINK_LOST, LINK_NOBODY, LINK_RETRYING, validity_words
+from simconsole.values.labels import LINK_CONNECTING, LINK_DOWN, LINK_LOST, LINK_NOBODY, LINK_RETRYING, validity_label
 from simconsole.values.signals import Validity
 from simconsole.values.units import DEG_PER_RAD
 from simconsole.values.validity import is_trusted
@@ -94,11 +94,11 @@ def steering(view: HudView, box: Box) -> list[DrawItem]:
 def _angle(view: HudView, box: Box) -> list[DrawItem]:
     degrees = view.road_wheel_rad * DEG_PER_RAD
     side = "" if abs(degrees) < 0.05 else (" L" if degrees > 0.0 else " R")
-    words = "--" if view.stale else f"{abs(degrees):.1f} deg{side}"
+    text = "--" if view.stale else f"{abs(degrees):.1f} deg{side}"
     cap = fit_cap_px("00.0 deg R", 0.24 * box.h, 0.88 * box.w)
     bar = Box(box.x, box.y + 0.62 * box.h, box.w, 0.16 * box.h)
     items: list[DrawItem] = [
-        Text(box.cx, box.y + 0.3 * box.h, words, cap, MUTED if view.stale else TEXT, "steering", "c", DRIVING_ARCMIN),
+        Text(box.cx, box.y + 0.3 * box.h, text, cap, MUTED if view.stale else TEXT, "steering", "c", DRIVING_ARCMIN),
         Rect(bar, LINE, "steering.slot", 0.5 * bar.h),
     ]
     if not view.stale:
@@ -136,7 +136,7 @@ def _share(view: HudView, box: Box) -> list[DrawItem]:
 
 
 def _link(view: HudView, box: Box) -> list[DrawItem]:
-    words, age, colour = _link_words(view)
+    text, age, colour = _link_label(view)
     side = 0.2 * box.h
     sign = Box(box.x, box.y + 0.48 * box.h - 0.5 * side, side, side)
     cap = fit_cap_px("SILENT", 0.17 * box.h, box.w - 1.6 * side)
@@ -148,13 +148,13 @@ def _link(view: HudView, box: Box) -> list[DrawItem]:
     )  # fmt: skip
     return [
         title,
-        *_link_shape(words, sign, colour),
-        Text(x, box.y + 0.48 * box.h, words, cap, TEXT if words != "--" else MUTED, "link", "l", DRIVING_ARCMIN),
+        *_link_shape(text, sign, colour),
+        Text(x, box.y + 0.48 * box.h, text, cap, TEXT if text != "--" else MUTED, "link", "l", DRIVING_ARCMIN),
         Text(x, box.y + 0.80 * box.h, age, min(cap, 0.12 * box.h), MUTED, "link.age", "l", SECONDARY_ARCMIN),
     ]
 
 
-def _link_words(view: HudView) -> tuple[str, str, Colour]:
+def _link_label(view: HudView) -> tuple[str, str, Colour]:
     if view.stale:
         return "--", "--", MUTED
     if view.link_age_s is None:
@@ -163,10 +163,10 @@ def _link_words(view: HudView) -> tuple[str, str, Colour]:
     return ("SILENT", shown, CAUTION) if view.link_age_s > view.settings.link_stale_s else ("LIVE", shown, ACTIVE)
 
 
-def _link_shape(words: str, box: Box, colour: Colour) -> list[DrawItem]:
-    if words == "SILENT":
+def _link_shape(text: str, box: Box, colour: Colour) -> list[DrawItem]:
+    if text == "SILENT":
         return exclamation(box, colour, PANEL, "link.shape")
-    inner = 0.0 if words == "LIVE" else 0.36 * box.w
+    inner = 0.0 if text == "LIVE" else 0.36 * box.w
     return [Arc(box.cx, box.cy, 0.5 * box.w, inner, 0.0, 360.0, colour, "link.shape")]
 
 
@@ -175,7 +175,7 @@ def status(view: HudView, box: Box) -> list[DrawItem]:
     cells = [
         ("WHEEL", *_device(view.wheel_validity)),
         ("PEDALS", *_device(view.pedals_validity)),
-        ("SHIFTER", view.lever_words, "warn") if view.lever_words else ("SHIFTER", *_device(view.shifter_validity)),
+        ("SHIFTER", view.lever_label, "warn") if view.lever_label else ("SHIFTER", *_device(view.shifter_validity)),
         ("FORCE", view.force, _FORCE_LEVELS[view.force]),
         ("ENGINE", "running", "good") if view.engine_running else ("ENGINE", "off", "plain"),
         ("HAND BRAKE", *_hand_brake(view)),
@@ -185,15 +185,15 @@ def status(view: HudView, box: Box) -> list[DrawItem]:
     if view.link is not None:
         cells.append(("LINK", view.link, _LINK_LEVELS.get(view.link, "good")))
     items: list[DrawItem] = [Rect(box, PANEL, "status", 0.12 * box.h)]
-    for index, (name, words, level) in enumerate(cells):
+    for index, (name, text, level) in enumerate(cells):
         cell = box.inset(0.01 * box.w).column(index / len(cells), (index + 1) / len(cells))
-        items += _cell(name, "--" if view.stale else words, "plain" if view.stale else level, cell, box)
+        items += _cell(name, "--" if view.stale else text, "plain" if view.stale else level, cell, box)
     return items
 
 
 def _device(validity: float) -> tuple[str, str]:
     bad = validity in (Validity.STALE, Validity.LOST)
-    return validity_words(validity), "warn" if bad else ("good" if is_trusted(validity) else "plain")
+    return validity_label(validity), "warn" if bad else ("good" if is_trusted(validity) else "plain")
 
 
 def _hand_brake(view: HudView) -> tuple[str, str]:
@@ -208,7 +208,7 @@ def _hand_brake(view: HudView) -> tuple[str, str]:
     return ("on", "warn") if view.handbrake > 0.05 else ("off", "plain")
 
 
-def _cell(name: str, words: str, level: str, cell: Box, box: Box) -> list[DrawItem]:
+def _cell(name: str, text: str, level: str, cell: Box, box: Box) -> list[DrawItem]:
     role = f"status.{name.lower().replace(' ', '_')}"
     label = fit_cap_px("HAND BRAKE", 0.14 * box.h, 0.92 * cell.w)
     side = 0.22 * box.h
@@ -218,9 +218,9 @@ def _cell(name: str, words: str, level: str, cell: Box, box: Box) -> list[DrawIt
     if level != "plain":
         items += _lamp(level, Box(x, y - 0.5 * side, side, side), f"{role}.lamp")
         x += 1.35 * side
-    cap = fit_cap_px(words, 0.19 * box.h, cell.right - x - 0.03 * cell.w)
+    cap = fit_cap_px(text, 0.19 * box.h, cell.right - x - 0.03 * cell.w)
     ink = CAUTION if level == "warn" else TEXT
-    return [*items, Text(x, y, words, cap, ink, f"{role}.words", "l", DRIVING_ARCMIN)]
+    return [*items, Text(x, y, text, cap, ink, f"{role}.label", "l", DRIVING_ARCMIN)]
 
 
 def _lamp(level: str, box: Box, role: str) -> list[DrawItem]:

@@ -4,7 +4,7 @@ from typing import Final, NamedTuple
 
 from simconsole.profiles.control import ControlProfile
 from simconsole.profiles.view import HudProfile
-from simconsole.values.labels import commander_words, gear_words, mode_words, notice_words, reason_words
+from simconsole.values.labels import commander_label, gear_label, mode_label, notice_label, reason_label
 from simconsole.values.layout import read
 from simconsole.values.signals import NEVER_TICKS, Event, GateLimit, Mode
 from simconsole.values.state_vector import LAYOUT, Snapshot
@@ -50,10 +50,10 @@ class HudView(NamedTuple):
     gear: str = "N"
     automatic: bool = False
     mode: float = float(Mode.PARKED)
-    mode_words: str = "PARKED"
-    reason_words: str = ""
-    refusal_words: str = ""
-    notice_words: str = ""
+    mode_label: str = "PARKED"
+    reason_label: str = ""
+    refusal_label: str = ""
+    notice_label: str = ""
     recording_failed: bool = False
     takeover_stage: int = 0
     remaining_s: float = 0.0
@@ -74,7 +74,7 @@ class HudView(NamedTuple):
     pedals_validity: float = 0.0
     shifter_validity: float = 0.0
     handbrake_validity: float = 0.0
-    lever_words: str = ""  # what is wrong with the gear that the lever shows
+    lever_label: str = ""  # what is wrong with the gear that the lever shows
     distance_m: float = 0.0
     force: str = "none"  # of the wheel's motor: none, on, limit (more is wished for than it has), lost
     can_up: bool | None = None  # None: this drive has no CAN bus
@@ -96,7 +96,7 @@ def settings_of(hud: HudProfile, control: ControlProfile) -> HudSettings:
     return HudSettings(hud.rpm_max, hud.rpm_red, control.minimal_risk_after_s, control.command_stale_s)
 
 
-def force_words(snapshot: Snapshot, memory: HudMemory) -> tuple[str, bool, float]:
+def force_label(snapshot: Snapshot, memory: HudMemory) -> tuple[str, bool, float]:
     """Return the sign of the wheel's motor, whether it has had one, and when its force was last cut off."""
     clipped_s = snapshot.t_s if snapshot.torque.clipped > 0.0 else memory.clipped_s
     if snapshot.sample.wheel_motor <= 0.0:
@@ -125,7 +125,7 @@ def view(
     vehicle, command, driver = snapshot.vehicle, snapshot.command, snapshot.driver
     arbitration = snapshot.arbitration
     kmh, shown_s = shown_speed(vehicle.vx_mps, snapshot.t_s, memory)
-    force, motor_seen, clipped_s = force_words(snapshot, memory)
+    force, motor_seen, clipped_s = force_label(snapshot, memory)
     paused = bool(int(snapshot.events.events) & Event.PAUSE)
     shown = HudView(
         settings=settings,
@@ -134,13 +134,13 @@ def view(
         shown_kmh=kmh,
         rpm=max(0.0, vehicle.engine_radps * RPM_PER_RADPS),
         engine_running=vehicle.engine_running != 0.0,
-        gear=gear_words(vehicle.gear),
+        gear=gear_label(vehicle.gear),
         automatic=command.automatic != 0.0,
         mode=arbitration.mode,
-        mode_words="PAUSED" if paused else mode_words(arbitration.mode),
-        reason_words=reason_words(arbitration.reason),
-        refusal_words=reason_words(arbitration.refusal) if arbitration.refusal else "",
-        notice_words=notice_words(arbitration.notice),
+        mode_label="PAUSED" if paused else mode_label(arbitration.mode),
+        reason_label=reason_label(arbitration.reason),
+        refusal_label=reason_label(arbitration.refusal) if arbitration.refusal else "",
+        notice_label=notice_label(arbitration.notice),
         recording_failed=snapshot.recording_failed,
         takeover_stage=int(arbitration.takeover_stage),
         remaining_s=_remaining_s(snapshot, settings),
@@ -155,13 +155,13 @@ def view(
         driver_clutch=driver.clutch,
         road_wheel_rad=vehicle.road_wheel_rad,
         remote_lateral=arbitration.remote_lateral,
-        commander=commander_words(arbitration.commander),
+        commander=commander_label(arbitration.commander),
         link_age_s=_link_age_s(snapshot),
         wheel_validity=driver.wheel_validity,
         pedals_validity=_worst(driver.throttle_validity, driver.brake_validity, driver.clutch_validity),
         shifter_validity=driver.shifter_validity,
         handbrake_validity=driver.handbrake_validity,
-        lever_words=_lever_words(driver.lever_fault, command.gate_active),
+        lever_label=_lever_label(driver.lever_fault, command.gate_active),
         distance_m=vehicle.distance_m,
         force=force,
         can_up=can_up,
@@ -178,7 +178,7 @@ def _remaining_s(snapshot: Snapshot, settings: HudSettings) -> float:
     return max(0.0, settings.takeover_window_s - memory.mode_ticks / snapshot.tick_hz)
 
 
-def _lever_words(lever_fault: float, gate_active: float) -> str:
+def _lever_label(lever_fault: float, gate_active: float) -> str:
     if lever_fault > 0.0:
         return "two gears"
     return "not now" if int(gate_active) & GateLimit.GEAR else ""

@@ -44,7 +44,7 @@ _undo: list[Callable[[], object]] = []
 
 
 def spawn(
-    words: Sequence[str],
+    arguments: Sequence[str],
     *,
     told: bytes = b"",
     environment: Mapping[str, str] | None = None,
@@ -53,7 +53,7 @@ def spawn(
     """Start a Python program that ends with this process; it calls `follow_parent`.
 
     Args:
-        words: what follows the interpreter's name.
+        arguments: what follows the interpreter's name.
         told: written to its standard input at once.
         environment: in place of this process's own.
         stderr: where it may complain, as subprocess takes it.
@@ -66,7 +66,7 @@ def spawn(
     # It imports what its parent imports, and nothing that happens to lie in the working directory.
     path = os.pathsep.join(entry for entry in sys.path if entry)
     process = subprocess.Popen(
-        [sys.executable, "-P", *words],
+        [sys.executable, "-P", *arguments],
         stdin=subprocess.PIPE,
         stdout=subprocess.DEVNULL,
         stderr=stderr,

@@ -236,21 +236,21 @@ def _laid_over(environment: Mapping[str, str], changes: Mapping[str, str | None]
     return merged
 
 
-def main(words: list[str]) -> int:
+def main(arguments: list[str]) -> int:
     """Be the supervisor or a worker."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the core's; the pipe tells when to end
     line = read_told()
     if not line:
         return 1
     try:
-        if words == ["supervisor"]:
+        if arguments == ["supervisor"]:
             core = follow_parent(None, SUPERVISOR_END_S)
             supervise(msgspec.json.decode(line, type=SupervisorSpec), core.wants_end, core.is_gone)
         else:
             call = msgspec.json.decode(line, type=WorkerCall)
             run_worker(Path(call.folder), call.worker, follow_parent(call.patience_s).wants_end)
     except (SimConsoleError, OSError, MemoryError) as error:
-        print(f"simconsole {' '.join(words)}: {one_line(error)}", file=sys.stderr)
+        print(f"simconsole {' '.join(arguments)}: {one_line(error)}", file=sys.stderr)
         return SimConsoleError.exit_code
     return 0
 

@@ -220,7 +220,7 @@ Fault: TypeAlias = DeviceFault | CommandFault | ProcessFault
 Faults: TypeAlias = Annotated[tuple[Fault, ...], Meta(max_length=MAX_FAULTS)]
 
 
-def words(fault: Fault) -> str:
+def fault_label(fault: Fault) -> str:
     """Return a fault for people, without its onset: `stuck axis throttle raw -1.0`."""
     plain: dict[str, Any] = msgspec.to_builtins(fault)
     own = {key: value for key, value in plain.items() if key not in Onset.__struct_fields__ and value is not None}

@@ -32,7 +32,7 @@ MODE_COLOURS: Final[dict[float, Colour]] = {
     Mode.STOPPED: (98, 108, 120),
     Mode.EMERGENCY_STOP: (235, 45, 60),
 }
-"""The driven path's colour says who drove; the mode lane names it in words."""
+"""The driven path's colour says who drove; the mode lane names it."""
 
 TAKEOVER_COLOURS: Final[tuple[Colour, ...]] = ((72, 80, 90), (255, 176, 32), (235, 45, 60))
 """No take-over asked for, asked, escalated."""

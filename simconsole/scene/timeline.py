@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from simconsole.scene.entities import Array, Colour
 from simconsole.values.labels import (
-    commander_words,
-    gear_words,
-    indicator_words,
-    mode_words,
-    notice_words,
-    reason_words,
+    commander_label,
+    gear_label,
+    indicator_label,
+    mode_label,
+    notice_label,
+    reason_label,
 )
 from simconsole.values.signals import Event, Mode, Notice
 from simconsole.values.units import DEG_PER_RAD, KMH_PER_MPS, NS_PER_S, RPM_PER_RADPS
@@ -92,7 +92,7 @@ _LANES: Final = (
     ("lanes/turn_indicators", "command.turn_indicators"),
     ("lanes/hazard_lights", "command.hazard_lights"),
 )
-TAKEOVER_WORDS: Final = ("none", "asked", "escalated")
+TAKEOVER_LABELS: Final = ("none", "asked", "escalated")
 _OTHERS: Final = ("x_m", "y_m", "z_m", "yaw_rad", "pitch_rad", "roll_rad")
 NEEDED: Final[tuple[str, ...]] = tuple(
     dict.fromkeys(
@@ -112,7 +112,7 @@ NEEDED: Final[tuple[str, ...]] = tuple(
 
 
 class Lane(NamedTuple):
-    """Changes of one state over time: at `times_ns[i]` it became `states[i]` (words)."""
+    """Changes of one state over time: at `times_ns[i]` it became `states[i]` (labels)."""
 
     path: str
     times_ns: list[int]
@@ -202,19 +202,19 @@ def quaternions(yaw_rad: Array, pitch_rad: Array, roll_rad: Array) -> Array:
     )
 
 
-def lane_words(path: str, value: float) -> str:
+def lane_label(path: str, value: float) -> str:
     """Return what a lane shows for a value."""
     if path == "lanes/mode":
-        return mode_words(value)
+        return mode_label(value)
     if path == "lanes/remote":
-        return commander_words(value)
+        return commander_label(value)
     if path == "lanes/takeover":
-        return TAKEOVER_WORDS[int(value)] if value in (0.0, 1.0, 2.0) else f"{value:g}"
+        return TAKEOVER_LABELS[int(value)] if value in (0.0, 1.0, 2.0) else f"{value:g}"
     if path == "lanes/turn_indicators":
-        return indicator_words(value)
+        return indicator_label(value)
     if path == "lanes/hazard_lights":
         return "on" if value > 0.0 else "off"
-    return gear_words(value)
+    return gear_label(value)
 
 
 def _lanes(
@@ -225,8 +225,8 @@ def _lanes(
     for path, column in _LANES:
         values = table[column]
         changed = _changes(values, None if seen is None else seen[column])
-        words = [lane_words(path, float(values[index])) for index in changed]
-        lanes.append(Lane(path, times_ns[changed].tolist(), words))
+        labels = [lane_label(path, float(values[index])) for index in changed]
+        lanes.append(Lane(path, times_ns[changed].tolist(), labels))
         last[column] = float(values[-1])
     for column in ("arbitration.reason", "arbitration.refusal", "arbitration.notice", "events.events"):
         last[column] = float(table[column][-1])
@@ -250,18 +250,18 @@ def _entries(table: dict[str, Array], times_ns: Ticks, seen: dict[str, float] | 
     found: list[tuple[int, Entry]] = []
     mode, reason = table["arbitration.mode"], table["arbitration.reason"]
     for index in _changes(mode, None if seen is None else seen["arbitration.mode"]).tolist():
-        text = f"{mode_words(mode[index])}: {reason_words(reason[index])}"
+        text = f"{mode_label(mode[index])}: {reason_label(reason[index])}"
         found.append((index, Entry(int(times_ns[index]), _LEVELS.get(mode[index], "INFO"), text)))
-    for column, words in (("arbitration.refusal", reason_words), ("arbitration.notice", notice_words)):
+    for column, label_of in (("arbitration.refusal", reason_label), ("arbitration.notice", notice_label)):
         told = table[column]
         changed = _changes(told, 0.0 if seen is None else seen[column])
         found.extend(
-            (index, Entry(int(times_ns[index]), "WARN", words(told[index])))
+            (index, Entry(int(times_ns[index]), "WARN", label_of(told[index])))
             for index in changed[told[changed] != 0.0].tolist()
         )
     failed = _recording_failed(table["events.events"])
     before = 0.0 if seen is None else float(_recording_failed(np.array([seen["events.events"]]))[0])
-    alarm = notice_words(float(Notice.RECORDING_FAILED))
+    alarm = notice_label(float(Notice.RECORDING_FAILED))
     found.extend((index, Entry(int(times_ns[index]), "ERROR", alarm)) for index in _changes(failed, before).tolist())
     for who, column in (("event", "events.events"), ("event on CAN", "events.ecu_events")):
         events = table[column] - Event.RECORDING_FAILED * _recording_failed(table[column])  # it lasts: told once above

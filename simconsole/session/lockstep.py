@@ -119,16 +119,16 @@ def start_autopilot(
     Raises:
         BridgeError: it cannot be started.
     """
-    words = ["-m", "simconsole", "autopilot", ATTACHED, "--url", _here(url), "--course", course]
+    arguments = ["-m", "simconsole", "autopilot", ATTACHED, "--url", _here(url), "--course", course]
     if bridge.namespace:
-        words += ["--namespace", bridge.namespace]
+        arguments += ["--namespace", bridge.namespace]
     for standard, name in bridge.rename.items():
-        words += ["--rename", f"{standard}={name}"]
+        arguments += ["--rename", f"{standard}={name}"]
     if bridge.certificate is not None:
-        words += ["--certificate", bridge.certificate]
+        arguments += ["--certificate", bridge.certificate]
     shown = {DRIVE_VARIABLE: drive} if token is None else {DRIVE_VARIABLE: drive, TOKEN_VARIABLE: token}
     try:
-        return spawn(words, environment={**os.environ, **shown})
+        return spawn(arguments, environment={**os.environ, **shown})
     except OSError as error:
         raise BridgeError(f"the autopilot cannot be started: {error.strerror}") from None
 

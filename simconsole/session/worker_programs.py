@@ -207,7 +207,7 @@ class LinkWatch(_Watch):
     """Says how the rosbridge link stands; silence of the bridge counts as down."""
 
     def __call__(self) -> str:
-        """Return one word of `simconsole.values.labels`, or how many clients there are."""
+        """Return a label of `simconsole.values.labels`, or how many clients there are."""
         return str(self.status().get("state", LINK_DOWN))
 
 

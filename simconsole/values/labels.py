@@ -1,6 +1,6 @@
-"""The words people read: one place for the driver's view, the operators' view, the report and the command line.
+"""The labels that people read: one place for the driver's view, the operators' view, the report and the command line.
 
-Words are short enough for a glance (facts: at most seven per alert) and never depend on colour.
+Labels are short enough for a glance (at most seven words per alert) and never depend on colour.
 """
 
 from typing import Final
@@ -91,44 +91,44 @@ _VALIDITIES: Final[dict[float, str]] = {
 }
 
 
-def mode_words(mode: float) -> str:
+def mode_label(mode: float) -> str:
     """Return the name of a mode as shown to people, in capitals; an unknown number names itself."""
     return _MODES.get(mode, f"MODE {mode:g}")
 
 
-def reason_words(reason: float) -> str:
+def reason_label(reason: float) -> str:
     """Return why the mode changed, or why a request was refused ("refused: ..."), in at most seven words."""
     return _REASONS.get(reason, f"reason {reason:g}")
 
 
-def notice_words(notice: float) -> str:
+def notice_label(notice: float) -> str:
     """Return what a person is told while it is so, in at most seven words; nothing where there is nothing to tell."""
     return _NOTICES.get(notice, f"notice {notice:g}")
 
 
-def commander_words(commander: float) -> str:
+def commander_label(commander: float) -> str:
     """Return whose commands are the remote side's: ROS, CAN or none."""
     return _COMMANDERS.get(commander, f"commander {commander:g}")
 
 
-def link_words(state: float) -> str:
-    """Return how far a controller's commands may be relied on, in words."""
+def link_label(state: float) -> str:
+    """Return how far a controller's commands may be relied on."""
     return _LINKS.get(state, f"link {state:g}")
 
 
-def validity_words(validity: float) -> str:
-    """Return how far a device is trusted, in words."""
+def validity_label(validity: float) -> str:
+    """Return how far a device is trusted."""
     return _VALIDITIES.get(validity, f"validity {validity:g}")
 
 
-def gear_words(gear: float) -> str:
+def gear_label(gear: float) -> str:
     """Return the lever as printed on its knob: R, N, 1 to 7."""
     if gear < 0.0:
         return "R"
     return f"{gear:.0f}" if gear > 0.0 else "N"
 
 
-def indicator_words(turn_indicators: float) -> str:
+def indicator_label(turn_indicators: float) -> str:
     """Return what the turn indicators show: left, right or off."""
     if turn_indicators < 0.0:
         return "right"

@@ -1,4 +1,4 @@
-from simconsole.canbus.recovery import Recovery, Seldom, error_words
+from simconsole.canbus.recovery import Recovery, Seldom, error_label
 
 
 def test_waits_double_from_one_to_thirty_seconds() -> None:
@@ -35,9 +35,9 @@ def test_up_is_never_due() -> None:
 
 
 def test_error_frames_are_told_in_words() -> None:
-    assert error_words(0x40) == "bus-off"
-    assert error_words(0x20 | 0x08) == "protocol violation, no acknowledgement"
-    assert error_words(0x200) == "unspecified error"
+    assert error_label(0x40) == "bus-off"
+    assert error_label(0x20 | 0x08) == "protocol violation, no acknowledgement"
+    assert error_label(0x200) == "unspecified error"
 
 
 def test_seldom_lets_one_through_and_then_waits() -> None:

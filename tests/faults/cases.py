@@ -10,8 +10,8 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from simconsole.profiles import faults as kinds
-from simconsole.profiles.faults import Fault, words
-from simconsole.values.labels import mode_words, reason_words
+from simconsole.profiles.faults import Fault, fault_label
+from simconsole.values.labels import mode_label, reason_label
 from simconsole.values.signals import Mode, Reason
 from simconsole.values.state_vector import Snapshot
 from tests.faults.course import AUTOPILOT, BY_HAND, BY_HAND_ALONE, HZ, PLACES, WATCHED, Crew, Driven, circuit
@@ -146,7 +146,7 @@ def page() -> str:
 
 def _row(case: Case) -> str:
     measured = [drive(case, place) for place in PLACES]
-    kind = words(measured[0].fault).partition(" controller ros")[0]
+    kind = fault_label(measured[0].fault).partition(" controller ros")[0]
     beside_m = max(abs(entry.driven.lateral_m) for entry in measured)
     if case.reaction is None or case.reason is None:
         return f"| {case.number} | {case.fault} | `{kind}` | none | - | - | - | drives on | {beside_m:.2f} m |"
@@ -155,7 +155,7 @@ def _row(case: Case) -> str:
         ends += f"; under a person's control within {max(_beside(case, place) for place in PLACES):.2f} m"
     longest = max(entry.after_ms for entry in measured if entry.after_ms is not None)
     return (
-        f"| {case.number} | {case.fault} | `{kind}` | {mode_words(case.reaction)} | {reason_words(case.reason)} "
+        f"| {case.number} | {case.fault} | `{kind}` | {mode_label(case.reaction)} | {reason_label(case.reason)} "
         f"| {case.promised_ms:.0f} ms | {longest:.0f} ms | {ends} | {beside_m:.2f} m |"
     )
 

@@ -7,8 +7,8 @@ import pytest
 
 from simconsole.evaluation.metrics.drive_metrics import metrics
 from simconsole.evaluation.metrics.table import drive_of
-from simconsole.profiles.faults import Unplug, words
-from simconsole.values.labels import mode_words, reason_words
+from simconsole.profiles.faults import Unplug, fault_label
+from simconsole.values.labels import mode_label, reason_label
 from simconsole.values.signals import Mode, Reason
 from tests.faults import cases
 from tests.faults.cases import CASES, Case
@@ -27,9 +27,11 @@ def marked(case: Case) -> Any:
 @pytest.mark.parametrize("case", [marked(case) for case in CASES])
 def test_fault_at_a_place(case: Case, place: str) -> None:
     driven, fault, after_ms = cases.drive(case, place)
-    found = metrics(drive_of(driven.rows, driven.columns, HZ, driven.first_tick), driven.course, None, [words(fault)])
+    found = metrics(
+        drive_of(driven.rows, driven.columns, HZ, driven.first_tick), driven.course, None, [fault_label(fault)]
+    )
     print(f"{place}: {driven.modes}, {driven.lateral_m:.2f} m from the lane's centre, after {after_ms} ms")
-    assert [span["fault"] for span in found["faults"]] == [words(fault)]
+    assert [span["fault"] for span in found["faults"]] == [fault_label(fault)]
     assert abs(driven.lateral_m) <= IN_LANE_M
     before = Mode.MANUAL if case.crew.by_hand else Mode.AUTONOMOUS
     if case.reaction is None or case.reason is None:
@@ -41,7 +43,7 @@ def test_fault_at_a_place(case: Case, place: str) -> None:
     assert driven.at_rest
     assert driven.modes[-1] is Mode.STOPPED
     told = [(change["mode"], change["reason"]) for change in found["mode_changes"]]
-    assert (mode_words(case.reaction), reason_words(case.reason)) in told
+    assert (mode_label(case.reaction), reason_label(case.reason)) in told
 
 
 @pytest.mark.parametrize("place", PLACES)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from simconsole.devices.sources.sdl_source import SdlSource
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.devices.synthetic.trace_format import COLUMNS, read_rows, row_text
-from simconsole.hud.banner import ALERT_WORDS, alert_of
+from simconsole.hud.banner import ALERT_LABELS, alert_of
 from simconsole.hud.view import HudMemory, HudSettings, view
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.faults import AxisName, Fault, Freeze, Invalid, Stuck, TwoGears, Unplug
@@ -92,7 +92,7 @@ def drive(
 def alert(driven: Driven, tick: int) -> str:
     """The headline on the driver's screen."""
     snapshot = Snapshot(tick, TICK_HZ, driven.rows[tick - 1])
-    return ALERT_WORDS[alert_of(view(snapshot, 0.0, HudMemory(), HudSettings())[0])][0]
+    return ALERT_LABELS[alert_of(view(snapshot, 0.0, HudMemory(), HudSettings())[0])][0]
 
 
 def test_d00_without_a_fault_both_drive_on() -> None:

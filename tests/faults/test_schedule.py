@@ -14,7 +14,7 @@ from simconsole.evaluation.metrics.fault_metrics import fault_spans
 from simconsole.evaluation.metrics.table import drive_of
 from simconsole.faults.schedule import SERVES, FaultClock
 from simconsole.profiles.device import CockpitProfile, ScriptProfile
-from simconsole.profiles.faults import Fault, Onset, Place, Stuck, words
+from simconsole.profiles.faults import Fault, Onset, Place, Stuck, fault_label
 from simconsole.profiles.files.loader import load, parse, to_text
 from simconsole.profiles.person import PersonPlan
 from simconsole.profiles.scenario import ScenarioProfile
@@ -156,7 +156,9 @@ def test_a_scenario_is_driven_with_its_faults_and_tells_when_each_was_on() -> No
     recorder, names = drive_scenario(profile)
     drive = drive_of(recorder.rows, names, TICK_HZ)
     faults = profile.session.scenario.faults
-    spans = {span.fault: (span.first_tick, span.last_tick) for span in fault_spans(drive, [words(f) for f in faults])}
+    spans = {
+        span.fault: (span.first_tick, span.last_tick) for span in fault_spans(drive, [fault_label(f) for f in faults])
+    }
     assert spans.pop("two_gears gear 3")[1] < 250
     assert spans == {
         "unplug device shifter": (20, 39),

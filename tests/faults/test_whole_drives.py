@@ -19,7 +19,7 @@ from simconsole.recording.bundles.replay_bundle import state_at
 from simconsole.session.lifecycle import drive
 from simconsole.session.resolution import load_session, override, resolve
 from simconsole.tick.advance import advance_row
-from simconsole.values.labels import reason_words
+from simconsole.values.labels import reason_label
 from simconsole.values.signals import Event, Mode, Reason
 from simconsole.values.state_vector import INPUT_WIDTH
 from tests.bridge.networks import go_deaf
@@ -100,7 +100,7 @@ def test_a_whole_drive_with_a_fault_ends_as_promised_and_its_report_says_why(kin
     assert modes[-1] == Mode.STOPPED
     assert abs(table.column("vehicle.vx_mps")[-1]) < 0.1
     report = results(simconsole("report", tmp_path / "bundle", "--json"))
-    assert reason_words(ending.reason) in str(report)
+    assert reason_label(ending.reason) in str(report)
 
 
 def test_a_row_of_a_whole_drive_is_a_state_to_drive_on_from(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ from simconsole.hud.draw import PALETTE, Colour, DrawItem, Text
 from simconsole.hud.layout import layout
 from simconsole.hud.screen import Screen
 from simconsole.hud.view import HudView
-from simconsole.values.labels import mode_words
+from simconsole.values.labels import mode_label
 from simconsole.values.signals import Mode
 
 SCREENS = {
@@ -18,7 +18,7 @@ SCREEN = SCREENS["4:3"]
 
 
 def in_mode(mode: Mode, **more: Any) -> HudView:
-    return HudView(mode=float(mode), mode_words=mode_words(mode), reason_words="driver asked")._replace(**more)
+    return HudView(mode=float(mode), mode_label=mode_label(mode), reason_label="driver asked")._replace(**more)
 
 
 def asked(stage: int, **more: Any) -> HudView:

@@ -5,17 +5,17 @@ import pytest
 from simconsole.hud.draw import ACTIVE, CAUTION, DANGER, TEXT, Colour, Text, bounds
 from simconsole.hud.layout import layout, places
 from simconsole.hud.view import HudView
-from simconsole.values.labels import mode_words
+from simconsole.values.labels import mode_label
 from simconsole.values.signals import Mode
 from tests.hud.pictures import SCREEN, SCREENS, asked, by_role, colours, in_mode, said, shape_of
 
 
 @pytest.mark.parametrize("mode", Mode)
 def test_the_mode_is_always_shown_in_words_and_shape_at_one_place(mode: Mode) -> None:
-    items = layout(in_mode(mode, refusal_words="refused: too fast"), SCREEN)
-    (words,) = by_role(items, "mode.words")
+    items = layout(in_mode(mode, refusal_label="refused: too fast"), SCREEN)
+    (words,) = by_role(items, "mode.label")
     assert isinstance(words, Text)
-    assert words.text == mode_words(mode)
+    assert words.text == mode_label(mode)
     place = places(SCREEN).banner
     shapes = by_role(items, "mode.shape")
     assert shapes
@@ -24,7 +24,7 @@ def test_the_mode_is_always_shown_in_words_and_shape_at_one_place(mode: Mode) ->
         assert place.y <= box.y
         assert box.bottom <= place.bottom
     assert all(bounds(shape).right < words.x for shape in shapes)
-    assert abs(words.x - by_role(layout(in_mode(Mode.MANUAL), SCREEN), "mode.words")[0].x) < 1e-9  # type: ignore[union-attr]
+    assert abs(words.x - by_role(layout(in_mode(Mode.MANUAL), SCREEN), "mode.label")[0].x) < 1e-9  # type: ignore[union-attr]
 
 
 def test_modes_differ_by_shape_and_not_only_by_colour() -> None:
@@ -35,9 +35,9 @@ def test_modes_differ_by_shape_and_not_only_by_colour() -> None:
     assert len(set(shapes.values())) == len(Mode)
 
 
-def test_the_words_fit_their_alert_rules() -> None:
+def test_the_labels_fit_their_alert_rules() -> None:
     for view in (asked(1), asked(2), in_mode(Mode.MINIMAL_RISK), in_mode(Mode.EMERGENCY_STOP), HudView(stale=True)):
-        alert = said(view, "alert.words") + said(view, "alert.todo")
+        alert = said(view, "alert.label") + said(view, "alert.todo")
         assert 1 <= len(" ".join(alert).split()) <= 7, alert
 
 
@@ -73,14 +73,14 @@ def test_the_countdown_is_a_number_and_a_shrinking_bar() -> None:
 
 
 def test_only_the_strongest_alert_is_shown() -> None:
-    held = {"notice_words": "throttle is held: autopilot only steers"}
-    assert said(in_mode(Mode.AUTONOMOUS, **held), "alert.words") == [held["notice_words"]]
-    refusal = {"refusal_words": "refused: too fast", **held}
-    assert said(in_mode(Mode.MANUAL, **refusal), "alert.words") == ["refused: too fast"]
-    assert said(asked(1, **refusal), "alert.words") == ["TAKE OVER"]
-    assert said(in_mode(Mode.MINIMAL_RISK, **refusal), "alert.words") == ["CAR IS STOPPING"]
-    assert said(in_mode(Mode.EMERGENCY_STOP, **refusal), "alert.words") == ["EMERGENCY STOP"]
-    assert said(asked(2, stale=True, **refusal), "alert.words") == ["NO DATA"]
+    held = {"notice_label": "throttle is held: autopilot only steers"}
+    assert said(in_mode(Mode.AUTONOMOUS, **held), "alert.label") == [held["notice_label"]]
+    refusal = {"refusal_label": "refused: too fast", **held}
+    assert said(in_mode(Mode.MANUAL, **refusal), "alert.label") == ["refused: too fast"]
+    assert said(asked(1, **refusal), "alert.label") == ["TAKE OVER"]
+    assert said(in_mode(Mode.MINIMAL_RISK, **refusal), "alert.label") == ["CAR IS STOPPING"]
+    assert said(in_mode(Mode.EMERGENCY_STOP, **refusal), "alert.label") == ["EMERGENCY STOP"]
+    assert said(asked(2, stale=True, **refusal), "alert.label") == ["NO DATA"]
 
 
 def _deuteranope(colour: Colour) -> tuple[float, float, float]:
@@ -102,10 +102,10 @@ def test_alert_colours_stay_apart_for_a_deuteranope() -> None:
 
 def test_a_failed_recording_is_told_to_the_end_and_hides_no_answer() -> None:
     failed = in_mode(Mode.MANUAL, recording_failed=True)
-    assert said(failed, "alert.words") == ["RECORDING FAILED"]
+    assert said(failed, "alert.label") == ["RECORDING FAILED"]
     assert said(failed, "alert.todo") == ["drive is not kept"]
-    held = failed._replace(notice_words="throttle is held: autopilot only steers")
-    assert said(held, "alert.todo") == [held.notice_words]
-    refused = held._replace(refusal_words="refused: too fast")
+    held = failed._replace(notice_label="throttle is held: autopilot only steers")
+    assert said(held, "alert.todo") == [held.notice_label]
+    refused = held._replace(refusal_label="refused: too fast")
     assert said(refused, "alert.todo") == ["refused: too fast"]
-    assert said(asked(1, recording_failed=True), "alert.words") == ["TAKE OVER"], "what saves the car comes first"
+    assert said(asked(1, recording_failed=True), "alert.label") == ["TAKE OVER"], "what saves the car comes first"

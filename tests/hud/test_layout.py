@@ -37,7 +37,7 @@ def test_every_text_is_large_enough_for_the_seat(screen: Screen) -> None:
             assert item.cap_px / screen.px_per_arcmin >= item.arcmin
             if item.role == "speed" and item.text != "NO DATA":
                 assert item.arcmin == 60.0
-            if item.role.startswith(("mode", "reason", "alert", "gear", "link.words")) and "automatic" not in item.role:
+            if item.role.startswith(("mode", "reason", "alert", "gear", "link.label")) and "automatic" not in item.role:
                 assert item.arcmin >= 20.0
 
 
@@ -79,7 +79,7 @@ def test_nothing_else_flashes(mode: Mode) -> None:
 def test_stale_data_shows_no_data_and_no_number_of_the_drive() -> None:
     shown = HudView(
         shown_kmh=37, rpm=3210.0, gear="2", throttle=0.42, distance_m=1234.0, t_s=65.0, link_age_s=0.02,
-        road_wheel_rad=0.1, mode=float(Mode.MANUAL), mode_words="MANUAL", wheel_validity=2.0, engine_running=True,
+        road_wheel_rad=0.1, mode=float(Mode.MANUAL), mode_label="MANUAL", wheel_validity=2.0, engine_running=True,
     )  # fmt: skip
     items = layout(shown._replace(stale=True), SCREEN)
     words = [item.text for item in texts(items) if item.role != "dial.number"]

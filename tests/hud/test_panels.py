@@ -50,8 +50,8 @@ def test_link_states_differ_by_shape() -> None:
 
 def test_a_lost_device_is_named_with_a_warning_shape() -> None:
     items = layout(HudView(wheel_validity=2.0, pedals_validity=4.0, shifter_validity=3.0), SCREEN)
-    assert [t.text for t in texts(items) if t.role == "status.pedals.words"] == ["lost"]
-    assert [t.text for t in texts(items) if t.role == "status.wheel.words"] == ["live"]
+    assert [t.text for t in texts(items) if t.role == "status.pedals.label"] == ["lost"]
+    assert [t.text for t in texts(items) if t.role == "status.wheel.label"] == ["live"]
     assert len(by_role(items, "status.pedals.lamp")) == len(by_role(items, "status.shifter.lamp")) == 3
     assert len(by_role(items, "status.wheel.lamp")) == 1
 
@@ -71,13 +71,13 @@ def test_a_handbrake_that_commands_nothing_is_warned_of(
     validity: float, pulled: float, words: str, warned: bool
 ) -> None:
     items = layout(HudView(wheel_validity=2.0, handbrake_validity=validity, handbrake=pulled), SCREEN)
-    assert [t.text for t in texts(items) if t.role == "status.hand_brake.words"] == [words]
+    assert [t.text for t in texts(items) if t.role == "status.hand_brake.label"] == [words]
     assert bool(by_role(items, "status.hand_brake.lamp")) == warned
 
 
 def test_nobody_is_told_to_let_go_where_nobody_sits() -> None:
     items = layout(HudView(), SCREEN)
-    assert [t.text for t in texts(items) if t.role == "status.hand_brake.words"] == ["off"]
+    assert [t.text for t in texts(items) if t.role == "status.hand_brake.label"] == ["off"]
 
 
 def test_steering_left_is_drawn_to_the_left() -> None:
@@ -98,14 +98,14 @@ def test_authority_is_shared_out_along_one_bar() -> None:
 @pytest.mark.parametrize(("force", "lamp"), [("none", 0), ("on", 1), ("limit", 3), ("lost", 3)])
 def test_force_feedback_is_told_in_words_with_a_warning_where_it_is_cut_off(force: str, lamp: int) -> None:
     items = layout(HudView(force=force), SCREEN)
-    assert [t.text for t in texts(items) if t.role == "status.force.words"] == [force]
+    assert [t.text for t in texts(items) if t.role == "status.force.label"] == [force]
     assert len(by_role(items, "status.force.lamp")) == lamp
 
 
 def test_bus_that_is_down_warns_and_none_is_not_shown() -> None:
-    assert said(HudView(can_up=False), "status.can.words") == ["down"]
-    assert said(HudView(can_up=True), "status.can.words") == ["on"]
-    assert said(HudView(can_up=None), "status.can.words") == []
+    assert said(HudView(can_up=False), "status.can.label") == ["down"]
+    assert said(HudView(can_up=True), "status.can.label") == ["on"]
+    assert said(HudView(can_up=None), "status.can.label") == []
 
 
 @pytest.mark.parametrize(
@@ -123,7 +123,7 @@ def test_bus_that_is_down_warns_and_none_is_not_shown() -> None:
 )
 def test_link_is_told_in_words_with_a_warning_where_nobody_is_left(link: str, lamp: int) -> None:
     items = layout(HudView(link=link), SCREEN)
-    assert said(HudView(link=link), "status.link.words") == [link]
+    assert said(HudView(link=link), "status.link.label") == [link]
     assert len(by_role(items, "status.link.lamp")) == lamp
-    assert said(HudView(link=link, stale=True), "status.link.words") == ["--"]
-    assert said(HudView(link=None), "status.link.words") == []
+    assert said(HudView(link=link, stale=True), "status.link.label") == ["--"]
+    assert said(HudView(link=None), "status.link.label") == []

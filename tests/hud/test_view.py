@@ -92,7 +92,7 @@ def test_the_content_comes_from_the_row() -> None:
     shown, memory = view(row, 0.0, HudMemory(), HudSettings())
     assert (shown.t_s, shown.shown_kmh, shown.gear) == (2.0, 36, "2")
     assert shown.rpm == pytest.approx(3000.0)
-    assert (shown.mode_words, shown.reason_words, shown.refusal_words) == ("SHARED", "driver asked", "")
+    assert (shown.mode_label, shown.reason_label, shown.refusal_label) == ("SHARED", "driver asked", "")
     assert (shown.throttle, shown.brake, shown.clutch, shown.handbrake) == (0.5, 0.125, 0.25, 1.0)
     assert (shown.driver_throttle, shown.remote_lateral, shown.road_wheel_rad) == (0.75, 0.5, -0.1)
     assert shown.link_age_s == pytest.approx(0.02)
@@ -115,8 +115,8 @@ def test_a_refusal_is_shown_beside_the_reason_of_the_mode() -> None:
         arbitration__refusal=Reason.REFUSED_BRAKE_PRESSED,
     )
     shown, _ = view(row, 0.0, HudMemory(), HudSettings())
-    assert shown.reason_words == "driver braked"
-    assert shown.refusal_words == "refused: brake is pressed"
+    assert shown.reason_label == "driver braked"
+    assert shown.refusal_label == "refused: brake is pressed"
 
 
 def test_the_countdown_ends_when_the_arbitration_acts() -> None:
@@ -173,4 +173,4 @@ def test_can_is_shown_only_where_there_is_a_bus() -> None:
 def test_what_is_wrong_with_the_lever_is_said(fields: dict[str, Any], words: str) -> None:
     """D08: the gear is kept, and the driver is told why."""
     shown, _ = view(snapshot(**fields), 0.0, HudMemory(), HudSettings())
-    assert shown.lever_words == words
+    assert shown.lever_label == words

@@ -16,7 +16,7 @@ FEEDER = """
 import os, sys
 from pathlib import Path
 from simconsole.values.state_vector import Snapshot
-from simconsole.scene import follow
+from simconsole.scene.viewer import follow
 from simconsole.scene.viewer.job import load_job
 
 follow.POLL_S = 0.0

@@ -4,7 +4,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from simconsole.scene.timeline import NEEDED, PLOTS, Entry, Memory, Piece, lane_words, piece, quaternions
+from simconsole.scene.timeline import NEEDED, PLOTS, Entry, Memory, Piece, lane_label, piece, quaternions
 from simconsole.values.signals import Event, Mode
 from tests.scene.drives import CHANGES, COLUMNS, TICK_HZ, rows
 
@@ -164,9 +164,9 @@ def test_the_needed_columns_are_columns_of_a_row() -> None:
 
 
 def test_a_lane_names_an_unknown_value() -> None:
-    assert lane_words("lanes/takeover", 7.0) == "7"
-    assert lane_words("lanes/mode", 42.0) == "MODE 42"
-    assert lane_words("lanes/transmission", -1.0) == "R"
+    assert lane_label("lanes/takeover", 7.0) == "7"
+    assert lane_label("lanes/mode", 42.0) == "MODE 42"
+    assert lane_label("lanes/transmission", -1.0) == "R"
 
 
 def test_this_folder_has_no_picture_committed() -> None:

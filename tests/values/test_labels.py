@@ -1,13 +1,13 @@
-from simconsole.values.labels import gear_words, indicator_words, mode_words, notice_words, reason_words, validity_words
+from simconsole.values.labels import gear_label, indicator_label, mode_label, notice_label, reason_label, validity_label
 from simconsole.values.signals import Mode, Notice, Reason, Validity
 
 
 def test_every_mode_reason_and_validity_has_words_of_its_own() -> None:
     for words, members in (
-        (mode_words, Mode),
-        (reason_words, Reason),
-        (validity_words, Validity),
-        (notice_words, Notice),
+        (mode_label, Mode),
+        (reason_label, Reason),
+        (validity_label, Validity),
+        (notice_label, Notice),
     ):
         texts = [words(float(member)) for member in members]
         assert len(set(texts)) == len(members), texts
@@ -16,7 +16,7 @@ def test_every_mode_reason_and_validity_has_words_of_its_own() -> None:
 
 
 def test_words_are_short_and_printable() -> None:
-    for text in (*map(reason_words, Reason), *map(notice_words, Notice)):
+    for text in (*map(reason_label, Reason), *map(notice_label, Notice)):
         assert len(text.split()) <= 7
         assert text.isascii()
         assert text.isprintable()
@@ -24,19 +24,19 @@ def test_words_are_short_and_printable() -> None:
 
 def test_a_refusal_says_so_and_nothing_else_does() -> None:
     for reason in Reason:
-        assert reason_words(reason).startswith("refused: ") == reason.name.startswith("REFUSED_")
+        assert reason_label(reason).startswith("refused: ") == reason.name.startswith("REFUSED_")
 
 
 def test_an_unknown_number_names_itself() -> None:
-    assert mode_words(99.0) == "MODE 99"
-    assert reason_words(2.5) == "reason 2.5"
-    assert validity_words(-1.0) == "validity -1"
-    assert notice_words(9.0) == "notice 9"
+    assert mode_label(99.0) == "MODE 99"
+    assert reason_label(2.5) == "reason 2.5"
+    assert validity_label(-1.0) == "validity -1"
+    assert notice_label(9.0) == "notice 9"
 
 
 def test_the_lever_reads_as_its_knob() -> None:
-    assert [gear_words(gear) for gear in (-1.0, 0.0, 1.0, 6.0)] == ["R", "N", "1", "6"]
+    assert [gear_label(gear) for gear in (-1.0, 0.0, 1.0, 6.0)] == ["R", "N", "1", "6"]
 
 
 def test_indicators_are_named_by_their_side() -> None:
-    assert [indicator_words(side) for side in (-1.0, 0.0, 1.0)] == ["right", "off", "left"]
+    assert [indicator_label(side) for side in (-1.0, 0.0, 1.0)] == ["right", "off", "left"]

@@ -250,11 +250,11 @@ def rest(states: Table, subject: Subject) -> float:
 
 
 def main() -> int:
-    words = argparse.ArgumentParser(description=__doc__)
-    words.add_argument("--steps", type=int, default=100_000_000)
-    words.add_argument("--car", choices=SUBJECTS, default="hatchback")
-    words.add_argument("--seed", type=int, default=random.SystemRandom().randrange(2**32))
-    given = words.parse_args()
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--steps", type=int, default=100_000_000)
+    parser.add_argument("--car", choices=SUBJECTS, default="hatchback")
+    parser.add_argument("--seed", type=int, default=random.SystemRandom().randrange(2**32))
+    given = parser.parse_args()
     print(f"seed {given.seed}")
     subject = SUBJECTS[given.car]
     found = fuzz(given.steps, given.seed, subject)

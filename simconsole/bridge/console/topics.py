@@ -9,7 +9,7 @@ from typing import Any, Final, NamedTuple
 
 from simconsole.bridge.messages import Registry
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.values.labels import commander_words, link_words, mode_words, notice_words, reason_words
+from simconsole.values.labels import commander_label, link_label, mode_label, notice_label, reason_label
 from simconsole.values.signals import NEVER_TICKS, Link, Mode, RemoteCommand
 from simconsole.values.state_vector import Snapshot
 from simconsole.values.trigonometry import cos, sin
@@ -216,12 +216,12 @@ class Outputs:
             header=tick.header(BASE_FRAME),
             mode=int(decided.mode),
             reason=int(decided.reason),
-            mode_words=mode_words(decided.mode),
-            reason_words=reason_words(decided.reason),
+            mode_words=mode_label(decided.mode),
+            reason_words=reason_label(decided.reason),
             refusal=int(decided.refusal),
-            refusal_words=reason_words(decided.refusal) if decided.refusal else "",
+            refusal_words=reason_label(decided.refusal) if decided.refusal else "",
             notice=int(snapshot.notice),
-            notice_words=notice_words(snapshot.notice),
+            notice_words=notice_label(snapshot.notice),
             remote_lateral=decided.remote_lateral,
             remote_longitudinal=decided.remote_longitudinal,
             person_road_wheel=decided.person_road_wheel_rad,
@@ -232,7 +232,7 @@ class Outputs:
             remote_brake=decided.remote_brake,
             takeover_stage=int(decided.takeover_stage),
             commander=int(decided.commander),
-            commander_words=commander_words(decided.commander),
+            commander_words=commander_label(decided.commander),
             ros=self._controller(
                 snapshot.ros, snapshot.ros_link, decided.ros_road_wheel_rad, decided.ros_throttle, decided.ros_brake,
                 snapshot.tick_hz,
@@ -248,7 +248,7 @@ class Outputs:
     ) -> Any:
         return self._types["Controller"](
             state=int(link.state),
-            state_words=link_words(link.state),
+            state_words=link_label(link.state),
             road_wheel=road_wheel_rad,
             throttle=throttle,
             brake=brake,

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, cast
 
 from simconsole.canbus.bus.multicast import LoopbackBus
 from simconsole.canbus.codec import Frame
-from simconsole.canbus.recovery import BUS_OFF, Recovery, Seldom, error_words
+from simconsole.canbus.recovery import BUS_OFF, Recovery, Seldom, error_label
 from simconsole.profiles.can import CanProfile
 from simconsole.values.errors import CanError
 
@@ -164,8 +164,8 @@ class CanPort:
         if message.is_error_frame:
             self._error_frames += 1
             if self._may_tell(self._clock_s()):
-                words = error_words(message.arbitration_id)
-                _logger.warning("CAN %s: error frame: %s (%d so far)", self._profile.channel, words, self._error_frames)
+                said = error_label(message.arbitration_id)
+                _logger.warning("CAN %s: error frame: %s (%d so far)", self._profile.channel, said, self._error_frames)
             if message.arbitration_id & BUS_OFF:
                 self._down("bus-off")
             return None

@@ -9,7 +9,7 @@ import numpy as np
 from simconsole.evaluation.metrics.fault_metrics import plain_spans
 from simconsole.evaluation.metrics.table import Array, Drive
 from simconsole.evaluation.metrics.takeovers import takeovers
-from simconsole.values.labels import mode_words, reason_words
+from simconsole.values.labels import mode_label, reason_label
 from simconsole.values.signals import Mode
 from simconsole.values.units import KMH_PER_MPS
 from simconsole.world.course import Course
@@ -109,8 +109,8 @@ def metrics(
             {
                 "tick": change.tick,
                 "t_s": change.t_s,
-                "mode": mode_words(change.mode),
-                "reason": reason_words(change.reason),
+                "mode": mode_label(change.mode),
+                "reason": reason_label(change.reason),
                 "refused": change.refused,
                 "distance_m": change.distance_m,
             }
@@ -144,4 +144,4 @@ def _autonomous(drive: Drive, way: Track) -> dict[str, float | None] | None:
 
 def _time_in_mode(drive: Drive) -> dict[str, float]:
     modes, counts = np.unique(drive.column("arbitration.mode"), return_counts=True)
-    return {mode_words(m): c / drive.tick_hz for m, c in zip(modes.tolist(), counts.tolist(), strict=True)}
+    return {mode_label(m): c / drive.tick_hz for m, c in zip(modes.tolist(), counts.tolist(), strict=True)}

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simconsole.evaluation.metrics.table import Array, Drive
-from simconsole.values.labels import reason_words
+from simconsole.values.labels import reason_label
 from simconsole.values.signals import Mode
 from simconsole.values.units import RAD_PER_DEG
 
@@ -79,7 +79,7 @@ def _measured(drive: Drive, lateral_m: Array, span: Span) -> dict[str, Any]:
     return {
         "tick": drive.first_tick + span.authority,
         "asked": span.asked,
-        "reason": reason_words(float(drive.column("arbitration.reason")[span.authority])),
+        "reason": reason_label(float(drive.column("arbitration.reason")[span.authority])),
         "request_tick": drive.first_tick + span.start if span.asked else None,
         "first_steer_s": first(np.abs(own_motion - own_motion[span.start]) >= FIRST_STEER_RAD),
         "first_brake_s": first(drive.column("arbitration.person_brake") >= FIRST_PEDAL),

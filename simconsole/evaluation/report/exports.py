@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from simconsole.processes.lifetimes import remove_half_made, undone
-from simconsole.profiles.faults import words
+from simconsole.profiles.faults import fault_label
 from simconsole.recording.bundles.bundle import add_export, open_bundle
 from simconsole.recording.bundles.log import LogTable
 from simconsole.recording.bundles.replay_bundle import recorded_session
@@ -89,7 +89,7 @@ def _report(
 
     course, title = _course(resolved), resolved.session.title or folder.name
     first_tick = int(table.ticks[0]) if len(table.ticks) else 1
-    faults = [words(fault) for fault in resolved.session.scenario.faults]
+    faults = [fault_label(fault) for fault in resolved.session.scenario.faults]
     if page:
         return write_page(
             folder / REPORT,

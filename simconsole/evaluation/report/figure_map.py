@@ -9,7 +9,7 @@ from simconsole.evaluation.metrics.drive_metrics import JUMP_M, ModeChange, Trac
 from simconsole.evaluation.metrics.table import Drive
 from simconsole.evaluation.metrics.thinning import path_thinned
 from simconsole.evaluation.report.colours import END, LIMIT, MODES, NOTE, PERSON, REMOTE, START, THEORY
-from simconsole.values.labels import mode_words
+from simconsole.values.labels import mode_label
 from simconsole.values.signals import Mode
 from simconsole.world.course import Course
 
@@ -79,7 +79,7 @@ def _draw_changes(axes: Any, changes: list[ModeChange]) -> None:
         )
         named = True
         axes.annotate(
-            mode_words(change.mode),
+            mode_label(change.mode),
             (change.x_m, change.y_m),
             xytext=(0, 9 if change.mode == Mode.AUTONOMOUS else -15),
             ha="center",

@@ -9,7 +9,7 @@ from simconsole.evaluation.metrics.drive_metrics import ModeChange, Track, metri
 from simconsole.evaluation.metrics.table import Array, Drive
 from simconsole.evaluation.metrics.thinning import thinned
 from simconsole.evaluation.report.colours import BAND, END, LIMIT, MODES, NOTE, PERSON, REMOTE
-from simconsole.values.labels import mode_words
+from simconsole.values.labels import mode_label
 from simconsole.values.signals import Mode
 from simconsole.values.units import DEG_PER_RAD, KMH_PER_MPS
 from simconsole.world.course import Course
@@ -91,8 +91,8 @@ def _draw_modes(axes: Any, drive: Drive, way: Track) -> None:
         kind = int(mode[start])
         axes.barh(0.5, right - left, left=left, height=1.0, color=MODES.get(kind, NOTE), linewidth=0.0)
         if right - left > _NARROW * whole:
-            words = mode_words(kind)
-            axes.text((left + right) / 2, 0.5, words, ha="center", va="center", color="white", fontsize=7.5)
+            text = mode_label(kind)
+            axes.text((left + right) / 2, 0.5, text, ha="center", va="center", color="white", fontsize=7.5)
     axes.set_ylim(0.0, 1.0)
 
 

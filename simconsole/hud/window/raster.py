@@ -30,12 +30,12 @@ CAP_PER_SIZE: Final = 0.501
 FONT_SCALE: Final = 0.6875
 """What pygame takes a size for its own font times."""
 KEPT: Final = 600
-"""Drawn shapes and words kept for the next frame."""
+"""Drawn shapes and texts kept for the next frame."""
 LARGE_PX: Final = 200.0
 """Shapes above this size are smoothed two times instead of four."""
 ARC_STEP_DEG: Final = 1.5
 WORDS_SCALE: Final = 4
-"""How much larger words are drawn before they are scaled down."""
+"""How much larger texts are drawn before they are scaled down."""
 
 
 class Painter:
@@ -80,7 +80,7 @@ class Painter:
         return areas
 
     def _sprite(self, item: DrawItem) -> tuple[pygame.Surface, tuple[int, int]]:
-        return self._words(item) if isinstance(item, Text) else _shape(item)
+        return self._text(item) if isinstance(item, Text) else _shape(item)
 
     def _font(self, size: int) -> pygame.font.Font:
         """Return pygame's own font, as `Font(None, size)` does."""
@@ -88,7 +88,7 @@ class Painter:
 
         return pygame.font.Font(io.BytesIO(self._typeface), max(1, int(FONT_SCALE * size)))
 
-    def _words(self, item: Text) -> tuple[pygame.Surface, tuple[int, int]]:
+    def _text(self, item: Text) -> tuple[pygame.Surface, tuple[int, int]]:
         import pygame
 
         size = max(1, math.ceil(WORDS_SCALE * item.cap_px / CAP_PER_SIZE - 1e-6))

@@ -51,9 +51,9 @@ def export_apart(job: Job, path: Path, deadline_s: float = 60.0) -> None:
     with temporary_folder() as folder, (folder / "said").open("w+b") as said:
         job_path = folder / "job.npz"
         save_job(job_path, job)
-        words = ["-m", "simconsole.scene.viewer.export", ATTACHED, str(job_path), str(path)]
+        arguments = ["-m", "simconsole.scene.viewer.export", ATTACHED, str(job_path), str(path)]
         try:
-            process = spawn(words, stderr=said.fileno())
+            process = spawn(arguments, stderr=said.fileno())
         except OSError as error:
             raise WorkerError(f"{path}: the scene was not written: {error.strerror}") from None
         try:

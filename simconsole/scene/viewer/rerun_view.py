@@ -30,10 +30,10 @@ from simconsole.scene.entities import (
     on_map,
     raised,
 )
-from simconsole.scene.timeline import PLOTS, TAKEOVER_WORDS, Entry, Lane, Piece, Strip, Ticks
+from simconsole.scene.timeline import PLOTS, TAKEOVER_LABELS, Entry, Lane, Piece, Strip, Ticks
 from simconsole.scene.viewer.blueprint import MAP, TIMELINE, blueprint
 from simconsole.values.errors import WorkerError
-from simconsole.values.labels import mode_words
+from simconsole.values.labels import mode_label
 
 APPLICATION: Final = "simconsole"
 DRIVEN_PX: Final = 2.0
@@ -75,8 +75,8 @@ class RerunView:
         for plot in PLOTS:
             names = [line.name for line in plot.series]
             self._still(plot.path, rr.SeriesLines(names=names, colors=[line.colour for line in plot.series]))
-        modes = {mode_words(mode): colour for mode, colour in MODE_COLOURS.items()}
-        stages = dict(zip(TAKEOVER_WORDS, TAKEOVER_COLOURS, strict=True))
+        modes = {mode_label(mode): colour for mode, colour in MODE_COLOURS.items()}
+        stages = dict(zip(TAKEOVER_LABELS, TAKEOVER_COLOURS, strict=True))
         for lane, colours in (("lanes/mode", modes), ("lanes/takeover", stages)):
             self._still(lane, rr.StateConfiguration(values=list(colours), colors=list(colours.values())))
         if world is not None:

@@ -22,7 +22,7 @@ from simconsole.hud.layout import layout, sample_views
 from simconsole.hud.screen import Screen
 from simconsole.hud.view import HudView
 from simconsole.hud.window.raster import Painter, render, render_png, snapshot_png
-from simconsole.values.labels import mode_words
+from simconsole.values.labels import mode_label
 from simconsole.values.signals import Mode
 from simconsole.values.state_vector import PLATFORM_AT, Snapshot
 
@@ -34,12 +34,12 @@ RED, BLACK = (250, 0, 0), (0, 0, 0)
 def states() -> dict[str, HudView]:
     """One picture of each kind: every mode, both take-over stages in both halves of the flash, a refusal, no data."""
     base = HudView(shown_kmh=37, rpm=3200.0, gear="2", throttle=0.4, engine_running=True, link_age_s=0.02)
-    found = {m.name: base._replace(mode=float(m), mode_words=mode_words(m), reason_words="driver asked") for m in Mode}
+    found = {m.name: base._replace(mode=float(m), mode_label=mode_label(m), reason_label="driver asked") for m in Mode}
     asked = found["TAKEOVER_REQUESTED"]._replace(remaining_s=6.0)
     found["stage 1"] = asked._replace(takeover_stage=1)
     found["stage 2"] = asked._replace(takeover_stage=2, t_s=0.0)
     found["stage 2 inverted"] = asked._replace(takeover_stage=2, t_s=0.3)
-    found["refused"] = found["MANUAL"]._replace(refusal_words="refused: too fast", rpm=6500.0)
+    found["refused"] = found["MANUAL"]._replace(refusal_label="refused: too fast", rpm=6500.0)
     found["devices lost"] = base._replace(wheel_validity=4.0, pedals_validity=3.0, handbrake=1.0, link_age_s=None)
     found["no data"] = base._replace(stale=True)
     return found
