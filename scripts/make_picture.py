@@ -46,8 +46,8 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         left, right = Path(folder) / "instruments.png", Path(folder) / "map.png"
         index = int(np.searchsorted(table.ticks, given.at * table.tick_hz))
-        snapshot_png(Snapshot(int(table.ticks[index]), table.tick_hz, table.rows[index]), left)
-        drive = drive_of(table.rows, table.columns, table.tick_hz, int(table.ticks[0]))
+        snapshot_png(Snapshot(int(table.ticks[index]), table.tick_hz, table.vectors[index]), left)
+        drive = drive_of(table.vectors, table.columns, table.tick_hz, int(table.ticks[0]))
         course = None if resolved.world is None else Course(resolved.world)
         way = track(drive, course)
         with rc_context({**STYLE, "axes.grid": False}):

@@ -18,7 +18,7 @@ REQUESTS: Final[dict[int, Event]] = {
 }
 """ECU_COMMAND.REQUEST; 0 asks for nothing."""
 WHEEL_COLUMNS: Final = ("platform.fl_radps", "platform.fr_radps", "platform.rl_radps", "platform.rr_radps")
-"""Columns of a row that SC_WHEELS needs; vehicles without them do not send it."""
+"""Columns of a state vector that SC_WHEELS needs; vehicles without them do not send it."""
 _WHEELS: Final = ("FRONT_LEFT_SPEED", "FRONT_RIGHT_SPEED", "REAR_LEFT_SPEED", "REAR_RIGHT_SPEED")
 _MOST_MS: Final = 1020.0
 
@@ -93,7 +93,7 @@ def motion(now: Moment) -> Mapping[str, float]:
 def wheels(now: Moment) -> Mapping[str, float]:
     """Return SC_WHEELS."""
     assert now.wheels is not None
-    return {name: float(now.snapshot.row[at]) for name, at in zip(_WHEELS, now.wheels, strict=True)}
+    return {name: float(now.snapshot.vector[at]) for name, at in zip(_WHEELS, now.wheels, strict=True)}
 
 
 def powertrain(now: Moment) -> Mapping[str, float]:
@@ -137,7 +137,7 @@ BUILDERS: Final[dict[str, Builder]] = {
 
 
 def wheel_columns(columns: tuple[str, ...]) -> tuple[int, ...] | None:
-    """Return where a row holds the wheels' speeds, None where the vehicle has none."""
+    """Return where a state vector holds the wheels' speeds, None where the vehicle has none."""
     if not all(name in columns for name in WHEEL_COLUMNS):
         return None
     return tuple(columns.index(name) for name in WHEEL_COLUMNS)

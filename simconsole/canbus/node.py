@@ -52,7 +52,7 @@ class CanNode:
             codec: the messages.
             profile: time-out, counter step, bad frames in a row.
             tick_hz: control ticks per second.
-            wheels: where a row holds the four wheels' speeds (messages.wheel_columns).
+            wheels: where a state vector holds the four wheels' speeds (messages.wheel_columns).
         """
         self._codec = codec
         self._wheels = wheels

@@ -174,7 +174,7 @@ def _remaining_s(snapshot: Snapshot, settings: HudSettings) -> float:
     """Return how long the person still has to take over; 0 where nobody asks."""
     if snapshot.arbitration.mode != Mode.TAKEOVER_REQUESTED:
         return 0.0
-    memory = read(snapshot.row, LAYOUT.memory)
+    memory = read(snapshot.vector, LAYOUT.memory)
     return max(0.0, settings.takeover_window_s - memory.mode_ticks / snapshot.tick_hz)
 
 

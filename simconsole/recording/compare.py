@@ -59,7 +59,7 @@ def compare(
             the last match counts. Columns without one must be equal to the byte; `inf` ignores a column.
 
     Returns:
-        The first tick that differs, and its first differing column in row order.
+        The first tick that differs, and its first differing column in the order of the state vector.
     """
     for key in ("columns", "tick_hz"):
         if getattr(first_header, key) != getattr(second_header, key):
@@ -72,9 +72,9 @@ def compare(
     for left, right in pairs:
         if left is None or right is None or left.tick != right.tick:
             return Comparison(False, ticks, None, f"after {ticks} equal ticks: {_name(left)} against {_name(right)}")
-        if fields := unequal_fields(left.row, right.row, allowed):
+        if fields := unequal_fields(left.vector, right.vector, allowed):
             index = fields[0]
-            found = FieldDifference(left.tick, columns[index], float(left.row[index]), float(right.row[index]))
+            found = FieldDifference(left.tick, columns[index], float(left.vector[index]), float(right.vector[index]))
             around = [*before, (left, right), *islice(pairs, CONTEXT_TICKS)]
             return Comparison(False, ticks, found, _window(around, columns, fields, left.tick))
         before.append((left, right))
@@ -114,9 +114,10 @@ def _window(around: Iterable[Pair], columns: tuple[str, ...], fields: list[int],
     lines = [head]
     for index in fields[:SHOWN_FIELDS]:
         lines.append(columns[index])
-        lines.append("  first   " + "".join(f"{left.row[index]:>14.6g}" for left, _ in pairs))
-        lines.append("  second  " + "".join(f"{right.row[index]:>14.6g}" for _, right in pairs))
-        lines.append("  change  " + "".join(f"{right.row[index] - left.row[index]:>14.3g}" for left, right in pairs))
+        lines.append("  first   " + "".join(f"{left.vector[index]:>14.6g}" for left, _ in pairs))
+        lines.append("  second  " + "".join(f"{right.vector[index]:>14.6g}" for _, right in pairs))
+        changes = (right.vector[index] - left.vector[index] for left, right in pairs)
+        lines.append("  change  " + "".join(f"{change:>14.3g}" for change in changes))
     if len(fields) > SHOWN_FIELDS:
         lines.append(f"and {len(fields) - SHOWN_FIELDS} more columns at tick {tick}")
     return "\n".join(lines)

@@ -3,12 +3,12 @@
 ::
 
     magic (8)   length u32 | crc32 u32 | header JSON
-    per tick    length u32 | crc32 u32 | tick i64 | row float64 * columns | chained hash (8)
+    per tick    length u32 | crc32 u32 | tick i64 | state vector, float64 * columns | chained hash (8)
 
 Lengths, checksums and ticks are little-endian everywhere, so that a log of another machine can at least be named;
-rows are the recording machine's own float64, whose byte order the header states. All tick frames of a log have one
-length, so reading goes on behind a damaged frame. The chained hash is blake2b over the previous hash, the tick and
-the row: two drives are equal exactly if their last hashes are.
+state vectors are the recording machine's own float64, whose byte order the header states. All tick frames of a log have
+one length, so reading goes on behind a damaged frame. The chained hash is blake2b over the previous hash, the tick and
+the state vector: two drives are equal exactly if their last hashes are.
 """
 
 import sys
@@ -36,13 +36,13 @@ _HASHER: Final = blake2b(digest_size=HASH_BYTES)
 
 
 class LogHeader(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What a reader must know before the first row. Holds no wall time: equal drives make equal logs."""
+    """What a reader must know before the first state vector. Holds no wall time: equal drives make equal logs."""
 
     tick_hz: int
     columns: tuple[str, ...]
     input_columns: int  # the first so many columns are what came from outside
     console_version: str
-    source_sha256: str  # of the sources that made the rows
+    source_sha256: str  # of the sources that made the state vectors
     session_sha256: str  # of the resolved session profile
     schema: int = SCHEMA
     byte_order: str = sys.byteorder
@@ -50,10 +50,10 @@ class LogHeader(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
 
 
 class Record(NamedTuple):
-    """One tick as recorded: its row and the chained hash up to and including it."""
+    """One tick as recorded: its state vector and the chained hash up to and including it."""
 
     tick: int
-    row: Row
+    vector: Row
     digest: bytes
 
 
@@ -137,25 +137,25 @@ def _hash(content: bytes) -> bytes:
 
 
 def frame_size(width: int) -> int:
-    """Return the bytes of one tick's frame for rows of `width` columns."""
+    """Return the bytes of one tick's frame for state vectors of `width` columns."""
     return _HEAD.size + _TICK.size + 8 * width + HASH_BYTES
 
 
-def chain(previous: bytes, tick: int, row: bytes) -> bytes:
+def chain(previous: bytes, tick: int, vector: bytes) -> bytes:
     """Return the chained hash after a tick, from the hash before it."""
-    return _hash(previous + _TICK.pack(tick) + row)
+    return _hash(previous + _TICK.pack(tick) + vector)
 
 
-def seal(previous: bytes, tick: int, row: bytes) -> tuple[bytes, bytes]:
+def seal(previous: bytes, tick: int, vector: bytes) -> tuple[bytes, bytes]:
     """Return the frame of one tick and the chained hash in it."""
-    body = _TICK.pack(tick) + row
+    body = _TICK.pack(tick) + vector
     digest = _hash(previous + body)
     body += digest
     return _HEAD.pack(len(body), crc32(body)) + body, digest
 
 
 def unseal(frame: bytes, width: int) -> Record | str:
-    """Return the record in one frame, or why there is none. The row is a read-only view of the frame."""
+    """Return the record in one frame, or why there is none. The state vector is a read-only view of the frame."""
     size, whole = len(frame), frame_size(width)
     if size < whole:
         return f"{TORN}, {size} of {whole} bytes"
@@ -164,8 +164,8 @@ def unseal(frame: bytes, width: int) -> Record | str:
         return f"damaged, length {length} instead of {whole - _HEAD.size}"
     if crc32(memoryview(frame)[_HEAD.size :]) != checksum:
         return "damaged, wrong checksum"
-    row = np.frombuffer(frame, dtype=np.float64, count=width, offset=_HEAD.size + _TICK.size)
-    return Record(_TICK.unpack_from(frame, _HEAD.size)[0], row, frame[-HASH_BYTES:])
+    vector = np.frombuffer(frame, dtype=np.float64, count=width, offset=_HEAD.size + _TICK.size)
+    return Record(_TICK.unpack_from(frame, _HEAD.size)[0], vector, frame[-HASH_BYTES:])
 
 
 class Scan:

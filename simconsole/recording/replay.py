@@ -10,12 +10,12 @@ from simconsole.recording.framing import START_OF_CHAIN, LogHeader, Record, chai
 from simconsole.values.errors import RecordingError
 from simconsole.values.kernels import Row
 
-AdvanceRow = Callable[[int, Row, Row], Row]
-"""`advance(tick, previous_row, input_row) -> row`: makes row `tick` from the row before it and recorded inputs."""
+AdvanceVector = Callable[[int, Row, Row], Row]
+"""`advance(tick, previous, inputs)` makes the state vector of `tick` from the one before it and recorded inputs."""
 
 
 class Difference(NamedTuple):
-    """Where two rows first differ. `field` is a column, or 'hash' where only the recorded hash does not fit."""
+    """Where two vectors first differ. `field` is a column, or 'hash' where only the recorded hash does not fit."""
 
     tick: int
     field: str
@@ -25,7 +25,7 @@ class Difference(NamedTuple):
     def __str__(self) -> str:
         """One line for a person."""
         if self.field == "hash":
-            return f"tick {self.tick}: the row is equal, but the recorded hash does not belong to it"
+            return f"tick {self.tick}: the state vector is equal, but the recorded hash does not belong to it"
         return f"tick {self.tick}: {self.field}: recorded {self.recorded!r}, replayed {self.replayed!r}"
 
 
@@ -35,7 +35,7 @@ class ReplayResult(NamedTuple):
     equal: bool
     ticks: int  # compared and found equal
     difference: Difference | None
-    digest: bytes  # chained hash of the replayed rows
+    digest: bytes  # chained hash of the replayed state vectors
     problems: tuple[str, ...] = ()  # why equal ticks are not a whole drive: a recording that failed, a damaged log
     remarks: tuple[str, ...] = ()  # what is worth knowing, and no problem: a torn last tick, other sources
 
@@ -50,17 +50,17 @@ def replay(
     header: LogHeader,
     columns: tuple[str, ...],
     initial: Row,
-    advance: AdvanceRow,
+    advance: AdvanceVector,
     first_tick: int | None = None,
     recorded_ticks: int | None = None,
 ) -> ReplayResult:
-    """Make every row of `records` again from its first `header.input_columns` columns and compare the bytes.
+    """Make every state vector of `records` again from its first `header.input_columns` columns and compare the bytes.
 
     Args:
         records: the recorded ticks, in order and without gaps (a `LogReader`).
         header: of the recording.
-        columns: of the rows that `advance` makes; must be the recorded ones.
-        initial: the row before the first recorded tick.
+        columns: of the state vectors that `advance` makes; must be the recorded ones.
+        initial: the state vector before the first recorded tick.
         advance: see `AdvanceRow`.
         first_tick: the tick after `initial`, where the caller knows it.
         recorded_ticks: how many ticks were recorded, where the drive was finished and said so.
@@ -75,15 +75,15 @@ def replay(
         unlike = next((pair for pair in zip(header.columns, columns, strict=False) if pair[0] != pair[1]), None)
         detail = f"{unlike[0]!r} where this version has {unlike[1]!r}" if unlike else "another number of columns"
         raise RecordingError(f"the recording's columns are not this version's: {detail}")
-    row, digest, ticks, expected = initial, START_OF_CHAIN, 0, first_tick
+    vector, digest, ticks, expected = initial, START_OF_CHAIN, 0, first_tick
     for record in records:
         if expected is not None and record.tick != expected:
             raise RecordingError(f"the recording cannot be replayed from tick {expected} on: it is missing")
-        inputs = record.row[: header.input_columns].copy()  # a read-only view would be another type to numba
-        row = advance(record.tick, row, inputs)
-        digest = chain(digest, record.tick, row.tobytes())
-        if (field := first_unequal(record.row, row)) is not None:
-            found = Difference(record.tick, columns[field], float(record.row[field]), float(row[field]))
+        inputs = record.vector[: header.input_columns].copy()  # a read-only view would be another type to numba
+        vector = advance(record.tick, vector, inputs)
+        digest = chain(digest, record.tick, vector.tobytes())
+        if (field := first_unequal(record.vector, vector)) is not None:
+            found = Difference(record.tick, columns[field], float(record.vector[field]), float(vector[field]))
             return ReplayResult(False, ticks, found, digest)
         if digest != record.digest:
             return ReplayResult(False, ticks, Difference(record.tick, "hash", math.nan, math.nan), digest)

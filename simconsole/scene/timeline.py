@@ -1,4 +1,4 @@
-"""What moves: rows of ticks to poses, plots, mode lane, driven path and log lines. Pure arrays, no rerun.
+"""What moves: state vectors of ticks to poses, plots, mode lane, driven path and log lines. Pure arrays, no rerun.
 
 Works on pieces of a drive in order: `Memory` carries over what the next piece continues.
 """
@@ -108,7 +108,7 @@ NEEDED: Final[tuple[str, ...]] = tuple(
         )
     )
 )
-"""The columns of a row that the scene reads."""
+"""The columns of a state vector that the scene reads."""
 
 
 class Lane(NamedTuple):
@@ -136,7 +136,7 @@ class Strip(NamedTuple):
 
 
 class Piece(NamedTuple):
-    """Everything that some rows add to the scene; the first four and the plots are at the scene's own rate."""
+    """Everything that some state vectors add to the scene; the first four and the plots are at the scene's own rate."""
 
     ticks: Ticks
     times_ns: Ticks
@@ -156,19 +156,19 @@ class Memory(NamedTuple):
 
 
 def piece(
-    rows: Array, columns: Sequence[str], ticks: Ticks, tick_hz: int, rate_hz: int, memory: Memory
+    vectors: Array, columns: Sequence[str], ticks: Ticks, tick_hz: int, rate_hz: int, memory: Memory
 ) -> tuple[Piece, Memory]:
-    """Turn rows into shapes.
+    """Turn state vectors into shapes.
 
     Args:
-        rows: float64 [N, columns], in the order of their ticks; N at least 1.
+        vectors: float64 [N, columns], in the order of their ticks; N at least 1.
         columns: name of each column, `stage.field_unit` (simconsole.values.state_vector.columns).
         ticks: int64 [N].
         tick_hz: ticks per second.
         rate_hz: how often poses and plots are kept; changes of mode and log lines keep their exact tick.
         memory: what the piece before left; `Memory()` at the start.
     """
-    table = {name: rows[:, columns.index(name)] for name in NEEDED}
+    table = {name: vectors[:, columns.index(name)] for name in NEEDED}
     times_ns = ticks * NS_PER_S // tick_hz
     keep = np.flatnonzero(ticks % max(1, round(tick_hz / rate_hz)) == 0)
     kept = {name: column[keep] for name, column in table.items()}

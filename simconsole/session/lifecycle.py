@@ -103,7 +103,7 @@ class LogRecorder:
     def write(self, snapshot: Snapshot) -> int:
         """Append one tick; a failing disk, or whatever raises, is noted in the log's `failure` and told by an event."""
         try:
-            self._log.append(snapshot.tick, snapshot.row)
+            self._log.append(snapshot.tick, snapshot.vector)
         except Exception as error:
             self._log.failure = self._log.failure or f"{type(error).__name__}: {error}"
             raise

@@ -57,8 +57,8 @@ class RingOutput:
         return self._ring.newest == 0
 
     def publish(self, snapshot: Snapshot) -> None:
-        """Copy one row; its second stamp tells when, for the latency statistics."""
-        self._ring.write(snapshot.row, snapshot.tick, time.monotonic_ns())
+        """Copy one state vector; its second stamp tells when, for the latency statistics."""
+        self._ring.write(snapshot.vector, snapshot.tick, time.monotonic_ns())
 
 
 class CommandPort:
@@ -176,8 +176,8 @@ def worker_specs(
     if outputs.scene is not None:
         from simconsole.scene.viewer.job import save_job
 
-        rows, ticks = np.empty((0, console.width)), np.empty(0, np.int64)
-        save_job(folder / SCENE_JOB, scene_job(resolved, rows, ticks, console.columns, tick_hz))
+        vectors, ticks = np.empty((0, console.width)), np.empty(0, np.int64)
+        save_job(folder / SCENE_JOB, scene_job(resolved, vectors, ticks, console.columns, tick_hz))
         arguments = {
             "path": str((bundle / LIVE_SCENE).absolute()),
             "tick_hz": tick_hz,

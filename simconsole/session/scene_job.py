@@ -20,8 +20,8 @@ LIVE_SCENE: Final = "scene.live.rrd"
 """What a paced drive's scene worker records; the whole scene, made from the log, takes its place."""
 
 
-def scene_job(resolved: ResolvedSession, rows: Row, ticks: Ticks, columns: tuple[str, ...], tick_hz: int) -> "Job":
-    """Return what a scene process is given: rows (none for a live one), course and car."""
+def scene_job(resolved: ResolvedSession, vectors: Row, ticks: Ticks, columns: tuple[str, ...], tick_hz: int) -> "Job":
+    """Return what a scene process is given: state vectors (none for a live one), course and car."""
     from simconsole.scene.entities import Dimensions
     from simconsole.scene.viewer.job import Job
     from simconsole.world.drawing import draw
@@ -29,4 +29,4 @@ def scene_job(resolved: ResolvedSession, rows: Row, ticks: Ticks, columns: tuple
     platform, course = assemble(resolved, plain)[0].platform, None if resolved.world is None else Course(resolved.world)
     dimensions = Dimensions(platform.length_m, platform.width_m, platform.height_m, platform.rear_overhang_m)
     drawing = None if course is None else draw(course)
-    return Job(rows, ticks, columns, tick_hz, dimensions, drawing, resolved.session.outputs.scene or SceneProfile())
+    return Job(vectors, ticks, columns, tick_hz, dimensions, drawing, resolved.session.outputs.scene or SceneProfile())

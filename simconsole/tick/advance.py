@@ -59,15 +59,15 @@ class Console(NamedTuple):
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Name of every column of a row of this drive."""
+        """Name of every column of a state vector of this drive."""
         return columns(self.platform.state)
 
 
 class ConsoleState(NamedTuple):
-    """Everything one tick hands to the next: the row is the whole state."""
+    """Everything one tick hands to the next: the state vector is the whole state."""
 
     tick: int
-    row: Row
+    vector: Row
 
 
 def build_console(
@@ -112,14 +112,14 @@ def initial_state(console: Console) -> ConsoleState:
 def advance(
     state: ConsoleState, inputs: TickInputs, console: Console, mark: Mark = unheard
 ) -> tuple[ConsoleState, Snapshot]:
-    """Advance the console by one tick. Neither `state` nor its row is changed; `mark` is told which stage has ended."""
-    row = advance_row(state.row, (*inputs.sample, *inputs.ros, *inputs.events, *inputs.ecu), console, mark)
+    """Advance the console by one tick. `state` and its vector stay as they are; `mark` is told of each stage's end."""
+    row = advance_vector(state.vector, (*inputs.sample, *inputs.ros, *inputs.events, *inputs.ecu), console, mark)
     tick = state.tick + 1
     return ConsoleState(tick, row), Snapshot(tick, console.tick_hz, row)
 
 
-def advance_row(previous: Row, inputs: Row | tuple[float, ...], console: Console, mark: Mark = unheard) -> Row:
-    """Return the row after `previous` for the INPUT_WIDTH values `inputs`: `advance` as a replay wants it."""
+def advance_vector(previous: Row, inputs: Row | tuple[float, ...], console: Console, mark: Mark = unheard) -> Row:
+    """Return the state vector after `previous` for the INPUT_WIDTH values `inputs`, as a replay needs it."""
     row = np.empty(console.width)
     row[:INPUT_WIDTH] = inputs
     console.decide(previous, row, console.settings, console.tick_s)
@@ -139,8 +139,8 @@ def advance_row(previous: Row, inputs: Row | tuple[float, ...], console: Console
 
 
 def _start_again(previous: Row, console: Console) -> Row:
-    """Return the row before the first tick, with the devices as they are."""
-    row = initial_state(console).row
+    """Return the state vector before the first tick, with the devices as they are."""
+    row = initial_state(console).vector
     row[LAYOUT.sample.slice] = previous[LAYOUT.sample.slice]
     row[LAYOUT.driver.slice] = previous[LAYOUT.driver.slice]
     return row

@@ -72,12 +72,13 @@ def run(
     """Drive until `ticks` have passed or `finished` says so; return the last state.
 
     The order is fixed: pace, seat, faults, devices, commands, advance, recorder, outputs. Everything that enters
-    `advance` is in the row that the recorder keeps, so that the drive replays. A tick with the event PAUSE is the last
-    one before simulated time stands; the one with START goes on after it. With `on_request` the first tick pauses.
+    `advance` is in the state vector that the recorder keeps, so that the drive replays. A tick with the event PAUSE is
+    the last one before simulated time stands; the one with START goes on after it. With `on_request` the first tick
+    pauses.
     """
     carried = _PAUSE if on_request else 0
     carried_ecu = 0
-    snapshot = Snapshot(state.tick, console.tick_hz, state.row)
+    snapshot = Snapshot(state.tick, console.tick_hz, state.vector)
     end, latencies = state.tick + ticks, components.latencies
     outputs = [(output, getattr(output, "hop", Hop.OTHERS)) for output in components.outputs]
     while state.tick < end and not finished(snapshot):
@@ -120,7 +121,7 @@ def come_to_rest(console: Console, state: ConsoleState, recorder: Recorder) -> C
     commands. The last tick recorded is one at rest, or AT_REST_S later: whoever drives on from it, or replays it, sees
     that nobody drove on.
     """
-    moves, last = abs(Snapshot(state.tick, console.tick_hz, state.row).vehicle.vx_mps) > REST_MPS, 1
+    moves, last = abs(Snapshot(state.tick, console.tick_hz, state.vector).vehicle.vx_mps) > REST_MPS, 1
     if moves:
         last = round(AT_REST_S * console.tick_hz)
     edges = EventInput(float(_END | _EMERGENCY if moves else _END))

@@ -1,7 +1,7 @@
-"""The latency statistics: how long each hop takes on the way from a hand on the wheel to its torque and its picture.
+"""Latency statistics: how long each hop takes on the way from a hand on the wheel to its torque and its picture.
 
-Stamps are wall-clock: they stay out of the rows, so that equal drives stay equal bytes, and end as percentiles in the
-bundle's manifest and in the report. Pure: the clock comes in.
+Stamps are wall-clock: they stay out of the state vectors, so that equal drives stay equal bytes, and end as
+percentiles in the bundle's manifest and in the report. Pure: the clock comes in.
 """
 
 import math
@@ -86,7 +86,7 @@ class LatencyStatistics:
     """Times of the hops of one process."""
 
     def __init__(self, clock_ns: Callable[[], int], tick_hz: int = 1, every: int = 1) -> None:
-        """Begin with empty pages.
+        """Begin with empty histograms.
 
         Args:
             clock_ns: A monotonic clock, the same in all processes of a drive.
@@ -98,7 +98,7 @@ class LatencyStatistics:
         self._every = every
         self._last_ns = 0
         self._looks = True
-        self._pages: dict[Hop, Histogram] = {}
+        self._histograms: dict[Hop, Histogram] = {}
 
     def begin(self, tick: int) -> Mark:
         """Begin a tick; return where its hops are told."""
@@ -128,15 +128,15 @@ class LatencyStatistics:
 
     def add(self, hop: Hop, time_ns: int) -> None:
         """Count one time of one hop."""
-        page = self._pages.get(hop)
-        if page is None:
-            page = self._pages[hop] = Histogram()
-        page.add(time_ns)
+        histogram = self._histograms.get(hop)
+        if histogram is None:
+            histogram = self._histograms[hop] = Histogram()
+        histogram.add(time_ns)
 
     def summary_us(self) -> dict[str, dict[str, float]]:
         """Return p50, p99, maximum in us and the count of every hop that there was, in order."""
         return {
-            str(hop): {**self._pages[hop].summary_us(), "count": self._pages[hop].count}
+            str(hop): {**self._histograms[hop].summary_us(), "count": self._histograms[hop].count}
             for hop in Hop
-            if hop in self._pages
+            if hop in self._histograms
         }

@@ -47,9 +47,9 @@ class Ground(NamedTuple):
 class Platform(NamedTuple):
     """One vehicle, ready to drive.
 
-    `step(previous_row, row, parameters, substeps)` is a kernel: it reads `VehicleCommand` from `row` at
-    LAYOUT.command and its own state from `previous_row` at PLATFORM_AT, advances `substeps` steps of 1 ms, and writes
-    `VehicleState` at LAYOUT.vehicle and its state at PLATFORM_AT of `row` (simconsole.values.state_vector).
+    `step(previous, vector, parameters, substeps)` is a kernel: it reads `VehicleCommand` from `vector` at
+    LAYOUT.command and its own state from `previous` at PLATFORM_AT, advances `substeps` steps of 1 ms, and writes
+    `VehicleState` at LAYOUT.vehicle and its state at PLATFORM_AT of `vector` (simconsole.values.state_vector).
     """
 
     name: str

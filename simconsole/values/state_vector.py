@@ -1,7 +1,7 @@
-"""One tick as one float64 row: the layout that log, hash, shared memory and replay share.
+"""The state vector, one tick as float64 values: the layout that log, hash, shared memory and replay share.
 
-The row is the console's whole state: its first columns are the tick's inputs, then each stage's result, then the
-platform's own state. `advance` makes the next row from the last one and new inputs.
+It is the console's whole state: its first columns are the tick's inputs, then each stage's result, then the platform's
+own state. `advance` makes the next state vector from the last one and new inputs.
 """
 
 from typing import Final, NamedTuple
@@ -31,7 +31,7 @@ from simconsole.values.units import tick_time_ns
 
 
 class Layout(NamedTuple):
-    """The parts of a row that every platform has, in their order."""
+    """The parts of a state vector that every platform has, in their order."""
 
     sample: Part[DeviceSample]
     ros: Part[RemoteCommand]
@@ -72,8 +72,8 @@ def columns(platform_state: type[tuple[float, ...]]) -> tuple[str, ...]:
     return tuple(f"{stage}.{field}" for stage, part in parts.items() for field in part.names)
 
 
-def input_row(inputs: TickInputs) -> Row:
-    """Return the first INPUT_WIDTH columns of a row."""
+def input_vector(inputs: TickInputs) -> Row:
+    """Return the first INPUT_WIDTH columns of a state vector."""
     return np.array((*inputs.sample, *inputs.ros, *inputs.events, *inputs.ecu), dtype=np.float64)
 
 
@@ -82,7 +82,7 @@ class Snapshot(NamedTuple):
 
     tick: int
     tick_hz: int
-    row: Row
+    vector: Row
 
     @property
     def t_ns(self) -> int:
@@ -97,17 +97,17 @@ class Snapshot(NamedTuple):
     @property
     def sample(self) -> DeviceSample:
         """The cockpit as read."""
-        return read(self.row, LAYOUT.sample)
+        return read(self.vector, LAYOUT.sample)
 
     @property
     def ros(self) -> RemoteCommand:
         """The ROS side's newest command."""
-        return read(self.row, LAYOUT.ros)
+        return read(self.vector, LAYOUT.ros)
 
     @property
     def ecu(self) -> RemoteCommand:
         """The ECU's newest command."""
-        return read(self.row, LAYOUT.ecu)
+        return read(self.vector, LAYOUT.ecu)
 
     @property
     def remote(self) -> RemoteCommand:
@@ -117,32 +117,32 @@ class Snapshot(NamedTuple):
     @property
     def ros_link(self) -> Link:
         """How far the ROS side's commands may be relied on."""
-        return read(self.row, LAYOUT.ros_link)
+        return read(self.vector, LAYOUT.ros_link)
 
     @property
     def ecu_link(self) -> Link:
         """How far the ECU's commands may be relied on."""
-        return read(self.row, LAYOUT.ecu_link)
+        return read(self.vector, LAYOUT.ecu_link)
 
     @property
     def events(self) -> EventInput:
         """The edges of this tick."""
-        return read(self.row, LAYOUT.events)
+        return read(self.vector, LAYOUT.events)
 
     @property
     def driver(self) -> DriverInput:
         """The person, calibrated."""
-        return read(self.row, LAYOUT.driver)
+        return read(self.vector, LAYOUT.driver)
 
     @property
     def arbitration(self) -> Arbitration:
         """Authority, mode and reason."""
-        return read(self.row, LAYOUT.arbitration)
+        return read(self.vector, LAYOUT.arbitration)
 
     @property
     def recording_failed(self) -> bool:
         """Whether nothing more is kept of this drive."""
-        return bool(int(self.row[LAYOUT.events.start]) & _RECORDING_FAILED)
+        return bool(int(self.vector[LAYOUT.events.start]) & _RECORDING_FAILED)
 
     @property
     def notice(self) -> float:
@@ -152,14 +152,14 @@ class Snapshot(NamedTuple):
     @property
     def command(self) -> VehicleCommand:
         """What left the gate."""
-        return read(self.row, LAYOUT.command)
+        return read(self.vector, LAYOUT.command)
 
     @property
     def vehicle(self) -> VehicleState:
         """The vehicle after the tick."""
-        return read(self.row, LAYOUT.vehicle)
+        return read(self.vector, LAYOUT.vehicle)
 
     @property
     def torque(self) -> WheelTorque:
         """What the wheel's motor is asked for."""
-        return read(self.row, LAYOUT.torque)
+        return read(self.vector, LAYOUT.torque)

@@ -126,7 +126,7 @@ def test_columns_of_the_wheels() -> None:
 
 
 def test_value_that_is_not_finite_silences_its_message_only(codec: Codec, node: CanNode, snapshot: Snapshots) -> None:
-    row = snapshot(0).row.copy()
+    row = snapshot(0).vector.copy()
     row[LAYOUT.vehicle.start + 6] = np.nan  # vx_mps
     names = [codec.by_id[frame.can_id] for frame in node.transmit(Snapshot(0, 250, row), 0)]
     assert "SC_MOTION" not in names

@@ -84,7 +84,7 @@ def test_ecu_drives_the_car_by_can_alone(port: int, codec: Codec, tmp_path: Path
         ecu.send_signal(signal.SIGINT)
         said = results(ecu)
     assert Mode.AUTONOMOUS in said["modes"]
-    rows = open_bundle(bundle).log.table().rows
+    rows = open_bundle(bundle).log.table().vectors
     autonomous = rows[:, LAYOUT.arbitration.start] == Mode.AUTONOMOUS
     assert autonomous.any()
     assert not rows[: autonomous.argmax(), LAYOUT.vehicle.start + 6].any(), "it stood until the ECU had it"

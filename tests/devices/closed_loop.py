@@ -10,7 +10,7 @@ from simconsole.devices.force_feedback.motor import SimulatedWheelPort, WheelMot
 from simconsole.devices.force_feedback.simulated_wheel import RELAXED, Arm, SimulatedWheel, step_wheel
 from simconsole.profiles.force_feedback import Motor
 from simconsole.session.resolution import load_session, resolve
-from simconsole.tick.advance import advance_row
+from simconsole.tick.advance import advance_vector
 from simconsole.tick.assembly import ResolvedSession, assemble
 from simconsole.values.host.jit import compiled
 from simconsole.values.signals import (
@@ -92,7 +92,7 @@ class Loop:
         self.wheel = SimulatedWheel(true, cockpit.wheel.lock_to_lock_deg, tick_hz=tick_hz, step=compiled(step_wheel))
         self.motor = WheelMotor(SimulatedWheelPort(self.wheel), self.force, lambda shot: shot.t_s)
         self.rest = raw_sample(Intent(), self.settings)._replace(wheel_motor=1.0)
-        self.snapshot = Snapshot(0, tick_hz, state.row)
+        self.snapshot = Snapshot(0, tick_hz, state.vector)
         self.controller = Controller(self.session, tick_hz, grid_m)
 
     def tick(
@@ -103,9 +103,9 @@ class Loop:
         sample = self.rest._replace(wheel_axis=round(axis * 32767.0) / 32768.0)
         if raw:
             sample = sample._replace(**raw)
-        tick, before = self.snapshot.tick + 1, self.snapshot.row
+        tick, before = self.snapshot.tick + 1, self.snapshot.vector
         remote = self.controller.take(tick, before[DISTANCE_AT])
-        row = advance_row(before, (*sample, *remote, *events, *NO_COMMAND), self.console)
+        row = advance_vector(before, (*sample, *remote, *events, *NO_COMMAND), self.console)
         self.snapshot = Snapshot(tick, self.tick_hz, row)
         self.motor.publish(self.snapshot)
         return self.snapshot

@@ -103,7 +103,7 @@ def stand(motor: WheelMotor) -> None:
     """A car in a bend pulls at the wheel; time stands for PAUSE_S, as `drive.run` lets it stand, and goes on."""
     console, state = assemble(resolve(load_session("demo")), plain)
     assert console.force_feedback is not None
-    row = state.row
+    row = state.vector
     for tick in range(1, 401):
         before, row = row, row.copy()
         events = {301: Event.PAUSE, 302: Event.START}.get(tick, Event(0))

@@ -21,7 +21,7 @@ def test_an_hour_of_autonomy_with_resting_hands_is_no_takeover() -> None:
     for _ in loop.seconds(3600.0):
         shot = loop.tick(RELAXED)
         turned_rad = max(turned_rad, abs(loop.wheel.state.rad))
-        if shot.row[MODE_AT] != Mode.AUTONOMOUS:
+        if shot.vector[MODE_AT] != Mode.AUTONOMOUS:
             break
     assert shot.arbitration.mode == Mode.AUTONOMOUS, f"lost after {shot.t_s} s"
     assert shot.vehicle.distance_m > 30_000.0
@@ -51,7 +51,7 @@ def test_controller_that_steers_in_jerks_is_no_takeover() -> None:
     loop = Loop(grid_m=1.0)
     loop.engage()
     for _ in loop.seconds(300.0):
-        if loop.tick(RELAXED).row[MODE_AT] != Mode.AUTONOMOUS:
+        if loop.tick(RELAXED).vector[MODE_AT] != Mode.AUTONOMOUS:
             break
     assert loop.snapshot.arbitration.mode == Mode.AUTONOMOUS, f"lost after {loop.snapshot.t_s} s"
 

@@ -150,7 +150,7 @@ def test_a_command_that_is_no_number_is_refused_whole_and_counted(
     at = refused.tolist().index(1.0)
     assert driven.table.ticks[at] == (FAULT_AT - 1) * PERIOD_TICKS + PERIOD_TICKS + 1
     assert any(status["level"] == "error" for status in driven.controller.statuses)
-    assert np.isfinite(driven.table.rows).all()
+    assert np.isfinite(driven.table.vectors).all()
     assert driven.table.column("ros.accel_mps2").max() <= 1.2
     assert [mode for _, mode, _ in modes(driven.table)][-1] is Mode.AUTONOMOUS, "one bad command is no reason to stop"
 

@@ -22,7 +22,7 @@ class Nothing(NamedTuple):
 
 
 class Known(NamedTuple):
-    rows: NDArray[np.float64]
+    vectors: NDArray[np.float64]
     columns: tuple[str, ...]
     tick_hz: int
 

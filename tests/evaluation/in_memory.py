@@ -1,7 +1,7 @@
 """A scenario driven into memory: for tests that look at rows."""
 
 from simconsole.evaluation.checks import scenario_check as checking
-from simconsole.evaluation.checks.row_table import MemoryRecorder
+from simconsole.evaluation.checks.memory_recorder import MemoryRecorder
 from simconsole.profiles.scenario import ScenarioProfile
 from simconsole.tick.advance import Console
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
-from simconsole.evaluation.checks.row_table import MemoryRecorder
+from simconsole.evaluation.checks.memory_recorder import MemoryRecorder
 from simconsole.profiles.files.loader import parse
 from simconsole.profiles.session import SessionProfile
 from simconsole.session.pacing import UnpacedPacer
@@ -77,12 +77,12 @@ def said(tick: int, road_wheel_rad: float, speed_mps: float = SPEED_MPS) -> Remo
 class Driven(NamedTuple):
     """Rows of a drive, the one before its first tick too: row i is that of tick `start` + i."""
 
-    rows: Any
+    vectors: Any
     columns: tuple[str, ...]
     wheelbase_m: float
 
     def column(self, name: str) -> Any:
-        return self.rows[:, self.columns.index(name)]
+        return self.vectors[:, self.columns.index(name)]
 
 
 class Ready(NamedTuple):
@@ -97,8 +97,8 @@ class Ready(NamedTuple):
         console, ticks = self.console, round(seconds * self.console.tick_hz)
         recorder = MemoryRecorder(ticks, console.width)
         components = Components(Seated(self.resolved, console.tick_hz), controller, recorder, (), UnpacedPacer())
-        run(console, ConsoleState(self.state.tick, self.state.row.copy()), components, ticks)
-        return Driven(np.vstack((self.state.row, recorder.rows)), console.columns, console.platform.wheelbase_m)
+        run(console, ConsoleState(self.state.tick, self.state.vector.copy()), components, ticks)
+        return Driven(np.vstack((self.state.vector, recorder.vectors)), console.columns, console.platform.wheelbase_m)
 
 
 @cache
@@ -110,7 +110,7 @@ def ready(tick_hz: int) -> Ready:
     recorder = MemoryRecorder(ticks, console.width)
     components = Components(Seated(resolved, tick_hz), Steady(tick_hz), recorder, (), UnpacedPacer())
     state = run(console, state, components, ticks)
-    snapshot = Snapshot(state.tick, tick_hz, state.row)
+    snapshot = Snapshot(state.tick, tick_hz, state.vector)
     assert snapshot.arbitration.mode == Mode.AUTONOMOUS, Reason(int(snapshot.arbitration.reason))
     assert snapshot.vehicle.vx_mps > 0.9 * SPEED_MPS
-    return Ready(resolved, console, ConsoleState(state.tick, state.row.copy()))
+    return Ready(resolved, console, ConsoleState(state.tick, state.vector.copy()))

@@ -95,7 +95,7 @@ def _driven(index: int, place: str, crew: Crew) -> Measured:
     case = CASES[index]
     track = circuit()
     state = track.state_at(PLACES[place])
-    fault = case.made(Snapshot(state.tick, HZ, state.row).t_s + AFTER_S)
+    fault = case.made(Snapshot(state.tick, HZ, state.vector).t_s + AFTER_S)
     driven = track.drive(state, SECONDS, [fault], crew)
     began = int(np.flatnonzero(driven.column("events.faults"))[0])
     mode = driven.column("arbitration.mode")

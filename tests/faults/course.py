@@ -11,7 +11,7 @@ import numpy as np
 from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
 from simconsole.drivers.path_tracker.tracker import Tracker, VehicleMotion
-from simconsole.evaluation.checks.row_table import MemoryRecorder
+from simconsole.evaluation.checks.memory_recorder import MemoryRecorder
 from simconsole.faults.schedule import with_faults
 from simconsole.profiles.faults import Fault
 from simconsole.profiles.files.loader import parse
@@ -181,13 +181,13 @@ class InlineTracker:
 class Driven(NamedTuple):
     """A drive that is over."""
 
-    rows: Any  # [ticks, columns]
+    vectors: Any  # [ticks, columns]
     first_tick: int
     columns: tuple[str, ...]
     course: Course
 
     def column(self, name: str) -> Any:
-        return self.rows[:, self.columns.index(name)]
+        return self.vectors[:, self.columns.index(name)]
 
     def tick_of(self, mode: Mode) -> int:
         """The first tick in a mode."""
@@ -242,7 +242,7 @@ class Circuit:
         scenario = msgspec.structs.replace(self.resolved.session.scenario, faults=tuple(faults))
         session = msgspec.structs.replace(self.resolved.session, scenario=scenario)
         resolved = msgspec.structs.replace(self.resolved, session=session)
-        start = Snapshot(state.tick, HZ, state.row)
+        start = Snapshot(state.tick, HZ, state.vector)
         asks = {
             ENGAGE_TICK: Event.REQUEST_AUTONOMOUS,
             **({state.tick + 1: Event.REQUEST_MANUAL} if crew.by_hand else {}),
@@ -259,13 +259,13 @@ class Circuit:
         if state.tick:
             tracker.publish(start)
         run(self.console, state, isolated(with_faults(components, resolved, HZ), UnpacedPacer), round(seconds * HZ))
-        return Driven(recorder.rows, state.tick + 1, self.console.columns, self.course)
+        return Driven(recorder.vectors, state.tick + 1, self.console.columns, self.course)
 
     def state_at(self, distance_m: float) -> ConsoleState:
         """The state in which the whole drive had come this far: a row is the whole state."""
         driven = self.whole.column("vehicle.distance_m")
         index = int(np.flatnonzero(driven >= distance_m)[0]) // PERIOD_TICKS * PERIOD_TICKS + PERIOD_TICKS - 1
-        return ConsoleState(index + 1, self.whole.rows[index].copy())
+        return ConsoleState(index + 1, self.whole.vectors[index].copy())
 
 
 @cache

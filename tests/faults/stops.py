@@ -58,7 +58,7 @@ class NoisyTracker(InlineTracker):
 def beside_m(track: Circuit, place_m: float, sigma_rad: float) -> float:
     """Return how far from the lane's centre the car gets at most, from the safe stop on."""
     state = track.state_at(place_m)
-    silent = Silent(at_s=Snapshot(state.tick, HZ, state.row).t_s + 1.0)
+    silent = Silent(at_s=Snapshot(state.tick, HZ, state.vector).t_s + 1.0)
     controller = NoisyTracker(copy(track.tracker), {}, False, sigma_rad=sigma_rad)
     driven = track.drive(state, SECONDS, [silent], controller=controller)
     assert driven.at_rest

@@ -75,7 +75,7 @@ class EcuSeat:
     def publish(self, snapshot: Snapshot) -> None:
         if snapshot.tick % PERIOD_TICKS:
             return
-        engage = float(snapshot.tick > 60 and snapshot.row[MODE] != Mode.AUTONOMOUS and self._count % 2)
+        engage = float(snapshot.tick > 60 and snapshot.vector[MODE] != Mode.AUTONOMOUS and self._count % 2)
         values = {"REQUEST": engage, "ROAD_WHEEL": 0.0, "ACCEL": 1.0, "DIRECTION": 1.0}
         values |= {"TURN_INDICATORS": 0.0, "HAZARD_LIGHTS": 0.0}
         frame = self._codec.encode(COMMAND, values, self._count)
@@ -88,29 +88,29 @@ class EcuSeat:
             self._port.send(sent)
 
 
-class Rows:
-    """Keeps every row."""
+class Recorded:
+    """Keeps every state vector."""
 
     def __init__(self) -> None:
-        self.rows: list[Row] = []
+        self.vectors: list[Row] = []
 
     def write(self, snapshot: Snapshot) -> int:
-        self.rows.append(snapshot.row)
+        self.vectors.append(snapshot.vector)
         return 0
 
 
 class Driven(NamedTuple):
     """A drive that is over."""
 
-    rows: Any  # one a tick
+    vectors: Any  # one a tick
     on_bus: OnBus
 
     def mode(self, tick: int) -> Mode:
-        return Mode(int(self.rows[tick - 1, MODE]))
+        return Mode(int(self.vectors[tick - 1, MODE]))
 
     def left(self) -> int:
         """The tick in which the ECU lost the car: nobody sits in it, so a safe stop begins in the same tick."""
-        tick = FAULT + int(np.flatnonzero(self.rows[FAULT - 1 :, MODE] != Mode.AUTONOMOUS)[0])
+        tick = FAULT + int(np.flatnonzero(self.vectors[FAULT - 1 :, MODE] != Mode.AUTONOMOUS)[0])
         assert self.mode(tick) is Mode.MINIMAL_RISK
         return tick
 
@@ -128,12 +128,12 @@ def drive(codec: Codec, profile: CanProfile) -> Iterator[Callable[..., Driven]]:
             ecu_port = CanPort(profile, codec.ids("ECU"), frozenset())
             stack.callback(port.close)
             stack.callback(ecu_port.close)
-            on_bus, rows = OnBus(node, port), Rows()
+            on_bus, recorded = OnBus(node, port), Recorded()
             link = InlineCan(on_bus)
             outputs = (link, EcuSeat(codec, ecu_port, fault))
-            components = Components(NobodySeated(), NobodyCommands(), rows, outputs, UnpacedPacer(), ecu=link)
+            components = Components(NobodySeated(), NobodyCommands(), recorded, outputs, UnpacedPacer(), ecu=link)
             run(console, state, components, TICKS)
-            return Driven(np.array(rows.rows), on_bus)
+            return Driven(np.array(recorded.vectors), on_bus)
 
         yield go
 
@@ -170,8 +170,8 @@ def nothing(number: int, frame: Frame) -> list[Frame]:
 def test_c00_without_a_fault_the_ecu_drives(drive: Callable[..., Driven]) -> None:
     driven = drive(good)
     assert driven.mode(FAULT) is driven.mode(TICKS) is Mode.AUTONOMOUS
-    assert driven.rows[-1, REFUSED] == 0
-    assert driven.rows[FAULT:, AGE].max() <= PERIOD_TICKS
+    assert driven.vectors[-1, REFUSED] == 0
+    assert driven.vectors[FAULT:, AGE].max() <= PERIOD_TICKS
 
 
 @pytest.mark.fault("C01")
@@ -182,10 +182,10 @@ def test_c01_five_bad_frames_in_a_row_end_the_commands(drive: Callable[..., Driv
     assert driven.mode(FAULT) is Mode.AUTONOMOUS
     left = driven.left()
     assert FAULT + 4 * PERIOD_TICKS < left <= FAULT + 5 * PERIOD_TICKS + 2
-    assert driven.rows[left - 1, REASON] == Reason.COMMAND_INVALID
-    assert driven.rows[left - 1, REFUSED] >= 5
+    assert driven.vectors[left - 1, REASON] == Reason.COMMAND_INVALID
+    assert driven.vectors[left - 1, REFUSED] >= 5
     if fault is not jumping_counter:  # that one is in step by chance now and then, once its counter was learnt anew
-        assert driven.rows[-1, SEQUENCE] == driven.rows[FAULT, SEQUENCE]
+        assert driven.vectors[-1, SEQUENCE] == driven.vectors[FAULT, SEQUENCE]
 
 
 @pytest.mark.fault("C01")
@@ -193,14 +193,14 @@ def test_c01_five_bad_frames_in_a_row_end_the_commands(drive: Callable[..., Driv
 def test_c01_one_bad_frame_is_dropped_and_no_more(drive: Callable[..., Driven], fault: Fault) -> None:
     driven = drive(lambda number, frame: fault(number, frame) if number == 0 else [frame])
     assert driven.mode(TICKS) is Mode.AUTONOMOUS
-    assert driven.rows[-1, REFUSED] == 1
+    assert driven.vectors[-1, REFUSED] == 1
 
 
 @pytest.mark.fault("C01")
 def test_c01_silence_is_stale_within_200_ms(drive: Callable[..., Driven]) -> None:
     driven = drive(nothing)
     left = driven.left()
-    assert driven.rows[left - 1, REASON] == Reason.COMMAND_STALE
+    assert driven.vectors[left - 1, REASON] == Reason.COMMAND_STALE
     assert left - FAULT <= STALE_TICKS + 1
     assert driven.on_bus.node.state(TICKS * 4_000_000) is Check.NO_NEW_DATA
 
@@ -264,11 +264,11 @@ class FallingYard:
 def test_c02_bus_off_is_reported_and_the_drive_goes_on(drive: Callable[..., Driven], how: str) -> None:
     yard = FallingYard(how, 800, down_s=1e9)
     driven = drive(good, yard.open, yard.clock_s)
-    assert len(driven.rows) == TICKS
+    assert len(driven.vectors) == TICKS
     assert yard.fell_s is not None
     assert not driven.on_bus.port.recovery.up
     assert driven.on_bus.port.counters().downs == 1
-    reasons = set(driven.rows[:, REASON].tolist())
+    reasons = set(driven.vectors[:, REASON].tolist())
     assert Reason.COMMANDER_LOST in reasons, "the person is told at once, not after the commands have grown stale"
     assert driven.mode(TICKS) in (Mode.MINIMAL_RISK, Mode.STOPPED)
 
@@ -329,8 +329,8 @@ def test_c03_flood_of_unknown_ids_is_filtered(drive: Callable[..., Driven], prof
 
         driven = drive(flooded)
     assert driven.mode(TICKS) is Mode.AUTONOMOUS
-    assert driven.rows[-1, REFUSED] == 0
-    assert driven.rows[FAULT:, AGE].max() <= PERIOD_TICKS
+    assert driven.vectors[-1, REFUSED] == 0
+    assert driven.vectors[FAULT:, AGE].max() <= PERIOD_TICKS
     assert driven.on_bus.port.counters().filtered >= 9_000
 
 
@@ -347,8 +347,8 @@ def test_c04_replayed_old_frames_are_refused(drive: Callable[..., Driven]) -> No
     assert driven.mode(TICKS) is Mode.AUTONOMOUS
     replays = sum(number >= 5 and number % 3 == 0 for number in range(len(old)))
     assert replays > 10
-    assert driven.rows[-1, REFUSED] in (replays, replays - 1)  # the last may not have been read
-    assert driven.rows[FAULT:, AGE].max() <= PERIOD_TICKS
+    assert driven.vectors[-1, REFUSED] in (replays, replays - 1)  # the last may not have been read
+    assert driven.vectors[FAULT:, AGE].max() <= PERIOD_TICKS
 
 
 @pytest.mark.fault("C04")
@@ -360,7 +360,7 @@ def test_c04_one_old_frame_after_a_silence_commands_nothing(drive: Callable[...,
         return [kept[0]] if number == 20 else []
 
     driven = drive(once)
-    assert driven.rows[-1, SEQUENCE] == driven.rows[FAULT, SEQUENCE]
+    assert driven.vectors[-1, SEQUENCE] == driven.vectors[FAULT, SEQUENCE]
 
 
 @pytest.mark.fault("C05")

@@ -28,7 +28,7 @@ def marked(case: Case) -> Any:
 def test_fault_at_a_place(case: Case, place: str) -> None:
     driven, fault, after_ms = cases.drive(case, place)
     found = metrics(
-        drive_of(driven.rows, driven.columns, HZ, driven.first_tick), driven.course, None, [fault_label(fault)]
+        drive_of(driven.vectors, driven.columns, HZ, driven.first_tick), driven.course, None, [fault_label(fault)]
     )
     print(f"{place}: {driven.modes}, {driven.lateral_m:.2f} m from the lane's centre, after {after_ms} ms")
     assert [span["fault"] for span in found["faults"]] == [fault_label(fault)]

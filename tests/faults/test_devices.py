@@ -50,12 +50,12 @@ CONTROLLER = "[{start_s: 0.5, end_s: 100, kind: speed, speed_mps: 8}]"
 class Driven:
     """The rows of a drive by column."""
 
-    rows: NDArray[np.float64]
+    vectors: NDArray[np.float64]
     columns: tuple[str, ...]
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
         """One column; element n is tick n + 1."""
-        return self.rows[:, self.columns.index(name)]
+        return self.vectors[:, self.columns.index(name)]
 
     def at(self, name: str, tick: int) -> float:
         return float(self[name][tick - 1])
@@ -83,7 +83,7 @@ def drive(
     )
     scenario = replace(profile.session.scenario, faults=faults)
     recorder, columns = drive_scenario(replace(profile, session=replace(profile.session, scenario=scenario)))
-    driven = Driven(recorder.rows, columns)
+    driven = Driven(recorder.vectors, columns)
     for name in ("command.throttle", "command.brake", "command.road_wheel_rad", "command.gear", "vehicle.vx_mps"):
         assert np.isfinite(driven[name]).all()
     return driven
@@ -91,7 +91,7 @@ def drive(
 
 def alert(driven: Driven, tick: int) -> str:
     """The headline on the driver's screen."""
-    snapshot = Snapshot(tick, TICK_HZ, driven.rows[tick - 1])
+    snapshot = Snapshot(tick, TICK_HZ, driven.vectors[tick - 1])
     return ALERT_LABELS[alert_of(view(snapshot, 0.0, HudMemory(), HudSettings())[0])][0]
 
 

@@ -203,17 +203,17 @@ def test_d13_nonsense_from_the_vehicle_never_reaches_the_motor(field: str, value
     loop.engage()
     before = 0.0
     for tick in range(250):
-        row = loop.snapshot.row.copy()
+        row = loop.snapshot.vector.copy()
         loop.tick(RELAXED)
         if tick % 3 == 0:
-            loop.snapshot.row[LAYOUT.vehicle.at(field)] = value
-            loop.console.force_feedback(row, loop.snapshot.row, loop.console.settings, loop.console.tick_s)  # type: ignore[misc]
-            loop.snapshot.row[LAYOUT.vehicle.at(field)] = 0.0
+            loop.snapshot.vector[LAYOUT.vehicle.at(field)] = value
+            loop.console.force_feedback(row, loop.snapshot.vector, loop.console.settings, loop.console.tick_s)  # type: ignore[misc]
+            loop.snapshot.vector[LAYOUT.vehicle.at(field)] = 0.0
         torque = loop.snapshot.torque
         assert math.isfinite(torque.torque_nm)
         assert abs(torque.torque_nm) <= 4.0
         assert torque.enabled == 0.0 or abs(torque.torque_nm - before) <= 150.0 / 250.0 + 1e-9
-        assert np.isfinite(loop.snapshot.row[LAYOUT.torque.start :]).all()
+        assert np.isfinite(loop.snapshot.vector[LAYOUT.torque.start :]).all()
         before = torque.torque_nm
 
 
@@ -224,10 +224,10 @@ def test_d13_sign_that_flips_every_tick_stays_within_the_slew_limit() -> None:
     field = LAYOUT.vehicle.at("road_wheel_rad")
     torques = []
     for tick in range(250):
-        row = loop.snapshot.row.copy()
+        row = loop.snapshot.vector.copy()
         loop.tick(RELAXED)
-        loop.snapshot.row[field] = 0.5 if tick % 2 else -0.5
-        loop.console.force_feedback(row, loop.snapshot.row, loop.console.settings, loop.console.tick_s)  # type: ignore[misc]
+        loop.snapshot.vector[field] = 0.5 if tick % 2 else -0.5
+        loop.console.force_feedback(row, loop.snapshot.vector, loop.console.settings, loop.console.tick_s)  # type: ignore[misc]
         torques.append(loop.snapshot.torque.torque_nm)
     assert np.abs(np.diff(torques)).max() <= 150.0 / 250.0 + 1e-9
     assert np.abs(torques).max() <= 4.0

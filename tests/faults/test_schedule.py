@@ -154,7 +154,7 @@ def scenario(faults: str) -> ScenarioProfile:
 def test_a_scenario_is_driven_with_its_faults_and_tells_when_each_was_on() -> None:
     profile = scenario(ALL_KINDS)
     recorder, names = drive_scenario(profile)
-    drive = drive_of(recorder.rows, names, TICK_HZ)
+    drive = drive_of(recorder.vectors, names, TICK_HZ)
     faults = profile.session.scenario.faults
     spans = {
         span.fault: (span.first_tick, span.last_tick) for span in fault_spans(drive, [fault_label(f) for f in faults])

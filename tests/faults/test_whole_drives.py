@@ -18,7 +18,7 @@ from simconsole.recording.bundles.log import LogTable
 from simconsole.recording.bundles.replay_bundle import state_at
 from simconsole.session.lifecycle import drive
 from simconsole.session.resolution import load_session, override, resolve
-from simconsole.tick.advance import advance_row
+from simconsole.tick.advance import advance_vector
 from simconsole.values.labels import reason_label
 from simconsole.values.signals import Event, Mode, Reason
 from simconsole.values.state_vector import INPUT_WIDTH
@@ -110,9 +110,9 @@ def test_a_row_of_a_whole_drive_is_a_state_to_drive_on_from(tmp_path: Path) -> N
     assert done.returncode == 0, done.stderr
     table = open_bundle(tmp_path / "bundle").log.table()
     console, state = state_at(tmp_path / "bundle", 1000)
-    row = state.row
-    for recorded in table.rows[1000:2000]:
-        row = advance_row(row, recorded[:INPUT_WIDTH], console)
+    row = state.vector
+    for recorded in table.vectors[1000:2000]:
+        row = advance_vector(row, recorded[:INPUT_WIDTH], console)
         assert row.tobytes() == recorded.tobytes()
 
 

@@ -69,7 +69,7 @@ def rewrite_log() -> Callable[..., None]:
         reader = LogReader(path)
         parts, digest = [encode_header(reader.header)], START_OF_CHAIN
         for record in reader:
-            row = record.row.copy()
+            row = record.vector.copy()
             if record.tick == tick:
                 row[reader.header.columns.index(column)] = value
             frame, digest = seal(digest, record.tick, row.tobytes())

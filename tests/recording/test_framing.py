@@ -39,13 +39,13 @@ def test_a_whole_log_reads_back_bit_for_bit(header: LogHeader, rows: list[np.nda
     assert pass_.header == header
     assert pass_.breaks == []
     assert [record.tick for record in records] == list(range(1, 41))
-    assert all(record.row.tobytes() == row.tobytes() for record, row in zip(records, rows, strict=True))
+    assert all(record.vector.tobytes() == row.tobytes() for record, row in zip(records, rows, strict=True))
 
 
 def test_the_hash_chains_over_every_row_before(rows: list[np.ndarray], log_bytes: bytes) -> None:
     digest = START_OF_CHAIN
     for record in scan(log_bytes)[0]:
-        digest = chain(digest, record.tick, record.row.tobytes())
+        digest = chain(digest, record.tick, record.vector.tobytes())
         assert digest == record.digest
     assert chain(START_OF_CHAIN, 1, rows[0].tobytes()) != chain(START_OF_CHAIN, 2, rows[0].tobytes())
     assert seal(START_OF_CHAIN, 1, rows[0].tobytes())[1] == chain(START_OF_CHAIN, 1, rows[0].tobytes())
@@ -54,7 +54,7 @@ def test_the_hash_chains_over_every_row_before(rows: list[np.ndarray], log_bytes
 def test_nan_and_negative_zero_survive(header: LogHeader) -> None:
     row = np.array([np.nan, -0.0, np.inf, 5e-324])
     records, _ = scan(encode_header(header) + seal(START_OF_CHAIN, 9, row.tobytes())[0])
-    assert records[0].row.tobytes() == row.tobytes()
+    assert records[0].vector.tobytes() == row.tobytes()
 
 
 @pytest.mark.fault("P03")

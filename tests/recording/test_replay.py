@@ -44,7 +44,7 @@ def test_a_forged_input_is_found_at_its_tick(
 def test_a_forged_vehicle_value_is_found_to_the_last_bit(
     log: LogReader, header: LogHeader, toy_advance: Advance, rewrite_log: Callable[..., None]
 ) -> None:
-    true = list(log)[29].row[3]
+    true = list(log)[29].vector[3]
     rewrite_log(log.path, 30, "vehicle.vx_mps", math.nextafter(true, math.inf))
     difference = replay(log, header, header.columns, np.zeros(4), toy_advance).difference
     assert difference is not None
@@ -53,10 +53,10 @@ def test_a_forged_vehicle_value_is_found_to_the_last_bit(
 
 
 def test_a_wrong_hash_alone_is_found(log: LogReader, header: LogHeader, toy_advance: Advance) -> None:
-    records = [Record(r.tick, r.row, bytes(8) if r.tick == 3 else r.digest) for r in log]
+    records = [Record(r.tick, r.vector, bytes(8) if r.tick == 3 else r.digest) for r in log]
     result = replay(records, header, header.columns, np.zeros(4), toy_advance)
     assert not result.equal
-    assert str(result.difference) == "tick 3: the row is equal, but the recorded hash does not belong to it"
+    assert str(result.difference) == "tick 3: the state vector is equal, but the recorded hash does not belong to it"
 
 
 def test_recorded_inputs_are_handed_over_writable(log: LogReader, header: LogHeader, toy_advance: Advance) -> None:

@@ -117,7 +117,11 @@ def test_two_jobs_give_the_verdicts_of_one_and_a_junit_file(copied: Path, tmp_pa
         ("duration_s: 12", "duration_s: 0", "duration_s: value 0: a number, above 0 and 86400 or less"),
         ("kind: pose", "kind: wish", 'remote[0].kind: value "wish": '),
         ("event: request_autonomous", "event: explode", 'events[0].event: value "explode": '),
-        ("column: vehicle.x_m", "column: vehicle.x_mm", "checks: column: value vehicle.x_mm: a column of a row"),
+        (
+            "column: vehicle.x_m",
+            "column: vehicle.x_mm",
+            "column: value vehicle.x_mm: a column of the state vector",
+        ),
         ("vehicle: ball", "vehicle: bell", "bell"),
     ],
 )

@@ -27,7 +27,7 @@ def new_ticks():
     if second % 60 == 0:
         print(int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE"), flush=True)
     start, tick = tick, tick + job.tick_hz
-    return [Snapshot(at + 1, job.tick_hz, job.rows[at % len(job.rows)]) for at in range(start, tick)]
+    return [Snapshot(at + 1, job.tick_hz, job.vectors[at % len(job.vectors)]) for at in range(start, tick)]
 ports = follow.Ports(new_ticks, lambda: second >= seconds)
 follow.follow(ports, job._replace(profile=job.profile.__class__(chunk_s=1e-6)), Path(sys.argv[2]))
 """

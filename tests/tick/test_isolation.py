@@ -9,7 +9,7 @@ import pytest
 
 from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.synthetic.script import ScriptSource
-from simconsole.evaluation.checks.row_table import MemoryRecorder
+from simconsole.evaluation.checks.memory_recorder import MemoryRecorder
 from simconsole.profiles.device import ScriptProfile
 from simconsole.profiles.files.loader import parse
 from simconsole.profiles.session import SessionProfile
@@ -150,7 +150,7 @@ class Person:
         return run(self.console, self.state, components, round(seconds * HZ), lambda snapshot: len(self.stood) > 100)
 
     def column(self, name: str) -> np.ndarray:
-        return self.recorder.rows[: self.recorder.ticks, self.console.columns.index(name)]
+        return self.recorder.vectors[: self.recorder.ticks, self.console.columns.index(name)]
 
 
 class Silent:

@@ -8,13 +8,13 @@ import pytest
 
 from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.synthetic.script import ScriptSource
-from simconsole.evaluation.checks.row_table import MemoryRecorder
+from simconsole.evaluation.checks.memory_recorder import MemoryRecorder
 from simconsole.profiles.device import ScriptProfile
 from simconsole.profiles.files.loader import parse
 from simconsole.profiles.session import SessionProfile
 from simconsole.session.pacing import UnpacedPacer
 from simconsole.session.resolution import resolve
-from simconsole.tick.advance import Console, advance_row
+from simconsole.tick.advance import Console, advance_vector
 from simconsole.tick.assembly import assemble
 from simconsole.tick.loop import Components, run
 from simconsole.values.host.jit import compiled
@@ -52,19 +52,19 @@ class Operator:
 
 class Driven:
     def __init__(self, console: Console, recorder: MemoryRecorder, first: np.ndarray, looks: dict[int, int]) -> None:
-        self.console, self.rows, self.first, self.looks = console, recorder.rows[: recorder.ticks], first, looks
+        self.console, self.vectors, self.first, self.looks = console, recorder.vectors[: recorder.ticks], first, looks
 
     def at(self, tick: int) -> Snapshot:
-        return Snapshot(tick, HZ, self.rows[tick - 1])
+        return Snapshot(tick, HZ, self.vectors[tick - 1])
 
     def column(self, name: str) -> np.ndarray:
-        return self.rows[:, self.console.columns.index(name)]
+        return self.vectors[:, self.console.columns.index(name)]
 
     def replayed(self) -> bool:
         """Whether a replay from the recorded inputs gives the same bytes."""
         row = self.first
-        for recorded in self.rows:
-            row = advance_row(row, recorded[:INPUT_WIDTH], self.console)
+        for recorded in self.vectors:
+            row = advance_vector(row, recorded[:INPUT_WIDTH], self.console)
             if row.tobytes() != recorded.tobytes():
                 return False
         return True
@@ -84,7 +84,7 @@ def go() -> Callable[..., Driven]:
         stood: list[Snapshot] = []
         components = Components(devices, operator, recorder, (), UnpacedPacer(), standby=(stood.append,))
         run(console, state, components, round(seconds * HZ), lambda snapshot: len(stood) > 1000, on_request)
-        return Driven(console, recorder, state.row, operator.looks)
+        return Driven(console, recorder, state.vector, operator.looks)
 
     return drive
 
@@ -107,7 +107,7 @@ def test_paused_time_stands_and_nothing_grows_old(go: Callable[..., Driven]) -> 
 
 def test_a_pause_without_a_start_ends_with_the_drive(go: Callable[..., Driven]) -> None:
     paused = go({(100, 1): Event.PAUSE})
-    assert len(paused.rows) == 100
+    assert len(paused.vectors) == 100
 
 
 def test_what_is_asked_for_while_time_stands_acts_in_the_next_tick(go: Callable[..., Driven]) -> None:
@@ -178,7 +178,7 @@ def test_a_restart_waits_for_the_pedals_and_is_replayed(go: Callable[..., Driven
 
 def test_devices_read_while_time_stands_are_no_ticks(go: Callable[..., Driven]) -> None:
     driven = go({(100, 1): Event.PAUSE, (101, 50): Event.START}, seconds=1.0)
-    assert len(driven.rows) == HZ
+    assert len(driven.vectors) == HZ
     assert isinstance(driven.at(101).sample, DeviceSample)
 
 
@@ -204,7 +204,7 @@ def test_a_failed_recording_is_an_event_of_every_tick_after_it_and_changes_nothi
         output = SimpleNamespace(publish=shown.append)
         components = Components(NobodySeated(), Operator({(200, 1): Event.MARK}), recorder, (output,), UnpacedPacer())
         run(console, state, components, 300)
-        rows.append(recorder.rows)
+        rows.append(recorder.vectors)
         if fails_at == 100:
             assert [snapshot.tick for snapshot in shown if snapshot.recording_failed] == list(range(101, 301))
             assert [shown[at].notice for at in (99, 100)] == [Notice.NONE, Notice.RECORDING_FAILED]

@@ -73,11 +73,11 @@ class Commands(NobodyCommands):
 class Recorder:
     def __init__(self, clock: Clock) -> None:
         self._clock = clock
-        self.rows: list[bytes] = []
+        self.vectors: list[bytes] = []
 
     def write(self, snapshot: Snapshot) -> int:
         self._clock.spend(Hop.RECORD)
-        self.rows.append(snapshot.row.tobytes())
+        self.vectors.append(snapshot.vector.tobytes())
         return 0
 
 
@@ -132,7 +132,7 @@ def driven(
         Wheel(clock, age_ticks), Commands(clock), recorder, readers, UnpacedPacer(), latencies=latencies
     )
     run(console, state, components, TICKS)
-    return latencies, recorder.rows
+    return latencies, recorder.vectors
 
 
 def test_every_hop_of_a_tick_is_counted_by_itself(built: tuple[Console, ConsoleState]) -> None:

@@ -1,8 +1,8 @@
 """Goldens: what a scripted drive gave when it was accepted, thinned to a readable table. Pure but for numpy.
 
-A golden is CSV text: one line per sample, every column of a row, `repr` of each float (exact), and the chained hash
-of the whole drive in the header. Equal hash means every bit of every tick is equal; otherwise the table says where.
-It is written and compared line by line, while it is being driven: a drive may be of any length.
+A golden is CSV text: one line per sample, every column of the state vector, `repr` of each float (exact), and the
+chained hash of the whole drive in the header. Equal hash means every bit of every tick is equal; otherwise the table
+says where. It is written and compared line by line, while it is being driven: a drive may be of any length.
 """
 
 import csv
@@ -14,7 +14,7 @@ from simconsole.values.kernels import Row
 
 SCHEMA: Final = 1
 Sample = tuple[int, tuple[float, ...]]
-"""A tick and its row."""
+"""A tick and its state vector."""
 
 
 class Difference(NamedTuple):
@@ -47,7 +47,7 @@ class Golden:
     Attributes:
         hash: the chained hash of the whole drive.
         tick_hz: ticks per second.
-        columns: of a row.
+        columns: of a state vector.
     """
 
     def __init__(self, lines: Iterable[str], name: str) -> None:

@@ -8,7 +8,7 @@ from msgspec.structs import replace
 from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.synthetic.script import ScriptSource
 from simconsole.drivers.manoeuvre_driver.pilot_devices import PilotDevices
-from simconsole.evaluation.checks.row_table import MemoryRecorder
+from simconsole.evaluation.checks.memory_recorder import MemoryRecorder
 from simconsole.evaluation.manoeuvres.attempt import Attempt, Result
 from simconsole.evaluation.manoeuvres.library import drive_manoeuvre
 from simconsole.evaluation.metrics.table import drive_of
@@ -48,7 +48,7 @@ def drive(scenario: ScenarioProfile, manoeuvre: Manoeuvre) -> Driven:
         recorder = _drive(scenario, resolved, attempt, digest)
         ticks, digest = ticks + recorder.ticks, recorder.digest
         try:
-            attempt = at_work.send(drive_of(recorder.rows[: recorder.ticks], console.columns, console.tick_hz))
+            attempt = at_work.send(drive_of(recorder.vectors[: recorder.ticks], console.columns, console.tick_hz))
         except StopIteration as end:
             return Driven(end.value, ticks, digest.hex())
 

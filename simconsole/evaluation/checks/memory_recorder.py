@@ -1,4 +1,4 @@
-"""A drive kept in memory: its rows, and the chained hash that a log would have."""
+"""A drive kept in memory: its state vectors, and the chained hash that a log would have."""
 
 from typing import Final
 
@@ -13,7 +13,7 @@ FIRST_TICKS: Final = 4096
 
 
 class MemoryRecorder:
-    """Keeps every row of a drive of at most `ticks` ticks; the hash continues that of an earlier drive."""
+    """Keeps every state vector of a drive of at most `ticks` ticks; the hash continues that of an earlier drive."""
 
     def __init__(self, ticks: int, width: int, digest: bytes = START_OF_CHAIN) -> None:
         self._most = ticks
@@ -22,8 +22,8 @@ class MemoryRecorder:
         self.digest = digest
 
     @property
-    def rows(self) -> Row:
-        """The rows so far (ticks, columns)."""
+    def vectors(self) -> Row:
+        """The state vectors so far (ticks, columns)."""
         return self._room[: self.ticks]
 
     def write(self, snapshot: Snapshot) -> int:
@@ -32,7 +32,7 @@ class MemoryRecorder:
             larger = np.empty((min(self._most, 2 * self.ticks), self._room.shape[1]))
             larger[: self.ticks] = self._room
             self._room = larger
-        self._room[self.ticks] = snapshot.row
+        self._room[self.ticks] = snapshot.vector
         self.ticks += 1
-        self.digest = chain(self.digest, snapshot.tick, snapshot.row.tobytes())
+        self.digest = chain(self.digest, snapshot.tick, snapshot.vector.tobytes())
         return 0

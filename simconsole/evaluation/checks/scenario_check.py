@@ -130,11 +130,11 @@ class Watch:
     def write(self, snapshot: Snapshot) -> int:
         """Look at one tick."""
         self.ticks += 1
-        self.digest = chain(self.digest, snapshot.tick, snapshot.row.tobytes())
+        self.digest = chain(self.digest, snapshot.tick, snapshot.vector.tobytes())
         for bound in self.bounds:
-            bound.see(snapshot.tick, snapshot.row)
+            bound.see(snapshot.tick, snapshot.vector)
         if snapshot.tick % self._step_ticks == 0:
-            self.samples.see(snapshot.tick, snapshot.row)
+            self.samples.see(snapshot.tick, snapshot.vector)
         return 0
 
 
@@ -145,20 +145,22 @@ class Bound:
         """`origin` (the scenario's file) opens an error.
 
         Raises:
-            ProfileError: the bound names a column that no row has.
+            ProfileError: the bound names a column that no state vector has.
         """
         if check.column not in columns:
-            raise ProfileError(f"{origin}: checks: column: value {check.column}: a column of a row, as in its golden")
+            raise ProfileError(
+                f"{origin}: checks: column: value {check.column}: a column of the state vector, as in its golden"
+            )
         self._column, self._at = check.column, columns.index(check.column)
         self._low = -math.inf if check.min is None else check.min
         self._high = math.inf if check.max is None else check.max
         self._first, self._last = _ticks(check, tick_hz)
         self._found: str | None = None
 
-    def see(self, tick: int, row: Row) -> None:
+    def see(self, tick: int, vector: Row) -> None:
         """Hold one tick to it; the first that breaks it is what counts."""
         if self._found is None and self._first <= tick and (self._last is None or tick <= self._last):
-            value = float(row[self._at])
+            value = float(vector[self._at])
             if not self._low <= value <= self._high:  # so that NaN is never good
                 self._found = f"tick {tick}: {self._column}: {value!r} not in {self._low} to {self._high}"
 
@@ -197,9 +199,9 @@ class Accepting:
         """Put it in its place, or remove it after an error."""
         self._stack.__exit__(*error)
 
-    def see(self, tick: int, row: Row) -> None:
+    def see(self, tick: int, vector: Row) -> None:
         """Write one sample."""
-        self._file.write(golden.line(tick, row))
+        self._file.write(golden.line(tick, vector))
 
     def end(self, digest: str) -> list[str]:
         """Write the hash of the drive into its head; what is accepted differs from nothing."""
@@ -235,10 +237,10 @@ class Comparing:
         if self._file is not None:
             self._file.close()
 
-    def see(self, tick: int, row: Row) -> None:
+    def see(self, tick: int, vector: Row) -> None:
         """Compare one sample."""
         if self._file is not None:
-            self._comparison.see(tick, row)
+            self._comparison.see(tick, vector)
 
     def end(self, digest: str) -> list[str]:
         """Return what is unlike the golden after the whole drive, one line or none."""

@@ -63,4 +63,4 @@ def traces(title: str, y_label: str, drives: dict[str, tuple[Drive, Array]], eve
 
 def part(drive: Drive, first: int, last: int | None = None) -> Drive:
     """Return the ticks of a drive from one index to another."""
-    return drive._replace(rows=drive.rows[first:last], first_tick=drive.first_tick + first)
+    return drive._replace(vectors=drive.vectors[first:last], first_tick=drive.first_tick + first)

@@ -37,9 +37,9 @@ def lane_change(spec: DoubleLaneChange, car: Platform) -> Driving:
 
 def _from_cone(drive: Drive, first_cone_m: float) -> Drive:
     """Return the drive with x counted from the first cone."""
-    rows = drive.rows.copy()
-    rows[:, drive.places["vehicle.x_m"]] -= first_cone_m
-    return drive._replace(rows=rows)
+    vectors = drive.vectors.copy()
+    vectors[:, drive.places["vehicle.x_m"]] -= first_cone_m
+    return drive._replace(vectors=vectors)
 
 
 def least_room_m(drive: Drive, course: ConeCourse, car: Platform) -> float:

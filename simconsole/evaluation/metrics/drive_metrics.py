@@ -1,4 +1,4 @@
-"""What a drive was like in numbers. Pure: rows and course in, figures out."""
+"""What a drive was like in numbers. Pure: state vectors and course in, figures out."""
 
 import math
 from collections.abc import Sequence
@@ -91,10 +91,10 @@ def metrics(
     `faults` are the names of the faults of its scenario, in their order.
     """
     way = track(drive, course) if way is None else way
-    duration = len(drive.rows) / drive.tick_hz
+    duration = len(drive.vectors) / drive.tick_hz
     limit = course.speed_limit_mps if course is not None else math.inf
     return {
-        "ticks": len(drive.rows),
+        "ticks": len(drive.vectors),
         "duration_s": duration,
         "distance_m": float(way.distance_m[-1]),
         "mean_speed_kmh": float(way.distance_m[-1]) / duration * KMH_PER_MPS,

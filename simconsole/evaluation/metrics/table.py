@@ -1,4 +1,4 @@
-"""A drive as columns: what the report reads from recorded rows."""
+"""A drive as columns: what the report reads from recorded state vectors."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -12,9 +12,9 @@ Array = NDArray[np.float64]
 
 
 class Drive(NamedTuple):
-    """Rows of a drive, one per tick from `first_tick`, with their column names (rows.columns)."""
+    """State vectors of a drive, one per tick from `first_tick`, with their column names (`state_vector.columns`)."""
 
-    rows: Array  # [ticks, columns]
+    vectors: Array  # [ticks, columns]
     places: dict[str, int]  # of each column
     tick_hz: int
     first_tick: int = 1
@@ -26,22 +26,22 @@ class Drive(NamedTuple):
         """
         if name not in self.places:
             raise RecordingError(f"drive: column {name} is missing: not a recording of this version")
-        return self.rows[:, self.places[name]]
+        return self.vectors[:, self.places[name]]
 
     @property
     def time_s(self) -> Array:
         """Simulated time of every tick in s."""
-        return (self.first_tick + np.arange(len(self.rows))) / self.tick_hz
+        return (self.first_tick + np.arange(len(self.vectors))) / self.tick_hz
 
 
-def drive_of(rows: ArrayLike, columns: Sequence[str], tick_hz: int, first_tick: int = 1) -> Drive:
-    """Return a drive from its rows.
+def drive_of(vectors: ArrayLike, columns: Sequence[str], tick_hz: int, first_tick: int = 1) -> Drive:
+    """Return a drive from its state vectors.
 
-    Raises RecordingError when it is empty or its rows are not as wide as `columns`.
+    Raises RecordingError when it is empty or its state vectors are not as wide as `columns`.
     """
-    values = np.asarray(rows, dtype=np.float64)
+    values = np.asarray(vectors, dtype=np.float64)
     if values.ndim != 2 or len(values) == 0:
         raise RecordingError("drive: 0 ticks: nothing to report")
     if values.shape[1] != len(columns):
-        raise RecordingError(f"drive: rows of {values.shape[1]} columns, must be {len(columns)}")
+        raise RecordingError(f"drive: state vectors of {values.shape[1]} columns, must be {len(columns)}")
     return Drive(values, {name: at for at, name in enumerate(columns)}, tick_hz, first_tick)

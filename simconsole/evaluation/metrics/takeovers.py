@@ -1,4 +1,4 @@
-"""Take-overs of a drive, measured as studies of drivers want them. Pure: rows and course in, figures out."""
+"""Take-overs of a drive, measured as studies of drivers want them. Pure: state vectors and course in, figures out."""
 
 from typing import Any, Final, NamedTuple
 
@@ -38,7 +38,7 @@ def takeovers(drive: Drive, lateral_m: Array) -> list[dict[str, Any]]:
     None: the control was not used, or there is no course. Jerk is that of accelerations averaged over 0.1 s.
 
     Args:
-        drive: The rows.
+        drive: The state vectors.
         lateral_m: Left of the theoretical path, float64 [ticks]; empty without a course.
     """
     return [_measured(drive, lateral_m, span) for span in _spans(drive)]

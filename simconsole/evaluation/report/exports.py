@@ -93,7 +93,7 @@ def _report(
     if page:
         return write_page(
             folder / REPORT,
-            table.rows,
+            table.vectors,
             table.columns,
             table.tick_hz,
             course,
@@ -103,7 +103,7 @@ def _report(
             faults=faults,
             latency_us=summary.get("latency_us"),
         )
-    return metrics(drive_of(table.rows, table.columns, table.tick_hz, first_tick), course, None, faults)
+    return metrics(drive_of(table.vectors, table.columns, table.tick_hz, first_tick), course, None, faults)
 
 
 def _facts(resolved: ResolvedSession, summary: dict[str, Any]) -> dict[str, object]:
@@ -120,5 +120,5 @@ def _facts(resolved: ResolvedSession, summary: dict[str, Any]) -> dict[str, obje
 def _scene(folder: Path, resolved: ResolvedSession, table: LogTable) -> None:
     from simconsole.scene.viewer.export import export_apart
 
-    export_apart(scene_job(resolved, table.rows, table.ticks, table.columns, table.tick_hz), folder / SCENE)
+    export_apart(scene_job(resolved, table.vectors, table.ticks, table.columns, table.tick_hz), folder / SCENE)
     (folder / LIVE_SCENE).unlink(missing_ok=True)

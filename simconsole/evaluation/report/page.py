@@ -55,7 +55,7 @@ _LABELS: Final[tuple[tuple[str, str, str], ...]] = (
 
 def write_report(
     path: Path,
-    rows: ArrayLike,
+    vectors: ArrayLike,
     columns: Sequence[str],
     tick_hz: int,
     course: Course | None,
@@ -70,22 +70,22 @@ def write_report(
 
     Args:
         path: the HTML file.
-        rows: float64 [ticks, columns], one row per tick from `first_tick`.
-        columns: their names, as of `rows.columns`.
+        vectors: float64 [ticks, columns], one state vector per tick from `first_tick`.
+        columns: their names, as of `state_vector.columns`.
         tick_hz: ticks per second.
         course: the theoretical path, None in a world without one.
         title: heading of the page.
         extra: further facts for the page, in order. Nothing that differs between equal drives belongs here, if two
             reports of one drive are to be equal.
-        first_tick: number of the first row's tick.
+        first_tick: number of the first tick.
         faults: names of the scenario's faults, in their order.
         latency_us: p50, p99, max and count of each hop (LatencyStatistics.summary_us). They differ between equal
             drives, so they are not among the metrics.
 
     Raises:
-        RecordingError: an empty drive, rows that do not fit the columns, or a file that cannot be written.
+        RecordingError: an empty drive, state vectors that do not fit the columns, or a file that cannot be written.
     """
-    drive = drive_of(rows, columns, tick_hz, first_tick)
+    drive = drive_of(vectors, columns, tick_hz, first_tick)
     way = track(drive, course)
     found = metrics(drive, course, way, faults)
     changes = mode_changes(drive, way)

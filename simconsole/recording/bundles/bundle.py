@@ -46,7 +46,7 @@ class Bundle:
     Attributes:
         folder: where it is.
         manifest: what it says of itself.
-        log: the recorded rows.
+        log: the recorded state vectors.
     """
 
     def __init__(self, folder: Path, manifest: Manifest) -> None:
@@ -97,7 +97,7 @@ class BundleWriter:
 
     Attributes:
         folder: where it is.
-        log: append one row per tick here; look at `log.failure` for a disk that gave up.
+        log: append one state vector per tick here; look at `log.failure` for a disk that gave up.
     """
 
     def __init__(
@@ -249,10 +249,10 @@ def _unfinished(folder: Path) -> str:
 
 
 def _alarm(log: LogReader) -> str | None:
-    """Return one line if the last row holds the alarm: a drive that was killed after its recording had failed."""
+    """Return one line if the last tick holds the alarm: a drive that was killed after its recording had failed."""
     if log.last is None or _EVENTS not in log.header.columns:
         return None
-    if not int(log.last.row[log.header.columns.index(_EVENTS)]) & Event.RECORDING_FAILED:
+    if not int(log.last.vector[log.header.columns.index(_EVENTS)]) & Event.RECORDING_FAILED:
         return None
     return f"{log.path}: recording stopped at tick {log.last.tick - 1}"
 
@@ -273,7 +273,7 @@ def _log_problems(path: Path, manifest: Manifest) -> Iterator[str]:
         return
     digest, ticks, broken = START_OF_CHAIN, 0, None
     for record in log:
-        digest = chain(digest, record.tick, record.row.tobytes())
+        digest = chain(digest, record.tick, record.vector.tobytes())
         if broken is None and digest != record.digest:
             broken = record.tick
         digest = record.digest

@@ -43,11 +43,11 @@ _synchronise = getattr(os, "fdatasync", os.fsync)
 
 
 class LogWriter:
-    """Appends rows to a new log file. A failing disk stops the recording, never the drive.
+    """Appends state vectors to a new log file. A failing disk stops the recording, never the drive.
 
     Attributes:
         failure: why recording stopped, or None while all is well. Worth an alarm: the session raises it.
-        ticks: rows that reached the file.
+        ticks: state vectors that reached the file.
         digest: chained hash after the last of them.
         size_bytes: of the file's whole frames.
         sha256: of these, once closed; None if they could not be read.
@@ -64,7 +64,7 @@ class LogWriter:
 
         Args:
             path: the file.
-            header: what its rows mean.
+            header: what its state vectors mean.
             sync_interval_s: longest time whose ticks a power cut may take.
             free_room: gives back the room that was kept for the last ticks; may raise OSError.
 
@@ -84,7 +84,7 @@ class LogWriter:
         self.size_bytes = 0
         self.sha256: str | None = None
         self._hasher, self._hashed_bytes = sha256(), 0
-        self._row_bytes = 8 * len(header.columns)
+        self._vector_bytes = 8 * len(header.columns)
         self._free_room = free_room
         self._last_ticks = LAST_TICKS
         problem = self._problem(start)
@@ -95,16 +95,19 @@ class LogWriter:
         self._syncer = Thread(target=self._sync, args=(sync_interval_s,), name="log sync", daemon=True)
         self._syncer.start()
 
-    def append(self, tick: int, row: Row) -> None:
-        """Write one tick. Once recording has failed, only the last ticks; a row of another width is a bug and raises.
+    def append(self, tick: int, vector: Row) -> None:
+        """Write one tick. Once recording has failed, only the last ticks.
 
-        A failed write is tried once more in the room that was kept for it, so that the log's own last row can tell.
+        A failed write is tried once more in the room that was kept for it, so that the log's last tick can tell.
+
+        Raises:
+            ValueError: a state vector of another width, which is a bug.
         """
         if self.failure is not None and self._last_ticks <= 0:
             return
-        content = row.tobytes()
-        if len(content) != self._row_bytes:
-            raise ValueError(f"a row of {len(content)} bytes in a log of {self._row_bytes}")
+        content = vector.tobytes()
+        if len(content) != self._vector_bytes:
+            raise ValueError(f"a state vector of {len(content)} bytes in a log of {self._vector_bytes}")
         frame, digest = seal(self.digest, tick, content)
         problem = self._problem(frame)
         if problem is not None:
@@ -195,12 +198,12 @@ class LogWriter:
 
 
 class LogTable(NamedTuple):
-    """A whole log in memory: ticks (n) and rows (n, columns)."""
+    """A whole log in memory: ticks (n) and state vectors (n, columns)."""
 
     columns: tuple[str, ...]
     tick_hz: int
     ticks: NDArray[np.int64]
-    rows: NDArray[np.float64]
+    vectors: NDArray[np.float64]
 
     def column(self, name: str) -> NDArray[np.float64]:
         """Return one column over all ticks.
@@ -210,7 +213,7 @@ class LogTable(NamedTuple):
         """
         if name not in self.columns:
             raise RecordingError(f"the recording has no column {name!r}")
-        values: NDArray[np.float64] = self.rows[:, self.columns.index(name)]
+        values: NDArray[np.float64] = self.vectors[:, self.columns.index(name)]
         return values
 
 
@@ -218,7 +221,7 @@ class LogReader:
     """A recorded log. Iterating passes over the file anew, in constant memory.
 
     Attributes:
-        header: what the rows mean.
+        header: what the state vectors mean.
         breaks: where the file was not whole, as found by the latest complete pass.
         last: the last whole record, as found by the latest complete pass; None in a log without.
     """
@@ -251,8 +254,8 @@ class LogReader:
         """Return all whole records as arrays."""
         width = len(self.header.columns)
         most = self.path.stat().st_size // frame_size(width) + 1
-        ticks, rows, count = np.empty(most, np.int64), np.empty((most, width), np.float64), 0
+        ticks, vectors, count = np.empty(most, np.int64), np.empty((most, width), np.float64), 0
         for record in self:
-            ticks[count], rows[count] = record.tick, record.row
+            ticks[count], vectors[count] = record.tick, record.vector
             count += 1
-        return LogTable(self.header.columns, self.header.tick_hz, ticks[:count], rows[:count])
+        return LogTable(self.header.columns, self.header.tick_hz, ticks[:count], vectors[:count])

@@ -9,7 +9,7 @@ from simconsole import __version__
 from simconsole.profiles.files.loader import parse
 from simconsole.recording.bundles.bundle import SESSION_FILE, Bundle, open_bundle, session_problem
 from simconsole.recording.replay import ReplayResult, replay
-from simconsole.tick.advance import Console, ConsoleState, advance_row, decide
+from simconsole.tick.advance import Console, ConsoleState, advance_vector, decide
 from simconsole.tick.assembly import ResolvedSession, assemble
 from simconsole.values.errors import RecordingError
 from simconsole.values.host import jit as compiling
@@ -30,13 +30,13 @@ def recorded_session(bundle: Bundle) -> ResolvedSession:
 
 
 def sources_sha256(console: Console) -> str:
-    """Return what a log says of the sources that made its rows."""
+    """Return what a log says of the sources that made its state vectors."""
     sources = compiling.digest(decide) + compiling.digest(console.platform.step)
     return hashlib.sha256(sources.encode()).hexdigest()
 
 
 def state_at(folder: Path, tick: int) -> tuple[Console, ConsoleState]:
-    """Return the console of a bundle and its state after `tick`: a row is the whole state, so a drive can go on there.
+    """Return the console of a bundle and its state after `tick`, where a drive can go on: a vector is the whole state.
 
     Raises:
         RecordingError: not a bundle, of another version, or without this tick.
@@ -46,9 +46,10 @@ def state_at(folder: Path, tick: int) -> tuple[Console, ConsoleState]:
     table = bundle.log.table()
     if tick == 0:
         return console, start
-    if not 1 <= tick <= len(table.rows) or table.columns != console.columns:
-        raise RecordingError(f"{folder}: tick: value {tick}: 0 to {len(table.rows)}, of a drive with the same columns")
-    return console, ConsoleState(tick, np.array(table.rows[tick - 1]))
+    if not 1 <= tick <= len(table.vectors) or table.columns != console.columns:
+        last = len(table.vectors)
+        raise RecordingError(f"{folder}: tick: value {tick}: 0 to {last}, of a drive with the same columns")
+    return console, ConsoleState(tick, np.array(table.vectors[tick - 1]))
 
 
 def replay_bundle(folder: Path) -> ReplayResult:
@@ -63,8 +64,8 @@ def replay_bundle(folder: Path) -> ReplayResult:
         bundle.log,
         bundle.log.header,
         console.columns,
-        state.row,
-        lambda tick, previous, inputs: advance_row(previous, inputs, console),
+        state.vector,
+        lambda tick, previous, inputs: advance_vector(previous, inputs, console),
         first_tick=1,
         recorded_ticks=bundle.manifest.ticks if bundle.manifest.finished else None,
     )

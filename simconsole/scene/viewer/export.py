@@ -36,7 +36,7 @@ def export(job: Job, path: Path) -> None:
         for start in range(0, len(job.ticks), step):
             stop = start + step
             added, memory = piece(
-                job.rows[start:stop], job.columns, job.ticks[start:stop], job.tick_hz, job.profile.rate_hz, memory
+                job.vectors[start:stop], job.columns, job.ticks[start:stop], job.tick_hz, job.profile.rate_hz, memory
             )
             view.add(added)
         view.close()

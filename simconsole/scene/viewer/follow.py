@@ -35,7 +35,7 @@ def follow(ports: Ports, job: Job, path: Path) -> None:
 
     Args:
         ports: the ring and the end.
-        job: course, car and columns; its rows are not used.
+        job: course, car and columns; its state vectors are not used.
         path: the file to write.
 
     Raises:
@@ -57,14 +57,14 @@ def follow(ports: Ports, job: Job, path: Path) -> None:
         waiting += ports.new_ticks()
         state = ports.link()
         if waiting and state is not None and state != seen:
-            # Of wall time, so in no row: it stands at the newest tick that is known.
+            # Of wall time, so in no state vector: it stands at the newest tick that is known.
             seen = state
             link.times_ns.append(waiting[-1].t_ns)
             link.states.append(state)
         if waiting and (not running or time.monotonic() - written_s >= job.profile.chunk_s):
-            rows = np.array([snapshot.row for snapshot in waiting])
+            vectors = np.array([snapshot.vector for snapshot in waiting])
             ticks = np.array([snapshot.tick for snapshot in waiting], dtype=np.int64)
-            added, memory = piece(rows, job.columns, ticks, job.tick_hz, job.profile.rate_hz, memory)
+            added, memory = piece(vectors, job.columns, ticks, job.tick_hz, job.profile.rate_hz, memory)
             view.add(added._replace(lanes=(*added.lanes, link)))
             link = Lane(LINK_LANE, [], [])
             waiting.clear()

@@ -1,4 +1,4 @@
-"""What a scene process is given, as one .npz file: the drive's rows (or none, for a live one), the course, the car."""
+"""What a scene process is given, as one .npz file: state vectors (none for a live drive), the course, the car."""
 
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -18,9 +18,9 @@ _LINES: Final = ("surfaces", "islands", "edges", "centre_lines", "zebras", "stop
 
 
 class Job(NamedTuple):
-    """A drive to show. A live job has no rows: they come through the ring."""
+    """A drive to show. A live job has no state vectors: they come through the ring."""
 
-    rows: Array  # [N, columns]
+    vectors: Array  # [N, columns]
     ticks: Ticks  # [N]
     columns: tuple[str, ...]
     tick_hz: int
@@ -30,15 +30,15 @@ class Job(NamedTuple):
 
 
 def save_job(path: Path, job: Job) -> None:
-    """Write a job; of its rows only the columns that the scene reads.
+    """Write a job; of its state vectors only the columns that the scene reads.
 
     Raises:
         WorkerError: the file cannot be written.
     """
     columns = tuple(name for name in job.columns if name in NEEDED)
-    rows = job.rows[:, [job.columns.index(name) for name in columns]]
+    vectors = job.vectors[:, [job.columns.index(name) for name in columns]]
     content: dict[str, Any] = {
-        "rows": rows,
+        "vectors": vectors,
         "ticks": job.ticks,
         "columns": np.array(columns),
         "tick_hz": job.tick_hz,
@@ -63,7 +63,7 @@ def load_job(path: Path) -> Job:
     try:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as content:
             return Job(
-                content["rows"],
+                content["vectors"],
                 content["ticks"],
                 tuple(content["columns"].tolist()),
                 int(content["tick_hz"]),

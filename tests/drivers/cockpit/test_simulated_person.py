@@ -65,7 +65,7 @@ def drive(
     plugged = VirtualCockpit(cockpit)
     source = SdlSource(cockpit)
     driver = SimulatedPerson(plan, plugged, cockpit_settings(cockpit, HZ), tick_hz=HZ)
-    snapshot, scenes = Snapshot(0, HZ, state.row), []
+    snapshot, scenes = Snapshot(0, HZ, state.vector), []
     try:
         for tick in range(1, round(limit_s * HZ) + 1):
             meddle(tick, plugged)

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from simconsole.evaluation.checks.row_table import MemoryRecorder
+from simconsole.evaluation.checks.memory_recorder import MemoryRecorder
 from simconsole.evaluation.checks.scenario_check import Bound, check_scenario
 from simconsole.profiles.scenario import Check, ScenarioProfile
 from simconsole.profiles.session import Devices, ModeSection, Scenario, SessionProfile
@@ -66,15 +66,15 @@ def test_what_is_no_number_is_outside_every_bound() -> None:
 
 
 def test_an_unknown_column_is_refused() -> None:
-    with pytest.raises(ProfileError, match=r"^s\.yaml: checks: column: value c: a column of a row"):
+    with pytest.raises(ProfileError, match=r"^s\.yaml: checks: column: value c: a column of the state vector"):
         judge(Check(column="c"), ROWS)
 
 
 def test_a_scenario_without_person_and_controller_is_driven_too(scenario: ScenarioProfile) -> None:
     recorder, columns = drive_scenario(scenario)
     assert recorder.ticks == 100
-    assert recorder.rows.shape == (100, len(columns))
-    assert np.isfinite(recorder.rows).all()
+    assert recorder.vectors.shape == (100, len(columns))
+    assert np.isfinite(recorder.vectors).all()
     again, _ = drive_scenario(scenario)
     assert again.digest == recorder.digest
 
@@ -124,7 +124,7 @@ def test_a_day_begins_and_keeps_no_room_for_its_end(tmp_path: Path) -> None:
     with pytest.raises(ProfileError, match=r"checks: column: value vehicle\.wings"):
         check_scenario(str(tmp_path / "day.yaml"))
     recorder = MemoryRecorder(86400 * 1000, 400)
-    assert recorder.rows.shape == (0, 400)
+    assert recorder.vectors.shape == (0, 400)
 
 
 def test_a_golden_is_whole_or_the_one_before(tmp_path: Path) -> None:

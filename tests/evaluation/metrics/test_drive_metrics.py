@@ -58,7 +58,7 @@ def test_distance_runs_on_over_the_start_line(known: Any, course: Course) -> Non
 
 
 def test_a_vehicle_that_is_put_elsewhere_did_not_drive_there(known: Any, course: Course) -> None:
-    rows = known.rows.copy()
+    rows = known.vectors.copy()
     rows[750:, known.columns.index("vehicle.y_m")] += 40.0
     found = metrics(drive_of(rows, known.columns, 50), course)
     assert found["distance_m"] == pytest.approx(300.0, abs=2.0)
@@ -69,10 +69,10 @@ def test_without_course_or_autopilot_those_parts_are_none(known: Any, course: Co
     assert alone["speed_limit_kmh"] is None
     assert alone["autonomous"]["lateral_rms_m"] is None
     assert alone["autonomous"]["distance_m"] == pytest.approx(200.0, abs=1.0)
-    assert metrics(drive_of(known.rows[:200], known.columns, 50), course)["autonomous"] is None
+    assert metrics(drive_of(known.vectors[:200], known.columns, 50), course)["autonomous"] is None
 
 
 def test_speeding_is_counted(known: Any, course: Course) -> None:
-    rows = known.rows.copy()
+    rows = known.vectors.copy()
     rows[100:125, known.columns.index("vehicle.vx_mps")] = 14.0
     assert metrics(drive_of(rows, known.columns, 50), course)["above_limit_s"] == 0.5

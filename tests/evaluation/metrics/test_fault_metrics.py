@@ -14,7 +14,7 @@ from tests.evaluation.conftest import Known
 
 @pytest.fixture
 def faulty(known: Known) -> Known:
-    rows = known.rows.copy()
+    rows = known.vectors.copy()
     masks = np.zeros(len(rows))
     masks[10:20] += 1
     masks[15:30] += 4

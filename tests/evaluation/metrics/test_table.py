@@ -8,7 +8,7 @@ from simconsole.values.errors import RecordingError
 
 
 def test_columns_by_name_and_time_by_tick(known: Any) -> None:
-    drive = drive_of(known.rows, known.columns, 50, first_tick=101)
+    drive = drive_of(known.vectors, known.columns, 50, first_tick=101)
     assert drive.column("vehicle.vx_mps").tolist() == [10.0] * 1500
     assert drive.time_s[0] == pytest.approx(2.02)
     with pytest.raises(RecordingError, match=r"vehicle\.nothing is missing"):

@@ -106,4 +106,4 @@ def test_only_what_ends_with_the_person_counts_and_each_has_its_own_span() -> No
 
 def test_a_drive_without_any_has_none(known: Any) -> None:
     assert takeovers(made_up({0.0: Mode.MANUAL}), NONE) == []
-    assert len(takeovers(drive_of(known.rows, known.columns, known.tick_hz), NONE)) == 1
+    assert len(takeovers(drive_of(known.vectors, known.columns, known.tick_hz), NONE)) == 1

@@ -60,7 +60,7 @@ def test_map_shows_the_driven_path_where_it_was(known: Any, course: Course, svgs
     (ruler,) = lines(svgs[0], THEORY)
     unit_m = np.ptp(theory, axis=0) / np.ptp(ruler, axis=0)
     assert unit_m[0] == pytest.approx(unit_m[1], rel=0.01), "as long in x as in y"
-    driven = known.rows[:, [known.columns.index(f"vehicle.{name}") for name in ("x_m", "y_m")]]
+    driven = known.vectors[:, [known.columns.index(f"vehicle.{name}") for name in ("x_m", "y_m")]]
     for colour, parts in ((PERSON, [driven[:251], driven[1250:]]), (REMOTE, [driven[250:1251]])):
         shown = [theory.min(axis=0) + (line - ruler.min(axis=0)) * unit_m for line in lines(svgs[0], colour)]
         assert len(shown) == len(parts)
@@ -72,9 +72,9 @@ def test_map_shows_the_driven_path_where_it_was(known: Any, course: Course, svgs
 
 @pytest.mark.parametrize("with_course", [True, False])
 def test_odd_drives_are_drawn_too(known: Any, course: Course, with_course: bool) -> None:
-    still = known._replace(rows=np.repeat(known.rows[:1], 20, axis=0))
-    by_hand = known._replace(rows=known.rows[:200])
-    one = known._replace(rows=known.rows[:1])
+    still = known._replace(vectors=np.repeat(known.vectors[:1], 20, axis=0))
+    by_hand = known._replace(vectors=known.vectors[:200])
+    one = known._replace(vectors=known.vectors[:1])
     for odd in (still, by_hand, one):
         for svg in drawn(odd, course if with_course else None):
             assert ElementTree.fromstring(svg).tag.endswith("svg")

@@ -29,7 +29,7 @@ class Outside(HTMLParser):
 
 
 def written(path: Path, known: Any, course: Course | None, title: str, *more: Any, **options: Any) -> dict[str, Any]:
-    return write_report(path, known.rows, known.columns, known.tick_hz, course, title, *more, **options)
+    return write_report(path, known.vectors, known.columns, known.tick_hz, course, title, *more, **options)
 
 
 def test_latency_of_each_hop_stands_in_the_page_only(tmp_path: Path, known: Any) -> None:
@@ -80,7 +80,7 @@ def test_importing_the_report_loads_no_matplotlib() -> None:
 
 
 def test_take_overs_are_listed(known: Any, course: Course) -> None:
-    drive = drive_of(known.rows, known.columns, known.tick_hz)
+    drive = drive_of(known.vectors, known.columns, known.tick_hz)
     html = page("t", metrics(drive, course), (), {}, {})
     assert "<h2>Take-overs</h2>" in html
     row = html.partition("<h2>Take-overs</h2>")[2].partition("</table>")[0]

@@ -148,7 +148,7 @@ def test_verify_names_the_tick_whose_hash_does_not_hold(
     records = list(open_bundle(bundle).log)
     parts = [encode_header(open_bundle(bundle).log.header)]
     for before, record in zip([bytes(8), *(record.digest for record in records)], records, strict=False):
-        parts.append(seal(before if record.tick != 5 else bytes(8), record.tick, record.row.tobytes())[0])
+        parts.append(seal(before if record.tick != 5 else bytes(8), record.tick, record.vector.tobytes())[0])
     (bundle / "drive.log").write_bytes(b"".join(parts))
     rewrite_checksums(bundle)
     assert verify(bundle) == [f"{bundle / 'drive.log'}: the chained hash does not hold at tick 5"]

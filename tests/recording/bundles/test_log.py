@@ -39,7 +39,7 @@ def test_ticks_appended_are_ticks_read(tmp_path: Path, header: LogHeader, rows: 
     records = list(reader)
     assert reader.header == header
     assert reader.breaks == ()
-    assert [record.row.tobytes() for record in records] == [row.tobytes() for row in rows]
+    assert [record.vector.tobytes() for record in records] == [row.tobytes() for row in rows]
     assert records[-1].digest == log.digest
     assert log.size_bytes == (tmp_path / "drive.log").stat().st_size
     assert [record.tick for record in reader] == list(range(1, 41))  # a second pass reads the same
@@ -65,7 +65,7 @@ def test_the_table_is_the_log_in_columns(tmp_path: Path, header: LogHeader, log_
     table = LogReader(tmp_path / "drive.log").table()
     assert table.tick_hz == 250
     assert table.ticks.tolist() == list(range(1, 40))
-    assert table.rows.shape == (39, 4)
+    assert table.vectors.shape == (39, 4)
     assert table.column("driver.brake").tolist() == (table.column("sample.brake_axis") * 0.5).tolist()
     with pytest.raises(RecordingError, match=r"no column 'driver\.break'"):
         table.column("driver.break")

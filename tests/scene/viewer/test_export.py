@@ -89,7 +89,7 @@ def test_a_job_survives_its_file(tmp_path: Path) -> None:
     found = load_job(tmp_path / "job.npz")
     assert set(found.columns) == set(NEEDED)
     for name in NEEDED:
-        assert (found.rows[:, found.columns.index(name)] == wanted.rows[:, COLUMNS.index(name)]).all()
+        assert (found.vectors[:, found.columns.index(name)] == wanted.vectors[:, COLUMNS.index(name)]).all()
     assert found.ticks.tolist() == wanted.ticks.tolist()
     assert (found.tick_hz, found.dimensions, found.profile) == (wanted.tick_hz, wanted.dimensions, wanted.profile)
     assert found.drawing is not None
