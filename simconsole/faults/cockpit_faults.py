@@ -5,11 +5,12 @@ They act in the order of the list, each on what the one before has left.
 
 from collections import deque
 from collections.abc import Callable, Sequence
-from typing import Any, Final, Protocol, TypeAlias
+from typing import Any, Final, TypeAlias
 
 from simconsole.devices.calibration.cockpit_settings import SHIFTER_SHIFT, CockpitSettings
 from simconsole.devices.calibration.inverse_calibration import WHEEL_MASK, button_masks
 from simconsole.devices.force_feedback.motor import Source
+from simconsole.faults.switched import Switched
 from simconsole.profiles.device import CockpitProfile, RoleName
 from simconsole.profiles.faults import (
     Burst,
@@ -56,14 +57,6 @@ _READINGS: Final = {
 Values: TypeAlias = dict[str, float]
 Effect: TypeAlias = Callable[[DeviceSample, int, int], DeviceSample]
 """(sample, tick, ticks that the fault has been on, 0: off) -> sample."""
-
-
-class Switched(Protocol):
-    """Something that is on for a number of ticks, 0 while it is off."""
-
-    @property
-    def ticks(self) -> int:
-        """The coming tick included."""
 
 
 class FaultyDevices:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Final, Protocol
 
+from simconsole.faults.switched import Switched
 from simconsole.profiles.faults import Astray, Disconnected, Fault, LateCommands, NotFinite, Refused, Silent
 from simconsole.values.protocols import CommandSource
 from simconsole.values.signals import NEVER_TICKS, Event, EventInput, RemoteCommand
@@ -10,14 +11,6 @@ from simconsole.values.units import RAD_PER_DEG
 
 _STOPPING: Final = (Silent, Disconnected, Refused)
 """Faults under which no new command is taken."""
-
-
-class Switched(Protocol):
-    """Something that is on for a number of ticks, 0 while it is off."""
-
-    @property
-    def ticks(self) -> int:
-        """The coming tick included."""
 
 
 class ArmedFault(Protocol):

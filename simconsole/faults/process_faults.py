@@ -1,8 +1,8 @@
 """Faults of the process that the loop runs in: it stands still, or a part of it raises. Pure."""
 
 from collections.abc import Sequence
-from typing import Protocol
 
+from simconsole.faults.switched import Switched
 from simconsole.tick.loop import Pace
 from simconsole.values.protocols import CommandSource, DeviceSource
 from simconsole.values.signals import DeviceSample, Event, EventInput, RemoteCommand
@@ -10,14 +10,6 @@ from simconsole.values.state_vector import Snapshot
 
 STALL_MS = 100.0
 """As pacing counts a stall."""
-
-
-class Switched(Protocol):
-    """Something that is on for a number of ticks, 0 while it is off."""
-
-    @property
-    def ticks(self) -> int:
-        """The coming tick included."""
 
 
 class InjectedError(RuntimeError):

@@ -9,9 +9,10 @@ from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple, get_args
 
 from simconsole.devices.calibration.cockpit_settings import cockpit_settings
-from simconsole.faults.cockpit_faults import FaultyDevices, Switched
+from simconsole.faults.cockpit_faults import FaultyDevices
 from simconsole.faults.command_faults import FaultyCommands
 from simconsole.faults.process_faults import RaisingCommands, RaisingDevices, RaisingOutput, StallingPace
+from simconsole.faults.switched import Switched
 from simconsole.profiles import faults as kinds
 from simconsole.profiles.faults import Fault, Onset
 from simconsole.tick.assembly import ResolvedSession

@@ -69,7 +69,7 @@ def test_data_is_stale_after_half_a_second() -> None:
     assert view(snapshot(), 0.51, HudMemory(), HudSettings())[0].stale
 
 
-def test_the_content_comes_from_the_row() -> None:
+def test_the_content_comes_from_the_state_vector() -> None:
     row = snapshot(
         tick=500,
         vehicle__vx_mps=10.0,

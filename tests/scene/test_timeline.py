@@ -154,7 +154,7 @@ def test_quaternions_turn_by_yaw_pitch_roll() -> None:
     assert both == pytest.approx((0.0, 1.0, 0.0))  # pitched nose down, then turned left
 
 
-def test_the_needed_columns_are_columns_of_a_row() -> None:
+def test_the_needed_columns_are_columns_of_a_state_vector() -> None:
     assert set(NEEDED) <= set(COLUMNS)
     (only,) = pieces([])
     table = rows(COUNT)[:, [COLUMNS.index(name) for name in NEEDED]]

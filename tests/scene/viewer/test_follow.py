@@ -19,7 +19,7 @@ given = 0
 def new_ticks():
     global given
     start, given = given, min(given + 100, len(job.ticks))
-    return [Snapshot(int(job.ticks[i]), job.tick_hz, job.rows[i]) for i in range(start, given)]
+    return [Snapshot(int(job.ticks[i]), job.tick_hz, job.vectors[i]) for i in range(start, given)]
 def stop():
     return given >= len(job.ticks)
 if sys.argv[3] == "die":
