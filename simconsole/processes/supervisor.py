@@ -9,25 +9,22 @@ itself.
 
     core ──stdin──> supervisor ──stdin──> bridge, hud, scene
 
-Run as `python -m simconsole.processes.supervisor supervisor` or `... worker`, with the description as one line on
-standard input.
+Run as `python -m simconsole.processes supervisor`, with a `SupervisorSpec` as one line of JSON on standard input.
 """
 
-import importlib
 import os
-import signal
 import subprocess
-import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import msgspec
 
-from simconsole.processes.lifetimes import ORPHAN_S, close_pipe, end, follow_parent, read_told, spawn
+from simconsole.processes.lifetimes import ORPHAN_S, close_pipe, end, follow_parent, spawn
 from simconsole.processes.shared_memory import remove_run_folder
-from simconsole.values.errors import SimConsoleError, WorkerError, one_line
+from simconsole.processes.worker import WorkerCall, WorkerSpec, run_child
+from simconsole.values.errors import WorkerError
 from simconsole.values.host.files import write_atomically
 from simconsole.values.state_vector import Snapshot
 
@@ -43,28 +40,11 @@ LOOKS_PER_S: Final = 5
 STATUS: Final = "workers.json"
 
 
-class WorkerSpec(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """One worker: `target` is `module:function`, called with (folder, arguments, stop)."""
-
-    name: str
-    target: str
-    arguments: dict[str, Any] = {}
-    environment: dict[str, str | None] = {}  # laid over the core's; None removes
-
-
 class SupervisorSpec(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What the supervisor looks after."""
 
     folder: str
     workers: list[WorkerSpec]
-    patience_s: float
-
-
-class WorkerCall(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What a worker process is told."""
-
-    folder: str
-    worker: WorkerSpec
     patience_s: float
 
 
@@ -193,20 +173,6 @@ def supervise(spec: SupervisorSpec, stop: Callable[[], bool], hurry: Callable[[]
             remove_run_folder(Path(spec.folder))
 
 
-def run_worker(folder: Path, spec: WorkerSpec, stop: Callable[[], bool]) -> None:
-    """Call the function that `spec` names.
-
-    Raises:
-        WorkerError: there is no such function.
-    """
-    module, _, function = spec.target.partition(":")
-    try:
-        program = getattr(importlib.import_module(module), function)
-    except (ImportError, AttributeError) as error:
-        raise WorkerError(f"worker {spec.name}: {spec.target} cannot be loaded: {error}") from None
-    program(folder, spec.arguments, stop)
-
-
 def _write_status(folder: Path, kept: list[_KeptWorker]) -> None:
     status = {
         worker.spec.name: WorkerStatus(
@@ -223,7 +189,7 @@ def _write_status(folder: Path, kept: list[_KeptWorker]) -> None:
 def _spawn(role: str, spec: object, environment: Mapping[str, str]) -> "subprocess.Popen[bytes]":
     try:
         told = msgspec.json.encode(spec) + b"\n"
-        return spawn(["-m", "simconsole.processes.supervisor", role], told=told, environment=environment)
+        return spawn(["-m", "simconsole.processes", role], told=told, environment=environment)
     except OSError as error:
         raise WorkerError(f"{role}: cannot be started: {error.strerror}") from None
 
@@ -236,24 +202,11 @@ def _laid_over(environment: Mapping[str, str], changes: Mapping[str, str | None]
     return merged
 
 
-def main(arguments: list[str]) -> int:
-    """Be the supervisor or a worker."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the core's; the pipe tells when to end
-    line = read_told()
-    if not line:
-        return 1
-    try:
-        if arguments == ["supervisor"]:
-            core = follow_parent(None, SUPERVISOR_END_S)
-            supervise(msgspec.json.decode(line, type=SupervisorSpec), core.wants_end, core.is_gone)
-        else:
-            call = msgspec.json.decode(line, type=WorkerCall)
-            run_worker(Path(call.folder), call.worker, follow_parent(call.patience_s).wants_end)
-    except (SimConsoleError, OSError, MemoryError) as error:
-        print(f"simconsole {' '.join(arguments)}: {one_line(error)}", file=sys.stderr)
-        return SimConsoleError.exit_code
-    return 0
+def _run(line: bytes) -> None:
+    core = follow_parent(None, SUPERVISOR_END_S)
+    supervise(msgspec.json.decode(line, type=SupervisorSpec), core.wants_end, core.is_gone)
 
 
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+def main() -> int:
+    """Be the supervisor; return the exit code."""
+    return run_child("supervisor", _run)

@@ -3,14 +3,14 @@
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 import msgspec
 import numpy as np
 
 from simconsole.bridge.console.operator_acts import summarise_acts
 from simconsole.processes.shared_memory import EventCounters, Ring
-from simconsole.processes.supervisor import WorkerSpec
+from simconsole.processes.worker import Worker, WorkerSpec
 from simconsole.session.scene_job import LIVE_SCENE, scene_job
 from simconsole.session.worker_programs import (
     ACTS,
@@ -21,12 +21,16 @@ from simconsole.session.worker_programs import (
     COMMAND,
     COUNTS,
     EVENTS,
-    KEYS,
+    KEY_CODES,
     LATENCY,
     SCENE_JOB,
     SLOT_CAPACITY,
     SNAPSHOT_CAPACITY,
     SNAPSHOTS,
+    BridgeWorker,
+    CanWorker,
+    HudWorker,
+    SceneWorker,
     command_of,
 )
 from simconsole.tick.advance import Console
@@ -37,8 +41,6 @@ from simconsole.values.protocols import CommandSource, NobodyCommands
 from simconsole.values.signals import NEVER_TICKS, NO_COMMAND, EventInput, RemoteCommand
 from simconsole.values.state_vector import LAYOUT, Snapshot
 from simconsole.values.units import NS_PER_S
-
-PROGRAMS: Final = "simconsole.session.worker_programs"
 
 START_PATIENCE_S = 20.0
 
@@ -119,7 +121,7 @@ def make_memory(folder: Path, console: Console) -> tuple[RingOutput, CommandPort
     """
     snapshots = Ring.create(folder / SNAPSHOTS, console.width, SNAPSHOT_CAPACITY)
     command = Ring.create(folder / COMMAND, LAYOUT.ros.width, SLOT_CAPACITY)
-    keys = Ring.create(folder / KEYS, 1, SLOT_CAPACITY)
+    keys = Ring.create(folder / KEY_CODES, 1, SLOT_CAPACITY)
     events = EventCounters.create(folder / EVENTS)
     return RingOutput(snapshots), CommandPort(command, events, console.tick_hz), KeyPort(keys, console.tick_hz)
 
@@ -143,48 +145,32 @@ def worker_specs(
 
     `drive` is the nonce of the drive.
     """
-    outputs = resolved.session.outputs
-    tick_hz = console.tick_hz
-    specs = []
+    outputs, tick_hz = resolved.session.outputs, console.tick_hz
+    has_bridge, has_can = outputs.bridge is not None, outputs.can is not None
+    workers: dict[str, Worker] = {}
     if outputs.bridge is not None:
-        arguments = {
-            "profile": msgspec.to_builtins(outputs.bridge),
-            "tick_hz": tick_hz,
-            "drive": drive,
-            "bundle": str(bundle.absolute()),
-        }
-        specs.append(WorkerSpec(name="bridge", target=f"{PROGRAMS}:bridge", arguments=arguments))
+        workers["bridge"] = BridgeWorker(
+            profile=outputs.bridge, tick_hz=tick_hz, drive=drive, bundle=str(bundle.absolute())
+        )
     if outputs.can is not None:
         from simconsole.canbus.messages import wheel_columns
 
-        arguments = {
-            "profile": msgspec.to_builtins(outputs.can),
-            "tick_hz": tick_hz,
-            "wheels": wheel_columns(console.columns),
-            "bundle": str(bundle.absolute()),
-        }
-        specs.append(WorkerSpec(name="canbus", target=f"{PROGRAMS}:canbus", arguments=arguments))
+        workers["canbus"] = CanWorker(
+            profile=outputs.can, tick_hz=tick_hz, wheels=wheel_columns(console.columns), bundle=str(bundle.absolute())
+        )
     if outputs.hud is not None:
-        arguments = {
-            "profile": msgspec.to_builtins(outputs.hud),
-            "control": msgspec.to_builtins(resolved.session.features.control),
-            "tick_hz": tick_hz,
-            "can": outputs.can is not None,
-            "bridge": outputs.bridge is not None,
-        }
-        specs.append(WorkerSpec(name="hud", target=f"{PROGRAMS}:hud", arguments=arguments))
+        control = resolved.session.features.control
+        workers["hud"] = HudWorker(
+            profile=outputs.hud, control=control, tick_hz=tick_hz, has_can=has_can, has_bridge=has_bridge
+        )
     if outputs.scene is not None:
         from simconsole.scene.viewer.job import save_job
 
         vectors, ticks = np.empty((0, console.width)), np.empty(0, np.int64)
         save_job(folder / SCENE_JOB, scene_job(resolved, vectors, ticks, console.columns, tick_hz))
-        arguments = {
-            "path": str((bundle / LIVE_SCENE).absolute()),
-            "tick_hz": tick_hz,
-            "bridge": outputs.bridge is not None,
-        }
-        specs.append(WorkerSpec(name="scene", target=f"{PROGRAMS}:scene", arguments=arguments))
-    return specs
+        path = str((bundle / LIVE_SCENE).absolute())
+        workers["scene"] = SceneWorker(path=path, tick_hz=tick_hz, has_bridge=has_bridge)
+    return [WorkerSpec.of(name, worker) for name, worker in workers.items()]
 
 
 def bridge_address(folder: Path, alive: Callable[[], bool], patience_s: float = START_PATIENCE_S) -> str:

@@ -1,7 +1,6 @@
-"""What each worker process does: its room's own loop, between the ring and the slots. The only glue of its kind.
+"""The workers of a paced drive: each runs its room's own loop between the ring and the slots.
 
-Every function takes (folder, arguments, stop) as `simconsole.processes.supervisor` calls it, and waits for nothing but
-its room.
+A worker's fields are its whole configuration; `simconsole.processes.worker` brings them into its process.
 """
 
 import contextlib
@@ -14,6 +13,7 @@ import msgspec
 import numpy as np
 
 from simconsole.processes.shared_memory import EventCounters, Record, Ring
+from simconsole.processes.worker import Worker
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.can import CanProfile
 from simconsole.profiles.control import ControlProfile
@@ -29,7 +29,7 @@ from simconsole.values.units import NS_PER_S
 SNAPSHOTS: Final = "snapshots"
 COMMAND: Final = "bridge.command"
 EVENTS: Final = "bridge.events"
-KEYS: Final = "hud.keys"
+KEY_CODES: Final = "hud.keys"
 ADDRESS: Final = "bridge.address"
 ACTS: Final = "operator.jsonl"
 COUNTS: Final = "bridge.json"
@@ -44,125 +44,146 @@ SLOT_CAPACITY: Final = 4
 NO_RECEIPT: Final = -1
 
 
-def bridge(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> None:
-    """Serve rosbridge.
+class BridgeWorker(Worker, frozen=True, kw_only=True):
+    """Serves rosbridge."""
 
-    Arguments: `profile` (BridgeProfile), `tick_hz`, `drive` (its nonce), `bundle` (for recorded topics).
-    """
-    from simconsole.bridge.console.operator_acts import Act
-    from simconsole.bridge.transport.server import serve
-    from simconsole.bridge.transport.sockets import address_url
+    profile: BridgeProfile
+    tick_hz: int
+    drive: str
+    """The drive's nonce."""
+    bundle: str
+    """The bundle's folder, for recorded topics."""
 
-    profile = msgspec.convert(arguments["profile"], BridgeProfile)
-    receipts = Receipts(folder / f"{LATENCY}.bridge.json")
-    snapshots = NewestOnce(Ring.open(folder / SNAPSHOTS), int(arguments["tick_hz"]), receipts.received)
-    slot = Ring.open(folder / COMMAND, writable=True)
-    events = EventCounters.open(folder / EVENTS, writable=True)
+    def run(self, folder: Path, stop: Callable[[], bool]) -> None:
+        """Serve until `stop`."""
+        from simconsole.bridge.console.operator_acts import Act
+        from simconsole.bridge.transport.server import serve
+        from simconsole.bridge.transport.sockets import address_url
+
+        profile = self.profile
+        receipts = Receipts(folder / f"{LATENCY}.bridge.json")
+        snapshots = NewestOnce(Ring.open(folder / SNAPSHOTS), self.tick_hz, receipts.received)
+        events = EventCounters.open(folder / EVENTS, writable=True)
+
+        def keep_act(act: Act) -> None:
+            with (folder / ACTS).open("ab") as file:
+                file.write(msgspec.json.encode(act) + b"\n")
+
+        def ready(port: int) -> None:
+            url = address_url(profile.host, port, profile.certificate is not None)
+            write_atomically(folder / ADDRESS, url, durable=False)
+
+        def write_counts(counts: dict[str, int]) -> None:
+            write_atomically(folder / COUNTS, msgspec.json.encode(counts), durable=False)
+
+        def write_link_state(state: str) -> None:
+            write_atomically(folder / LINK_STATUS, msgspec.json.encode({"state": state}), durable=False)
+
+        serve(
+            profile, snapshots, command_writer(folder / COMMAND), events.raise_events, stop,
+            on_ready=ready, on_act=keep_act, on_counts=write_counts, on_link_state=write_link_state,
+            folder=Path(self.bundle), drive=self.drive,
+        )  # fmt: skip
+
+
+class CanWorker(Worker, frozen=True, kw_only=True):
+    """Is on the CAN bus."""
+
+    profile: CanProfile
+    tick_hz: int
+    wheels: tuple[int, ...] | None
+    """Where the state vector holds the wheels' speeds (messages.wheel_columns)."""
+    bundle: str
+    """The bundle's folder, for the logs."""
+
+    def run(self, folder: Path, stop: Callable[[], bool]) -> None:
+        """Send and receive until `stop`."""
+        from simconsole.canbus.bus.worker import put_on_bus, serve
+
+        receipts = Receipts(folder / f"{LATENCY}.canbus.json")
+        snapshots = NewestOnce(Ring.open(folder / SNAPSHOTS), self.tick_hz, receipts.received)
+        write_command = command_writer(folder / CAN_COMMAND)
+        events = EventCounters.open(folder / CAN_EVENTS, writable=True)
+        on_bus = put_on_bus(self.profile, self.tick_hz, wheels=self.wheels, folder=Path(self.bundle))
+
+        def write_status(status: dict[str, Any]) -> None:
+            write_atomically(folder / CAN_STATUS, msgspec.json.encode(status), durable=False)
+
+        try:
+            serve(on_bus, snapshots, write_command, events.raise_events, write_status, stop)
+        finally:
+            on_bus.port.close()
+
+
+class HudWorker(Worker, frozen=True, kw_only=True):
+    """Shows the cluster in a window and reports the keys held there."""
+
+    profile: HudProfile
+    control: ControlProfile
+    tick_hz: int
+    has_can: bool
+    has_bridge: bool
+
+    def run(self, folder: Path, stop: Callable[[], bool]) -> None:
+        """Draw until `stop`."""
+        from simconsole.hud.view import settings_of
+        from simconsole.hud.window.pygame_window import Ports, run
+
+        ring = Ring.open(folder / SNAPSHOTS)
+        keys = Ring.open(folder / KEY_CODES, writable=True)
+        receipts = Receipts(folder / f"{LATENCY}.hud.json")
+
+        def latest() -> Snapshot | None:
+            record = ring.latest()
+            if record is None:
+                return None
+            receipts.received(record)
+            return snapshot_of(record, self.tick_hz)
+
+        def report_keys(mask: int) -> None:
+            keys.write(np.array([float(mask)]), time.monotonic_ns())
+
+        can = CanWatch(folder / CAN_STATUS, time.time, time.monotonic) if self.has_can else lambda: None
+        link = LinkWatch(folder / LINK_STATUS, time.time, time.monotonic) if self.has_bridge else lambda: None
+        ports = Ports(latest, report_keys, stop, can, receipts.drawn, link)
+        run(ports, self.profile, settings_of(self.profile, self.control))
+
+
+class SceneWorker(Worker, frozen=True, kw_only=True):
+    """Records the scene with rerun; the course lies in the run folder."""
+
+    path: str
+    """The .rrd file."""
+    tick_hz: int
+    has_bridge: bool
+
+    def run(self, folder: Path, stop: Callable[[], bool]) -> None:
+        """Record until `stop`."""
+        from simconsole.scene.viewer.follow import Ports, follow
+        from simconsole.scene.viewer.job import load_job
+
+        ring = Ring.open(folder / SNAPSHOTS)
+        seen = ring.newest
+
+        def new_ticks() -> Sequence[Snapshot]:
+            nonlocal seen
+            records = ring.since(seen)
+            if records:
+                seen = records[-1].number
+            return [snapshot_of(record, self.tick_hz) for record in records]
+
+        link = LinkWatch(folder / LINK_STATUS, time.time, time.monotonic) if self.has_bridge else lambda: None
+        follow(Ports(new_ticks, stop, link), load_job(folder / SCENE_JOB), Path(self.path))
+
+
+def command_writer(path: Path) -> Callable[[RemoteCommand, int | None], None]:
+    """Return what puts a controller's command, and when it was received (ns), into its slot."""
+    slot = Ring.open(path, writable=True)
 
     def write_command(command: RemoteCommand, receipt_ns: int | None) -> None:
         slot.write(np.array(command), NO_RECEIPT if receipt_ns is None else receipt_ns)
 
-    def keep_act(act: Act) -> None:
-        with (folder / ACTS).open("ab") as file:
-            file.write(msgspec.json.encode(act) + b"\n")
-
-    def ready(port: int) -> None:
-        url = address_url(profile.host, port, profile.certificate is not None)
-        write_atomically(folder / ADDRESS, url, durable=False)
-
-    def write_counts(counts: dict[str, int]) -> None:
-        write_atomically(folder / COUNTS, msgspec.json.encode(counts), durable=False)
-
-    def write_link_state(state: str) -> None:
-        write_atomically(folder / LINK_STATUS, msgspec.json.encode({"state": state}), durable=False)
-
-    serve(
-        profile, snapshots, write_command, events.raise_events, stop,
-        on_ready=ready, on_act=keep_act, on_counts=write_counts, on_link_state=write_link_state,
-        folder=Path(arguments["bundle"]), drive=arguments["drive"],
-    )  # fmt: skip
-
-
-def canbus(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> None:
-    """Be on the CAN bus.
-
-    Arguments: `profile` (CanProfile), `tick_hz`, `wheels` (columns or None), `bundle` (for the logs).
-    """
-    from simconsole.canbus.bus.worker import put_on_bus, serve
-
-    receipts = Receipts(folder / f"{LATENCY}.canbus.json")
-    snapshots = NewestOnce(Ring.open(folder / SNAPSHOTS), int(arguments["tick_hz"]), receipts.received)
-    slot = Ring.open(folder / CAN_COMMAND, writable=True)
-    events = EventCounters.open(folder / CAN_EVENTS, writable=True)
-    wheels = arguments["wheels"]
-    on_bus = put_on_bus(
-        msgspec.convert(arguments["profile"], CanProfile),
-        int(arguments["tick_hz"]),
-        wheels=None if wheels is None else tuple(wheels),
-        folder=Path(arguments["bundle"]),
-    )
-
-    def write_command(command: RemoteCommand, receipt_ns: int | None) -> None:
-        slot.write(np.array(command), NO_RECEIPT if receipt_ns is None else receipt_ns)
-
-    def write_status(status: dict[str, Any]) -> None:
-        write_atomically(folder / CAN_STATUS, msgspec.json.encode(status), durable=False)
-
-    try:
-        serve(on_bus, snapshots, write_command, events.raise_events, write_status, stop)
-    finally:
-        on_bus.port.close()
-
-
-def hud(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> None:
-    """Show the cluster.
-
-    Arguments: `profile` (HudProfile), `control` (ControlProfile), `tick_hz`, `can` (a bus?), `bridge` (one?).
-    """
-    from simconsole.hud.view import settings_of
-    from simconsole.hud.window.pygame_window import Ports, run
-
-    profile = msgspec.convert(arguments["profile"], HudProfile)
-    control = msgspec.convert(arguments["control"], ControlProfile)
-    ring, tick_hz = Ring.open(folder / SNAPSHOTS), int(arguments["tick_hz"])
-    keys = Ring.open(folder / KEYS, writable=True)
-    receipts = Receipts(folder / f"{LATENCY}.hud.json")
-
-    def latest() -> Snapshot | None:
-        record = ring.latest()
-        if record is None:
-            return None
-        receipts.received(record)
-        return snapshot_of(record, tick_hz)
-
-    def report_keys(mask: int) -> None:
-        keys.write(np.array([float(mask)]), time.monotonic_ns())
-
-    can = CanWatch(folder / CAN_STATUS, time.time, time.monotonic) if arguments["can"] else lambda: None
-    link = LinkWatch(folder / LINK_STATUS, time.time, time.monotonic) if arguments["bridge"] else lambda: None
-    run(Ports(latest, report_keys, stop, can, receipts.drawn, link), profile, settings_of(profile, control))
-
-
-def scene(folder: Path, arguments: dict[str, Any], stop: Callable[[], bool]) -> None:
-    """Record the scene with rerun; the course lies in the run folder.
-
-    Arguments: `path` (the .rrd), `tick_hz`, `bridge` (one?).
-    """
-    from simconsole.scene.viewer.follow import Ports, follow
-    from simconsole.scene.viewer.job import load_job
-
-    ring, tick_hz = Ring.open(folder / SNAPSHOTS), int(arguments["tick_hz"])
-    seen = ring.newest
-
-    def new_ticks() -> Sequence[Snapshot]:
-        nonlocal seen
-        records = ring.since(seen)
-        if records:
-            seen = records[-1].number
-        return [snapshot_of(record, tick_hz) for record in records]
-
-    link = LinkWatch(folder / LINK_STATUS, time.time, time.monotonic) if arguments["bridge"] else lambda: None
-    follow(Ports(new_ticks, stop, link), load_job(folder / SCENE_JOB), Path(arguments["path"]))
+    return write_command
 
 
 class _Watch:

@@ -38,7 +38,7 @@ from tests.samples import Measured, Sample
 
 PROGRAM = "--course"
 """Stands in the arguments of the autopilot only."""
-HELD = (PROGRAM, "simconsole.processes.supervisor", "simconsole.scene.viewer.export")
+HELD = (PROGRAM, "simconsole.processes", "simconsole.scene.viewer.export")
 """Stand in the arguments of those that end with their parent, each one's."""
 
 

@@ -9,51 +9,66 @@ PROGRAMS = '''
 import json, os, signal, time
 from pathlib import Path
 
+import msgspec
 
-def beat(folder, arguments, stop):
+from simconsole.processes.worker import Worker
+
+
+class Beat(Worker, frozen=True, kw_only=True):
     """Say who runs, then live until told to end."""
-    part = folder / f"{arguments['name']}.part"
-    part.write_text(json.dumps({
-        "pid": os.getpid(), "parent": os.getppid(), "arguments": arguments,
-        "sdl": os.environ.get("SDL_VIDEODRIVER"), "extra": os.environ.get("EXTRA"),
-        "interrupt_ignored": signal.getsignal(signal.SIGINT) == signal.SIG_IGN,
-        "group": os.getpgid(0),
-    }))
-    part.replace(folder / f"{arguments['name']}.json")
-    while not stop():
-        time.sleep(0.01)
-    if "goodbye" in arguments:
-        Path(arguments["goodbye"]).write_text("ended in order")
+
+    name: str
+    goodbye: str | None = None
+    port: int | None = None
+
+    def run(self, folder, stop):
+        part = folder / f"{self.name}.part"
+        part.write_text(json.dumps({
+            "pid": os.getpid(), "parent": os.getppid(), "configuration": msgspec.to_builtins(self),
+            "sdl": os.environ.get("SDL_VIDEODRIVER"), "extra": os.environ.get("EXTRA"),
+            "interrupt_ignored": signal.getsignal(signal.SIGINT) == signal.SIG_IGN,
+            "group": os.getpgid(0),
+        }))
+        part.replace(folder / f"{self.name}.json")
+        while not stop():
+            time.sleep(0.01)
+        if self.goodbye is not None:
+            Path(self.goodbye).write_text("ended in order")
 
 
-def stuck(folder, arguments, stop):
+class Stuck(Beat, frozen=True, kw_only=True):
     """Never look at stop again."""
-    beat(folder, arguments, lambda: True)
-    while True:
-        time.sleep(60.0)
+
+    def run(self, folder, stop):
+        super().run(folder, lambda: True)
+        while True:
+            time.sleep(60.0)
 
 
-def crash(folder, arguments, stop):
-    beat(folder, arguments, lambda: True)
-    raise RuntimeError("as asked")
+class Crash(Beat, frozen=True, kw_only=True):
+    def run(self, folder, stop):
+        super().run(folder, lambda: True)
+        raise RuntimeError("as asked")
 
 
-def follow(folder, arguments, stop):
+class Follow(Beat, frozen=True, kw_only=True):
     """Read a ring until told to end; write how far and how whole."""
-    from simconsole.processes.shared_memory import Ring
-    ring = Ring.open(folder / "snapshots")
-    beat(folder, arguments, lambda: True)
-    while not stop():
-        record = ring.latest()
-        if record is not None and (record.values != record.number).any():
-            (folder / "torn").write_text(str(record))
-        time.sleep(0.001)
+
+    def run(self, folder, stop):
+        from simconsole.processes.shared_memory import Ring
+        ring = Ring.open(folder / "snapshots")
+        super().run(folder, lambda: True)
+        while not stop():
+            record = ring.latest()
+            if record is not None and (record.values != record.number).any():
+                (folder / "torn").write_text(str(record))
+            time.sleep(0.001)
 '''
 
 
 @pytest.fixture
 def programs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
-    """Name of a module of worker functions that workers of this test can import."""
+    """Name of a module with kinds of workers that processes of this test can import."""
     (tmp_path / "programs").mkdir()
     (tmp_path / "programs" / "worker_test_programs.py").write_text(PROGRAMS)
     monkeypatch.syspath_prepend(tmp_path / "programs")

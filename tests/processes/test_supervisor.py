@@ -7,11 +7,13 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 
 from simconsole.processes.shared_memory import Ring, make_run_folder
-from simconsole.processes.supervisor import SupervisorHandle, WorkerSpec
+from simconsole.processes.supervisor import SupervisorHandle
+from simconsole.processes.worker import WorkerSpec
 from simconsole.values.errors import WorkerError
 from simconsole.values.state_vector import Snapshot
 from tests import patience
@@ -22,16 +24,18 @@ IsRunning = Callable[[int], bool]
 PATIENCE_S = 0.3
 
 CORE = """
-import json, sys, time
+import sys, time
 from pathlib import Path
+import msgspec
 import numpy as np
 from simconsole.processes import shared_memory
-from simconsole.processes.supervisor import WorkerSpec, SupervisorHandle
-base, specs = Path(sys.argv[1]), json.loads(sys.argv[2])
+from simconsole.processes.supervisor import SupervisorHandle
+from simconsole.processes.worker import WorkerSpec
+base, specs = Path(sys.argv[1]), msgspec.json.decode(sys.argv[2], type=list[WorkerSpec])
 shared_memory._base = lambda: base
 folder = shared_memory.make_run_folder()
 ring = shared_memory.Ring.create(folder / "snapshots", 8, 64)
-supervisor = SupervisorHandle(folder, [WorkerSpec(**spec) for spec in specs], patience_s=0.3)
+supervisor = SupervisorHandle(folder, specs, patience_s=0.3)
 supervisor.start()
 print(folder, supervisor._process.pid, flush=True)
 while True:
@@ -49,8 +53,9 @@ def said(folder: Path, name: str) -> dict[str, Any] | None:
     return found
 
 
-def worker(programs: str, name: str, function: str = "beat", **arguments: object) -> WorkerSpec:
-    return WorkerSpec(name=name, target=f"{programs}:{function}", arguments={"name": name, **arguments})
+def worker(programs: str, name: str, kind: str = "Beat", **fields: object) -> WorkerSpec:
+    configuration = msgspec.Raw(msgspec.json.encode({"name": name, **fields}))
+    return WorkerSpec(name=name, target=f"{programs}:{kind}", configuration=configuration)
 
 
 @pytest.fixture
@@ -80,7 +85,7 @@ def test_workers_run_in_their_own_processes_and_end_in_order(
     assert one is not None
     assert two is not None
     assert len({one["pid"], two["pid"], os.getpid()}) == 3
-    assert two["arguments"] == {"name": "two", "port": 9090}
+    assert two["configuration"] == {"name": "two", "goodbye": None, "port": 9090}
     assert supervisor.alive()
     wait_until(lambda: len(supervisor.status()) == 2)
     assert supervisor.status()["one"].process_id == one["pid"]
@@ -122,7 +127,7 @@ def test_workers_have_the_environment_from_before_the_cores_own_settings(
 
 
 def with_environment(spec: WorkerSpec, environment: dict[str, str | None]) -> WorkerSpec:
-    return WorkerSpec(name=spec.name, target=spec.target, arguments=spec.arguments, environment=environment)
+    return msgspec.structs.replace(spec, environment=environment)
 
 
 def test_nothing_is_imported_from_the_working_directory(
@@ -145,7 +150,7 @@ def test_a_killed_worker_is_restarted_while_the_core_goes_on(
 ) -> None:
     folder = make_run_folder()
     ring = Ring.create(folder / "snapshots", 8, 64)
-    supervisor = start(worker(programs, "quiet"), worker(programs, "reader", "follow"), folder=folder)
+    supervisor = start(worker(programs, "quiet"), worker(programs, "reader", "Follow"), folder=folder)
 
     def drive_until(condition: Callable[[], object]) -> None:
         def tick() -> object:
@@ -172,14 +177,14 @@ def test_a_killed_worker_is_restarted_while_the_core_goes_on(
 def test_a_worker_that_keeps_failing_is_counted_and_holds_up_nobody(
     start: Callable[..., SupervisorHandle], programs: str, wait_until: Wait, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    missing = WorkerSpec(name="missing", target=f"{programs}:no_such_function")
-    supervisor = start(worker(programs, "crash", "crash"), missing, worker(programs, "good"))
+    missing = worker(programs, "missing", "NoSuchWorker")
+    supervisor = start(worker(programs, "crash", "Crash"), missing, worker(programs, "good"))
     wait_until(lambda: supervisor.counters().get("crash", 0) >= 2 and supervisor.counters().get("missing", 0) >= 2)
     wait_until(lambda: said(supervisor.folder, "good"))
     assert supervisor.counters()["good"] == 0
     supervisor.stop()
     errors = capfd.readouterr().err
-    assert "simconsole worker: worker missing: worker_test_programs:no_such_function cannot be loaded" in errors
+    assert "simconsole worker: worker missing: worker_test_programs:NoSuchWorker cannot be loaded" in errors
     assert "RuntimeError: as asked" in errors
     assert "Fatal Python error" not in errors
 
@@ -187,7 +192,7 @@ def test_a_worker_that_keeps_failing_is_counted_and_holds_up_nobody(
 def test_a_killed_supervisor_is_replaced_and_nothing_of_it_stays(
     start: Callable[..., SupervisorHandle], programs: str, wait_until: Wait, is_running: IsRunning
 ) -> None:
-    supervisor = start(worker(programs, "one"), worker(programs, "stuck", "stuck"))
+    supervisor = start(worker(programs, "one"), worker(programs, "stuck", "Stuck"))
     wait_until(lambda: said(supervisor.folder, "one") and said(supervisor.folder, "stuck"))
     before = [(said(supervisor.folder, name) or {})["pid"] for name in ("one", "stuck")]
     supervise = supervisor._process
@@ -219,7 +224,7 @@ def test_a_supervisor_that_cannot_be_started_again_does_not_end_the_drive(
 def test_a_worker_that_will_not_end_is_killed(
     start: Callable[..., SupervisorHandle], programs: str, wait_until: Wait, is_running: IsRunning
 ) -> None:
-    supervisor = start(worker(programs, "stuck", "stuck"), worker(programs, "stopped"))
+    supervisor = start(worker(programs, "stuck", "Stuck"), worker(programs, "stopped"))
     wait_until(lambda: said(supervisor.folder, "stuck") and said(supervisor.folder, "stopped"))
     pids = [(said(supervisor.folder, name) or {})["pid"] for name in ("stuck", "stopped")]
     os.kill(pids[1], signal.SIGSTOP)
@@ -234,14 +239,16 @@ def test_an_interpreter_that_is_not_there_is_one_line(run_base: Path, monkeypatc
         supervisor.start()
 
 
-@pytest.mark.parametrize("function", ["beat", "follow", "stuck"])
+@pytest.mark.parametrize("kind", ["Beat", "Follow", "Stuck"])
 def test_killing_the_core_leaves_no_process_mapping_or_file(
-    run_base: Path, programs: str, wait_until: Wait, is_running: IsRunning, function: str
+    run_base: Path, programs: str, wait_until: Wait, is_running: IsRunning, kind: str
 ) -> None:
-    specs = [{"name": name, "target": f"{programs}:{function}", "arguments": {"name": name}} for name in ("one", "two")]
+    specs = [worker(programs, name, kind) for name in ("one", "two")]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     core = subprocess.Popen(
-        [sys.executable, "-c", CORE, str(run_base), json.dumps(specs)], stdout=subprocess.PIPE, env=environment
+        [sys.executable, "-c", CORE, str(run_base), msgspec.json.encode(specs).decode()],
+        stdout=subprocess.PIPE,
+        env=environment,
     )
     assert core.stdout is not None
     try:
@@ -262,10 +269,12 @@ def test_killing_the_core_leaves_no_process_mapping_or_file(
 def test_killing_core_and_supervisor_at_once_leaves_no_process_and_the_next_start_no_file(
     run_base: Path, programs: str, wait_until: Wait, is_running: IsRunning
 ) -> None:
-    specs = [{"name": "one", "target": f"{programs}:stuck", "arguments": {"name": "one"}}]
+    specs = [worker(programs, "one", "Stuck")]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     core = subprocess.Popen(
-        [sys.executable, "-c", CORE, str(run_base), json.dumps(specs)], stdout=subprocess.PIPE, env=environment
+        [sys.executable, "-c", CORE, str(run_base), msgspec.json.encode(specs).decode()],
+        stdout=subprocess.PIPE,
+        env=environment,
     )
     assert core.stdout is not None
     try:
@@ -293,23 +302,3 @@ def mappings_of(folder: Path) -> list[str]:
         except OSError:
             continue
     return found
-
-
-WITHOUT_FILES = """
-import resource, sys
-from pathlib import Path
-from simconsole.processes import supervisor
-def fail(*_):
-    resource.setrlimit(resource.RLIMIT_NOFILE, (3, 3))
-    Path("/dev/null").open()
-supervisor.run_worker = fail
-sys.exit(supervisor.main(["worker"]))
-"""
-
-
-def test_a_worker_that_may_open_no_more_files_is_one_line(tmp_path: Path) -> None:
-    call = {"folder": str(tmp_path), "patience_s": 1.0, "worker": {"name": "x", "target": "none:none"}}
-    words = [sys.executable, "-c", WITHOUT_FILES]
-    done = subprocess.run(words, input=json.dumps(call) + "\n", capture_output=True, text=True, check=False)
-    assert done.returncode == 2
-    assert done.stderr == "simconsole worker: OSError: [Errno 24] Too many open files: '/dev/null'\n"

@@ -1,0 +1,7 @@
+"""The children of a paced drive: `python -m simconsole.processes supervisor` or `... worker`."""
+
+import sys
+
+from simconsole.processes import supervisor, worker
+
+sys.exit({"supervisor": supervisor.main, "worker": worker.main}[sys.argv[1]]())

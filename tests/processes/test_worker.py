@@ -1,0 +1,68 @@
+"""A worker's configuration arrives in its process as it was, and what does not fit is one line."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import msgspec
+import pytest
+
+from simconsole.processes.worker import Worker, WorkerCall, WorkerSpec, load_worker
+from simconsole.profiles.can import CanProfile
+from simconsole.session.worker_programs import CanWorker, SceneWorker
+from simconsole.values.errors import WorkerError
+
+SCENE = SceneWorker(path="/tmp/scene.rrd", tick_hz=250, has_bridge=True)
+CAN = CanWorker(profile=CanProfile(), tick_hz=500, wheels=(7, 8, 9, 10), bundle="/tmp/bundle")
+
+
+@pytest.mark.parametrize("worker", [SCENE, CAN, msgspec.structs.replace(CAN, wheels=None)])
+def test_a_worker_is_the_same_on_the_other_side(worker: Worker) -> None:
+    told = msgspec.json.encode(WorkerSpec.of("any", worker))
+    assert load_worker(msgspec.json.decode(told, type=WorkerSpec)) == worker
+
+
+@pytest.mark.parametrize(
+    ("target", "configuration", "why"),
+    [
+        ("simconsole.nowhere:Any", "{}", "No module named 'simconsole.nowhere'"),
+        ("simconsole.session.worker_programs:Nothing", "{}", "has no attribute 'Nothing'"),
+        ("simconsole.session.worker_programs:SceneWorker", '{"path": "s.rrd"}', "missing required field `tick_hz`"),
+    ],
+)
+def test_what_does_not_fit_is_named(target: str, configuration: str, why: str) -> None:
+    spec = WorkerSpec(name="any", target=target, configuration=msgspec.Raw(configuration.encode()))
+    with pytest.raises(WorkerError, match=f"^worker any: {target} cannot be loaded: .*{why}"):
+        load_worker(spec)
+
+
+def test_only_a_worker_is_run() -> None:
+    with pytest.raises(WorkerError, match=r"^worker any: builtins:int is not a worker$"):
+        load_worker(WorkerSpec(name="any", target="builtins:int", configuration=msgspec.Raw(b"3")))
+
+
+def test_a_worker_says_what_it_does_itself() -> None:
+    with pytest.raises(NotImplementedError):
+        Worker().run(Path(), lambda: True)
+
+
+WITHOUT_FILES = """
+import resource, sys
+from pathlib import Path
+from simconsole.processes import worker
+def fail(*_):
+    resource.setrlimit(resource.RLIMIT_NOFILE, (3, 3))
+    Path("/dev/null").open()
+worker.load_worker = fail
+sys.exit(worker.main())
+"""
+
+
+def test_a_worker_that_may_open_no_more_files_is_one_line(tmp_path: Path) -> None:
+    call = WorkerCall(folder=str(tmp_path), worker=WorkerSpec.of("scene", SCENE), patience_s=1.0)
+    command = [sys.executable, "-c", WITHOUT_FILES]
+    done = subprocess.run(
+        command, input=msgspec.json.encode(call).decode() + "\n", capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 2
+    assert done.stderr == "simconsole worker: OSError: [Errno 24] Too many open files: '/dev/null'\n"
