@@ -145,5 +145,10 @@ def _info(message: "Message") -> MessageInfo:
             offset=float(signal.offset),
         )
     return MessageInfo(
-        message.name, message.frame_id, message.cycle_time, message.senders[0], signals, message.comment or ""
+        name=message.name,
+        can_id=message.frame_id,
+        period_ms=message.cycle_time,
+        sender=message.senders[0],
+        signals=signals,
+        comment=message.comment or "",
     )

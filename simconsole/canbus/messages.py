@@ -1,4 +1,4 @@
-"""What the console says on the bus, from a snapshot, and what the ECU's command means."""
+"""The messages that the console sends, from a snapshot, and what the ECU's command means."""
 
 from collections.abc import Callable, Mapping
 from typing import Final, NamedTuple
@@ -30,8 +30,8 @@ class Link(NamedTuple):
     age_ms: float
 
 
-class Moment(NamedTuple):
-    """One snapshot with what several messages read of it, and the link."""
+class MessageContext(NamedTuple):
+    """The values of one tick that messages are filled with, and the link."""
 
     snapshot: Snapshot
     vehicle: VehicleState
@@ -40,22 +40,22 @@ class Moment(NamedTuple):
     wheels: tuple[int, ...] | None
 
 
-Builder = Callable[[Moment], Mapping[str, float]]
+Builder = Callable[[MessageContext], Mapping[str, float]]
 
 
-def steering(now: Moment) -> Mapping[str, float]:
+def steering(context: MessageContext) -> Mapping[str, float]:
     """Return SC_STEERING."""
     return {
-        "WHEEL_VALIDITY": now.driver.wheel_validity,
-        "HAND_WHEEL_ANGLE": now.driver.hand_wheel_rad,
-        "HAND_WHEEL_RATE": now.driver.hand_wheel_radps,
-        "ROAD_WHEEL_ANGLE": now.vehicle.road_wheel_rad,
+        "WHEEL_VALIDITY": context.driver.wheel_validity,
+        "HAND_WHEEL_ANGLE": context.driver.hand_wheel_rad,
+        "HAND_WHEEL_RATE": context.driver.hand_wheel_radps,
+        "ROAD_WHEEL_ANGLE": context.vehicle.road_wheel_rad,
     }
 
 
-def pedals(now: Moment) -> Mapping[str, float]:
+def pedals(context: MessageContext) -> Mapping[str, float]:
     """Return SC_PEDALS."""
-    driver = now.driver
+    driver = context.driver
     return {
         "THROTTLE": driver.throttle,
         "BRAKE": driver.brake,
@@ -66,9 +66,9 @@ def pedals(now: Moment) -> Mapping[str, float]:
     }
 
 
-def actuation(now: Moment) -> Mapping[str, float]:
+def actuation(context: MessageContext) -> Mapping[str, float]:
     """Return SC_ACTUATION."""
-    command = now.snapshot.command
+    command = context.snapshot.command
     return {
         "ROAD_WHEEL_COMMAND": command.road_wheel_rad,
         "THROTTLE_COMMAND": command.throttle,
@@ -79,9 +79,9 @@ def actuation(now: Moment) -> Mapping[str, float]:
     }
 
 
-def motion(now: Moment) -> Mapping[str, float]:
+def motion(context: MessageContext) -> Mapping[str, float]:
     """Return SC_MOTION."""
-    vehicle = now.vehicle
+    vehicle = context.vehicle
     return {
         "SPEED": vehicle.vx_mps,
         "YAW_RATE": vehicle.yaw_rate_radps,
@@ -90,28 +90,28 @@ def motion(now: Moment) -> Mapping[str, float]:
     }
 
 
-def wheels(now: Moment) -> Mapping[str, float]:
+def wheels(context: MessageContext) -> Mapping[str, float]:
     """Return SC_WHEELS."""
-    assert now.wheels is not None
-    return {name: float(now.snapshot.vector[at]) for name, at in zip(_WHEELS, now.wheels, strict=True)}
+    assert context.wheels is not None
+    return {name: float(context.snapshot.vector[at]) for name, at in zip(_WHEELS, context.wheels, strict=True)}
 
 
-def powertrain(now: Moment) -> Mapping[str, float]:
+def powertrain(context: MessageContext) -> Mapping[str, float]:
     """Return SC_POWERTRAIN."""
-    vehicle = now.vehicle
+    vehicle = context.vehicle
     return {
         "GEAR": vehicle.gear,
-        "LEVER": now.driver.gear,
+        "LEVER": context.driver.gear,
         "ENGINE_RUNNING": vehicle.engine_running,
-        "AUTOMATIC": now.snapshot.command.automatic,
+        "AUTOMATIC": context.snapshot.command.automatic,
         "ENGINE_SPEED": vehicle.engine_radps * RPM_PER_RADPS,
         "CLUTCH_OPEN": vehicle.clutch,
     }
 
 
-def status(now: Moment) -> Mapping[str, float]:
+def status(context: MessageContext) -> Mapping[str, float]:
     """Return SC_STATUS."""
-    arbitration = now.snapshot.arbitration
+    arbitration = context.snapshot.arbitration
     return {
         "MODE": arbitration.mode,
         "REASON": arbitration.reason,
@@ -119,8 +119,8 @@ def status(now: Moment) -> Mapping[str, float]:
         "REMOTE_LATERAL": arbitration.remote_lateral,
         "REMOTE_LONGITUDINAL": arbitration.remote_longitudinal,
         "TAKEOVER_STAGE": arbitration.takeover_stage,
-        "COMMAND_STATE": now.link.state,
-        "COMMAND_AGE": min(now.link.age_ms, _MOST_MS),
+        "COMMAND_STATE": context.link.state,
+        "COMMAND_AGE": min(context.link.age_ms, _MOST_MS),
         "COMMANDER": arbitration.commander,
     }
 

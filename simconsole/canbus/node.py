@@ -3,7 +3,7 @@
 from typing import Final, NamedTuple
 
 from simconsole.canbus.codec import COMMAND, CONSOLE, ECU, Codec, Frame
-from simconsole.canbus.messages import BUILDERS, COMMAND_KIND, REQUESTS, Link, Moment
+from simconsole.canbus.messages import BUILDERS, COMMAND_KIND, REQUESTS, Link, MessageContext
 from simconsole.canbus.protection import COUNTERS, Check, Receiver
 from simconsole.canbus.schedule import Schedule
 from simconsole.profiles.can import CanProfile
@@ -76,12 +76,12 @@ class CanNode:
         due = self._schedule.due(snapshot.tick)
         if not due:
             return []
-        moment = Moment(snapshot, snapshot.vehicle, snapshot.driver, self._link(now_ns), self._wheels)
+        context = MessageContext(snapshot, snapshot.vehicle, snapshot.driver, self._link(now_ns), self._wheels)
         frames = []
         for index in due:
             name = self._messages[index].name
             try:
-                frames.append(self._codec.encode(name, BUILDERS[name](moment), self._counters[index], clip=True))
+                frames.append(self._codec.encode(name, BUILDERS[name](context), self._counters[index], clip=True))
             except CanError:  # a value is not finite: there is nothing true to send
                 self._unsent += 1
                 continue
@@ -135,7 +135,12 @@ class CanNode:
         receiver = self._receiver
         refused = int(self.command.refused)
         return NodeCounters(
-            self._sent, self._unsent, sum(self._schedule.missed), self._accepted, refused, receiver.lost
+            sent=self._sent,
+            unsent=self._unsent,
+            missed=sum(self._schedule.missed),
+            accepted=self._accepted,
+            refused=refused,
+            lost=receiver.lost,
         )
 
     def _asked(self, request: int) -> int:

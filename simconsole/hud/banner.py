@@ -93,7 +93,15 @@ def banner(view: HudView, alert: Alert, box: Box) -> list[DrawItem]:
     if view.stale:
         return [
             Rect(box, PANEL, "banner", 0.12 * box.h),
-            Text(box.cx, box.cy, "MODE UNKNOWN", 0.3 * box.h, MUTED, "mode.label", arcmin=DRIVING_ARCMIN),
+            Text(
+                box.cx,
+                box.cy,
+                "MODE UNKNOWN",
+                cap_px=0.3 * box.h,
+                colour=MUTED,
+                role="mode.label",
+                arcmin=DRIVING_ARCMIN,
+            ),
         ]
     strong = alert in (Alert.TAKE_OVER_NOW, Alert.EMERGENCY, Alert.MINIMAL_RISK)
     ground, ink = _field(view, alert) if strong else (PANEL, TEXT)
@@ -106,7 +114,11 @@ def banner(view: HudView, alert: Alert, box: Box) -> list[DrawItem]:
     if not strong:
         items.append(Rect(Box(box.x, box.y, 0.07 * box.h, box.h), accent, "banner.edge"))
     items += mode_shape(view.mode, shape, accent, ground)
-    items.append(Text(left, box.cy, view.mode_label, cap, ink, "mode.label", "l", DRIVING_ARCMIN))
+    items.append(
+        Text(
+            left, box.cy, view.mode_label, cap_px=cap, colour=ink, role="mode.label", anchor="l", arcmin=DRIVING_ARCMIN
+        )
+    )
     room = box.right - 0.3 * box.h - left - 1.02 * 0.56 * box.w
     if view.reason_label:
         field = Box(box.right - 0.3 * box.h - room, box.y, room, box.h)
@@ -125,7 +137,16 @@ def _reason(text: str, box: Box, ink: Colour) -> list[DrawItem]:
     cap = min(fit_cap_px(line, 0.15 * box.h, box.w) for line in lines)
     first = box.cy - 0.9 * cap * (len(lines) - 1)
     return [
-        Text(box.right, first + 1.8 * cap * index, line, cap, ink, "reason", "r", DRIVING_ARCMIN)
+        Text(
+            box.right,
+            first + 1.8 * cap * index,
+            line,
+            cap_px=cap,
+            colour=ink,
+            role="reason",
+            anchor="r",
+            arcmin=DRIVING_ARCMIN,
+        )
         for index, line in enumerate(lines)
     ]
 
@@ -159,8 +180,21 @@ def _trip(view: HudView, box: Box) -> list[DrawItem]:
         x = box.x + (0.3 * box.h if index == 0 else 0.5 * box.w)
         cap = 0.17 * box.h
         value = x + text_width_px(name, cap) + 0.25 * box.h
-        items.append(Text(x, box.cy, name, cap, MUTED, "trip.name", "l", SECONDARY_ARCMIN))
-        items.append(Text(value, box.cy, text, 0.28 * box.h, TEXT, "trip.value", "l", DRIVING_ARCMIN))
+        items.append(
+            Text(x, box.cy, name, cap_px=cap, colour=MUTED, role="trip.name", anchor="l", arcmin=SECONDARY_ARCMIN)
+        )
+        items.append(
+            Text(
+                value,
+                box.cy,
+                text,
+                cap_px=0.28 * box.h,
+                colour=TEXT,
+                role="trip.value",
+                anchor="l",
+                arcmin=DRIVING_ARCMIN,
+            )
+        )
     return items
 
 
@@ -174,9 +208,31 @@ def _headline(view: HudView, alert: Alert, box: Box, ink: Colour, ground: Colour
     counted = alert in (Alert.TAKE_OVER, Alert.TAKE_OVER_NOW)
     room = box.right - left - (1.3 if counted else 0.3) * box.h
     cap = fit_cap_px(head, 0.32 * box.h, room)
-    items.append(Text(left, box.y + 0.29 * box.h, head, cap, ink, "alert.label", "l", DRIVING_ARCMIN))
+    items.append(
+        Text(
+            left,
+            box.y + 0.29 * box.h,
+            head,
+            cap_px=cap,
+            colour=ink,
+            role="alert.label",
+            anchor="l",
+            arcmin=DRIVING_ARCMIN,
+        )
+    )
     below = fit_cap_px(todo, 0.17 * box.h, room)
-    items.append(Text(left, box.y + 0.67 * box.h, todo, below, ink, "alert.todo", "l", DRIVING_ARCMIN))
+    items.append(
+        Text(
+            left,
+            box.y + 0.67 * box.h,
+            todo,
+            cap_px=below,
+            colour=ink,
+            role="alert.todo",
+            anchor="l",
+            arcmin=DRIVING_ARCMIN,
+        )
+    )
     return items + (_countdown(view, box, ink) if counted else [])
 
 
@@ -186,7 +242,16 @@ def _countdown(view: HudView, box: Box, ink: Colour) -> list[DrawItem]:
     inside = box.inset(0.3 * box.h)
     part = min(1.0, view.remaining_s / view.settings.takeover_window_s)
     items: list[DrawItem] = [
-        Text(inside.right, box.y + 0.44 * box.h, seconds, 0.52 * box.h, ink, "alert.countdown", "r", DRIVING_ARCMIN)
+        Text(
+            inside.right,
+            box.y + 0.44 * box.h,
+            seconds,
+            cap_px=0.52 * box.h,
+            colour=ink,
+            role="alert.countdown",
+            anchor="r",
+            arcmin=DRIVING_ARCMIN,
+        )
     ]
     if part * inside.w >= 1.0:
         items.append(Rect(Box(inside.x, box.y + 0.87 * box.h, part * inside.w, 0.06 * box.h), ink, "alert.bar"))
@@ -203,5 +268,5 @@ def _line(text: str, box: Box) -> list[DrawItem]:
         Rect(field, PANEL, "alert", 0.12 * field.h),
         Rect(field, CAUTION, "alert.edge", 0.12 * field.h, max(2.0, 0.03 * field.h)),
         *exclamation(sign, CAUTION, BACKGROUND, "alert.shape"),
-        Text(left, field.cy, text, cap, TEXT, "alert.label", "l", DRIVING_ARCMIN),
+        Text(left, field.cy, text, cap_px=cap, colour=TEXT, role="alert.label", anchor="l", arcmin=DRIVING_ARCMIN),
     ]

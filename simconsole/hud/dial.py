@@ -60,7 +60,16 @@ def _face(cx: float, cy: float, radius: float) -> list[DrawItem]:
 def _band(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]:
     """Return the band that fills with the engine's speed, and the needle at its end."""
     end = START_DEG + SWEEP_DEG
-    track = Arc(cx, cy, 0.90 * radius, 0.85 * radius, START_DEG, end, LINE, "dial.track")
+    track = Arc(
+        cx,
+        cy,
+        outer=0.90 * radius,
+        inner=0.85 * radius,
+        start_deg=START_DEG,
+        end_deg=end,
+        colour=LINE,
+        role="dial.track",
+    )
     if view.stale:
         return [track]
     clock = _clock_deg(view, view.rpm)
@@ -79,7 +88,18 @@ def _filled(cx: float, cy: float, radius: float, clock_deg: float) -> list[DrawI
     while clock_deg - start >= 0.2:
         # Each full piece reaches a little under the next: no gap shows between their smoothed ends.
         end = min(clock_deg, start + PIECE_DEG)
-        items.append(Arc(cx, cy, 0.90 * radius, 0.85 * radius, start, min(clock_deg, end + 0.4), MUTED, "dial.band"))
+        items.append(
+            Arc(
+                cx,
+                cy,
+                outer=0.90 * radius,
+                inner=0.85 * radius,
+                start_deg=start,
+                end_deg=min(clock_deg, end + 0.4),
+                colour=MUTED,
+                role="dial.band",
+            )
+        )
         start += PIECE_DEG
     return items
 
@@ -87,7 +107,18 @@ def _filled(cx: float, cy: float, radius: float, clock_deg: float) -> list[DrawI
 def _scale(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]:
     red = _clock_deg(view, view.settings.rpm_red)
     end = START_DEG + SWEEP_DEG
-    items: list[DrawItem] = [Arc(cx, cy, 0.955 * radius, 0.925 * radius, red, end, WARNING_LINE, "dial.red")]
+    items: list[DrawItem] = [
+        Arc(
+            cx,
+            cy,
+            outer=0.955 * radius,
+            inner=0.925 * radius,
+            start_deg=red,
+            end_deg=end,
+            colour=WARNING_LINE,
+            role="dial.red",
+        )
+    ]
     for half in range(2 * int(view.settings.rpm_max // 1000.0) + 1):
         clock = _clock_deg(view, 500.0 * half)
         whole = half % 2 == 0
@@ -95,8 +126,28 @@ def _scale(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]
         items.append(_tick(cx, cy, 0.925 * radius, (0.97 if whole else 0.95) * radius, clock, whole, colour))
         if whole:
             x, y = at_clock(cx, cy, 0.735 * radius, clock)
-            items.append(Text(x, y, f"{half // 2}", 0.075 * radius, TEXT, "dial.number", "c", SECONDARY_ARCMIN))
-    unit = Text(cx, cy - 0.48 * radius, "x1000 rpm", 0.045 * radius, MUTED, "dial.unit", "c", SECONDARY_ARCMIN)
+            items.append(
+                Text(
+                    x,
+                    y,
+                    f"{half // 2}",
+                    cap_px=0.075 * radius,
+                    colour=TEXT,
+                    role="dial.number",
+                    anchor="c",
+                    arcmin=SECONDARY_ARCMIN,
+                )
+            )
+    unit = Text(
+        cx,
+        cy - 0.48 * radius,
+        "x1000 rpm",
+        cap_px=0.045 * radius,
+        colour=MUTED,
+        role="dial.unit",
+        anchor="c",
+        arcmin=SECONDARY_ARCMIN,
+    )
     return [*items, unit]
 
 
@@ -109,10 +160,39 @@ def _tick(cx: float, cy: float, inner: float, outer: float, clock_deg: float, wh
 
 def _speed(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]:
     if view.stale:
-        return [Text(cx, cy - 0.06 * radius, "NO DATA", 0.17 * radius, MUTED, "speed", "c", DRIVING_ARCMIN)]
+        return [
+            Text(
+                cx,
+                cy - 0.06 * radius,
+                "NO DATA",
+                cap_px=0.17 * radius,
+                colour=MUTED,
+                role="speed",
+                anchor="c",
+                arcmin=DRIVING_ARCMIN,
+            )
+        ]
     return [
-        Text(cx, cy - 0.06 * radius, f"{view.shown_kmh}", 0.42 * radius, TEXT, "speed", "c", SPEED_ARCMIN),
-        Text(cx, cy + 0.28 * radius, "km/h", 0.07 * radius, MUTED, "speed.unit", "c", DRIVING_ARCMIN),
+        Text(
+            cx,
+            cy - 0.06 * radius,
+            f"{view.shown_kmh}",
+            cap_px=0.42 * radius,
+            colour=TEXT,
+            role="speed",
+            anchor="c",
+            arcmin=SPEED_ARCMIN,
+        ),
+        Text(
+            cx,
+            cy + 0.28 * radius,
+            "km/h",
+            cap_px=0.07 * radius,
+            colour=MUTED,
+            role="speed.unit",
+            anchor="c",
+            arcmin=DRIVING_ARCMIN,
+        ),
     ]
 
 
@@ -123,11 +203,22 @@ def _gear(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]:
     ink = MUTED if view.stale else TEXT
     items: list[DrawItem] = [
         Rect(box, LINE, "gear.frame", 0.14 * side, max(2.0, 0.02 * radius)),
-        Text(box.cx, box.cy, gear, 0.56 * side, ink, "gear", "c", DRIVING_ARCMIN),
+        Text(box.cx, box.cy, gear, cap_px=0.56 * side, colour=ink, role="gear", anchor="c", arcmin=DRIVING_ARCMIN),
     ]
     if view.automatic and not view.stale:
         x = box.right + 0.07 * radius
-        items.append(Text(x, box.cy, "AUTO", 0.06 * radius, MUTED, "gear.automatic", "l", SECONDARY_ARCMIN))
+        items.append(
+            Text(
+                x,
+                box.cy,
+                "AUTO",
+                cap_px=0.06 * radius,
+                colour=MUTED,
+                role="gear.automatic",
+                anchor="l",
+                arcmin=SECONDARY_ARCMIN,
+            )
+        )
     elif view.rpm >= view.settings.rpm_red and not view.stale:
         items += _shift_up(Box(box.right + 0.07 * radius, box.cy - 0.06 * radius, 0.12 * radius, 0.12 * radius))
     return items
@@ -135,7 +226,16 @@ def _gear(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]:
 
 def _shift_up(box: Box) -> list[DrawItem]:
     arrow = ((box.cx, box.y), (box.right, box.bottom), (box.x, box.bottom))
-    label = Text(box.right + 0.3 * box.w, box.cy, "UP", 0.6 * box.h, CAUTION, "shift", "l", DRIVING_ARCMIN)
+    label = Text(
+        box.right + 0.3 * box.w,
+        box.cy,
+        "UP",
+        cap_px=0.6 * box.h,
+        colour=CAUTION,
+        role="shift",
+        anchor="l",
+        arcmin=DRIVING_ARCMIN,
+    )
     return [Polygon(arrow, CAUTION, "shift.arrow"), label]
 
 

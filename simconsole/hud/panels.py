@@ -40,7 +40,16 @@ def _panel(box: Box, title: str) -> list[DrawItem]:
     cap = min(0.030 * box.h, 0.05 * box.w)
     return [
         Rect(box, PANEL, "panel", 0.04 * box.w),
-        Text(box.x + 0.07 * box.w, box.y + 0.065 * box.h, title, cap, MUTED, "panel.title", "l", SECONDARY_ARCMIN),
+        Text(
+            box.x + 0.07 * box.w,
+            box.y + 0.065 * box.h,
+            title,
+            cap_px=cap,
+            colour=MUTED,
+            role="panel.title",
+            anchor="l",
+            arcmin=SECONDARY_ARCMIN,
+        ),
     ]
 
 
@@ -66,9 +75,27 @@ def _pedal(name: str, value: float, foot: float, stale: bool, box: Box) -> list[
     role = f"pedal.{name.lower()}"
     ink = MUTED if stale else TEXT
     items: list[DrawItem] = [
-        Text(box.cx, box.y + 0.055 * box.h, number, 1.25 * cap, ink, f"{role}.number", "c", DRIVING_ARCMIN),
+        Text(
+            box.cx,
+            box.y + 0.055 * box.h,
+            number,
+            cap_px=1.25 * cap,
+            colour=ink,
+            role=f"{role}.number",
+            anchor="c",
+            arcmin=DRIVING_ARCMIN,
+        ),
         Rect(slot, LINE, f"{role}.slot", 0.14 * width),
-        Text(box.cx, box.bottom - 0.045 * box.h, name, cap, MUTED, f"{role}.name", "c", SECONDARY_ARCMIN),
+        Text(
+            box.cx,
+            box.bottom - 0.045 * box.h,
+            name,
+            cap_px=cap,
+            colour=MUTED,
+            role=f"{role}.name",
+            anchor="c",
+            arcmin=SECONDARY_ARCMIN,
+        ),
     ]
     if stale:
         return items
@@ -98,7 +125,16 @@ def _angle(view: HudView, box: Box) -> list[DrawItem]:
     cap = fit_cap_px("00.0 deg R", 0.24 * box.h, 0.88 * box.w)
     bar = Box(box.x, box.y + 0.62 * box.h, box.w, 0.16 * box.h)
     items: list[DrawItem] = [
-        Text(box.cx, box.y + 0.3 * box.h, text, cap, MUTED if view.stale else TEXT, "steering", "c", DRIVING_ARCMIN),
+        Text(
+            box.cx,
+            box.y + 0.3 * box.h,
+            text,
+            cap_px=cap,
+            colour=MUTED if view.stale else TEXT,
+            role="steering",
+            anchor="c",
+            arcmin=DRIVING_ARCMIN,
+        ),
         Rect(bar, LINE, "steering.slot", 0.5 * bar.h),
     ]
     if not view.stale:
@@ -119,10 +155,28 @@ def _share(view: HudView, box: Box) -> list[DrawItem]:
     cap = fit_cap_px("AUTOPILOT", 0.12 * box.h, 0.58 * box.w)
     top, below = box.y + 0.14 * box.h, box.y + 0.38 * box.h
     items: list[DrawItem] = [
-        Text(box.x, top, "YOU", cap, MUTED, "share.label", "l", SECONDARY_ARCMIN),
-        Text(box.right, top, "AUTOPILOT", cap, MUTED, "share.label", "r", SECONDARY_ARCMIN),
-        Text(box.x, below, you, 1.15 * cap, TEXT, "share.you", "l", DRIVING_ARCMIN),
-        Text(box.right, below, pilot, 1.15 * cap, TEXT, "share.autopilot", "r", DRIVING_ARCMIN),
+        Text(box.x, top, "YOU", cap_px=cap, colour=MUTED, role="share.label", anchor="l", arcmin=SECONDARY_ARCMIN),
+        Text(
+            box.right,
+            top,
+            "AUTOPILOT",
+            cap_px=cap,
+            colour=MUTED,
+            role="share.label",
+            anchor="r",
+            arcmin=SECONDARY_ARCMIN,
+        ),
+        Text(box.x, below, you, cap_px=1.15 * cap, colour=TEXT, role="share.you", anchor="l", arcmin=DRIVING_ARCMIN),
+        Text(
+            box.right,
+            below,
+            pilot,
+            cap_px=1.15 * cap,
+            colour=TEXT,
+            role="share.autopilot",
+            anchor="r",
+            arcmin=DRIVING_ARCMIN,
+        ),
         Rect(bar, LINE, "share.slot", 0.3 * bar.h),
     ]
     if view.stale:
@@ -143,14 +197,32 @@ def _link(view: HudView, box: Box) -> list[DrawItem]:
     x = sign.right + 0.6 * side
     name = "AUTOPILOT LINK" if view.stale or view.commander == "none" else f"AUTOPILOT ON {view.commander}"
     title = Text(
-        box.x, box.y + 0.14 * box.h, name, fit_cap_px("AUTOPILOT ON ROS", 0.11 * box.h, box.w),
-        MUTED, "link.title", "l", SECONDARY_ARCMIN,
+        box.x, box.y + 0.14 * box.h, name, cap_px=fit_cap_px("AUTOPILOT ON ROS", 0.11 * box.h, box.w),
+        colour=MUTED, role="link.title", anchor="l", arcmin=SECONDARY_ARCMIN,
     )  # fmt: skip
     return [
         title,
         *_link_shape(text, sign, colour),
-        Text(x, box.y + 0.48 * box.h, text, cap, TEXT if text != "--" else MUTED, "link", "l", DRIVING_ARCMIN),
-        Text(x, box.y + 0.80 * box.h, age, min(cap, 0.12 * box.h), MUTED, "link.age", "l", SECONDARY_ARCMIN),
+        Text(
+            x,
+            box.y + 0.48 * box.h,
+            text,
+            cap_px=cap,
+            colour=TEXT if text != "--" else MUTED,
+            role="link",
+            anchor="l",
+            arcmin=DRIVING_ARCMIN,
+        ),
+        Text(
+            x,
+            box.y + 0.80 * box.h,
+            age,
+            cap_px=min(cap, 0.12 * box.h),
+            colour=MUTED,
+            role="link.age",
+            anchor="l",
+            arcmin=SECONDARY_ARCMIN,
+        ),
     ]
 
 
@@ -167,7 +239,18 @@ def _link_shape(text: str, box: Box, colour: Colour) -> list[DrawItem]:
     if text == "SILENT":
         return exclamation(box, colour, PANEL, "link.shape")
     inner = 0.0 if text == "LIVE" else 0.36 * box.w
-    return [Arc(box.cx, box.cy, 0.5 * box.w, inner, 0.0, 360.0, colour, "link.shape")]
+    return [
+        Arc(
+            box.cx,
+            box.cy,
+            outer=0.5 * box.w,
+            inner=inner,
+            start_deg=0.0,
+            end_deg=360.0,
+            colour=colour,
+            role="link.shape",
+        )
+    ]
 
 
 def status(view: HudView, box: Box) -> list[DrawItem]:
@@ -213,14 +296,25 @@ def _cell(name: str, text: str, level: str, cell: Box, box: Box) -> list[DrawIte
     label = fit_cap_px("HAND BRAKE", 0.14 * box.h, 0.92 * cell.w)
     side = 0.22 * box.h
     x = cell.x + 0.04 * cell.w
-    items: list[DrawItem] = [Text(x, box.y + 0.28 * box.h, name, label, MUTED, f"{role}.name", "l", SECONDARY_ARCMIN)]
+    items: list[DrawItem] = [
+        Text(
+            x,
+            box.y + 0.28 * box.h,
+            name,
+            cap_px=label,
+            colour=MUTED,
+            role=f"{role}.name",
+            anchor="l",
+            arcmin=SECONDARY_ARCMIN,
+        )
+    ]
     y = box.y + 0.68 * box.h
     if level != "plain":
         items += _lamp(level, Box(x, y - 0.5 * side, side, side), f"{role}.lamp")
         x += 1.35 * side
     cap = fit_cap_px(text, 0.19 * box.h, cell.right - x - 0.03 * cell.w)
     ink = CAUTION if level == "warn" else TEXT
-    return [*items, Text(x, y, text, cap, ink, f"{role}.label", "l", DRIVING_ARCMIN)]
+    return [*items, Text(x, y, text, cap_px=cap, colour=ink, role=f"{role}.label", anchor="l", arcmin=DRIVING_ARCMIN)]
 
 
 def _lamp(level: str, box: Box, role: str) -> list[DrawItem]:

@@ -16,9 +16,15 @@ def mode_shape(mode: float, box: Box, colour: Colour, ground: Colour) -> list[Dr
     if mode == Mode.PARKED:
         return [Rect(box.inset(0.1 * r), colour, role, 0.2 * r), *_letter_p(box, ground)]
     if mode == Mode.MANUAL:
-        return [Arc(x, y, r, 0.74 * r, 0.0, 360.0, colour, role), *_spokes(x, y, r, colour)]
+        return [
+            Arc(x, y, outer=r, inner=0.74 * r, start_deg=0.0, end_deg=360.0, colour=colour, role=role),
+            *_spokes(x, y, r, colour),
+        ]
     if mode == Mode.SHARED:
-        return [Arc(x, y, r, 0.74 * r, 0.0, 360.0, colour, role), Arc(x, y, 0.56 * r, 0.0, 0.0, 180.0, colour, role)]
+        return [
+            Arc(x, y, outer=r, inner=0.74 * r, start_deg=0.0, end_deg=360.0, colour=colour, role=role),
+            Arc(x, y, outer=0.56 * r, inner=0.0, start_deg=0.0, end_deg=180.0, colour=colour, role=role),
+        ]
     if mode == Mode.AUTONOMOUS:
         inner = Polygon(around(x, y, 0.52 * r, 6), ground, role)
         return [Polygon(around(x, y, r, 6), colour, role), inner, Polygon(around(x, y, 0.28 * r, 6), colour, role)]
@@ -45,11 +51,15 @@ def exclamation(box: Box, colour: Colour, ground: Colour, role: str) -> list[Dra
         (x - 0.08 * r, y + 0.22 * r),
     )
     triangle = Polygon(around(x, y + 0.15 * r, 1.1 * r, 3), colour, role)
-    return [triangle, Polygon(stroke, ground, role), Arc(x, y + 0.42 * r, 0.12 * r, 0.0, 0.0, 360.0, ground, role)]
+    return [
+        triangle,
+        Polygon(stroke, ground, role),
+        Arc(x, y + 0.42 * r, outer=0.12 * r, inner=0.0, start_deg=0.0, end_deg=360.0, colour=ground, role=role),
+    ]
 
 
 def _spokes(x: float, y: float, r: float, colour: Colour) -> list[DrawItem]:
-    hub = Arc(x, y, 0.24 * r, 0.0, 0.0, 360.0, colour, "mode.shape")
+    hub = Arc(x, y, outer=0.24 * r, inner=0.0, start_deg=0.0, end_deg=360.0, colour=colour, role="mode.shape")
     across = Rect(Box(x - 0.8 * r, y - 0.09 * r, 1.6 * r, 0.18 * r), colour, "mode.shape")
     down = Rect(Box(x - 0.09 * r, y, 0.18 * r, 0.8 * r), colour, "mode.shape")
     return [hub, across, down]
@@ -58,7 +68,20 @@ def _spokes(x: float, y: float, r: float, colour: Colour) -> list[DrawItem]:
 def _letter_p(box: Box, colour: Colour) -> list[DrawItem]:
     x, y, r = box.cx, box.cy, 0.5 * box.w
     stem = Rect(Box(x - 0.3 * r, y - 0.5 * r, 0.2 * r, 1.0 * r), colour, "mode.shape")
-    return [stem, Arc(x, y - 0.19 * r, 0.32 * r, 0.13 * r, 0.0, 180.0, colour, "mode.shape"), *_bars(x, y, r, colour)]
+    return [
+        stem,
+        Arc(
+            x,
+            y - 0.19 * r,
+            outer=0.32 * r,
+            inner=0.13 * r,
+            start_deg=0.0,
+            end_deg=180.0,
+            colour=colour,
+            role="mode.shape",
+        ),
+        *_bars(x, y, r, colour),
+    ]
 
 
 def _bars(x: float, y: float, r: float, colour: Colour) -> list[DrawItem]:

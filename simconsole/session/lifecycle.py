@@ -86,7 +86,14 @@ def drive(
             **opened.summary(),
         }
         manifest = bundle.finish(summary)
-    return DriveResult(folder, manifest.ticks, manifest.digest, interrupt.raised, summary, manifest.recording_failure)
+    return DriveResult(
+        folder=folder,
+        ticks=manifest.ticks,
+        digest=manifest.digest,
+        interrupted=interrupt.raised,
+        summary=summary,
+        recording_failure=manifest.recording_failure,
+    )
 
 
 def warm_up(console: Console, state: ConsoleState) -> None:

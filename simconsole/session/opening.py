@@ -48,7 +48,7 @@ PROGRAM_END_S = 0.3
 
 if TYPE_CHECKING:
     from simconsole.bridge.transport.lockstep_server import LockstepBridge
-    from simconsole.canbus.bus.worker import InlineCan
+    from simconsole.canbus.bus.worker import HeadlessCan
 
 
 class Opened(NamedTuple):
@@ -69,7 +69,7 @@ def open_headless(
     interrupt: Interrupt,
     stack: ExitStack,
 ) -> Opened:
-    """Open a drive that runs as fast as it goes, everything inline. A raised `interrupt` ends all waiting.
+    """Open a drive that runs as fast as it goes, all of it in this process. A raised `interrupt` ends all waiting.
 
     Raises:
         ProfileError: the session needs lockstep for what it asks.
@@ -290,11 +290,11 @@ def check_commander(session: SessionProfile) -> None:
         raise ProfileError("mode.pacing: value lockstep: realtime or free, where features.commander is can")
 
 
-def _open_can(resolved: ResolvedSession, console: Console, bundle: Path, stack: ExitStack) -> "InlineCan | None":
+def _open_can(resolved: ResolvedSession, console: Console, bundle: Path, stack: ExitStack) -> "HeadlessCan | None":
     session = resolved.session
     if session.outputs.can is None:
         return None
-    from simconsole.canbus.bus.worker import InlineCan, put_on_bus
+    from simconsole.canbus.bus.worker import HeadlessCan, put_on_bus
     from simconsole.canbus.messages import wheel_columns
 
     on_bus = put_on_bus(
@@ -304,4 +304,4 @@ def _open_can(resolved: ResolvedSession, console: Console, bundle: Path, stack: 
         folder=bundle,
     )
     stack.callback(on_bus.port.close)
-    return InlineCan(on_bus)
+    return HeadlessCan(on_bus)

@@ -29,4 +29,12 @@ def scene_job(resolved: ResolvedSession, vectors: Row, ticks: Ticks, columns: tu
     platform, course = assemble(resolved, plain)[0].platform, None if resolved.world is None else Course(resolved.world)
     dimensions = Dimensions(platform.length_m, platform.width_m, platform.height_m, platform.rear_overhang_m)
     drawing = None if course is None else draw(course)
-    return Job(vectors, ticks, columns, tick_hz, dimensions, drawing, resolved.session.outputs.scene or SceneProfile())
+    return Job(
+        vectors=vectors,
+        ticks=ticks,
+        columns=columns,
+        tick_hz=tick_hz,
+        dimensions=dimensions,
+        drawing=drawing,
+        profile=resolved.session.outputs.scene or SceneProfile(),
+    )

@@ -145,7 +145,7 @@ class HudWorker(Worker, frozen=True, kw_only=True):
 
         can = CanWatch(folder / CAN_STATUS, time.time, time.monotonic) if self.has_can else lambda: None
         link = LinkWatch(folder / LINK_STATUS, time.time, time.monotonic) if self.has_bridge else lambda: None
-        ports = Ports(latest, report_keys, stop, can, receipts.drawn, link)
+        ports = Ports(latest, report_keys, stop, can_up=can, drawn=receipts.drawn, link=link)
         run(ports, self.profile, settings_of(self.profile, self.control))
 
 

@@ -1,4 +1,4 @@
-"""Drives over the urban course with the path tracker inline: whole, and from any row of a drive that went before."""
+"""Drives over the urban course with the path tracker in the loop: whole, and from any state of an earlier drive."""
 
 from collections.abc import Mapping, Sequence
 from copy import copy
@@ -140,7 +140,7 @@ class PersonAtTheWheel:
         pass
 
 
-class InlineTracker:
+class LoopTracker:
     """The path tracker as command source and as reader of the state: one command every 20 ms, one tick later.
 
     What operators ask for comes the same way: `asks` by tick.
@@ -236,7 +236,7 @@ class Circuit:
         crew: Crew = AUTOPILOT,
         pace: Pace | None = None,
         outputs: Sequence[Output] = (),
-        controller: InlineTracker | None = None,
+        controller: LoopTracker | None = None,
     ) -> Driven:
         """Drive on from a state."""
         scenario = msgspec.structs.replace(self.resolved.session.scenario, faults=tuple(faults))
@@ -247,7 +247,7 @@ class Circuit:
             ENGAGE_TICK: Event.REQUEST_AUTONOMOUS,
             **({state.tick + 1: Event.REQUEST_MANUAL} if crew.by_hand else {}),
         }
-        tracker = controller or InlineTracker(copy(self.tracker), asks, not crew.controller)
+        tracker = controller or LoopTracker(copy(self.tracker), asks, not crew.controller)
         recorder = MemoryRecorder(round(seconds * HZ), self.console.width)
         ratio = self.console.platform.steering_ratio
         person = (

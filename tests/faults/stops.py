@@ -14,7 +14,7 @@ from simconsole.profiles.faults import Silent
 from simconsole.tick.advance import SETTINGS
 from simconsole.values.signals import Mode
 from simconsole.values.state_vector import Snapshot
-from tests.faults.course import CAR_M, HZ, LANE_M, PERIOD_TICKS, PLACES, Circuit, InlineTracker
+from tests.faults.course import CAR_M, HZ, LANE_M, PERIOD_TICKS, PLACES, Circuit, LoopTracker
 
 SECONDS = 14.0
 EVERY_M = 40.0
@@ -40,7 +40,7 @@ STOPS = (
 )
 
 
-class NoisyTracker(InlineTracker):
+class NoisyTracker(LoopTracker):
     """A controller whose last word before its silence is never quite the right one."""
 
     def __init__(self, *arguments: Any, sigma_rad: float) -> None:

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 from simconsole.canbus.bus.port import CanPort
-from simconsole.canbus.bus.worker import InlineCan, OnBus, load_codec
+from simconsole.canbus.bus.worker import HeadlessCan, OnBus, load_codec
 from simconsole.canbus.codec import COMMAND, Codec, Frame
 from simconsole.canbus.node import CanNode
 from simconsole.canbus.protection import Check, protected
@@ -129,7 +129,7 @@ def drive(codec: Codec, profile: CanProfile) -> Iterator[Callable[..., Driven]]:
             stack.callback(port.close)
             stack.callback(ecu_port.close)
             on_bus, recorded = OnBus(node, port), Recorded()
-            link = InlineCan(on_bus)
+            link = HeadlessCan(on_bus)
             outputs = (link, EcuSeat(codec, ecu_port, fault))
             components = Components(NobodySeated(), NobodyCommands(), recorded, outputs, UnpacedPacer(), ecu=link)
             run(console, state, components, TICKS)

@@ -140,7 +140,12 @@ class CanPort:
     def counters(self) -> PortCounters:
         """Return what this port has seen."""
         return PortCounters(
-            self._sent, self._received, self._filtered, self._dropped, self._error_frames, self.recovery.downs
+            sent=self._sent,
+            received=self._received,
+            filtered=self._filtered,
+            dropped=self._dropped,
+            error_frames=self._error_frames,
+            downs=self.recovery.downs,
         )
 
     def close(self) -> None:

@@ -1,4 +1,4 @@
-"""The node on its bus: as a worker process beside a paced drive, and inline in a headless one."""
+"""The node on its bus: in a worker process beside a paced drive, and in the loop of a headless one."""
 
 import time
 from collections.abc import Callable
@@ -85,7 +85,7 @@ def serve(
     on_status: OnStatus,
     stop: Callable[[], bool],
 ) -> None:
-    """Be the CAN worker until `stop`. No tick, no frame: a console that hangs falls silent on the bus.
+    """Run the node until `stop`. Without a new tick it sends nothing: a console that hangs falls silent on the bus.
 
     Args:
         on_bus: node and open port; closed by the caller.
@@ -119,7 +119,7 @@ def serve(
     on_status(on_bus.status(clock_ns()))
 
 
-class InlineCan:
+class HeadlessCan:
     """The same node inside a headless drive's loop: a reader of snapshots, and where commands come from.
 
     Time is the drive's own: a frame that is there after tick k has age 0 in tick k + 1.

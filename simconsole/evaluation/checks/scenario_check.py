@@ -72,7 +72,14 @@ def check_scenario(name_or_path: str, update_golden: bool = False) -> Verdict:
         digest = watch.digest.hex()
         judged = [bound.problem(watch.ticks) for bound in watch.bounds]
         problems = [problem for problem in judged if problem is not None] + watch.samples.end(digest)
-    return Verdict(path.stem, not problems, watch.ticks, digest, problems, scenario.title)
+    return Verdict(
+        scenario=path.stem,
+        passed=not problems,
+        ticks=watch.ticks,
+        digest=digest,
+        problems=problems,
+        title=scenario.title,
+    )
 
 
 def _check_manoeuvre(scenario: ScenarioProfile, manoeuvre: Manoeuvre, path: Path) -> Verdict:
@@ -82,14 +89,14 @@ def _check_manoeuvre(scenario: ScenarioProfile, manoeuvre: Manoeuvre, path: Path
         judged = [judge_limit(limit, driven.result.values, str(path)) for limit in scenario.limits]
         problems = [problem for problem in judged if problem is not None]
     return Verdict(
-        path.stem,
-        not problems,
-        driven.ticks,
-        driven.digest,
-        problems,
-        scenario.title,
-        driven.result,
-        scenario.limits,
+        scenario=path.stem,
+        passed=not problems,
+        ticks=driven.ticks,
+        digest=driven.digest,
+        problems=problems,
+        title=scenario.title,
+        result=driven.result,
+        limits=scenario.limits,
     )
 
 

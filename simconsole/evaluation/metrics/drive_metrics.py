@@ -70,14 +70,14 @@ def mode_changes(drive: Drive, way: Track) -> list[ModeChange]:
     refused = (np.diff(reason, prepend=reason[0]) != 0.0) & (reason >= REFUSED_FROM) & ~changed
     return [
         ModeChange(
-            drive.first_tick + at,
-            (drive.first_tick + at) / drive.tick_hz,
-            int(mode[at]),
-            int(reason[at]),
-            bool(refused[at]),
-            float(x[at]),
-            float(y[at]),
-            float(way.distance_m[at]),
+            tick=drive.first_tick + at,
+            t_s=(drive.first_tick + at) / drive.tick_hz,
+            mode=int(mode[at]),
+            reason=int(reason[at]),
+            refused=bool(refused[at]),
+            x_m=float(x[at]),
+            y_m=float(y[at]),
+            distance_m=float(way.distance_m[at]),
         )
         for at in np.flatnonzero(changed | refused).tolist()
     ]

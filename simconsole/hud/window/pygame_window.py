@@ -19,7 +19,7 @@ from simconsole.values.errors import WorkerError
 from simconsole.values.key_codes import Key
 from simconsole.values.state_vector import Snapshot
 
-KEYS: Final[dict[str, Key]] = {
+KEY_CODES: Final[dict[str, Key]] = {
     "K_LEFT": Key.STEER_LEFT,
     "K_a": Key.STEER_LEFT,
     "K_RIGHT": Key.STEER_RIGHT,
@@ -152,7 +152,7 @@ def held_keys() -> int:
 
     pressed = pygame.key.get_pressed()
     mask = 0
-    for name, key in KEYS.items():
+    for name, key in KEY_CODES.items():
         if pressed[getattr(pygame, name)]:
             mask |= key
     return mask

@@ -63,13 +63,13 @@ def load_job(path: Path) -> Job:
     try:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as content:
             return Job(
-                content["vectors"],
-                content["ticks"],
-                tuple(content["columns"].tolist()),
-                int(content["tick_hz"]),
-                Dimensions(*content["dimensions"].tolist()),
-                _unpacked(content) if "path" in content else None,
-                msgspec.json.decode(content["profile"].tobytes(), type=SceneProfile),
+                vectors=content["vectors"],
+                ticks=content["ticks"],
+                columns=tuple(content["columns"].tolist()),
+                tick_hz=int(content["tick_hz"]),
+                dimensions=Dimensions(*content["dimensions"].tolist()),
+                drawing=_unpacked(content) if "path" in content else None,
+                profile=msgspec.json.decode(content["profile"].tobytes(), type=SceneProfile),
             )
     except OSError as problem:
         raise WorkerError(f"{path}: cannot be read: {problem.strerror or problem}") from None

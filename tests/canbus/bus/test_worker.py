@@ -1,4 +1,4 @@
-"""The worker's loop and the inline node, on a virtual bus with an ECU beside them."""
+"""The worker's loop and a headless drive's node, on a virtual bus with an ECU beside them."""
 
 import threading
 from collections.abc import Callable, Iterator
@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from simconsole.canbus.bus.port import CanPort
-from simconsole.canbus.bus.worker import InlineCan, OnBus, log_paths, put_on_bus, serve
+from simconsole.canbus.bus.worker import HeadlessCan, OnBus, log_paths, put_on_bus, serve
 from simconsole.canbus.codec import Codec
 from simconsole.canbus.ecu import Ecu, Wish
 from simconsole.canbus.protection import Check
@@ -40,8 +40,8 @@ def test_logs_lie_in_the_bundle_once_each(tmp_path: Path) -> None:
     assert log_paths(profile, tmp_path) == [tmp_path / "can.blf", tmp_path / "can.log"]
 
 
-def test_inline_command_ages_in_ticks(on_bus: OnBus, ecu_port: CanPort, codec: Codec, snapshot: Snapshots) -> None:
-    can, ecu = InlineCan(on_bus), Ecu(codec, Wish(accel_mps2=1.0))
+def test_headless_command_ages_in_ticks(on_bus: OnBus, ecu_port: CanPort, codec: Codec, snapshot: Snapshots) -> None:
+    can, ecu = HeadlessCan(on_bus), Ecu(codec, Wish(accel_mps2=1.0))
     assert can.take(1)[0].age_ticks == NEVER_TICKS
     for tick in range(1, 4):
         assert ecu_port.send(ecu.command())
@@ -54,8 +54,8 @@ def test_inline_command_ages_in_ticks(on_bus: OnBus, ecu_port: CanPort, codec: C
     assert can.summary()["can"]["node"]["accepted"] == 2
 
 
-def test_inline_sends_at_the_drives_own_time(on_bus: OnBus, ecu_port: CanPort, snapshot: Snapshots) -> None:
-    can = InlineCan(on_bus)
+def test_headless_node_sends_at_the_drives_own_time(on_bus: OnBus, ecu_port: CanPort, snapshot: Snapshots) -> None:
+    can = HeadlessCan(on_bus)
     for tick in range(250):
         can.publish(snapshot(tick))
     received = 0
@@ -64,10 +64,10 @@ def test_inline_sends_at_the_drives_own_time(on_bus: OnBus, ecu_port: CanPort, s
     assert received == 410  # 3 x 100 + 2 x 50 + 10: no wheel speeds here
 
 
-def test_inline_flood_takes_a_bounded_number_of_frames_a_tick(
+def test_headless_flood_takes_a_bounded_number_of_frames_a_tick(
     on_bus: OnBus, ecu_port: CanPort, codec: Codec, snapshot: Snapshots
 ) -> None:
-    can, ecu = InlineCan(on_bus), Ecu(codec, Wish())
+    can, ecu = HeadlessCan(on_bus), Ecu(codec, Wish())
     for _ in range(200):
         ecu_port.send(ecu.command())
     can.publish(snapshot(1))

@@ -10,7 +10,7 @@ import pytest
 
 from simconsole.hud.view import HudSettings
 from simconsole.hud.window import pygame_window as window
-from simconsole.hud.window.pygame_window import KEYS, Freshness, Ports, Window, choose_display, run
+from simconsole.hud.window.pygame_window import KEY_CODES, Freshness, Ports, Window, choose_display, run
 from simconsole.profiles.view import HudProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.key_codes import Key
@@ -85,7 +85,7 @@ def test_held_keys_become_one_mask(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_every_meaning_has_a_key_and_fits_a_float() -> None:
-    assert set(KEYS.values()) == set(Key)
+    assert set(KEY_CODES.values()) == set(Key)
     assert int(float(sum(Key))) == sum(Key)
 
 
