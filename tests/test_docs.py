@@ -88,6 +88,6 @@ def test_tick_page_names_a_place_for_every_step() -> None:
 
 
 def test_finder_of_names_sees_what_is_missing() -> None:
-    names = defined(ROOT / "simconsole" / "drive.py")
+    names = defined(ROOT / "simconsole" / "tick" / "loop.py")
     assert {"run", "Components", "Components.devices", "Recorder.write"} <= names
     assert "walk" not in names

@@ -4,4 +4,5 @@ import sys
 
 from simconsole.processes import supervisor, worker
 
-sys.exit({"supervisor": supervisor.main, "worker": worker.main}[sys.argv[1]]())
+if __name__ == "__main__":
+    sys.exit({"supervisor": supervisor.main, "worker": worker.main}[sys.argv[1]]())
