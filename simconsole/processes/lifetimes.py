@@ -1,4 +1,4 @@
-"""Nothing that the console starts or makes outlives it: its children, its folders, what was half made.
+"""Child processes, folders and unfinished files end with the process that made them.
 
 A child's standard input is a pipe of which its parent alone holds the other end. Data in it tells the child to end in
 order; its end says that the parent is gone, however it ended: the child then has ORPHAN_S left. So there is no orphan,
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import subprocess
 
 ORPHAN_S: Final = 0.2
-"""How long a child may go on, after its parent is gone, to say good-bye."""
+"""How long a child may take to close its connections after its parent is gone."""
 INTERRUPTED: Final = 130
 """Exit code of what a signal ended, as a shell reports a Ctrl-C."""
 ATTACHED: Final = "--attached"
@@ -109,7 +109,7 @@ def end(
 
 
 def close_pipe(process: "subprocess.Popen[bytes]") -> None:
-    """Let go of a child: it ends by itself."""
+    """Close a child's pipe, after which it ends by itself."""
     if process.stdin is not None:
         with contextlib.suppress(OSError):
             process.stdin.close()
@@ -123,7 +123,7 @@ def _write(process: "subprocess.Popen[bytes]", text: bytes) -> None:
 
 
 class Parent:
-    """What a child knows of whoever started it."""
+    """A child's view of its parent: whether it asked the child to end, and whether it is gone."""
 
     def __init__(self) -> None:
         self._end, self._gone = threading.Event(), threading.Event()
@@ -205,7 +205,7 @@ def undone(undo: Callable[[], object]) -> Iterator[None]:
 
 
 def remove_half_made(folder: Path) -> None:
-    """Remove files that had not got their final names yet."""
+    """Remove drafts: files that were not yet renamed to their final names."""
     for path in folder.glob(f"*{DRAFT}"):
         path.unlink(missing_ok=True)
 

@@ -1,4 +1,4 @@
-"""Who takes part in a session: opens the components that the profile names, for headless and for paced drives."""
+"""Opens the components that a session's profile names, for headless and for paced drives."""
 
 import secrets
 import time
@@ -44,7 +44,7 @@ LOOKED_AT = 16
 LOOK_S = 0.2
 """How often a wait for somebody else asks whether it shall go on."""
 PROGRAM_END_S = 0.3
-"""How long a program that the drive has started may take to say good-bye; it has nothing else to finish."""
+"""How long a program that the drive has started may take to close its connection; it has nothing else to finish."""
 
 if TYPE_CHECKING:
     from simconsole.bridge.transport.lockstep_server import LockstepBridge
@@ -247,7 +247,7 @@ def _open_lockstep(
     if course is not None:
         program = start_autopilot(bridge.url, course, session.outputs.bridge, drive, token)
         stack.callback(end, [program], PROGRAM_END_S)
-    stack.callback(bridge.close)  # a good-bye, before the program's end is waited for
+    stack.callback(bridge.close)  # its clients are told before the program's end is waited for
     if program is not None:
         stack.callback(tell_to_end, [program])
     _wait_for_controller(bridge, program, session.mode.wait_for_controller_s, interrupt.check)

@@ -1,4 +1,4 @@
-"""Who sits in the cockpit: the device source of a session, and the simulated person where one drives."""
+"""Opens the cockpit of a session: its device source, and the simulated person where one drives."""
 
 import sys
 import time

@@ -1,4 +1,4 @@
-"""The loop of one drive: inputs in, one tick, outputs out. It opens and closes nothing (session.py does)."""
+"""The loop of one drive: inputs in, one tick, outputs out. It opens and closes nothing (session/lifecycle.py does)."""
 
 from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple, Protocol
@@ -25,7 +25,7 @@ class Pace(Protocol):
 
 
 class Faults(Protocol):
-    """Who puts faults into a drive, for tests."""
+    """The schedule of the faults that a scenario puts into a drive."""
 
     def turn(self, tick: int, before: Snapshot) -> float:
         """Decide which faults are on in the coming `tick`; return them as a mask."""
@@ -47,7 +47,7 @@ _BUTTON_EMERGENCY: Final = int(Button.EMERGENCY_STOP)
 
 
 class Components(NamedTuple):
-    """Everyone who takes part in a drive."""
+    """The parts of a drive that the loop works with."""
 
     devices: DeviceSource
     commands: CommandSource  # of the ROS side

@@ -79,7 +79,7 @@ Mark = Callable[[Hop], None]
 
 
 def unheard(hop: Hop) -> None:
-    """A mark that nobody wants: what a tick gets that is not looked at."""
+    """Ignore the end of a hop: the mark of a tick that is not timed."""
 
 
 class LatencyStatistics:
