@@ -1,4 +1,4 @@
-"""The house rules: who may import whom, and what every source file must look like."""
+"""The rooms: who may import whom, what may touch the machine, and what loads when."""
 
 import ast
 import graphlib
@@ -12,13 +12,13 @@ import sys
 import tomllib
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any, NamedTuple, get_type_hints
+from typing import NamedTuple
 
 import pytest
 
-from simconsole.values import signals
 from tests.paths import ROOT
 from tests.patience import Stopwatch
+from tests.sources import module_name, modules
 
 CONTRACTS = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
 LAYERS, FORBIDDEN, INDEPENDENT = CONTRACTS
@@ -27,36 +27,6 @@ ROOMS = [re.findall(r"\w+", layer) for layer in LAYERS["layers"]]
 MODULES_OF_A_PACKAGE = 20
 HEAVY = ["pygame", "rerun", "numba", "matplotlib"]
 LINUX_ONLY = {"evdev", "fcntl", "grp", "posix", "pty", "pwd", "resource", "syslog", "termios", "tty", "udev", "pyudev"}
-
-UNITS = ("_rad", "_radps", "_m", "_mps", "_mps2", "_nm", "_ticks")
-UNITLESS = {
-    # pedals, authority and other shares 0..1; raw axes -1..1
-    *("throttle", "brake", "clutch", "handbrake", "remote_lateral", "remote_longitudinal", "shared_trade"),
-    "remote_guidance",
-    *("person_throttle", "person_brake", "remote_throttle", "remote_brake"),
-    *("ros_throttle", "ros_brake", "ecu_throttle", "ecu_brake"),
-    *("wheel_axis", "throttle_axis", "brake_axis", "clutch_axis", "handbrake_axis", "hat_x", "hat_y"),
-    # counts, flags and masks
-    *("sequence", "refused", "refused_seen", "sequence_seen", "invalid_run", "automatic", "engine_running"),
-    *("wheel_buttons", "shifter_buttons", "pressed", "edges", "events", "faults", "gate_active", "throttle_override"),
-    *("wheel_motor", "ramp", "clipped", "enabled", "hands_on", "live", "ecu_events", "fresh", "invalid", "lever_fault"),
-    "implausible",
-    *("anti_lock_off", "traction_off", "stability_off", "gear_fault"),
-    *("turn_indicators", "hazard_lights", "stalk", "hazard_switch"),
-    # members of an enumeration
-    *("kind", "mode", "reason", "refusal", "notice", "gear", "direction", "takeover_stage", "commander", "state"),
-    *("restarted", "stop_steered"),
-    *("wheel_validity", "throttle_validity", "brake_validity", "clutch_validity", "shifter_validity"),
-    "handbrake_validity",
-}  # fmt: skip
-
-
-def module_name(path: Path, root: Path = ROOT) -> str:
-    return ".".join(path.relative_to(root).with_suffix("").parts).removesuffix(".__init__")
-
-
-def modules() -> dict[str, Path]:
-    return {module_name(path): path for path in sorted((ROOT / "simconsole").rglob("*.py"))}
 
 
 def matches(module: str, pattern: str) -> bool:
@@ -68,11 +38,6 @@ def matches(module: str, pattern: str) -> bool:
 def pure() -> list[str]:
     """The modules that may not touch the machine."""
     return [name for name in modules() if any(matches(name, pattern) for pattern in FORBIDDEN["source_modules"])]
-
-
-def python_files() -> list[Path]:
-    folders = ("simconsole", "tests", "benchmarks", "examples", "scripts")
-    return [path for folder in folders for path in sorted((ROOT / folder).rglob("*.py"))]
 
 
 def top_level_imports(tree: ast.AST) -> Iterator[str]:
@@ -114,13 +79,25 @@ def test_packages_do_not_import_each_other_in_circles() -> None:
         return module if known[module].name == "__init__.py" else module.rpartition(".")[0]
 
     graph: dict[str, set[str]] = {package(name): set() for name in known}
+    for name, targets in imports().items():
+        graph[package(name)] |= {package(target) for target in targets} - {package(name)}
+    graphlib.TopologicalSorter(graph).prepare()  # it raises where there is a circle, and names it
+
+
+def imports() -> dict[str, set[str]]:
+    """The modules of ours that each module imports, anywhere in its text."""
+    known = modules()
+    found: dict[str, set[str]] = {name: set() for name in known}
     for name, path in known.items():
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("simconsole."):
                 targets = [f"{node.module}.{alias.name}" for alias in node.names]
-                graph[package(name)] |= {package(to if to in known else node.module or "") for to in targets}
-    order = graphlib.TopologicalSorter({name: targets - {name} for name, targets in graph.items()})
-    order.prepare()  # it raises where there is a circle, and names it
+                found[name] |= {to if to in known else node.module or "" for to in targets}
+    return found
+
+
+def test_modules_do_not_import_each_other_in_circles() -> None:
+    graphlib.TopologicalSorter(imports()).prepare()
 
 
 def test_contracts_are_short_and_name_folders() -> None:
@@ -255,6 +232,12 @@ def test_planted_imports_between_outside_rooms_are_found(house: House) -> None:
         assert f"{importer} is not allowed to import {imported}" in output
 
 
+def test_the_picture_of_the_rooms_is_up_to_date() -> None:
+    command = [sys.executable, str(ROOT / "scripts" / "make_architecture.py")]
+    drawn = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    assert drawn == (ROOT / "docs" / "images" / "rooms.svg").read_text(), "python scripts/make_architecture.py"
+
+
 def loaded_by(code: str, *, forbid: list[str]) -> set[str]:
     """Which of `forbid` a fresh interpreter has loaded after `code`."""
     script = f"import sys\n{code}\nprint('LOADED', *sys.modules.keys() & set({forbid}))"
@@ -321,69 +304,3 @@ def test_finder_of_module_level_imports_looks_into_blocks_but_not_into_functions
         "try:\n    import fcntl\nexcept ImportError:\n    pass\ndef f():\n    import pwd\nclass C:\n    import tty\n"
     )
     assert list(top_level_imports(ast.parse(source))) == ["fcntl", "tty"]
-
-
-def signal_fields() -> list[tuple[str, str]]:
-    classes: list[Any] = [
-        value for value in vars(signals).values() if isinstance(value, type) and hasattr(value, "_fields")
-    ]
-    return [(record.__name__, field) for record in classes for field in record._fields]
-
-
-@pytest.mark.parametrize(("record", "field"), signal_fields())
-def test_every_number_of_a_tick_says_its_unit(record: str, field: str) -> None:
-    assert field.endswith(UNITS) or field in UNITLESS
-    assert get_type_hints(getattr(signals, record))[field] is float
-
-
-def test_list_of_unitless_numbers_holds_nothing_superfluous() -> None:
-    assert {field for _, field in signal_fields()} >= UNITLESS
-
-
-@pytest.mark.parametrize("path", python_files(), ids=lambda path: str(path.relative_to(ROOT)))
-def test_file_is_short_enough_to_read(path: Path) -> None:
-    assert len(path.read_text().splitlines()) <= 400
-
-
-@pytest.mark.parametrize("path", modules().values(), ids=modules().keys())
-def test_module_says_what_it_is(path: Path) -> None:
-    assert (ast.get_docstring(ast.parse(path.read_text())) or "").strip()
-
-
-RECORDS_BY_KEYWORD = ("control", "tick", "values", "vehicle")
-"""The rooms in which a record of six or more fields is built by keyword: nobody sees a swap of two floats."""
-
-
-def built_by_position(tree: ast.AST, records: set[str], most: int = 5) -> list[str]:
-    """The records that are built with more than `most` positional values; `Record(*values)` is not meant."""
-    return [
-        f"{node.func.id}, line {node.lineno}"
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in records
-        if len([value for value in node.args if not isinstance(value, ast.Starred)]) > most
-    ]
-
-
-def records() -> set[str]:
-    """The names of all record classes of the package."""
-    return {
-        node.name
-        for path in modules().values()
-        for node in ast.walk(ast.parse(path.read_text()))
-        if isinstance(node, ast.ClassDef) and any(ast.unparse(base) == "NamedTuple" for base in node.bases)
-    }
-
-
-def test_large_records_are_built_by_keyword() -> None:
-    known = records()
-    files = [path for path in modules().values() if path.relative_to(ROOT).parts[1] in RECORDS_BY_KEYWORD]
-    found = {str(path): built_by_position(ast.parse(path.read_text()), known) for path in files}
-    assert {path: calls for path, calls in found.items() if calls} == {}
-    assert len(files) > 60
-
-
-def test_finder_of_records_built_by_position_finds_them() -> None:
-    tree = ast.parse(
-        "A(1, 2, 3, 4, 5, 6)\nA(1, 2, 3, 4, 5, *rest)\nA(a=1)\nB(1, 2, 3, 4, 5, 6)\nA(*rest)\nA(1, 2, 3, 4, 5, f=6)"
-    )
-    assert built_by_position(tree, {"A"}) == ["A, line 1"]

@@ -19,8 +19,8 @@ def serve(options: Namespace) -> Outcome:
     """Serve rosbridge on a standing car that nobody sits in, in real time, until interrupted; nothing is kept."""
     from simconsole.bridge.ros2.node import check as check_ros2
     from simconsole.bridge.transport.credentials import load_access, load_tls
-    from simconsole.bridge.transport.interface import load_transport
     from simconsole.bridge.transport.message_files import load_registry
+    from simconsole.bridge.transport.transport_registry import load_transport
     from simconsole.session.lifecycle import drive
     from simconsole.session.resolution import load_session, override, resolve
 

@@ -4,19 +4,20 @@ Called only for a value that did not fit. It looks at nothing but the fields its
 depth or width costs no more than the definition allows.
 """
 
-from typing import TYPE_CHECKING, Any, Final
+from collections.abc import Callable
+from typing import Any, Final
 
-from simconsole.bridge.messages.definition import DURATION, FLOATS, HEADER, TIME, Field
+from simconsole.bridge.messages.definition import DURATION, FLOATS, HEADER, TIME, Definition, Field
 from simconsole.values.units import NS_PER_S
-
-if TYPE_CHECKING:
-    from simconsole.bridge.messages.message_registry import Registry
 
 _NAN: Final = float("nan")
 _ROS1_TIME: Final = {"secs": "sec", "nsecs": "nanosec"}
 
+Definitions = Callable[[str], Definition]
+"""Gives the definition of a type by its full name."""
 
-def normalise(registry: "Registry", name: str, value: Any, gaps: bool, now_ns: int) -> Any:
+
+def normalise(definitions: Definitions, name: str, value: Any, gaps: bool, now_ns: int) -> Any:
     """Return a copy of `value` in which known other spellings are replaced; what is simply wrong stays wrong.
 
     Replaced: secs and nsecs of a time, "now" as a time, a header's seq (ROS 1 has it, ROS 2 not), null as NaN for a
@@ -29,18 +30,18 @@ def normalise(registry: "Registry", name: str, value: Any, gaps: bool, now_ns: i
     normalised = dict(value)
     if name == HEADER:
         normalised.pop("seq", None)
-    for field in registry.definition(name).fields:
+    for field in definitions(name).fields:
         if field.name in normalised:
-            normalised[field.name] = _normalise_field(registry, field, normalised[field.name], gaps, now_ns)
+            normalised[field.name] = _normalise_field(definitions, field, normalised[field.name], gaps, now_ns)
     return normalised
 
 
-def _normalise_field(registry: "Registry", field: Field, value: Any, gaps: bool, now_ns: int) -> Any:
+def _normalise_field(definitions: Definitions, field: Field, value: Any, gaps: bool, now_ns: int) -> Any:
     kind = field.type
     if kind.is_message:
         if kind.array and isinstance(value, list):
-            return [normalise(registry, kind.base, item, gaps, now_ns) for item in value]
-        return normalise(registry, kind.base, value, gaps, now_ns)
+            return [normalise(definitions, kind.base, item, gaps, now_ns) for item in value]
+        return normalise(definitions, kind.base, value, gaps, now_ns)
     if kind.is_octets:
         return _normalise_octets(value)
     if gaps and kind.base in FLOATS:

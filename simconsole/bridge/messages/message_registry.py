@@ -153,7 +153,7 @@ class Registry:
             pass
         # Only a value that failed is normalised: messages in our own dialect pay nothing for the other one.
         try:
-            return msgspec.convert(normalise(self, self.resolve(name), value, gaps, now_ns), struct)
+            return msgspec.convert(normalise(self.definition, self.resolve(name), value, gaps, now_ns), struct)
         except msgspec.ValidationError as error:
             raise RemoteProtocolError(str(error)) from None
 

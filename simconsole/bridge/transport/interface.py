@@ -1,12 +1,9 @@
 """The interface between the bridge in an event loop and the WebSocket library that carries its clients."""
 
-import importlib.util
 from collections.abc import Awaitable, Callable, Sequence
 from typing import Protocol
 
 from simconsole.bridge.protocol.handshake import Admission, HandshakeRequest, Refusal
-from simconsole.profiles.bridge import BridgeProfile
-from simconsole.values.errors import ProfileError
 
 
 class Connection(Protocol):
@@ -65,20 +62,3 @@ class Listener(Protocol):
 
 StartListener = Callable[..., Awaitable[Listener]]
 """Takes an `Acceptor`, the listening socket, the profile, TLS and the clock in ns."""
-
-
-def load_transport(profile: BridgeProfile) -> StartListener:
-    """Return how to start a listener of the library that the profile names.
-
-    Raises:
-        ProfileError: that library is not installed.
-    """
-    if profile.transport == "websockets":
-        from simconsole.bridge.transport import websockets_transport
-
-        return websockets_transport.start_listener
-    if importlib.util.find_spec("picows") is None:
-        raise ProfileError("outputs.bridge.transport: picows is not installed: pip install 'simconsole[picows]'")
-    from simconsole.bridge.transport import picows_transport
-
-    return picows_transport.start_listener

@@ -19,10 +19,11 @@ from simconsole.bridge.messages import Registry
 from simconsole.bridge.protocol.handshake import Admission, HandshakeRequest, Refusal, admit
 from simconsole.bridge.transport.client_log import log_departure, log_outcome
 from simconsole.bridge.transport.credentials import load_access, load_tls
-from simconsole.bridge.transport.interface import Connection, ConnectionHandler, Listener, load_transport
+from simconsole.bridge.transport.interface import Connection, ConnectionHandler, Listener
 from simconsole.bridge.transport.message_files import load_registry
 from simconsole.bridge.transport.sockets import CLOSE_S, address_url, listen
 from simconsole.bridge.transport.topic_recorder import TopicRecorder, open_recorder
+from simconsole.bridge.transport.transport_registry import load_transport
 from simconsole.bridge.transport.upstream_client import UpstreamClient
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.state_vector import Snapshot

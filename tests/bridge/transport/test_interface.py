@@ -14,9 +14,10 @@ from websockets.asyncio.client import ClientConnection, connect
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.handshake import Admission, HandshakeRequest, Refusal
 from simconsole.bridge.protocol.message_decoding import Binary
-from simconsole.bridge.transport.interface import Connection, ConnectionHandler, load_transport
+from simconsole.bridge.transport.interface import Connection, ConnectionHandler
 from simconsole.bridge.transport.server import BridgeServer
 from simconsole.bridge.transport.sockets import listen
+from simconsole.bridge.transport.transport_registry import load_transport
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import ProfileError
 from tests.patience import PATIENCE_S, stamp_ns, until

@@ -1,0 +1,18 @@
+"""The source files of the repository, for tests that read them."""
+
+from pathlib import Path
+
+from tests.paths import ROOT
+
+
+def module_name(path: Path, root: Path = ROOT) -> str:
+    return ".".join(path.relative_to(root).with_suffix("").parts).removesuffix(".__init__")
+
+
+def modules() -> dict[str, Path]:
+    return {module_name(path): path for path in sorted((ROOT / "simconsole").rglob("*.py"))}
+
+
+def python_files() -> list[Path]:
+    folders = ("simconsole", "tests", "benchmarks", "examples", "scripts")
+    return [path for folder in folders for path in sorted((ROOT / folder).rglob("*.py"))]

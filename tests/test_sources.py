@@ -1,0 +1,94 @@
+"""What every source file must look like."""
+
+import ast
+from pathlib import Path
+from typing import Any, get_type_hints
+
+import pytest
+
+from simconsole.values import signals
+from tests.paths import ROOT
+from tests.sources import modules, python_files
+
+UNITS = ("_rad", "_radps", "_m", "_mps", "_mps2", "_nm", "_ticks")
+UNITLESS = {
+    # pedals, authority and other shares 0..1; raw axes -1..1
+    *("throttle", "brake", "clutch", "handbrake", "remote_lateral", "remote_longitudinal", "shared_trade"),
+    "remote_guidance",
+    *("person_throttle", "person_brake", "remote_throttle", "remote_brake"),
+    *("ros_throttle", "ros_brake", "ecu_throttle", "ecu_brake"),
+    *("wheel_axis", "throttle_axis", "brake_axis", "clutch_axis", "handbrake_axis", "hat_x", "hat_y"),
+    # counts, flags and masks
+    *("sequence", "refused", "refused_seen", "sequence_seen", "invalid_run", "automatic", "engine_running"),
+    *("wheel_buttons", "shifter_buttons", "pressed", "edges", "events", "faults", "gate_active", "throttle_override"),
+    *("wheel_motor", "ramp", "clipped", "enabled", "hands_on", "live", "ecu_events", "fresh", "invalid", "lever_fault"),
+    "implausible",
+    *("anti_lock_off", "traction_off", "stability_off", "gear_fault"),
+    *("turn_indicators", "hazard_lights", "stalk", "hazard_switch"),
+    # members of an enumeration
+    *("kind", "mode", "reason", "refusal", "notice", "gear", "direction", "takeover_stage", "commander", "state"),
+    *("restarted", "stop_steered"),
+    *("wheel_validity", "throttle_validity", "brake_validity", "clutch_validity", "shifter_validity"),
+    "handbrake_validity",
+}  # fmt: skip
+
+
+def signal_fields() -> list[tuple[str, str]]:
+    classes: list[Any] = [
+        value for value in vars(signals).values() if isinstance(value, type) and hasattr(value, "_fields")
+    ]
+    return [(record.__name__, field) for record in classes for field in record._fields]
+
+
+@pytest.mark.parametrize(("record", "field"), signal_fields())
+def test_every_number_of_a_tick_says_its_unit(record: str, field: str) -> None:
+    assert field.endswith(UNITS) or field in UNITLESS
+    assert get_type_hints(getattr(signals, record))[field] is float
+
+
+def test_list_of_unitless_numbers_holds_nothing_superfluous() -> None:
+    assert {field for _, field in signal_fields()} >= UNITLESS
+
+
+@pytest.mark.parametrize("path", python_files(), ids=lambda path: str(path.relative_to(ROOT)))
+def test_file_is_short_enough_to_read(path: Path) -> None:
+    assert len(path.read_text().splitlines()) <= 400
+
+
+@pytest.mark.parametrize("path", modules().values(), ids=modules().keys())
+def test_module_says_what_it_is(path: Path) -> None:
+    assert (ast.get_docstring(ast.parse(path.read_text())) or "").strip()
+
+
+def built_by_position(tree: ast.AST, records: set[str], most: int = 5) -> list[str]:
+    """The records that are built with more than `most` positional values; `Record(*values)` is not meant."""
+    return [
+        f"{node.func.id}, line {node.lineno}"
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in records
+        if len([value for value in node.args if not isinstance(value, ast.Starred)]) > most
+    ]
+
+
+def records() -> set[str]:
+    """The names of all record classes of the package."""
+    return {
+        node.name
+        for path in modules().values()
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.ClassDef) and any(ast.unparse(base) == "NamedTuple" for base in node.bases)
+    }
+
+
+def test_large_records_are_built_by_keyword() -> None:
+    """Nobody sees a swap of two floats."""
+    known = records()
+    found = {name: built_by_position(ast.parse(path.read_text()), known) for name, path in modules().items()}
+    assert {name: calls for name, calls in found.items() if calls} == {}
+
+
+def test_finder_of_records_built_by_position_finds_them() -> None:
+    tree = ast.parse(
+        "A(1, 2, 3, 4, 5, 6)\nA(1, 2, 3, 4, 5, *rest)\nA(a=1)\nB(1, 2, 3, 4, 5, 6)\nA(*rest)\nA(1, 2, 3, 4, 5, f=6)"
+    )
+    assert built_by_position(tree, {"A"}) == ["A, line 1"]
