@@ -1,13 +1,13 @@
-"""How long one vehicle step of 1 ms takes, alone and in a fleet, beside the models of CommonRoad in the same run.
+"""How long one vehicle step of 1 ms takes beside the models of CommonRoad in the same run.
 
-Run: python benchmarks/vehicle_step.py [--rounds N] [--cars N]
+Run: python benchmarks/vehicle_step.py [--rounds N]
 
 All on one core, interleaved, medians of the rounds, in processor time. CommonRoad's models (commonroad-vehicle-models
 3.0.2, their "BMW 320i") are integrated by Runge-Kutta 4 at 1 ms as their examples do in Python, and once with their own
 source compiled by numba. They have 5 to 29 states, no engine, gears, aids or standstill; ours has all of its own
-switched on. The cars of the fleet differ in speed, steering and throttle.
+switched on. Many cars at once: benchmarks/fleet.py.
 
-Both bars count steps of the model alone, one car stepped in one compiled call: CommonRoad's step does nothing else.
+The bar counts steps of the model alone, one car stepped in one compiled call: CommonRoad's step does nothing else.
 What a tick adds (command, ground, what others see, forecast of the pedals) is in the rows for ticks of 1 and 4 ms.
 """
 
@@ -39,7 +39,6 @@ from simconsole.values.kernels import put
 from simconsole.values.platform import Ground, Platform, Pose
 from simconsole.values.signals import VehicleCommand
 from simconsole.values.state_vector import LAYOUT, PLATFORM_AT
-from simconsole.vehicle.batch.fleet import Fleet
 from simconsole.vehicle.platforms import build
 
 SPEED_MPS = 20.0
@@ -112,23 +111,6 @@ def alone(vehicle: Platform, substeps: int) -> Steps:
     return steps
 
 
-def together(vehicle: Platform, cars: int, substeps: int) -> Steps:
-    fleet = Fleet([vehicle] * cars)
-    states = np.array([rolling(vehicle)] * cars)
-    states[:, 3] += np.linspace(-5.0, 5.0, cars)
-    commands = np.array([command()] * cars)
-    commands[:, 0] *= np.linspace(-1.0, 1.0, cars)
-    commands[:, 1] = np.linspace(0.0, 1.0, cars)
-    fleet.command(commands)
-
-    def steps(count: int) -> None:
-        fleet.restore(states)
-        for _ in range(count // (cars * substeps)):
-            fleet.step(substeps)
-
-    return steps
-
-
 def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--rounds", type=int, default=7)
@@ -137,12 +119,8 @@ def main() -> None:
     os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
     vehicle = build(load("vehicles", "hatchback", CarProfile), Pose(0.0, 0.0, 0.0), Ground(1.0, 0.0, 0.0))
     runs: dict[str, tuple[Steps, int]] = {name: (steps, 200) for name, steps in peers().items()}
-    fleet = f"{given.cars} cars"
     for name, substeps in TICKS.items():
         runs[f"ours, one car, {name}"] = alone(vehicle, substeps), LONGEST
-    for name, substeps in TICKS.items():
-        if substeps < LONGEST:
-            runs[f"ours, {fleet}, {name}"] = together(vehicle, given.cars, substeps), 200 * given.cars
     runs["CommonRoad MB, compiled by numba"] = compiled_peer(), 3_000
     costs: dict[str, list[float]] = {name: [] for name in runs}
     for _ in range(given.rounds + 1):  # the first compiles and warms up
@@ -159,15 +137,10 @@ def main() -> None:
     def ratio(slow: str, fast: str) -> float:
         return statistics.median(a / b for a, b in zip(costs[slow][1:], costs[fast][1:], strict=True))
 
-    print("times as fast, medians of the ratios of each round; the bars count steps of the model: one car in one call")
+    print("times as fast, medians of the ratios of each round; the bar counts steps of the model: one car in one call")
     for name in TICKS:
         bar = "   (hold 350)" if TICKS[name] == LONGEST else ""
         print(f"  one car, {name}: {ratio('CommonRoad MB, Python', f'ours, one car, {name}'):.0f} x MB{bar}")
-    for many in (name for name in TICKS if TICKS[name] < LONGEST):
-        for one in TICKS:
-            bar = "   (hold 3)" if TICKS[one] == LONGEST else ""
-            times = ratio(f"ours, one car, {one}", f"ours, {fleet}, {many}")
-            print(f"  {fleet}, {many}: {times:.2f} x one car, {one}{bar}")
 
 
 def compiled_peer() -> Steps:
