@@ -7,7 +7,7 @@ python examples/roll_a_ball/roll_a_ball.py         # this program, in another
 import argparse
 import math
 
-from simconsole.bridge.client.bridge_client import BridgeClient
+from simconsole.bridge.client import BridgeClient
 from simconsole.values.errors import BridgeError
 
 WAYPOINTS_M = [(2.0, 0.0), (2.0, 2.0), (0.0, 2.0), (0.0, 0.0)]

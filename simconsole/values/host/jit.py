@@ -28,6 +28,9 @@ from simconsole.values.layout import Part, read, write
 
 F = TypeVar("F", bound=Callable[..., Any])
 
+_COMPILER: Final = b"".join(Path(source).read_bytes() for source in (__file__, lowering.__file__))
+"""What compiles, as this process runs it: read now, since the files may be edited while it runs."""
+
 KEEP_UNUSED_S: Final = 30 * 24 * 3600.0
 """Compiled code that nobody has loaded for a month is removed when something new is compiled."""
 
@@ -59,8 +62,7 @@ def digest(function: Callable[..., Any]) -> str:
         TypeError: it uses a global that is neither a kernel nor a constant.
     """
     text = hashlib.sha256(f"{function.__module__}.{function.__qualname__}{sys.version}".encode())
-    for source in (__file__, lowering.__file__):
-        text.update(Path(source).read_bytes())
+    text.update(_COMPILER)
     text.update(repr(function.__defaults__).encode())
     text.update(repr([(name, _type_stamp(kind)) for name, kind in function.__annotations__.items()]).encode())
     for code in _codes(function.__code__):
