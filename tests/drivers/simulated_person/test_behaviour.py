@@ -8,12 +8,10 @@ import pytest
 from simconsole.devices.calibration.inverse_calibration import Intent
 from simconsole.drivers.line_keeper import Line
 from simconsole.drivers.simulated_person.behaviour import PersonBehaviour, Phase, steer_along
-from simconsole.drivers.simulated_person.launch import clutch_through_bite, launch_throttle
+from simconsole.drivers.simulated_person.launch import launch_throttle
 from simconsole.drivers.simulated_person.view import View
 from simconsole.drivers.speed_holder import hold_speed
-from simconsole.profiles.files.loader import parse
 from simconsole.profiles.person import Habits, PersonPlan, When
-from simconsole.values.errors import ProfileError
 from simconsole.values.signals import Button, Mode
 
 HZ = 250
@@ -150,29 +148,6 @@ def test_throttle_stays_on_the_pedal() -> None:
     assert hold_speed(30.0, 0.0, 0.0, 0.004, 0.6) == (0.6, 0.0)
     assert hold_speed(0.0, 30.0, 0.4, 0.004, 0.6)[0] == 0.0
     assert launch_throttle(STANDING._replace(engine_radps=600.0), Habits()) == 0.0
-
-
-def test_foot_feels_for_the_bite() -> None:
-    habits = Habits()
-    free, labouring, dying = (STANDING._replace(engine_radps=speed) for speed in (180.0, 120.0, 60.0))
-    assert clutch_through_bite(0.6, free, habits, 0.004) == pytest.approx(0.6 - 0.004 * habits.bite_release_per_s)
-    assert clutch_through_bite(0.6, labouring, habits, 0.004) > 0.6
-    assert clutch_through_bite(0.6, dying, habits, 0.004) > clutch_through_bite(0.6, labouring, habits, 0.004)
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("autonomy: {}", "distance_m or time_s must be given"),
-        ("cruise_kmh: 500", "5 to 130"),
-        ("habits: {brake: 0}", "habits.brake"),
-        ("autonmy: {time_s: 1}", "did you mean autonomy"),
-        ("stop: {distance_m: .nan}", "finite"),
-    ],
-)
-def test_plan_that_cannot_be_meant_is_refused(text: str, message: str) -> None:
-    with pytest.raises(ProfileError, match=message):
-        parse(text, PersonPlan, "plan.yaml")
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Traction control and hill hold do what they are for, and can be switched off; the rim is quiet at rest and light.
+"""Traction control and hill hold do what they are for, the aids can be switched off; the rim is quiet and light.
 
 ABS and ESC are judged by the manoeuvres of tests/scenarios/test_handling.py.
 """
@@ -8,6 +8,7 @@ import math
 import pytest
 
 from simconsole.values.platform import Ground
+from tests.vehicle.altered import NO_AIDS, altered, rolling_car
 from tests.vehicle.driving import TICK_S, Drive, platform
 from tests.vehicle.rolling import RADIUS_M, rolling
 
@@ -79,3 +80,35 @@ def test_hands_off_at_standstill_the_rim_is_quiet_and_in_bends_it_is_light() -> 
         most = max(most, abs(seen.hand_wheel_torque_nm))
     print(f"at most {most:.1f} N m")
     assert 1.0 < most < 12.0
+
+
+@pytest.mark.parametrize(("front_nm", "rear_nm", "locks_first"), [(4800.0, 700.0, "fl"), (1600.0, 2520.0, "rl")])
+def test_the_brakes_bias_decides_which_axle_locks_first(front_nm: float, rear_nm: float, locks_first: str) -> None:
+    drive = rolling_car(altered(front={"brake_nm": front_nm}, rear={"brake_nm": rear_nm}, aids=NO_AIDS), 25.0)
+    for tick in range(400):
+        drive.hold(TICK_S, brake=0.0025 * tick, clutch=1.0)
+        held = [wheel for wheel in ("fl", "rl") if getattr(drive.state, f"{wheel}_radps") == 0.0]
+        if held:
+            break
+    assert held == [locks_first]
+
+
+def test_switched_off_anti_lock_locks_the_wheels() -> None:
+    for off, locked in ((0.0, False), (1.0, True)):
+        drive = rolling(25.0)
+        drive.hold(1.0, brake=1.0, clutch=1.0, anti_lock_off=off)
+        assert (drive.state.fl_radps == 0.0) == locked
+
+
+def test_switched_off_traction_control_spins_and_stability_control_stays_away() -> None:
+    spins = []
+    for off in (0.0, 1.0):
+        drive = rolling(3.0, Ground(0.3, 0.0, 0.0))
+        drive.hold(1.5, automatic=1, gear=1, throttle=1.0, traction_off=off)
+        spins.append(drive.state.fl_radps)
+    assert spins[1] > 1.5 * spins[0]
+    drive = rolling(25.0, Ground(0.4, 0.0, 0.0))
+    drive.hold(1.0, road_wheel_rad=0.3, stability_off=1.0)
+    assert drive.state.stability_nm == 0.0
+    assert drive.hold(0.2, road_wheel_rad=-0.3).gear == 0.0
+    assert drive.state.stability_nm != 0.0, "on again"

@@ -1,13 +1,19 @@
-"""The automatic: never stalls, shifts once per need, hands clutch and gears back to the person."""
+"""Gears and clutch, and the automatic: never stalls, shifts once per need, hands them back to the person."""
 
 import random
 
 import pytest
 
 from simconsole.values.platform import Ground
+from simconsole.values.signals import GearFault, Request
 from simconsole.values.units import KMH_PER_MPS
+from simconsole.vehicle.car.gearbox import bite, gear_ratio, gearbox_step
+from simconsole.vehicle.car.state import Gearbox
 from tests.samples import Sample
+from tests.vehicle.altered import altered, rolling_car
 from tests.vehicle.driving import TICK_S, Drive, platform
+from tests.vehicle.parts import CAR, STEP_S
+from tests.vehicle.rolling import rolling
 
 
 @pytest.mark.parametrize("throttle", [0.1, 0.3, 0.6, 1.0])
@@ -126,3 +132,58 @@ def test_shifting_down_under_braking_does_not_jolt(brake: float) -> None:
     print(f"steady {steady:.2f} m/s2, least {least:.2f} m/s2, gears {sorted(gears)}")
     assert len(gears) >= 2
     assert least > steady - 1.2
+
+
+def test_ratios_and_bite() -> None:
+    assert gear_ratio(CAR.gears, 0.0) == 0.0
+    assert gear_ratio(CAR.gears, -1.0) == -3.2 * 4.05
+    assert [gear_ratio(CAR.gears, float(g)) / 4.05 for g in range(1, 8)] == pytest.approx(
+        [3.55, 1.95, 1.28, 0.97, 0.78, 0.65, 0.0]
+    )
+    assert bite(CAR.gears, 0.0) == bite(CAR.gears, 0.3) == 1.0
+    assert bite(CAR.gears, 0.75) == bite(CAR.gears, 1.0) == 0.0
+    assert 0.0 < bite(CAR.gears, 0.5) < 0.5
+
+
+def test_lever_between_two_gears_is_neutral() -> None:
+    box = Gearbox(3.0, 0.0, 1.0, 3.0, 0.0, 1.0, 0.0)
+    request = Request(0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    assert gearbox_step(CAR.gears, box, request, 150.0, 20.0, 6.0, STEP_S).gear == 0.0
+    assert gearbox_step(CAR.gears, box, request._replace(gear=4.0), 150.0, 20.0, 6.0, STEP_S).gear == 4.0
+
+
+def test_automatic_taking_over_in_neutral_at_speed_finds_the_gear() -> None:
+    box = Gearbox(0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0)
+    request = Request(0.0, 0.3, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0)
+    shifting = gearbox_step(CAR.gears, box, request, 84.0, 25.0 / 0.306, 25.0, STEP_S)
+    assert shifting.wanted_gear == 4.0, "3065 rpm, where fifth would have 2460 and third 4040"
+    assert shifting.lever_adopted == 0.0
+
+
+def test_seven_gears_each_go_in_and_pull_longer() -> None:
+    profile = altered(gearbox={"forward": (3.55, 2.2, 1.55, 1.16, 0.92, 0.76, 0.63)})
+    speeds = []
+    for gear in range(1, 8):
+        drive = rolling_car(profile, 4.0 + 3.0 * gear)
+        drive.hold(0.3, clutch=1.0, gear=gear)
+        seen = drive.hold(1.0, gear=gear, throttle=0.5)
+        assert (seen.gear, seen.gear_fault) == (gear, 0.0)
+        speeds.append(seen.vx_mps / seen.engine_radps)
+    assert speeds == sorted(speeds)
+    assert speeds[6] == pytest.approx(0.306 / (0.63 * 4.05), rel=0.03)
+
+
+def test_the_gearbox_tells_why_a_gear_does_not_go_in() -> None:
+    drive = rolling(15.0)
+    assert drive.hold(0.1, gear=2).gear_fault == GearFault.GRIND, "no clutch, and the engine idles"
+    assert drive.seen.gear == 0.0
+    assert drive.hold(0.1, gear=2, clutch=1.0).gear_fault == 0.0
+    assert drive.seen.gear == 2.0
+    assert drive.hold(0.1, gear=-1, clutch=1.0).gear_fault == GearFault.MISSED
+    assert drive.hold(0.1, gear=7, clutch=1.0).gear_fault == GearFault.MISSED, "six gears"
+    assert drive.hold(0.1, gear=0, clutch=1.0).gear_fault == 0.0
+    drive = rolling(80.0 / KMH_PER_MPS)
+    assert drive.hold(0.1, gear=1, clutch=1.0).gear_fault == GearFault.MONEY_SHIFT
+    assert drive.hold(0.1, gear=1).gear_fault == GearFault.MONEY_SHIFT | GearFault.GRIND
+    assert drive.seen.gear == 0.0
+    assert drive.hold(0.1, automatic=1, gear=1).gear_fault == 0.0

@@ -114,13 +114,6 @@ def test_without_combined_slip_the_friction_ellipse_shares() -> None:
         assert math.hypot(force.x_n / (most_x * load), force.y_n / (most_y * load)) < 1.06  # lifts come on top
 
 
-def test_a_file_gives_all_of_combined_slip_or_none() -> None:
-    without = "\n".join(line for line in TEXT.splitlines() if line[:3] not in {"RBX", "RCX", "RBY", "RCY"})
-    assert "RBX1" not in parse_tir(without, "mine.tir")
-    with pytest.raises(ProfileError, match=r"^mine.tir: RBX1: value .*RCY1 all given"):
-        parse_tir(TEXT.replace("RCY1", "!"), "mine.tir")
-
-
 def test_the_side_on_which_it_was_measured() -> None:
     assert ADAMS["TYRESIDE"] == 1.0
     assert parse_tir(TEXT.replace("'LEFT'", "'RIGHT'"), "mine.tir")["TYRESIDE"] == -1.0

@@ -1,11 +1,17 @@
-"""The torque at the rim: what the hands are told of the tyres, on the whole car."""
+"""The rack by itself, and the torque at the rim: what the hands are told of the tyres, on the whole car."""
 
 import math
 
 import pytest
 
 from simconsole.values.platform import Ground
-from tests.vehicle.driving import TICK_S, Drive, platform
+from simconsole.values.units import KMH_PER_MPS
+from simconsole.vehicle.car.car_platform import car_parameters
+from simconsole.vehicle.car.state import SteeringState
+from simconsole.vehicle.car.steering import aligning_moment, hand_wheel_torque, rack_rate, wheel_directions
+from tests.vehicle.altered import HATCHBACK
+from tests.vehicle.driving import LEVEL, TICK_S, Drive, platform
+from tests.vehicle.parts import CAR, STEP_S, settled
 from tests.vehicle.rolling import rolling
 
 
@@ -62,3 +68,62 @@ def test_it_stays_light_when_parking_and_in_town() -> None:
         most = max(most, abs(town.seen.hand_wheel_torque_nm))
     print(f"in town too at most {most:.1f} N m")
     assert most < 12.0
+
+
+def turned(command: float, ticks: int, start: float = 0.0, moment: float = 0.0, friction: float = 0.0) -> float:
+    """Return the rack's angle after `ticks` of 1 ms."""
+    rack = SteeringState(start, 0.0, 0.0)
+    settings = CAR.steering._replace(friction_rad=friction)
+    for _ in range(ticks):
+        angle = rack.road_wheel_rad + STEP_S * rack.road_wheel_radps
+        rack = SteeringState(angle, rack_rate(settings, rack._replace(road_wheel_rad=angle), command, moment), 0.0)
+    return rack.road_wheel_rad
+
+
+def test_steering_has_lag_rate_and_stop() -> None:
+    assert turned(0.01, 41) == pytest.approx(0.01 * (1.0 - 3.0 * math.exp(-2.0)), rel=0.06)
+    assert turned(0.01, 400) == pytest.approx(0.01, rel=1e-6)
+    assert turned(0.6, 300) - turned(0.6, 200) == pytest.approx(0.1 * math.radians(70.0))
+    assert turned(5.0, 3000) == pytest.approx(math.radians(36.0))
+
+
+def test_friction_holds_the_rack_and_tyres_bend_it() -> None:
+    assert turned(0.0009, 5000, friction=0.001) == 0.0
+    assert turned(0.0011, 5000, friction=0.001) > 0.0
+    assert turned(0.1, 1000, moment=-100.0) == pytest.approx(0.1 - math.radians(0.25), rel=1e-3)
+
+
+def test_inner_wheel_turns_further() -> None:
+    points = wheel_directions(CAR.steering._replace(ackermann=0.5 * 1.53 / 2.6), 0.4)
+    inner, outer = (math.atan2(points.left_sin, points.left_cos), math.atan2(points.right_sin, points.right_cos))
+    assert inner > 0.4 > outer
+    assert 1.0 / math.tan(outer) - 1.0 / math.tan(inner) == pytest.approx(1.53 / 2.6)
+
+
+def test_moment_of_the_tyres_centres_and_fades_before_the_force_does() -> None:
+    moments = []
+    for slip in range(0, 40):
+        t = settled(20.0, 20.0 * 0.005 * slip, 20.0 / CAR.front.radius_m, 0.3)
+        moments.append(aligning_moment(CAR.steering, t.force_y_n, t.demand, 20.0))
+    assert moments[0] == 0.0
+    assert max(moments) > 0.0
+    assert moments.index(max(moments)) * 0.005 < 0.7 * 2.0 / 12.0, "the force has its maximum at 2 / 12"
+    assert moments[-1] < 0.8 * max(moments)
+    assert aligning_moment(CAR.steering, 3000.0, 0.2, -20.0) > aligning_moment(CAR.steering, 3000.0, 0.2, 20.0)
+
+
+def test_torque_at_the_rim_is_odd_and_bends_towards_its_most() -> None:
+    for moment in (10.0, 100.0, 1000.0):
+        torque = hand_wheel_torque(CAR.steering, moment, 0.0, 20.0)
+        assert 0.0 < torque < 1.0 / CAR.steering.per_hand_torque_most_nm
+        assert torque == -hand_wheel_torque(CAR.steering, -moment, 0.0, 20.0)
+        assert torque > hand_wheel_torque(CAR.steering, moment, 0.0, 0.0)
+        assert torque > hand_wheel_torque(CAR.steering, moment, 0.1, 20.0), "friction and damping oppose the turning"
+
+
+def test_assistance_leaves_more_to_the_hands_at_speed() -> None:
+    p = car_parameters(HATCHBACK, LEVEL).steering
+    torques = [abs(hand_wheel_torque(p, -60.0, 0.0, speed / KMH_PER_MPS)) for speed in (0.0, 50.0, 100.0)]
+    assert torques[0] < torques[1] < torques[2] < HATCHBACK.steering.most_nm
+    share = HATCHBACK.steering.unassisted_share / HATCHBACK.steering.ratio
+    assert torques[0] == pytest.approx(share * 60.0 / (1.0 + share * 60.0 / HATCHBACK.steering.most_nm))

@@ -2,7 +2,6 @@
 
 import math
 import random
-import shutil
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +13,6 @@ from simconsole.profiles.files.loader import load, profiles_folder
 from simconsole.profiles.files.vehicle_files import load_vehicle
 from simconsole.profiles.tyre import NEEDED, ONE, ZERO, parse_tir
 from simconsole.profiles.vehicle import CarProfile
-from simconsole.values.errors import ProfileError
 from simconsole.values.host.jit import compiled, digest, plain
 from simconsole.values.kernels import put
 from simconsole.values.platform import Ground, Platform
@@ -145,28 +143,6 @@ def test_a_tyre_without_shifts_is_symmetric_and_falls_with_friction_and_load() -
     assert abs(pac2002(p, Slip(0.1, 0.1, 0.0, 0.0, 1.0)).x_n) < 2.0  # in the air
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "key"),
-    [
-        ("LENGTH = 'meter'", "LENGTH = 'mm'", "LENGTH"),
-        ("ANGLE = 'radians'", "", "ANGLE"),
-        ("'PAC2002'", "'FTIRE'", "PROPERTY_FILE_FORMAT"),
-        ("PKX1 = 17.5", "", "PKX1"),
-        ("PKX1 = 17.5", "PKX1 = nan", "PKX1"),
-        ("PKX1 = 17.5", "PKX1 = inf", "PKX1"),
-        ("PKX1 = 17.5", "PKX1 = much", "PKX1"),
-        ("PKX1 = 17.5", "PKX1 = 0", "PKX1"),
-        ("PKY1 = -16.0", "PKY1 = 16.0", "PKY1"),
-        ("PCX1 = 1.6", "PCX1 = 1.6\nPCX1 = 1.7", "PCX1"),
-        ("PCX1 = 1.6", "what is this", "line 18"),
-    ],
-)
-def test_a_bad_file_is_refused_by_name_and_key(old: str, new: str, key: str) -> None:
-    assert old in TEXT
-    with pytest.raises(ProfileError, match=rf"^mine.tir: {key}: value "):
-        parse_tir(TEXT.replace(old, new), "mine.tir")
-
-
 def test_a_file_comes_back_as_it_was_written() -> None:
     values = {key: value + 0.0 for key, value in every_coefficient(random.Random(3)).items()}
     head = TEXT.partition("[DIMENSION]")[0]
@@ -175,23 +151,6 @@ def test_a_file_comes_back_as_it_was_written() -> None:
     assert parse_tir(written, "mine.tir") == values
     assert set(values) == set(NEEDED + ZERO + ONE)
     assert Pac2002._fields == tuple(key.lower() for key in NEEDED + ZERO + ONE)
-
-
-def test_a_vehicle_names_its_tyre_and_keeps_it_when_recorded(tmp_path: Path) -> None:
-    path = tmp_path / "mine.yaml"
-    shutil.copy(FOLDER / "tyres" / "example.tir", tmp_path / "mine.tir")
-    shipped = (FOLDER / "hatchback.yaml").read_text()
-    path.write_text(shipped + "tyre: {tir: mine.tir}\n")
-    profile = load_vehicle(str(path))
-    assert isinstance(profile, CarProfile)
-    assert profile.tyre is not None
-    assert profile.tyre.coefficients == EXAMPLE
-    assert msgspec.convert(msgspec.to_builtins(profile), CarProfile) == profile
-    (tmp_path / "mine.tir").unlink()
-    for name in ("mine.tir", "../mine.tir"):
-        path.write_text(shipped + f"tyre: {{tir: {name}}}\n")
-        with pytest.raises(ProfileError, match=r"tyre profile: value '.*mine.tir'"):
-            load_vehicle(str(path))
 
 
 def test_the_default_car_keeps_its_own_step_and_equal_tyres_share_one() -> None:

@@ -1,0 +1,34 @@
+"""A watched drive, whose answer is known."""
+
+import numpy as np
+import pytest
+
+from simconsole.evaluation.manoeuvres.attempt import Attempt
+from simconsole.evaluation.manoeuvres.observed import observed
+from simconsole.profiles.manoeuvre import Observed
+from tests.evaluation.manoeuvres.driven import CAR, HZ, drive
+
+
+def test_a_watched_drive_is_described() -> None:
+    at_work = observed(Observed(from_s=1.0, until_s=3.0), CAR, 4.0)
+    assert next(at_work) == Attempt("script", None, 4.0)
+    time_s = (1 + np.arange(HZ * 4)) / HZ
+    running = np.where(time_s > 2.0, 0.0, 1.0)
+    seen = drive(
+        4.0,
+        vehicle__vx_mps=np.sin(time_s),
+        vehicle__x_m=-time_s,
+        vehicle__y_m=np.array(0.0),
+        vehicle__yaw_rad=np.array(0.0),
+        vehicle__ax_mps2=time_s,
+        vehicle__engine_radps=100.0 * time_s,
+        vehicle__engine_running=running,
+        vehicle__distance_m=time_s,
+    )
+    with pytest.raises(StopIteration) as end:
+        at_work.send(seen)
+    values = end.value.value.values
+    assert values["engine_stalled"] == 1.0
+    assert values["end_engine_running"] == 0.0
+    assert values["rolled_back_m"] == pytest.approx(2.0, abs=0.01)
+    assert values["lowest_engine_speed_rpm"] == pytest.approx(955.0, abs=5.0)
