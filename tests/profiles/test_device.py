@@ -14,6 +14,11 @@ from simconsole.values.errors import ProfileError
 COCKPITS = ["t500rs_th8rs", "t300rs_th8a", "g29", "gamepad", "keyboard"]
 
 
+@pytest.fixture(scope="module")
+def t500() -> CockpitProfile:
+    return load("devices", "t500rs_th8rs", CockpitProfile)
+
+
 def test_every_shipped_cockpit_is_tested() -> None:
     shipped = {path.stem for path in (profiles_folder() / "devices").glob("*.yaml")}
     assert set(COCKPITS) == shipped

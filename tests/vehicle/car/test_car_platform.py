@@ -1,11 +1,51 @@
-"""From a car's profile to its parameters."""
+"""From a car's profile to its parameters: what follows from several values of it."""
 
+import math
+
+import msgspec
 import pytest
 
+from simconsole.profiles.tyre import TirTyre
+from simconsole.values.errors import ProfileError
 from simconsole.values.platform import MOST_PATCHES, Ground, Patch
-from tests.vehicle.driving import platform
+from simconsole.values.units import STANDARD_GRAVITY_MPS2
+from simconsole.vehicle.car.car_platform import build_car, car_parameters
+from tests.vehicle.altered import HATCHBACK, altered
+from tests.vehicle.driving import LEVEL, ORIGIN, platform
+from tests.vehicle.parts import CAR
 
 
 def test_more_patches_than_there_is_room_for_are_refused() -> None:
     with pytest.raises(ValueError, match="at most 4"):
         platform(ground=Ground(1.0, 0.0, 0.0, patches=(Patch(0.0, 1.0, 0.0, 1.0, 0.5),) * (MOST_PATCHES + 1)))
+
+
+def test_the_sprung_and_the_unsprung_arms_together_are_the_height_of_the_whole_car() -> None:
+    """A side force of both axles rolls the car about the ground with the moment of its centre of gravity."""
+    front, rear = CAR.front, CAR.rear
+    share = rear.ahead_m / (rear.ahead_m - front.ahead_m)  # of a force at the centre of gravity
+    arm = share * (front.roll_arm_m + front.link_arm_m) + (1.0 - share) * (rear.roll_arm_m + rear.link_arm_m)
+    assert arm == pytest.approx(CAR.body.cg_height_m)
+
+
+def test_slopes_take_load_off_the_tyres_and_right_share_takes_grip_off_one_side() -> None:
+    sloped = car_parameters(HATCHBACK, Ground(0.8, 0.3, 0.4, right_share=0.25))
+    assert sloped.front.static_n == pytest.approx(CAR.front.static_n / math.sqrt(1.25))
+    assert sloped.front.friction_left == pytest.approx(0.8 * CAR.front.friction_left)
+    assert sloped.rear.friction_right == pytest.approx(0.25 * sloped.rear.friction_left)
+    ice = car_parameters(HATCHBACK, Ground(0.0, 0.0, 0.0, right_share=0.0))
+    assert ice.front.friction_right > 0.0, "a tyre divides by it"
+
+
+def test_full_brake_is_what_brakes_give_or_the_ground_holds() -> None:
+    weight_n = HATCHBACK.body.mass_kg * STANDARD_GRAVITY_MPS2
+    on_ice = car_parameters(HATCHBACK, Ground(0.1, 0.0, 0.0))
+    assert on_ice.body.full_brake_n == pytest.approx(0.1 * weight_n, rel=0.1)
+    weak = car_parameters(altered(front={"brake_nm": 100.0}, rear={"brake_nm": 50.0}), LEVEL)
+    assert weak.body.full_brake_n == pytest.approx(150.0 / CAR.front.radius_m)
+
+
+def test_a_tyre_file_that_was_not_read_is_refused_by_key() -> None:
+    profile = msgspec.structs.replace(HATCHBACK, tyre=TirTyre(tir="mine.tir"))
+    with pytest.raises(ProfileError, match=r"tyre\.coefficients: value missing: those of mine\.tir"):
+        build_car(profile, ORIGIN, LEVEL)

@@ -2,10 +2,15 @@
 
 import math
 
+import numpy as np
 import pytest
 
+from simconsole.values.layout import Part, read
 from simconsole.values.platform import Ground, Pose
+from simconsole.vehicle.car.outputs import RoadAndWind, pedals, road_and_wind
+from simconsole.vehicle.car.state import Car
 from tests.vehicle.driving import Drive, platform
+from tests.vehicle.parts import CAR
 
 
 def test_the_plane_tells_height_and_both_angles() -> None:
@@ -22,3 +27,42 @@ def test_the_plane_tells_height_and_both_angles() -> None:
         assert math.copysign(1.0, seen.roll_rad) == math.copysign(
             1.0, slope_y * math.cos(yaw) - slope_x * math.sin(yaw)
         )
+
+
+def lying(yaw_rad: float, vx_mps: float = 0.0) -> Car:
+    level = platform()
+    car = read(np.array(level.initial_state), Part(Car))
+    spin = vx_mps / CAR.front.radius_m
+    wheels = {name: getattr(car, name)._replace(radps=spin) for name in ("fl", "fr", "rl", "rr")}
+    return car._replace(body=car.body._replace(yaw_rad=yaw_rad, vx_mps=vx_mps), **wheels)
+
+
+def test_wind_along_the_car_is_that_of_its_heading() -> None:
+    body = CAR.body._replace(wind_x_mps=3.0, wind_y_mps=-4.0, slope_x=0.1)
+    assert road_and_wind(body, 0.0).wind_mps == pytest.approx(3.0)
+    assert road_and_wind(body, math.pi / 2.0).wind_mps == pytest.approx(-4.0)
+    assert road_and_wind(body, math.pi).slope_along == pytest.approx(-0.1)
+    assert road_and_wind(body, math.pi).up_rad == pytest.approx(-math.atan(0.1))
+    assert road_and_wind(body, math.pi / 2.0).left_up_rad == pytest.approx(-math.atan(0.1))
+
+
+@pytest.mark.parametrize("automatic", [0.0, 1.0])
+def test_forecasts_of_a_car_in_reverse_are_turned_round(automatic: float) -> None:
+    """Along the body, positive forwards: in a forward gear throttle drives and the brake slows; in reverse not."""
+    level = RoadAndWind(0.0, 0.0, 0.0, 0.0)
+    for gear, way in ((1.0, 1.0), (-1.0, -1.0)):
+        car = lying(0.0, way * 2.0)
+        car = car._replace(box=car.box._replace(gear=gear, wanted_gear=gear))
+        found = pedals(car, CAR, level, automatic)
+        assert way * found.full_brake_mps2 < way * found.coast_mps2 < 0.0 < way * found.full_throttle_mps2
+
+
+def test_forecasts_stay_on_what_the_ground_holds_and_feel_the_hill() -> None:
+    car = lying(0.0)
+    car = car._replace(box=car.box._replace(gear=1.0))
+    up, level = (pedals(car, CAR, RoadAndWind(slope, 0.0, 0.0, 0.0), 0.0) for slope in (0.2, 0.0))
+    assert level.coast_mps2 == 0.0, "a standing car on the level"
+    share = CAR.body.mass_kg / CAR.body.moving_kg
+    for steep, flat in zip(up, level, strict=True):
+        assert steep - flat == pytest.approx(-0.2 * CAR.body.gravity_plane_mps2 * share, rel=0.05)
+    assert -level.full_brake_mps2 <= 2.0 * (CAR.front.static_n + CAR.rear.static_n) / CAR.body.mass_kg
