@@ -12,11 +12,12 @@ from simconsole.tick.advance import Console, ConsoleState, advance, advance_vect
 from simconsole.values.host.jit import plain
 from simconsole.values.latency import Hop
 from simconsole.values.platform import Pose
-from simconsole.values.signals import NO_COMMAND, NO_SAMPLE, Event, EventInput, Mode, RemoteKind
+from simconsole.values.signals import NO_COMMAND, NO_SAMPLE, Button, Event, EventInput, Mode, RemoteKind
 from simconsole.values.state_vector import INPUT_WIDTH, LAYOUT, PLATFORM_AT, Snapshot, TickInputs, input_vector
 from tests.vehicle.driving import platform
 
 HZ = 250
+COCKPIT = load("devices", "t500rs_th8rs", CockpitProfile)
 
 
 def ball(tick_hz: int = HZ) -> Console:
@@ -28,7 +29,7 @@ def ball(tick_hz: int = HZ) -> Console:
         rolling.wheelbase_m,
         tick_hz,
     )
-    cockpit = cockpit_settings(load("devices", "t500rs_th8rs", CockpitProfile), tick_hz)
+    cockpit = cockpit_settings(COCKPIT, tick_hz)
     return build_console(cockpit, control, rolling, tick_hz, plain)
 
 
@@ -89,15 +90,15 @@ def test_a_restart_puts_the_vehicle_back_in_the_very_tick_and_leaves_the_devices
     console = ball()
     state, before = driven(console, 2 * HZ)
     assert before.vehicle.x_m > 1.1
-    held = NO_SAMPLE._replace(wheel_axis=0.25, wheel_age_ticks=0.0)
+    held = NO_SAMPLE._replace(wheel_buttons=float(1 << 6), wheel_age_ticks=0.0)  # button of the mark
     for _ in range(4 * HZ):
         state, now = advance(state, TickInputs(held, NO_COMMAND, EventInput(0.0)), console)
     assert now.arbitration.mode == Mode.STOPPED
-    asked = EventInput(float(Event.RESTART))
-    state, now = advance(state, TickInputs(held, NO_COMMAND, asked), console)
+    assert int(now.driver.pressed) & Button.MARK
+    state, now = advance(state, TickInputs(held, NO_COMMAND, EventInput(float(Event.RESTART))), console)
     assert now.arbitration.restarted == 1.0
     assert (now.arbitration.mode, now.vehicle.x_m, now.vehicle.y_m) == (Mode.PARKED, 1.0, 2.0)
-    assert now.sample.wheel_axis == 0.25
+    assert now.driver.edges == 0.0, "a button that stays held is not pressed again"
     assert advance(state, TickInputs(held, NO_COMMAND, EventInput(0.0)), console)[1].arbitration.restarted == 0.0
 
 

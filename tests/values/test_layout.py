@@ -5,7 +5,6 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from simconsole.values.host.jit import compiled
 from simconsole.values.kernels import Row, kernel
 from simconsole.values.layout import Part, lay_out, read, write
 
@@ -60,10 +59,3 @@ def test_what_is_written_is_read_and_nothing_else_is_touched() -> None:
     assert row.tolist() == [0.0, 1.0, 2.0, 20.0, 30.0, 40.0, 50.0, 60.0, 8.0, 9.0]
     assert read(row, SHIFTED) == line
     assert all(type(value) is float for value in read(row, SHIFTED).begin)
-
-
-def test_compiled_code_reads_and_writes_the_same() -> None:
-    row = np.arange(7.0)
-    slow, fast = np.full(9, -1.0), np.full(9, -1.0)
-    assert compiled(turned)(row, fast) == turned(row, slow) == 0.0
-    assert fast.tolist() == slow.tolist() == [-1.0, -1.0, -1.0, 4.0, 5.0, 2.0, 7.0, 1.0, -1.0]

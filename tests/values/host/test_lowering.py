@@ -1,0 +1,76 @@
+"""What numba is taught compiles to what the plain functions do."""
+
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from numba.core.errors import TypingError
+
+from simconsole.values.host.jit import compiled
+from simconsole.values.kernels import Row, kernel
+from simconsole.values.layout import Part, lay_out, read, write
+
+
+class Point(NamedTuple):
+    x_m: float
+    y_m: float
+
+
+class Line(NamedTuple):
+    """Of two records, and not of the same class."""
+
+    begin: Point
+    end: Point
+    width: "Width"
+
+
+class Width(NamedTuple):
+    width_m: float
+
+
+class Drawing(NamedTuple):
+    point: Part[Point]
+    line: Part[Line]
+
+
+DRAWING = lay_out(Drawing)
+
+SHIFTED = Part(Line, 3)
+
+
+@kernel
+def turned(row: Row, other: Row) -> float:
+    """Copy the line backwards into another row; return the x of the point."""
+    line = read(row, DRAWING.line)
+    write(other, SHIFTED, Line(line.end, Point(line.begin.x_m, 7.0), Width(1)))
+    return read(row, DRAWING.point).x_m
+
+
+def test_compiled_code_reads_and_writes_the_same() -> None:
+    row = np.arange(7.0)
+    slow, fast = np.full(9, -1.0), np.full(9, -1.0)
+    assert compiled(turned)(row, fast) == turned(row, slow) == 0.0
+    assert fast.tolist() == slow.tolist() == [-1.0, -1.0, -1.0, 4.0, 5.0, 2.0, 7.0, 1.0, -1.0]
+
+
+@kernel
+def half_written(row: Row) -> float:
+    """Write a record whose floats are whole numbers and truths."""
+    write(row, SHIFTED, Line(Point(1, 2), Point(True, False), Width(row[0])))
+    return row[3]
+
+
+def test_whole_numbers_and_truths_are_stored_as_floats() -> None:
+    slow, fast = np.full(9, 5.5), np.full(9, 5.5)
+    assert compiled(half_written)(fast) == half_written(slow) == 1.0
+    assert fast.tolist() == slow.tolist() == [5.5, 5.5, 5.5, 1.0, 2.0, 1.0, 0.0, 5.5, 5.5]
+
+
+@kernel
+def misplaced(row: Row) -> None:
+    write(row, SHIFTED, Point(1.0, 2.0))  # type: ignore[arg-type]  # what the compiler must refuse
+
+
+def test_another_record_than_the_parts_is_refused_by_the_compiler() -> None:
+    with pytest.raises(TypingError, match=r"No implementation of function .*write"):
+        compiled(misplaced)(np.zeros(9))
