@@ -8,7 +8,6 @@ import pytest
 
 from simconsole.evaluation.metrics.drive_metrics import mode_changes, track
 from simconsole.evaluation.metrics.table import drive_of
-from simconsole.evaluation.report.colours import MODES
 from simconsole.evaluation.report.figure_traces import draw_traces
 from simconsole.values.labels import mode_label
 from simconsole.values.signals import Mode
@@ -50,7 +49,6 @@ def test_modes_fill_the_distance_without_gap_in_their_colours(known: Any) -> Non
         assert x + width == pytest.approx(following)
     assert bars[0][2] == bars[2][2] != bars[1][2]
     assert words(modes) == {mode_label(Mode.MANUAL), mode_label(Mode.AUTONOMOUS)}
-    assert set(MODES) == set(Mode), "no mode without a colour"
 
 
 def test_without_a_course_the_panel_says_why_it_is_empty(known: Any) -> None:
