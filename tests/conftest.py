@@ -14,11 +14,11 @@ from pathlib import Path
 import pytest
 
 from tests import long_run
-from tests.drives.fixtures import script, short
+from tests.drives.fixtures import demo, script, short
 from tests.faults import figures
 from tests.samples import SAMPLED, draw_seed, measured, module_sample, sample
 
-__all__ = ["measured", "module_sample", "sample", "script", "short"]
+__all__ = ["demo", "measured", "module_sample", "sample", "script", "short"]
 
 # A shell starts background jobs with SIGINT ignored, and every program a test starts would inherit that: a Ctrl-C sent
 # to it would be lost, however the tests themselves were started.

@@ -2,6 +2,7 @@
 
 import itertools
 import os
+import socket
 from collections.abc import Callable
 from typing import Any
 
@@ -10,6 +11,7 @@ import pytest
 
 from simconsole.canbus.bus.worker import load_codec
 from simconsole.canbus.codec import Codec
+from simconsole.canbus.node import CanNode
 from simconsole.profiles.can import CanProfile
 from simconsole.values.layout import Part
 from simconsole.values.signals import Mode, Reason, Validity
@@ -48,3 +50,16 @@ def snapshot() -> Callable[[int], Snapshot]:
     put(LAYOUT.vehicle, gear=3.0, engine_radps=300.0, engine_running=1.0, clutch=0.4)
     row[PLATFORM_AT:] = (48.0, 50.0)
     return lambda tick: Snapshot(tick, 250, row)
+
+
+@pytest.fixture
+def node(codec: Codec) -> CanNode:
+    return CanNode(codec, CanProfile(), 250, wheels=(PLATFORM_AT, PLATFORM_AT + 1, PLATFORM_AT, PLATFORM_AT + 1))
+
+
+@pytest.fixture
+def port() -> int:
+    """A UDP port that nobody uses now."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as found:
+        found.bind(("127.0.0.1", 0))
+        return int(found.getsockname()[1])

@@ -1,19 +1,12 @@
 """The console and an ECU in two processes that share nothing but CAN frames, over multicast on loopback."""
 
 import contextlib
-import json
-import os
 import signal
 import socket
 import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
-import pytest
-
-from simconsole.canbus.bus.bus_tools import monitor
 from simconsole.canbus.bus.multicast import LoopbackBus
 from simconsole.canbus.bus.port import CanPort, read_log
 from simconsole.canbus.codec import ECU, Codec
@@ -23,37 +16,10 @@ from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.session.resolution import load_session, override
 from simconsole.values.signals import Mode, RemoteKind
 from simconsole.values.state_vector import LAYOUT
-from tests.paths import ROOT
+from tests.canbus.programs import results, running
 from tests.patience import PATIENCE_S, wait_until
 
 DRIVE_S = 5.0
-
-
-@pytest.fixture
-def port() -> int:
-    """A UDP port that nobody uses now."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as found:
-        found.bind(("127.0.0.1", 0))
-        return int(found.getsockname()[1])
-
-
-@contextlib.contextmanager
-def running(*words: str) -> Iterator["subprocess.Popen[str]"]:
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    command = [sys.executable, "-m", "simconsole", *words, "--json"]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
-    try:
-        yield process
-    finally:
-        process.kill()
-        process.communicate()
-
-
-def results(process: "subprocess.Popen[str]") -> dict[str, Any]:
-    out, err = process.communicate(timeout=PATIENCE_S)
-    assert process.returncode == 0, err
-    found: dict[str, Any] = json.loads(out.splitlines()[-1])
-    return found
 
 
 @contextlib.contextmanager
@@ -110,24 +76,6 @@ def test_bus_that_is_not_there_refuses_the_drive(tmp_path: Path) -> None:
     first, *_, last = err.splitlines()
     assert first.startswith("simconsole worker: CAN socketcan can97: cannot be opened")
     assert last == "simconsole drive: the CAN bus is not open; the worker's own message stands above"
-
-
-def test_what_monitor_kept_is_replayed_and_heard_again(port: int, codec: Codec, tmp_path: Path) -> None:
-    profile = CanProfile(port=port, log=())
-    path = tmp_path / "heard.blf"
-    with running("can", "send", "--port", str(port), "--for", "1") as ecu:
-        heard = monitor(profile, codec, say=lambda line: None, logs=(path,), stop=lambda: ecu.poll() is not None)
-        assert 0 < results(ecu)["sent"] <= 50  # late by a period: that one is not made up for
-    states = heard["messages"]["ECU_COMMAND"]["states"]
-    assert sum(states.values()) == len(read_log(path)) > 0
-    listening = CanPort(profile, frozenset(), codec.ids(ECU))
-    with running("can", "replay", "--port", str(port), "--file", str(path), "--speed", "5") as process:
-        assert results(process)["sent"] == len(read_log(path))
-    again = []
-    while (frame := listening.receive(0.0)) is not None:
-        again.append(frame)
-    listening.close()
-    assert again == [frame for _, frame in read_log(path)]
 
 
 def test_frames_stay_on_this_machine(port: int) -> None:

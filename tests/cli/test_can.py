@@ -6,11 +6,7 @@ from pathlib import Path
 import pytest
 
 from simconsole.canbus.bus.port import open_logs, read_log
-from simconsole.canbus.messages import wheel_columns
 from simconsole.cli.main import main
-from simconsole.session.resolution import load_session, resolve
-from simconsole.tick.assembly import assemble
-from simconsole.values.host.jit import plain
 
 VIRTUAL = ("--interface", "virtual", "--channel", "commands", "--json")
 
@@ -66,10 +62,3 @@ def test_mistakes_are_one_line(capsys: pytest.CaptureFixture[str], words: tuple[
 def test_unknown_interface_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["can", "monitor", "--interface", "smoke"]) == 2
     assert "smoke" in capsys.readouterr().err
-
-
-def test_shipped_car_has_wheel_speeds_to_send_and_the_ball_has_none() -> None:
-    car, _ = assemble(resolve(load_session("can")), plain)
-    ball, _ = assemble(resolve(load_session("roll_a_ball")), plain)
-    assert wheel_columns(car.columns) is not None
-    assert wheel_columns(ball.columns) is None

@@ -1,10 +1,15 @@
-"""A short drive that many tests look at: made once in a test run."""
+"""A short drive and the demo, that many tests look at: made once in a test run."""
 
+import os
 from pathlib import Path
+from subprocess import CompletedProcess
+from typing import Any, NamedTuple
 
 import pytest
 
-from tests.drives.console import simconsole
+from simconsole.recording.bundles.bundle import open_bundle
+from simconsole.recording.bundles.log import LogTable
+from tests.drives.console import results, simconsole
 
 SCRIPT = """\
 points:
@@ -32,3 +37,25 @@ def short(tmp_path_factory: pytest.TempPathFactory, script: Path) -> Path:
     done = simconsole("drive", "--headless", "--driver", f"script:{script}", "--for", 3, "--out", bundle)
     assert done.returncode == 0, done.stderr
     return bundle
+
+
+class Demo(NamedTuple):
+    """The one demo of this test run."""
+
+    bundle: Path
+    done: "CompletedProcess[str]"
+    results: dict[str, Any]
+    table: LogTable
+    cpu_s: float  # of the console and all that it started
+
+
+@pytest.fixture(scope="session")
+def demo(tmp_path_factory: pytest.TempPathFactory) -> Demo:
+    """`simconsole demo`, once for all tests, as a person starts it."""
+    bundle = tmp_path_factory.mktemp("demo") / "bundle"
+    before = os.times()
+    done = simconsole("demo", "--out", bundle, "--json")
+    after = os.times()
+    cpu_s = sum(after[2:4]) - sum(before[2:4])
+    assert done.returncode == 0, done.stderr
+    return Demo(bundle, done, results(done), open_bundle(bundle).log.table(), cpu_s)

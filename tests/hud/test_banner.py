@@ -7,7 +7,7 @@ from simconsole.hud.layout import layout, places
 from simconsole.hud.view import HudView
 from simconsole.values.labels import mode_label
 from simconsole.values.signals import Mode
-from tests.hud.pictures import SCREEN, SCREENS, asked, by_role, colours, in_mode, said, shape_of
+from tests.hud.pictures import SCREEN, SCREENS, asked, by_role, colours, in_mode, said
 
 
 @pytest.mark.parametrize("mode", Mode)
@@ -25,14 +25,6 @@ def test_the_mode_is_always_shown_in_words_and_shape_at_one_place(mode: Mode) ->
         assert box.bottom <= place.bottom
     assert all(bounds(shape).right < words.x for shape in shapes)
     assert abs(words.x - by_role(layout(in_mode(Mode.MANUAL), SCREEN), "mode.label")[0].x) < 1e-9  # type: ignore[union-attr]
-
-
-def test_modes_differ_by_shape_and_not_only_by_colour() -> None:
-    shapes = {}
-    for mode in Mode:
-        items = by_role(layout(in_mode(mode), SCREEN), "mode.shape")
-        shapes[mode] = tuple(shape_of(item) for item in items)
-    assert len(set(shapes.values())) == len(Mode)
 
 
 def test_the_labels_fit_their_alert_rules() -> None:

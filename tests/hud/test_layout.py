@@ -4,7 +4,7 @@ from itertools import combinations
 
 import pytest
 
-from simconsole.hud.draw import DANGER, TEXT, WARNING_LINE, Box, Rect, bounds, luminance
+from simconsole.hud.draw import DANGER, WARNING_LINE, bounds, luminance
 from simconsole.hud.layout import check_screen, layout, places, sample_views
 from simconsole.hud.screen import Screen
 from simconsole.hud.view import HudView
@@ -48,11 +48,6 @@ def test_no_two_texts_touch(screen: Screen) -> None:
             a, b = bounds(one), bounds(other)
             apart = a.right <= b.x or b.right <= a.x or a.bottom <= b.y or b.bottom <= a.y
             assert apart, (one, other)
-
-
-def test_pixels_per_degree_are_those_of_the_reference_seat() -> None:
-    # 1400 px on 1.6 m at 2.2 m are 34 px per degree.
-    assert SCREEN.px_per_arcmin * 60.0 == pytest.approx(34.0, abs=0.5)
 
 
 def test_a_seat_too_far_away_fails_at_start_up() -> None:
@@ -119,12 +114,3 @@ def test_the_core_loads_no_graphics_library() -> None:
         "sys.exit(any(m in sys.modules for m in ('pygame', 'rerun', 'numba', 'matplotlib')))"
     )
     assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0
-
-
-def test_boxes_measure_themselves() -> None:
-    box = Box(10.0, 20.0, 30.0, 40.0)
-    assert (box.right, box.bottom, box.cx, box.cy) == (40.0, 60.0, 25.0, 40.0)
-    assert box.row(0.5, 1.0) == Box(10.0, 40.0, 30.0, 20.0)
-    assert box.column(0.0, 0.5) == Box(10.0, 20.0, 15.0, 40.0)
-    assert box.inset(5.0) == Box(15.0, 25.0, 20.0, 30.0)
-    assert bounds(Rect(box, TEXT, "x")) == box

@@ -6,7 +6,6 @@ from typing import Any
 import msgspec
 import pytest
 
-from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.profiles.device import CockpitProfile, ScriptProfile
 from simconsole.profiles.files.loader import load, parse, profiles_folder, to_text
 from simconsole.values.errors import ProfileError
@@ -110,13 +109,6 @@ def test_role_bound_twice_is_refused(t500: CockpitProfile) -> None:
     twice = msgspec.to_builtins(t500.roles[0])
     with pytest.raises(ProfileError, match="once each"):
         parse(changed(t500, "roles.1", twice), CockpitProfile, "cockpit.yaml")
-
-
-def test_limits_in_time_never_grow_when_they_become_ticks(t500: CockpitProfile) -> None:
-    assert cockpit_settings(t500, 250).stale_ticks == 25.0
-    assert cockpit_settings(t500, 125).stale_ticks == 12.0
-    assert cockpit_settings(t500, 1000).stale_ticks == 100.0
-    assert cockpit_settings(t500, 50).neutral_dwell_ticks == 5.0
 
 
 def test_script_whose_time_goes_back_is_refused(tmp_path: Path) -> None:

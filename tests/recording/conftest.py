@@ -8,9 +8,11 @@ from zlib import crc32
 import numpy as np
 import pytest
 
+from simconsole.recording.bundles.bundle import BundleWriter
 from simconsole.recording.bundles.log import LogReader
 from simconsole.recording.framing import MAGIC, START_OF_CHAIN, LogHeader, encode_header, seal
 
+TEXTS = {"session.yaml": "schema: 1\n", "vehicle.yaml": "mass_kg: 1500\n"}
 COLUMNS = ("sample.brake_axis", "sample.throttle_axis", "driver.brake", "vehicle.vx_mps")
 
 
@@ -106,3 +108,13 @@ def rewrite_session(rewrite_checksums: Callable[[Path], None]) -> Callable[..., 
         rewrite_checksums(folder)
 
     return rewrite
+
+
+@pytest.fixture
+def bundle(tmp_path: Path, header: LogHeader, rows: list[np.ndarray]) -> Path:
+    folder = tmp_path / "drive"
+    with BundleWriter(folder, header, TEXTS, {"simconsole": "0"}, {"started": "noon"}) as writer:
+        for tick, row in enumerate(rows, start=1):
+            writer.log.append(tick, row)
+        writer.finish({"late_p99_us": 12.5})
+    return folder

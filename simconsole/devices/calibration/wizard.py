@@ -182,6 +182,7 @@ class Wizard:
             at = self._button(f"gear {gear}", f"Lever into {name.upper()}{skip}.", optional)
             if others and at.device != others[0].device:
                 raise DeviceError(f"{name}: value on another device: all gears on one device")
+            self._pressed.append(at)
             return at
 
         try:
@@ -209,6 +210,7 @@ class Wizard:
                 on: Literal["wheel", "shifter"] = "wheel" if at.device == wheel_key else "shifter"
                 if at.button >= BUTTONS and on != "wheel":
                     raise DeviceError(f"{name}: value the hat of the shifter: one of its buttons, or the wheel's hat")
+                self._pressed.append(at)
                 if at.button < BUTTONS:
                     return ButtonBinding(on=on, button=at.button)
                 return ButtonBinding(on=on, hat=HATS[at.button - BUTTONS])
@@ -225,9 +227,7 @@ class Wizard:
 
     def _button(self, step: str, text: str, optional: bool) -> ButtonAt:
         self._question(step, text, optional)
-        at = pressed_button(self._rest, self._look(), self._pressed)
-        self._pressed.append(at)
-        return at
+        return pressed_button(self._rest, self._look(), self._pressed)
 
     def _question(self, step: str, text: str, optional: bool = False) -> str:
         typed = self._ask(step, text).strip().lower()

@@ -1,7 +1,6 @@
 """What server and connections ask of each other: each library's connections give it, and so does one in memory."""
 
 import asyncio
-import importlib.util
 import json
 from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
@@ -19,7 +18,6 @@ from simconsole.bridge.transport.server import BridgeServer
 from simconsole.bridge.transport.sockets import listen
 from simconsole.bridge.transport.transport_registry import load_transport
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.values.errors import ProfileError
 from tests.patience import PATIENCE_S, stamp_ns, until
 
 PROFILE = BridgeProfile(port=0)
@@ -256,10 +254,3 @@ def test_a_server_drives_over_it(pair: Pair, snapshot: Callable[..., Any], contr
             await until(lambda: server.clients == 0)
 
     asyncio.run(main())
-
-
-def test_library_that_is_not_there_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    assert load_transport(BridgeProfile()) is not None
-    with pytest.raises(ProfileError, match=r"outputs\.bridge\.transport: picows is not installed"):
-        load_transport(BridgeProfile(transport="picows"))

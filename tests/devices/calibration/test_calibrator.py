@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from simconsole.devices.calibration.calibrator import calibrate, curved, pressed_share
+from simconsole.devices.calibration.calibrator import calibrate, curved
 from simconsole.devices.calibration.cockpit_settings import NOBODY, CockpitSettings, cockpit_settings
-from simconsole.devices.calibration.inverse_calibration import Intent, pedal_raw, raw_sample, wheel_raw
-from simconsole.profiles.device import MIN_TRAVEL_RAW, ButtonBinding, CockpitProfile
+from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
+from simconsole.profiles.device import ButtonBinding, CockpitProfile
 from simconsole.profiles.files.loader import load
 from simconsole.values.host.jit import compiled
 from simconsole.values.signals import NEVER_TICKS, NO_SAMPLE, Button, DeviceSample
@@ -268,56 +268,6 @@ def test_lost_wheel_presses_nothing(calibration: CalibrationRun) -> None:
     pressed = Intent(pressed=int(Button.RESET))
     calibration.do(pressed)
     assert calibration.do(pressed, wheel_age_ticks=NEVER_TICKS).pressed == 0.0
-
-
-@given(st.lists(st.floats(0.0, 1.0), min_size=2, max_size=40))
-def test_pedal_is_monotone_bounded_and_has_an_inverse(shares: list[float]) -> None:
-    shares.sort()
-    calibration = CalibrationRun(SETTINGS)
-    calibration.do(ticks=2)
-    pressed = [calibration.do(Intent(brake=share)).brake for share in shares]
-    assert pressed == sorted(pressed)
-    assert all(0.0 <= brake <= 1.0 for brake in pressed)
-    assert pressed == pytest.approx(shares, abs=1e-12)
-
-
-RAW = st.floats(-1.0, 1.0)
-CURVES = st.floats(0.2, 5.0)
-ENDS = st.tuples(RAW, RAW).filter(lambda ends: abs(ends[1] - ends[0]) >= MIN_TRAVEL_RAW)
-
-
-@given(ENDS, st.floats(0.0, 0.3), CURVES, st.lists(RAW, min_size=2, max_size=30), st.floats(0.0, 1.0))
-def test_any_pedal_is_monotone_bounded_and_invertible(
-    ends: tuple[float, float], dead: float, curve: float, raws: list[float], share: float
-) -> None:
-    rest, full = ends
-    raws.sort(reverse=full < rest)
-    pressed = [pressed_share(raw, rest, full, dead, curve) for raw in raws]
-    assert pressed == sorted(pressed)
-    assert all(0.0 <= value <= 1.0 for value in pressed)
-    raw = pedal_raw(share, rest, full, dead, curve)
-    assert -1.0 - 1e-12 <= raw <= 1.0 + 1e-12
-    assert pressed_share(raw, rest, full, dead, curve) == pytest.approx(share, abs=1e-9)
-    assert pressed_share(rest, rest, full, dead, curve) == 0.0
-    assert pressed_share(full, rest, full, dead, curve) == pytest.approx(1.0, abs=1e-9)
-
-
-@given(
-    st.floats(-0.5, 0.5), st.floats(0.0, 0.1), CURVES, st.sampled_from([-1.0, 1.0]), RAW, RAW, st.floats(-0.35, 0.35)
-)
-def test_any_wheel_is_monotone_bounded_and_invertible(
-    centre: float, dead: float, curve: float, side: float, one: float, other: float, share: float
-) -> None:
-    reach = side * math.radians(540.0)
-    wheel = SETTINGS._replace(wheel_centre_raw=centre, wheel_dead_raw=dead, wheel_curve=curve, wheel_rad_per_raw=reach)
-    low, high = sorted((one, other))
-    angles = [CalibrationRun(wheel).do(wheel_axis=raw).hand_wheel_rad * side for raw in (low, centre, high)]
-    assert angles[0] <= angles[2]
-    assert angles[1] == 0.0
-    assert max(map(abs, angles)) <= abs(reach) * (1.0 + abs(centre)) + 1e-9
-    raw = wheel_raw(share * reach, wheel)
-    if abs(raw) < 1.0:
-        assert CalibrationRun(wheel).do(wheel_axis=raw).hand_wheel_rad == pytest.approx(share * reach, abs=1e-9)
 
 
 def test_straight_curve_changes_no_bit() -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from simconsole.devices.force_feedback.force_settings import NO_FORCE, ForceSettings, force_settings
 from simconsole.devices.force_feedback.guidance import GuidanceReference
-from simconsole.devices.force_feedback.rim import Rim, turn
+from simconsole.devices.force_feedback.rim import Rim
 from simconsole.devices.force_feedback.torque import (
     CENTRING_LEAD_RAD,
     CENTRING_RADPS,
@@ -216,17 +216,6 @@ def test_no_drive_leaves_the_limits_and_both_executions_agree(seed: int, force: 
         assert all(map(math.isfinite, (*torque, *slow.memory)))
         assert abs(torque.torque_nm) <= force.max_torque_nm
         assert torque.torque_nm == 0.0 or abs(torque.torque_nm - before) <= force.slew_nm * (1.0 + 1e-9)
-
-
-def test_rim_sticks_until_more_than_friction_pulls() -> None:
-    rim = Rim(1.0, 0.0)
-    assert turn(rim, 0.19, 0.05, 0.0, 0.2, 0.001) == rim
-    assert turn(rim, 0.21, 0.05, 0.0, 0.2, 0.001).radps > 0.0
-    coasting = Rim(0.0, 2.0)
-    for _ in range(1000):
-        coasting = turn(coasting, 0.0, 0.05, 0.0, 0.2, 0.001)
-    assert coasting.radps == 0.0
-    assert coasting.rad == pytest.approx(0.5 * 0.05 * 4.0 / 0.2, rel=0.01), "the energy went into friction"
 
 
 @pytest.mark.parametrize("mode", [Mode.PARKED, Mode.MANUAL, Mode.STOPPED])

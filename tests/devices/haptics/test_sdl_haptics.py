@@ -9,11 +9,7 @@ from typing import Any
 import pytest
 
 from simconsole.devices.calibration.cockpit_settings import cockpit_settings
-from simconsole.devices.force_feedback.motor import Capability, NoHaptics
-from simconsole.devices.haptics import back_ends
-from simconsole.devices.haptics.evdev_haptics import open_evdev
 from simconsole.devices.haptics.sdl_haptics import _Condition, _Constant, _Effect, open_haptics
-from simconsole.devices.sources import event_nodes
 from simconsole.devices.sources.sdl_source import SdlSource
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.profiles.device import CockpitProfile
@@ -109,43 +105,6 @@ def test_recorded_motion_of_a_t500_arrives_as_a_person(tmp_path: Path, t500: Coc
     assert {driver.brake for driver in drivers} == {0.0}
     assert [driver.edges for driver in drivers].count(float(Button.SHIFT_DOWN)) == 1
     assert (last.hand_wheel_rad, last.throttle) == (pytest.approx(0.0, abs=0.01), 0.0)
-
-
-def test_no_event_device_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(event_nodes, "NODES", tmp_path)
-    assert "an event device 044f:b65e that may be written" in open_evdev((0x044F, 0xB65E), FORCE).capability.name
-    (tmp_path / "event3").write_bytes(b"")  # neither the identity nor a device
-    port = open_evdev((0x044F, 0xB65E), FORCE)
-    assert not port.capability.constant
-    port.write(1.0)
-    port.close()
-
-
-class Able(NoHaptics):
-    """A port that says that it has force."""
-
-    @property
-    def capability(self) -> Capability:
-        return Capability(self._reason, constant=True)
-
-
-@pytest.mark.parametrize(
-    ("wanted", "sdl_able", "evdev_able", "expected"),
-    [
-        ("auto", True, True, "sdl"),
-        ("auto", False, True, "evdev"),
-        ("auto", False, False, "sdl"),
-        ("sdl", False, True, "sdl"),
-        ("evdev", True, False, "evdev"),
-    ],
-)
-def test_sdl_is_first_and_evdev_second(
-    wanted: Any, sdl_able: bool, evdev_able: bool, expected: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(back_ends, "open_haptics", lambda *_: (Able if sdl_able else NoHaptics)("sdl"))
-    monkeypatch.setattr(back_ends, "open_evdev", lambda *_: (Able if evdev_able else NoHaptics)("evdev"))
-    force = ForceFeedback(max_torque_nm=4.0, back_end=wanted)
-    assert back_ends.open_motor(0, (1, 2), force).capability.name == expected
 
 
 def test_structures_have_the_sizes_of_sdls() -> None:

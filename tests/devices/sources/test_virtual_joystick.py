@@ -44,24 +44,3 @@ def test_unplugged_device_can_be_moved_no_more(plug: Plug) -> None:
 def test_part_that_is_not_there_is_refused(move: Callable[[VirtualDevice], None], plug: Plug) -> None:
     with pytest.raises(DeviceError, match="Pad"):
         move(plug(PAD))
-
-
-def test_sdl_stops_with_its_last_user(sdl: None) -> None:
-    pygame = sdl_runtime.acquire()
-    pad = VirtualDevice(PAD)
-    sdl_runtime.release()
-    assert pygame.joystick.get_init()
-    pad.close()
-    assert not pygame.joystick.get_init()
-    sdl_runtime.release()
-    assert not pygame.display.get_init()
-
-
-def test_display_of_someone_else_is_left_alone(sdl: None) -> None:
-    pygame = sdl_runtime.acquire()
-    sdl_runtime.release()
-    pygame.display.init()
-    sdl_runtime.acquire()
-    sdl_runtime.release()
-    assert pygame.display.get_init()
-    pygame.display.quit()

@@ -1,18 +1,15 @@
 """Traces: equal bits back, and every line that cannot be used refused with its number."""
 
 import random
-import tracemalloc
 from pathlib import Path
 
 import pytest
 
-from simconsole.devices.sources.trace_files import TraceSource, TraceWriter
-from simconsole.devices.synthetic.trace_format import COLUMNS, TraceHeader, row_text
-from simconsole.values.errors import DeviceError, ProfileError
+from simconsole.devices.sources.trace_files import TraceSource
+from simconsole.devices.synthetic.trace_format import COLUMNS, row_text
+from simconsole.values.errors import ProfileError
 from simconsole.values.signals import NEVER_TICKS, DeviceSample
-
-HEADER = TraceHeader(250, "test")
-REST = DeviceSample(0.0, 1.0, 1.0, 1.0, *(0.0,) * 9)
+from tests.devices.traces import REST, written
 
 
 def samples(count: int) -> list[DeviceSample]:
@@ -32,13 +29,6 @@ def samples(count: int) -> list[DeviceSample]:
         )
         for _ in range(count)
     ]
-
-
-def written(path: Path, rows: list[DeviceSample], first: int = 1) -> Path:
-    with TraceWriter(path, HEADER) as writer:
-        for tick, sample in enumerate(rows, start=first):
-            writer.write(tick, sample)
-    return path
 
 
 @pytest.mark.parametrize("first", [1, 1000])
@@ -106,28 +96,3 @@ def test_line_that_cannot_be_used_is_named(text: str, message: str, tmp_path: Pa
     assert message in str(caught.value)
     assert str(caught.value).startswith(f"{path}: ")
     assert "\n" not in str(caught.value)
-
-
-@pytest.mark.fault("F06")
-def test_long_trace_is_read_in_constant_memory(tmp_path: Path) -> None:
-    """F06: of a file of several MB never more than a few lines are in memory."""
-    path = written(tmp_path / "trace.csv", [REST] * 40_000)
-    assert path.stat().st_size > 2_000_000
-    first = TraceSource(path, tick_hz=250)  # what is made once and kept is no part of it
-    first.poll(1)
-    first.close()
-    tracemalloc.start()
-    source = TraceSource(path, tick_hz=250)
-    for tick in range(1, 1000):
-        source.poll(tick)
-    peak = tracemalloc.get_traced_memory()[1]
-    tracemalloc.stop()
-    source.close()
-    assert peak < 200_000
-
-
-def test_missing_trace_and_unwritable_trace_are_one_line(tmp_path: Path) -> None:
-    with pytest.raises(ProfileError, match="a trace that can be read"):
-        TraceSource(tmp_path / "none.csv", tick_hz=250)
-    with pytest.raises(DeviceError, match="a file that can be written"):
-        TraceWriter(tmp_path / "no" / "folder.csv", HEADER)

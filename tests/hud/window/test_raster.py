@@ -15,8 +15,6 @@ from simconsole.hud.draw import (
     around,
     bounds,
     contrast,
-    fit_cap_px,
-    text_width_px,
 )
 from simconsole.hud.layout import layout, sample_views
 from simconsole.hud.screen import Screen
@@ -153,19 +151,6 @@ def test_words_are_where_and_as_large_as_the_draw_list_says(text: str, anchor: s
     if text.isupper():
         assert abs(rows[-1] + 1 - box.bottom) <= 1.5
         assert rows[-1] + 1 - rows[0] >= 21
-
-
-def test_the_width_table_is_that_of_the_font() -> None:
-    pygame.font.init()
-    font = pygame.font.Font(None, 1000)
-    for code in range(32, 127):
-        assert abs(text_width_px(chr(code), 501.0) - font.size(chr(code))[0]) < 1.0, chr(code)
-
-
-def test_fitting_keeps_words_inside() -> None:
-    assert fit_cap_px("MANUAL", 30.0, 1000.0) == 30.0
-    cap = fit_cap_px("MANUAL", 30.0, 50.0)
-    assert text_width_px("MANUAL", cap) == pytest.approx(50.0)
 
 
 def test_shapes_cover_their_own_place_and_nothing_else() -> None:

@@ -4,15 +4,14 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from simconsole.scene.entities import Dimensions
-from simconsole.scene.timeline import NEEDED, PLOTS
+from simconsole.scene.timeline import PLOTS
 from simconsole.scene.viewer.export import export_apart, main
-from simconsole.scene.viewer.job import Job, load_job, save_job
+from simconsole.scene.viewer.job import save_job
 from simconsole.values.errors import WorkerError
-from tests.scene.drives import COLUMNS, job
+from tests.scene.drives import job
 
 WORLD = {"/world/road/surface", "/world/road/paint", "/world/road/edges", "/world/road/centre", "/world/road/ground",
          "/world/path/theoretical", "/world/lights/posts", "/world/lights/lamps", "/map/road/edges",
@@ -81,30 +80,6 @@ def test_a_drive_without_a_course_is_shown_too(tmp_path: Path) -> None:
     rows = contents(path)
     assert not WORLD & set(rows)
     assert rows["/world/ego"] == 100
-
-
-def test_a_job_survives_its_file(tmp_path: Path) -> None:
-    wanted = job(40)
-    save_job(tmp_path / "job.npz", wanted)
-    found = load_job(tmp_path / "job.npz")
-    assert set(found.columns) == set(NEEDED)
-    for name in NEEDED:
-        assert (found.vectors[:, found.columns.index(name)] == wanted.vectors[:, COLUMNS.index(name)]).all()
-    assert found.ticks.tolist() == wanted.ticks.tolist()
-    assert (found.tick_hz, found.dimensions, found.profile) == (wanted.tick_hz, wanted.dimensions, wanted.profile)
-    assert found.drawing is not None
-    assert wanted.drawing is not None
-    assert found.drawing.lights == wanted.drawing.lights
-    assert found.drawing.islands == ()
-    for name in ("surfaces", "edges", "centre_lines", "zebras", "stop_lines"):
-        pairs = zip(getattr(found.drawing, name), getattr(wanted.drawing, name), strict=True)
-        assert all(np.array_equal(a, b) for a, b in pairs)
-    assert load_job_without_course(tmp_path).drawing is None
-
-
-def load_job_without_course(folder: Path) -> Job:
-    save_job(folder / "bare.npz", job(1, with_course=False))
-    return load_job(folder / "bare.npz")
 
 
 @pytest.mark.parametrize("content", [b"", b"not a job", b"PK\x03\x04 torn"])

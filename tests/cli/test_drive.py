@@ -1,8 +1,5 @@
 """`simconsole drive --headless`: every driver that needs no hardware, from the command line into a bundle."""
 
-import os
-import pty
-import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +8,7 @@ import pytest
 from simconsole.devices.synthetic.trace_format import COLUMNS
 from simconsole.recording.bundles.bundle import open_bundle, verify
 from simconsole.values.signals import NEVER_TICKS, Mode, Validity
-from tests.drives.console import environment, results, simconsole, words
-from tests.patience import PATIENCE_S
+from tests.drives.console import results, simconsole
 
 PERSON = """\
 schema: 1
@@ -24,14 +20,6 @@ devices:
   person: {title: stops again, sit_s: 0.2, cruise_kmh: 12, top_gear: 1, stop: {distance_m: 4}}
 mode: {pacing: free}
 """
-
-
-@pytest.fixture
-def plain(tmp_path: Path) -> Path:
-    """A session that makes a bundle and nothing beside it."""
-    path = tmp_path / "plain.yaml"
-    path.write_text("schema: 1\noutputs: {hud: null, scene: null, report: false}\nmode: {pacing: free}\n")
-    return path
 
 
 def test_a_script_drives_for_as_long_as_asked(short: Path) -> None:
@@ -129,24 +117,3 @@ def test_a_session_finds_its_script_beside_itself(tmp_path: Path, script: Path) 
     done = simconsole("drive", session, "--for", 1, "--out", tmp_path / "bundle", "--json")
     assert done.returncode == 0, done.stderr
     assert open_bundle(tmp_path / "bundle").log.table().column("driver.clutch").max() == pytest.approx(1.0)
-
-
-def test_on_a_terminal_progress_is_shown_and_wiped(plain: Path, tmp_path: Path, script: Path) -> None:
-    terminal, theirs = pty.openpty()
-    drive = words("drive", plain, "--driver", f"script:{script}", "--for", 20, "--out", tmp_path / "bundle")
-    with subprocess.Popen(drive, stdout=subprocess.DEVNULL, stderr=theirs, env=environment()) as process:
-        os.close(theirs)
-        shown = b""
-        while True:
-            try:
-                part = os.read(terminal, 4096)
-            except OSError:  # the other end is closed
-                break
-            if not part:
-                break
-            shown += part
-        assert process.wait(PATIENCE_S) == 0
-    os.close(terminal)
-    assert b"\r\x1b[Kdriving ..." in shown
-    assert b" km/h " in shown
-    assert shown.endswith(b"\r\x1b[K"), "nothing of it stays"

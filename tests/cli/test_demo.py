@@ -12,7 +12,7 @@ from simconsole.profiles.files.loader import load
 from simconsole.recording.bundles.bundle import open_bundle, verify
 from simconsole.values.signals import Button, Event, Mode, Reason, Validity
 from simconsole.values.units import RAD_PER_DEG
-from tests.drives.conftest import Demo
+from tests.drives.fixtures import Demo
 
 
 def test_it_writes_a_whole_bundle_with_report_and_scene(demo: Demo) -> None:

@@ -14,8 +14,8 @@ from simconsole.profiles.files.loader import profiles_folder
 from simconsole.recording.bundles.bundle import open_bundle, verify
 from simconsole.recording.bundles.replay_bundle import replay_bundle
 from simconsole.recording.replay import ReplayResult
-from tests.drives.conftest import Demo
 from tests.drives.console import complaint, results, simconsole
+from tests.drives.fixtures import Demo
 from tests.recording.conftest import change_header
 
 REPLAYS = 20
@@ -173,26 +173,3 @@ def test_a_bundle_cut_short_is_one_line(copy: Path, command: str) -> None:
     assert "truncated" in line
     assert str(size) in line
     assert sorted(path.name for path in copy.iterdir()) == before
-
-
-def test_compare_finds_two_drives_of_one_script_equal(short: Path, script: Path, tmp_path: Path) -> None:
-    again = tmp_path / "again"
-    done = simconsole("drive", "--headless", "--driver", f"script:{script}", "--for", 3, "--out", again)
-    assert done.returncode == 0, done.stderr
-    compared = simconsole("compare", short, again, "--json")
-    assert compared.returncode == 0, compared.stdout
-    assert results(compared) == {"equal": True, "ticks": 750, "difference": None, "problems": []}
-    assert (short / "drive.log").read_bytes() == (again / "drive.log").read_bytes()
-
-
-def test_compare_names_the_first_difference_with_a_window(
-    short: Path, copy: Path, rewrite_log: Callable[..., None], rewrite_checksums: Callable[[Path], None]
-) -> None:
-    rewrite_log(copy / "drive.log", FORGED_TICK, "vehicle.vx_mps", 7.25)
-    rewrite_checksums(copy)
-    done = simconsole("compare", short, copy, "--json")
-    assert done.returncode == 1
-    difference = results(done)["difference"]
-    assert difference["tick"] == FORGED_TICK
-    assert "vehicle.vx_mps" in str(difference)
-    assert "7.25" in done.stdout

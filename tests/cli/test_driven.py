@@ -1,0 +1,83 @@
+"""The end of `simconsole demo` and `simconsole drive`: what is printed and with which code, with exports by hand."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from simconsole.cli import driven
+from simconsole.cli.driven import finish
+from simconsole.session.lifecycle import DriveResult
+
+SUMMARY = {"lateness": "p99 0.1 ms", "real_time_factor": 12.34}
+PART = {"distance_m": 90.0, "mean_speed_kmh": 36.0, "lateral_rms_m": 0.0123, "lateral_max_m": 0.2}
+METRICS = {
+    "distance_m": 100.0,
+    "duration_s": 12.0,
+    "autonomous": PART,
+    "mode_changes": [{"t_s": 1.5, "mode": "MANUAL", "reason": "controls ready"}],
+}
+
+
+def result(**changes: Any) -> DriveResult:
+    drive = DriveResult(Path("out/it"), ticks=5, digest="ab", interrupted=False, summary=SUMMARY)
+    return drive._replace(**changes)
+
+
+@pytest.fixture
+def wanted(monkeypatch: pytest.MonkeyPatch) -> list[tuple[bool, bool]]:
+    """What was to be written, each time."""
+    calls: list[tuple[bool, bool]] = []
+
+    def write_exports(folder: Path, report: bool, scene: bool) -> dict[str, Any]:
+        calls.append((report, scene))
+        return METRICS
+
+    monkeypatch.setattr(driven, "write_exports", write_exports)
+    return calls
+
+
+def test_a_good_drive_is_told_in_a_table(wanted: list[tuple[bool, bool]]) -> None:
+    outcome = finish(result(), scene=False)
+    assert outcome.code == 0
+    assert wanted == [(True, False)]
+    lines = [line.split(maxsplit=1) for line in outcome.text.splitlines()]
+    assert ["distance", "100.0 m"] in lines
+    assert "RMS 1.23 cm, max 20.00 cm" in outcome.text
+    assert "mode at    1.50 s" in outcome.text
+    assert "out/it/report.html" in outcome.text
+    assert "scene.rrd" not in outcome.text
+    assert (outcome.results["digest"], outcome.results["distance_m"]) == ("ab", 100.0)
+
+
+def test_an_interrupted_drive_has_code_130_and_a_failed_recording_1(wanted: list[tuple[bool, bool]]) -> None:
+    outcome = finish(result(interrupted=True))
+    assert outcome.code == 130
+    assert "12.0 s simulated, interrupted" in outcome.text
+    assert finish(result(interrupted=True, recording_failure="no space")).code == 1
+
+
+def test_where_the_log_failed_nothing_else_is_tried(wanted: list[tuple[bool, bool]]) -> None:
+    outcome = finish(result(recording_failure="no space"))
+    assert wanted == [(False, False)]
+    assert outcome.results["exports_failure"] == "not tried, for the recording failed"
+    assert "RECORDING FAILED" in outcome.text
+    assert "no space" in outcome.text
+
+
+def test_a_drive_without_a_tick_says_so(wanted: list[tuple[bool, bool]]) -> None:
+    outcome = finish(result(ticks=0))
+    assert wanted == []
+    assert "out/it: no tick was recorded" in outcome.text
+
+
+def test_a_report_that_cannot_be_written_does_not_spoil_the_drive(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(folder: Path, report: bool, scene: bool) -> dict[str, Any]:
+        raise MemoryError("too\nlittle")
+
+    monkeypatch.setattr(driven, "write_exports", fail)
+    outcome = finish(result())
+    assert outcome.code == 0
+    assert "not written: " in outcome.text
+    assert "\n" not in outcome.results["exports_failure"]
+    assert "real-time factor" in outcome.text

@@ -1,0 +1,81 @@
+"""Progress, on a terminal only."""
+
+import io
+import os
+import pty
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from simconsole.cli.progress import TICKS_BETWEEN_LOOKS, Progress
+from simconsole.values.labels import mode_label
+from simconsole.values.signals import Mode
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT, Snapshot
+from tests.drives.console import environment, words
+from tests.patience import PATIENCE_S
+
+
+def test_on_a_terminal_progress_is_shown_and_wiped(plain: Path, tmp_path: Path, script: Path) -> None:
+    terminal, theirs = pty.openpty()
+    drive = words("drive", plain, "--driver", f"script:{script}", "--for", 20, "--out", tmp_path / "bundle")
+    with subprocess.Popen(drive, stdout=subprocess.DEVNULL, stderr=theirs, env=environment()) as process:
+        os.close(theirs)
+        shown = b""
+        while True:
+            try:
+                part = os.read(terminal, 4096)
+            except OSError:  # the other end is closed
+                break
+            if not part:
+                break
+            shown += part
+        assert process.wait(PATIENCE_S) == 0
+    os.close(terminal)
+    assert b"\r\x1b[Kdriving ..." in shown
+    assert b" km/h " in shown
+    assert shown.endswith(b"\r\x1b[K"), "nothing of it stays"
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def snapshot(tick: int, **arbitration: float) -> Snapshot:
+    row = np.zeros(PLATFORM_AT)
+    row[LAYOUT.vehicle.at("vx_mps")] = 10.0
+    row[LAYOUT.vehicle.at("distance_m")] = 120.0
+    for name, value in arbitration.items():
+        row[LAYOUT.arbitration.at(name)] = value
+    return Snapshot(tick, 250, row)
+
+
+def test_a_line_tells_way_speed_and_mode_and_never_ends_the_drive(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = Terminal()
+    monkeypatch.setattr("sys.stderr", terminal)
+    with Progress("driving", 3000.0) as progress:
+        assert not progress.watch(snapshot(TICKS_BETWEEN_LOOKS - 1, mode=float(Mode.MANUAL)))
+        assert terminal.getvalue() == "\r\x1b[Kdriving ..."
+        assert not progress.watch(snapshot(TICKS_BETWEEN_LOOKS * 125, mode=float(Mode.MANUAL)))
+    shown = terminal.getvalue().split("\r\x1b[K")[2:]
+    assert shown[0] == f"driving:    32.0 s    120.0 m of 3000 m   36.0 km/h  {mode_label(float(Mode.MANUAL))}"
+    assert shown[-1] == ""
+
+
+def test_on_a_pipe_there_is_nothing_and_a_closed_terminal_ends_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    pipe = io.StringIO()
+    monkeypatch.setattr("sys.stderr", pipe)
+    with Progress("driving") as progress:
+        progress.watch(snapshot(TICKS_BETWEEN_LOOKS))
+    assert pipe.getvalue() == ""
+
+    def closed(text: str) -> int:
+        raise OSError("terminal is gone")
+
+    terminal = Terminal()
+    monkeypatch.setattr(terminal, "write", closed)
+    monkeypatch.setattr("sys.stderr", terminal)
+    with Progress("driving") as progress:
+        assert not progress.watch(snapshot(TICKS_BETWEEN_LOOKS))

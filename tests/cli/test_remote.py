@@ -1,0 +1,37 @@
+"""`simconsole autopilot`: what a user can do wrong."""
+
+import os
+from argparse import Namespace
+
+import pytest
+
+from simconsole.cli.remote import autopilot, own_token
+from simconsole.session.lockstep import TOKEN_VARIABLE
+from simconsole.values.errors import ProfileError
+from tests.drives.console import complaint, simconsole
+
+
+def test_autopilot_against_nobody_is_one_line() -> None:
+    line = complaint(simconsole("autopilot", "--url", "ws://127.0.0.1:9", "--wait", 0.1))
+    assert "ws://127.0.0.1:9: cannot connect: " in line
+
+
+def test_autopilot_on_an_unknown_course_is_one_line() -> None:
+    line = complaint(simconsole("autopilot", "--url", "ws://127.0.0.1:9", "--course", "moon"))
+    assert "worlds profile: value 'moon'" in line
+
+
+@pytest.mark.parametrize("word", ["/odom", "/odom=", "odom=/o", "/odom=o", "=/o"])
+def test_rename_that_is_none_is_refused_before_anything_is_opened(word: str) -> None:
+    options = Namespace(attached=False, url="ws://127.0.0.1:9", course="urban", namespace="", rename=[word])
+    options.wait, options.certificate = 0.0, None
+    with pytest.raises(ProfileError, match=f"--rename: {word}: expected /TOPIC=/NAME"):
+        autopilot(options)
+
+
+def test_token_is_taken_out_of_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What this program starts shall not have it."""
+    monkeypatch.setenv(TOKEN_VARIABLE, "secret")
+    assert own_token() == "secret"
+    assert TOKEN_VARIABLE not in os.environ
+    assert own_token() is None

@@ -1,0 +1,53 @@
+"""The operators' screen: its views, and what the map shows whole. Made in a process of its own: rerun has threads."""
+
+import json
+import subprocess
+import sys
+from typing import Any
+
+import pytest
+
+from simconsole.scene.timeline import PLOTS
+from simconsole.scene.viewer.blueprint import MAP
+
+PROGRAM = """
+import json
+import numpy as np
+from simconsole.profiles.view import SceneProfile
+from simconsole.scene.viewer.blueprint import blueprint
+
+def views(part):
+    inner = getattr(part, "contents", None)
+    return [view for each in inner for view in views(each)] if isinstance(inner, (list, tuple)) else [part]
+
+def shown(path):
+    found = {}
+    for view in views(blueprint(SceneProfile(), 1.0, path).root_container):
+        bounds = view.properties.get("VisualBounds2D")
+        found[view.name] = [view.origin, bounds and bounds.range.as_arrow_array().to_pylist()[0]]
+    return found
+
+print(json.dumps([shown(None), shown(np.array([[0.0, 10.0, 5.0], [100.0, 60.0, 5.0]]))]))
+"""
+
+
+@pytest.fixture(scope="module")
+def shown() -> list[dict[str, Any]]:
+    """Origin and bounds of each view by its name, without a path and with one."""
+    done = subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, text=True, check=True)
+    found: list[dict[str, Any]] = json.loads(done.stdout)
+    return found
+
+
+def test_every_plot_has_a_view_beside_chase_map_lanes_and_log(shown: list[dict[str, Any]]) -> None:
+    for found in shown:
+        assert set(found) == {"chase", "map", "who drives", "log", *(plot.title for plot in PLOTS)}
+        assert [found[plot.title][0] for plot in PLOTS] == [f"/{plot.path}" for plot in PLOTS]
+        assert found["map"][0] == f"/{MAP}"
+
+
+def test_map_shows_the_whole_path_with_a_margin_and_its_y_down(shown: list[dict[str, Any]]) -> None:
+    without, with_path = (found["map"][1] for found in shown)
+    assert without is None
+    assert with_path["x_range"] == pytest.approx([-6.0, 106.0])
+    assert with_path["y_range"] == pytest.approx([-66.0, -4.0])
