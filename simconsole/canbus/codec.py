@@ -1,4 +1,4 @@
-"""Physical values to frames and back, as the DBC says. The DBC's text comes from outside; cantools reads it.
+"""Physical values to frames and back, as the DBC says. The caller gives the DBC's text; cantools parses it.
 
 The bits are packed here (2 us a message with its range check; cantools takes 6 unchecked and 17 checked); the tests
 hold them against cantools' own encoding.

@@ -1,6 +1,6 @@
 """An ECU under test: reads the console's messages, holds a speed, asks for autonomy. Without the bus.
 
-What `simconsole can send` and the tests put on the other end; a rig's own ECU takes its place.
+`simconsole can send` and the tests use it as the other end of the bus; on a test rig a real ECU takes its place.
 """
 
 from typing import Final, NamedTuple
@@ -13,7 +13,7 @@ _TIMEOUT_PERIODS: Final = 10
 _NS_PER_MS: Final = 1_000_000
 _SPEED_GAIN_PER_S: Final = 0.8
 _ASK_FRAMES: Final = 10
-"""Frames between two asks: the console wants commands to be steady for a while before it engages."""
+"""Frames between two requests: the console needs steady commands for a while before it engages."""
 
 
 class Heard(NamedTuple):
@@ -105,7 +105,7 @@ class Ecu:
         """Return the next ECU_COMMAND; call it once a period.
 
         Raises:
-            CanError: the wish is out of the message's range.
+            CanError: a value of the wish is out of the message's range.
         """
         wish = self._wish
         values = {
@@ -131,7 +131,7 @@ class Ecu:
         return min(max(wanted, -wish.accel_max_mps2), wish.accel_max_mps2)
 
     def _request(self) -> int:
-        """A request acts when it changes: it is shown in every second stretch of frames until it was granted."""
+        """Return the request: it acts on a change, so it is sent in every second block of frames until granted."""
         asking = self._frames // _ASK_FRAMES % 2 == 1
         if not self._wish.engage:
             return self._wish.request if asking or self._frames >= 2 * _ASK_FRAMES else 0

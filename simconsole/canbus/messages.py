@@ -144,4 +144,4 @@ def wheel_columns(columns: tuple[str, ...]) -> tuple[int, ...] | None:
 
 
 COMMAND_KIND: Final = float(RemoteKind.ACCELERATION)
-"""ECU_COMMAND is a command of this kind."""
+"""The kind of command that ECU_COMMAND is."""

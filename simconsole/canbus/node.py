@@ -82,7 +82,7 @@ class CanNode:
             name = self._messages[index].name
             try:
                 frames.append(self._codec.encode(name, BUILDERS[name](context), self._counters[index], clip=True))
-            except CanError:  # a value is not finite: there is nothing true to send
+            except CanError:  # a value is not finite: no valid frame can be sent
                 self._unsent += 1
                 continue
             self._counters[index] = (self._counters[index] + 1) % COUNTERS
@@ -90,18 +90,18 @@ class CanNode:
         return frames
 
     def next_tick(self, tick: int) -> int:
-        """Return the next tick after `tick` with something due; a second later where nothing is planned."""
+        """Return the next tick after `tick` at which a message is due; a second later where none is scheduled."""
         due = self._schedule.next_tick()
         return tick + self.tick_hz if due is None else max(tick + 1, due)
 
     def receive(self, frame: Frame, now_ns: int) -> int:
-        """Take a frame; return the events (mask) that it raised. Frames of other ids are nobody's business here."""
+        """Take a frame; return the events (mask) that it raised. Frames of other ids are ignored."""
         if frame.extended or self._codec.by_id.get(frame.can_id) != COMMAND:
             return 0
         if self._receiver.look(now_ns) is Check.NO_NEW_DATA:
             self._request = None
         state = self._receiver.take(frame.data, now_ns)
-        if state is Check.NO_NEW_DATA:  # the first one only tells the counter
+        if state is Check.NO_NEW_DATA:  # the first frame only gives the counter's value
             return 0
         if state is not Check.OK:
             self._refuse()
@@ -144,7 +144,10 @@ class CanNode:
         )
 
     def _asked(self, request: int) -> int:
-        """A request is an edge. One that stood already when reception (re)started is none, but an emergency stop is."""
+        """Return the event of a request that has changed. One that was set when reception (re)started is no change.
+
+        An emergency stop counts even then.
+        """
         before, self._request = self._request, request
         event = REQUESTS.get(request, Event(0))
         if event is Event.EMERGENCY_STOP:

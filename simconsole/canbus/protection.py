@@ -2,7 +2,7 @@
 
 The CRC is AUTOSAR's Crc_CalculateCRC8 (SAE J1850: polynomial 0x1D, start 0xFF, result inverted; "123456789" gives
 0x4B). It covers the message's id, as AUTOSAR's data id does, so that a frame under a wrong id fails. This finds faults;
-it is no signature: whoever can write to the bus can also count.
+it is no signature: whoever can write to the bus can also compute CRC and counter.
 
 ::
 

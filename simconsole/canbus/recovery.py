@@ -1,6 +1,6 @@
-"""What a bus says of itself, as text, and when one that went off is tried again.
+"""The text of a bus's error frames, and when a bus that went off is opened again.
 
-After the first time, then after twice as long each, up to the last.
+The first wait doubles with every failed try, up to the last.
 """
 
 from typing import Final
@@ -21,12 +21,12 @@ _ERRORS: Final = {
 
 
 def error_label(can_id: int) -> str:
-    """Return what an error frame's id says."""
+    """Return the error classes in an error frame's id as text."""
     return ", ".join(label for bit, label in _ERRORS.items() if can_id & bit) or "unspecified error"
 
 
 class Seldom:
-    """Lets something through at once, and then not again for a while. Times are s of whatever clock the caller has."""
+    """A rate limit: lets one through, then none for a while. Times are s of whatever clock the caller has."""
 
     def __init__(self, gap_s: float) -> None:
         self._gap_s = gap_s
@@ -61,7 +61,7 @@ class Recovery:
         self.downs = 0
 
     def went_down(self, reason: str, now_s: float) -> None:
-        """The bus failed, or a new try did. One that held for `last_s` starts from the first wait again."""
+        """Note that the bus, or a new try, failed. A bus that was up for `last_s` starts from the first wait again."""
         if self.up:
             self.downs += 1
             if now_s - self._up_since_s >= self._last_s:
@@ -76,6 +76,6 @@ class Recovery:
         return not self.up and now_s >= self._next_s
 
     def came_up(self, now_s: float) -> None:
-        """A new try succeeded."""
+        """Note that a new try succeeded."""
         self.up = True
         self._up_since_s = now_s

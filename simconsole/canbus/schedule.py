@@ -1,4 +1,4 @@
-"""When each message is due: absolute deadlines on ticks, so that no lateness adds up and no thread counts.
+"""When each message is due: absolute deadlines on ticks, so that lateness does not add up and no thread keeps time.
 
 Deadline k of a message is the first tick at or after `k * period`: at 250 Hz a 100 Hz message leaves at ticks 0, 3, 5,
 8, 10: exactly 100 a second. A reader that skipped ticks sends once, not for every deadline it missed.
@@ -26,7 +26,7 @@ class Schedule:
         self.missed = [0] * len(periods_ms)
 
     def due(self, tick: int) -> list[int]:
-        """Return the indices of the messages to send now; the same or an earlier tick again has none."""
+        """Return the indices of the messages to send now; a tick that is not newer than the last has none."""
         before = self._tick
         if before is not None and tick <= before:
             return []
@@ -54,18 +54,18 @@ class Phase:
     """When a tick can be expected, in s of the reader's clock: the core's deadlines as seen from outside.
 
     The earliest tick seen so far sets the phase; it drifts later by a little each time, so that it follows a core that
-    slipped. So a late look never makes the next one later, and no clock is shared.
+    slipped. So reading one tick late never delays the next read, and no clock is shared between the processes.
     """
 
     _DRIFT: Final = 0.01
-    """Of a tick, for each tick seen."""
+    """Share of a tick by which the phase drifts with each tick seen."""
 
     def __init__(self, tick_hz: int) -> None:
         self._tick_s = 1.0 / tick_hz
         self._base_s: float | None = None
 
     def saw(self, tick: int, now_s: float) -> None:
-        """Tick `tick` was new at `now_s`."""
+        """Note that tick `tick` was new at `now_s`."""
         base_s = now_s - tick * self._tick_s
         if self._base_s is not None:
             base_s = min(base_s, self._base_s + self._DRIFT * self._tick_s)

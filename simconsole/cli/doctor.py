@@ -1,4 +1,4 @@
-"""`simconsole doctor`: what this machine has and lacks, without opening anything."""
+"""`simconsole doctor`: what this machine has and lacks, without opening a device or port."""
 
 import os
 import platform

@@ -13,7 +13,7 @@ from simconsole.values.errors import one_line
 def finish(result: DriveResult, report: bool = True, scene: bool = True) -> Outcome:
     """Write what is wanted beside the bundle; the drive's own result does not depend on whether that could be written.
 
-    The code is 1 if the recording failed, and 130 if the drive was interrupted, its bundle whole all the same.
+    The code is 1 if the recording failed, and 130 if the drive was interrupted (its bundle is complete all the same).
     """
     code = 1 if result.recording_failure is not None else INTERRUPTED if result.interrupted else 0
     results: dict[str, Any] = {
@@ -24,7 +24,7 @@ def finish(result: DriveResult, report: bool = True, scene: bool = True) -> Outc
         "exports_failure": None,
     }
     failed = [] if result.recording_failure is None else [(RECORDING_FAILED, result.recording_failure)]
-    if failed and (report or scene):  # where a log cannot be written, nothing else can: rerun would wait for long
+    if failed and (report or scene):  # a disk that takes no log takes no export: rerun would wait for long
         report, scene, results["exports_failure"] = False, False, "not tried, for the recording failed"
     if not result.ticks:
         return Outcome(code, results, table([("bundle", f"{result.folder}: no tick was recorded"), *failed]))

@@ -26,8 +26,8 @@ from simconsole.processes.lifetimes import (
 from simconsole.values.errors import SimConsoleError, one_line
 
 _AT_ONCE = ("demo", "drive", "bridge", "report", "view")
-"""Commands that Ctrl-C ends at once where no drive takes it for itself: they leave nothing half made. To the others it
-is an exception, for some the way to their result."""
+"""Commands that Ctrl-C ends at once unless a drive handles it itself: they leave nothing half made. In the others it
+raises KeyboardInterrupt, which for some is the normal way to their result."""
 
 
 def parser() -> argparse.ArgumentParser:
@@ -52,9 +52,9 @@ def main(arguments: list[str] | None = None) -> int:
         act_promptly()
         handle(interrupted, signals)
         code = _run(options)
-        ignore_signals()  # all is done, and the code is decided while Python still takes itself down
+        ignore_signals()  # all is done: a signal must not change the exit code while Python shuts down
         if code == INTERRUPTED:
-            end_at_once(code)  # somebody waits for that
+            end_at_once(code)  # whoever interrupted waits for the end
         return code
     with handled(interrupted, signals):
         return _run(options)
@@ -69,7 +69,7 @@ def _run(options: argparse.Namespace) -> int:
         if options.json:
             _print_json({"error": str(error)})
         return error.exit_code
-    except (MemoryError, OSError, ImportError) as error:  # the machine's limits, files, libraries: no bug of ours
+    except (MemoryError, OSError, ImportError) as error:  # limits of the machine, files, libraries: no bug here
         _print(f"simconsole {options.command}: {one_line(error)}", sys.stderr)
         if options.json:
             _print_json({"error": one_line(error)})
@@ -93,7 +93,7 @@ def _print(text: str, file: TextIO | None = None) -> None:
     stream = sys.stdout if file is None else file
     try:
         print(text, file=stream, flush=True)
-    except OSError:  # nobody reads it: a closed terminal, a pipe without a reader; nor what Python flushes at its end
+    except OSError:  # closed terminal, pipe without a reader: drop this, and what Python flushes at its end
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 

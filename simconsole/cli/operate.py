@@ -15,7 +15,7 @@ def operate(options: Namespace) -> Outcome:
     """Ask the console at `options.url` for one act; 1 if it does not take it.
 
     Raises:
-        BridgeError: nobody listens there, or nobody answers.
+        BridgeError: no server listens there, or it does not answer.
     """
     from simconsole.bridge.client.bridge_client import BridgeClient
     from simconsole.bridge.console.operator_acts import OPERATE

@@ -1,4 +1,4 @@
-"""What a command hands back to the command line."""
+"""The result of a command."""
 
 from typing import Any, Final, NamedTuple
 
@@ -6,7 +6,7 @@ RECORDING_FAILED: Final = "RECORDING FAILED"
 
 
 class Outcome(NamedTuple):
-    """The end of a command: its exit code (see cli.py), its results for `--json`, its text."""
+    """The end of a command: its exit code (see cli/main.py), its results for `--json`, its text."""
 
     code: int
     results: dict[str, Any]

@@ -14,7 +14,7 @@ from simconsole.values.units import KMH_PER_MPS
 
 INTERVAL_S: Final = 0.2
 TICKS_BETWEEN_LOOKS: Final = 64
-"""The clock is read once in so many ticks."""
+"""Number of ticks after which the clock is read again."""
 
 
 class Progress:
@@ -38,7 +38,7 @@ class Progress:
         self._write("")
 
     def watch(self, snapshot: Snapshot) -> bool:
-        """See one tick of a drive; never ends it."""
+        """Show one tick of a drive, at most every INTERVAL_S; return False: it never ends the drive."""
         if self._shown and snapshot.tick % TICKS_BETWEEN_LOOKS == 0 and time.monotonic() >= self._next_s:
             self._next_s = time.monotonic() + INTERVAL_S
             vehicle, mode = snapshot.vehicle, Mode(int(snapshot.arbitration.mode))

@@ -9,11 +9,11 @@ from simconsole.session.lockstep import TOKEN_VARIABLE
 from simconsole.values.errors import ProfileError
 
 END_S = 0.5
-"""How long it may take to end once the console that started it says so."""
+"""Longest time that the program may take to end once the console that started it asks for the end."""
 
 
 def own_token() -> str | None:
-    """Return the token to show a server: from the environment, for everyone can read a program's arguments."""
+    """Return the token for a server, from the environment: every user can read a program's arguments."""
     return os.environ.pop(TOKEN_VARIABLE, None)
 
 
@@ -21,7 +21,7 @@ def autopilot(options: Namespace) -> Outcome:
     """Follow a course over rosbridge until the console closes the connection, or ends where it started this program.
 
     Raises:
-        ProfileError: a topic is renamed in no way.
+        ProfileError: a `--rename` is not of the form /TOPIC=/NAME.
         OtherDriveError: the console there is not the one that started this program.
     """
     stop = follow_parent(END_S).wants_end if options.attached else None

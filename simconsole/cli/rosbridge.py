@@ -40,7 +40,7 @@ def serve(options: Namespace) -> Outcome:
     if options.duration_s is not None:
         session = override(session, scenario={"duration_s": options.duration_s})
     if session.outputs.bridge is not None:
-        # Here and not only in the server's own process: a refusal shall be one line, at once.
+        # Checked here and not only in the server's own process, so that a refusal is one line, at once.
         load_access(session.outputs.bridge)
         load_tls(session.outputs.bridge)
         check_ros2(session.outputs.bridge)
@@ -53,7 +53,7 @@ def serve(options: Namespace) -> Outcome:
 
 
 def check(options: Namespace) -> Outcome:
-    """Try how the server at `options.url` behaves where rosbridge servers differ; 1 if it deviates anywhere."""
+    """Test the server at `options.url` where rosbridge servers differ; the code is 1 if it deviates anywhere."""
     from simconsole.bridge.tools import conformance
 
     url = options.url or f"ws://{options.host}:{options.port}"
@@ -67,14 +67,14 @@ def check(options: Namespace) -> Outcome:
 
 
 def bench(options: Namespace) -> Outcome:
-    """Measure what our server carries, beside a bare broker and the server at `options.url` if one is given."""
+    """Measure the throughput of our server, a bare broker and, if given, the server at `options.url`."""
     from simconsole.bridge.tools import bench, bench_load, bench_peers
 
     found = bench.bench(url=options.url, seconds=options.duration_s or 1.0)
     rates_hz = {case: figures.rate_hz for case, figures in found.items()}
     rows, lines = [], []
     for case, figures in sorted(found.items(), key=lambda pair: (pair[0].message, pair[0].subscribers)):
-        # Each beside the bare broker of its own library, a foreign server beside that of websockets.
+        # Each is compared with the bare broker of its own library, a foreign server with that of websockets.
         share = figures.rate_hz / rates_hz[case._replace(server="bare", library=case.library or "websockets")]
         url_hz = rates_hz.get(case._replace(server="url", library=""))
         times = {} if url_hz is None or case.server == "url" else {"times_url": figures.rate_hz / url_hz}

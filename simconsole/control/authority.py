@@ -23,7 +23,7 @@ class Shares(NamedTuple):
 
 
 class RemoteSide(NamedTuple):
-    """What the remote side asks for, and what it must remember."""
+    """What the remote side asks for, and its memory for the next tick."""
 
     road_wheel_rad: float
     throttle: float
@@ -35,7 +35,7 @@ class RemoteSide(NamedTuple):
 
 
 class Transmission(NamedTuple):
-    """Clutch, lever and whether the car works them itself."""
+    """Clutch, lever, and whether the car operates them itself."""
 
     clutch: float
     gear: float
@@ -248,9 +248,9 @@ def _safe_side(now: TickContext, entered: bool, hold_rad: float, offered_rad: fl
 
 @kernel
 def transmission_of(now: TickContext, mode: float, direction: float) -> Transmission:
-    """Return who works clutch and gears; `direction` is what the remote side asks for.
+    """Return who operates clutch and gears; `direction` is what the remote side asks for.
 
-    After autonomy the car goes on doing it until the person's clutch takes them back: the lever stands in any gear.
+    After autonomy the car goes on doing it until the person takes over by the clutch: the lever may be in any gear.
     """
     driver, command_before, settings = now.driver, now.command_before, now.settings
     if mode == Mode.PARKED:

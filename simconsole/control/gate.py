@@ -1,8 +1,8 @@
 """The last gate: what no path, manual, autonomous or emergency, may exceed on its way to the vehicle.
 
 Order: finite, range, lateral acceleration, then jerk and rate. Finiteness comes first because a NaN passes every
-comparison. The rate comes last and therefore wins: nothing ever jumps, not even back into a range that has just become
-narrower. Throttle is the exception downwards: with the brake pressed or in a stop it is cut at once.
+comparison. The rate limit comes last and therefore wins: no value ever jumps, not even back into a range that has just
+become narrower. Throttle is the exception downwards: with the brake pressed or in a stop it is cut at once.
 """
 
 from typing import Final, NamedTuple
@@ -25,7 +25,7 @@ from simconsole.values.signals import (
 )
 
 _SAFE_BRAKE: Final = 0.3
-"""Stands in for a brake request that is not finite: slows any car, locks none on a dry road."""
+"""Replaces a brake request that is not finite: slows any car, locks the wheels of none on a dry road."""
 _MOST_YAW_RAD: Final = 1000.0
 
 

@@ -1,14 +1,14 @@
 """Steering along a straight line: where a car stands beside it, and two laws that lead back. Pure.
 
-Pure pursuit aims at a point of the line ahead and needs only a look: the simulated person's. State feedback also takes
-the yaw rate, so that it damps a car that is braked hard: the test driver's. Both answer with a road-wheel angle. Who
-follows a course looks ahead along its bends instead: `path_tracker` and `manoeuvre_driver.lane_changer`.
+Pure pursuit aims at a point of the line ahead and needs only the pose: the simulated person uses it. State feedback
+also takes the yaw rate, so that it damps a car that is braked hard: the test driver uses it. Both return a road-wheel
+angle. Drivers of a course use a preview of its bends instead: `path_tracker` and `manoeuvre_driver.lane_changer`.
 """
 
 import math
 from typing import Final, NamedTuple
 
-# State feedback: by where the car will be a moment on, its heading, and its yaw rate against overdoing it.
+# State feedback of the offset LINE_AHEAD_M further on, the heading, and the yaw rate (damping).
 LINE_GAIN_RADPM: Final = 0.12
 LINE_AHEAD_M: Final = 1.3
 HEADING_GAIN: Final = 0.9

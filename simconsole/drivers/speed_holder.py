@@ -1,7 +1,8 @@
-"""Holding a speed with the throttle: proportional, with an integral that only learns near the wanted speed. Pure.
+"""Holding a speed with the throttle: proportional, with an integral that only integrates near the wanted speed. Pure.
 
-Two laws, each tuned as it is. The simulated person's foot acts first, learns slowly, and not while the pedal is at an
-end. The test driver's learns first and quickly, also at an end, and tells when the speed is held.
+Two laws, each with its own tuning. The simulated person's uses the integral of the tick before, integrates slowly, and
+not while the pedal is at an end. The test driver's integrates first and quickly, also at an end, and tells when the
+speed is held.
 """
 
 from typing import Final
@@ -11,7 +12,7 @@ from simconsole.values.state_vector import Snapshot
 PATIENT_GAIN_PER_MPS: Final = 0.3
 PATIENT_LEARNING_PER_M: Final = 0.05
 PATIENT_NEAR_MPS: Final = 2.0
-"""Only this near to the wanted speed does the foot learn what holds it."""
+"""The integral only integrates within this deviation from the wanted speed."""
 
 GAIN_PER_MPS: Final = 0.35
 LEARNING_PER_M: Final = 0.1
@@ -21,7 +22,7 @@ HELD_FOR_S: Final = 1.0
 
 
 def hold_speed(target_mps: float, speed_mps: float, integral: float, tick_s: float, most: float) -> tuple[float, float]:
-    """Return (throttle, integral) of a patient foot; the integral rests while the pedal is at an end."""
+    """Return (throttle, integral) of the simulated person; the integral stays while the pedal is at an end."""
     missing_mps = target_mps - speed_mps
     throttle = PATIENT_GAIN_PER_MPS * missing_mps + integral
     if 0.0 < throttle < most and abs(missing_mps) < PATIENT_NEAR_MPS:
@@ -30,7 +31,7 @@ def hold_speed(target_mps: float, speed_mps: float, integral: float, tick_s: flo
 
 
 class SpeedHolder:
-    """The test driver's foot."""
+    """The speed controller of the test driver."""
 
     def __init__(self, speed_mps: float) -> None:
         """Take the speed to hold."""

@@ -1,1 +1,1 @@
-"""What a drive was worth: checks, manoeuvres, metrics, report."""
+"""Evaluation of drives: checks, manoeuvres, metrics, report."""

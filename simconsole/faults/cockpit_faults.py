@@ -1,6 +1,6 @@
 """Faults between the devices and the console: each turns a true sample into a wrong one. Pure and seeded.
 
-They act in the order of the list, each on what the one before has left.
+They act in the order of the list, each on the result of the one before.
 """
 
 from collections import deque
@@ -74,7 +74,7 @@ class FaultyDevices:
 
         Args:
             source: The true cockpit.
-            faults: What happens to it, each with its switch; all of them `DeviceFault`s.
+            faults: The faults to apply, each with its switch; all of them `DeviceFault`s.
             cockpit: Its profile: which roles hang on one plug.
             settings: The same as numbers.
             tick_hz: The session's tick rate.
@@ -228,7 +228,7 @@ class _StuckAxis:
 
 
 class _Frozen:
-    """The values of the last tick before the fault, older by every tick of it."""
+    """Holds the values of the last tick before the fault; their ages grow with every tick."""
 
     def __init__(self, roles: Sequence[RoleName]) -> None:
         self._names = _fields(roles)
@@ -244,7 +244,7 @@ class _Frozen:
 
 
 class _Delayed:
-    """What the device said some ticks ago. Before it said anything that early, it is not there."""
+    """Returns what the device said some ticks ago; until the delay has passed once, the device is absent."""
 
     def __init__(self, roles: Sequence[RoleName], delay_ticks: int, stamped: bool) -> None:
         self._names = _fields(roles)

@@ -18,11 +18,11 @@ class ArmedFault(Protocol):
 
     @property
     def fault(self) -> Fault:
-        """What."""
+        """The fault's profile."""
 
     @property
     def switch(self) -> Switched:
-        """When."""
+        """Whether it is on, and for how long."""
 
 
 class FaultyCommands:
@@ -32,11 +32,11 @@ class FaultyCommands:
         self._source = source
         self._armed = armed
         self._tick_hz = tick_hz
-        self._held: tuple[RemoteCommand, int] | None = None  # the last command that was taken, and in which tick
+        self._held: tuple[RemoteCommand, int] | None = None  # the last accepted command, and its tick
         self._refused = 0.0
 
     def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
-        """Return what the arbiter gets, and the edges."""
+        """Return the command that the arbiter gets after all faults, and the edges since the last call."""
         command, events = self._source.take(tick)
         on = [entry for entry in self._armed if entry.switch.ticks > 0]
         if any(isinstance(entry.fault, _STOPPING) for entry in on):
@@ -59,7 +59,7 @@ class FaultyCommands:
         return command, EventInput(float(int(events.events) | raised))
 
     def _stopped(self, command: RemoteCommand, tick: int, refusing: bool) -> RemoteCommand:
-        """Return the last command that was taken, older by now; those that came since were refused, or never came."""
+        """Return the last accepted command with its age now; later ones count as refused, or as never received."""
         held, since = (command, tick) if self._held is None else self._held
         self._held = held, since
         if refusing:

@@ -9,15 +9,15 @@ from simconsole.values.signals import DeviceSample, Event, EventInput, RemoteCom
 from simconsole.values.state_vector import Snapshot
 
 STALL_MS = 100.0
-"""As pacing counts a stall."""
+"""Longer than this is a stall, as for pacing."""
 
 
 class InjectedError(RuntimeError):
-    """What a `raises` fault raises."""
+    """The exception that a `raises` fault raises."""
 
 
 class StallingPace:
-    """A pace that says the loop stood still, in the tick after the fault's first one."""
+    """A pace that reports a stall of the loop in the tick after the fault's first one."""
 
     def __init__(self, pace: Pace, stalls: Sequence[tuple[float, Switched]]) -> None:
         self._pace = pace
@@ -72,7 +72,7 @@ class RaisingOutput:
         self._switches = switches
 
     def publish(self, snapshot: Snapshot) -> None:
-        """Raise, or see nothing."""
+        """Raise, or do nothing."""
         raise_if(self._switches, "output")
 
 

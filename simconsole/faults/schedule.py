@@ -1,7 +1,7 @@
 """Faults put into a drive: the clock that says which are on, and the layers that each kind acts through. Pure.
 
-`SERVES` is the one place that knows what a kind does to whom: a layer takes the components of a drive and its own
-faults and returns them with something put around one. What comes out of a layer is what the recorder keeps, so a replay
+`SERVES` is the one place that maps each kind of fault to its layer: a layer takes the components of a drive and its
+own faults and returns the components, some of them wrapped. The recorder keeps what comes out of a layer, so a replay
 needs no faults; the state vector tells which were on (`events.faults`, a bit for each place in the list).
 """
 
@@ -78,7 +78,7 @@ class FaultClock:
 
 
 class Setting(NamedTuple):
-    """What a layer may know of the drive."""
+    """The facts about the drive that a layer may use."""
 
     resolved: ResolvedSession
     tick_hz: int
@@ -105,7 +105,7 @@ def controllers(components: Components, armed: Sequence[Armed], setting: Setting
 
 
 def process(before: Components, armed: Sequence[Armed], setting: Setting) -> Components:
-    """Let the loop stand still, and its parts raise."""
+    """Make the loop stall and its parts raise."""
     switches: dict[str, list[Switched]] = {}
     for fault, switch in armed:
         if isinstance(fault, kinds.Raises):
@@ -129,10 +129,10 @@ SERVES: Final[dict[type[Onset], Layer]] = {
 
 
 def with_faults(components: Components, resolved: ResolvedSession, tick_hz: int) -> Components:
-    """Return the components of a drive with the faults of its scenario put in; the same where there are none.
+    """Return the components of a drive wrapped in the faults of its scenario; unchanged where there are none.
 
     Raises:
-        ProfileError: a fault cannot happen to this cockpit.
+        ProfileError: a fault does not fit this cockpit.
     """
     faults = resolved.session.scenario.faults
     if not faults:

@@ -1,10 +1,10 @@
-"""What every layer asks of a fault's switch: whether it is on, and for how long."""
+"""The interface of a fault's switch to the layers: whether it is on, and for how long."""
 
 from typing import Protocol
 
 
 class Switched(Protocol):
-    """Something that is on for a number of ticks."""
+    """A switch that tells for how many ticks it has been on."""
 
     @property
     def ticks(self) -> int:

@@ -172,7 +172,7 @@ def slot(view: HudView, alert: Alert, box: Box, screen: Screen) -> list[DrawItem
 
 
 def _trip(view: HudView, box: Box) -> list[DrawItem]:
-    """Return time and way: what stands in the alert's place when all is quiet."""
+    """Return driving time and distance, shown in the alert's place while there is no alert."""
     seconds = int(view.t_s)
     cells = (("TIME", f"{seconds // 60:02d}:{seconds % 60:02d}"), ("DISTANCE", f"{0.001 * view.distance_m:.2f} km"))
     items: list[DrawItem] = [Rect(box, PANEL, "trip", 0.12 * box.h)]
@@ -200,7 +200,7 @@ def _trip(view: HudView, box: Box) -> list[DrawItem]:
 
 def _headline(view: HudView, alert: Alert, box: Box, ink: Colour, ground: Colour) -> list[DrawItem]:
     head, todo = ALERT_LABELS[alert]
-    if alert is Alert.RECORDING_FAILED:  # it stands to the end of the drive, and hides no answer meanwhile
+    if alert is Alert.RECORDING_FAILED:  # shown to the end of the drive; answers must stay visible
         todo = view.refusal_label or view.notice_label or todo
     side = 0.62 * box.h
     items = exclamation(Box(box.x + 0.3 * box.h, box.y + 0.12 * box.h, side, side), ink, ground, "alert.shape")

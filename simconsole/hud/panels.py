@@ -54,7 +54,7 @@ def _panel(box: Box, title: str) -> list[DrawItem]:
 
 
 def pedals(view: HudView, box: Box) -> list[DrawItem]:
-    """Return clutch, brake and throttle as on the floor: the bar is what the car gets, the mark what the foot does."""
+    """Return the pedals in their order on the floor: the bar is what the car gets, the mark what the foot does."""
     items = _panel(box, "PEDALS")
     rows = (
         ("CLUTCH", view.clutch, view.driver_clutch),
@@ -280,9 +280,10 @@ def _device(validity: float) -> tuple[str, str]:
 
 
 def _hand_brake(view: HudView) -> tuple[str, str]:
-    """A lever that was lost reads released, and so does one that is pulled before it was seen at rest: both are said.
+    """Return the text and the level of the hand brake's lamp.
 
-    Also while the console itself holds the brake on.
+    A lever that was lost reads as released, and so does one that is pulled before it was seen at rest. The lamp tells
+    both, also while the console itself holds the brake on.
     """
     if view.handbrake_validity in (Validity.STALE, Validity.LOST):
         return _device(view.handbrake_validity)

@@ -76,7 +76,7 @@ class HudView(NamedTuple):
     handbrake_validity: float = 0.0
     lever_label: str = ""  # what is wrong with the gear that the lever shows
     distance_m: float = 0.0
-    force: str = "none"  # of the wheel's motor: none, on, limit (more is wished for than it has), lost
+    force: str = "none"  # of the wheel's motor: none, on, limit (more torque is asked for than it has), lost
     can_up: bool | None = None  # None: this drive has no CAN bus
     link: str | None = None  # how the rosbridge link stands (simconsole.values.labels); None: this drive has no bridge
 

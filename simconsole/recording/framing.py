@@ -5,7 +5,7 @@
     magic (8)   length u32 | crc32 u32 | header JSON
     per tick    length u32 | crc32 u32 | tick i64 | state vector, float64 * columns | chained hash (8)
 
-Lengths, checksums and ticks are little-endian everywhere, so that a log of another machine can at least be named;
+Lengths, checksums and ticks are little-endian everywhere, so that a log of another machine is at least recognised;
 state vectors are the recording machine's own float64, whose byte order the header states. All tick frames of a log have
 one length, so reading goes on behind a damaged frame. The chained hash is blake2b over the previous hash, the tick and
 the state vector: two drives are equal exactly if their last hashes are.
@@ -40,7 +40,7 @@ class LogHeader(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
 
     tick_hz: int
     columns: tuple[str, ...]
-    input_columns: int  # the first so many columns are what came from outside
+    input_columns: int  # number of leading columns that hold inputs from outside
     console_version: str
     source_sha256: str  # of the sources that made the state vectors
     session_sha256: str  # of the resolved session profile
@@ -131,7 +131,7 @@ def decode_header(text: bytes, name: str) -> LogHeader:
 
 
 def _hash(content: bytes) -> bytes:
-    hasher = _HASHER.copy()  # half the price of a new one with a digest_size
+    hasher = _HASHER.copy()  # takes half the time of a new one with a digest_size
     hasher.update(content)
     return hasher.digest()
 

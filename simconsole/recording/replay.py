@@ -37,11 +37,11 @@ class ReplayResult(NamedTuple):
     difference: Difference | None
     digest: bytes  # chained hash of the replayed state vectors
     problems: tuple[str, ...] = ()  # why equal ticks are not a whole drive: a recording that failed, a damaged log
-    remarks: tuple[str, ...] = ()  # what is worth knowing, and no problem: a torn last tick, other sources
+    remarks: tuple[str, ...] = ()  # worth knowing, but no problem: a torn last tick, other sources
 
     @property
     def good(self) -> bool:
-        """Whether this is a success: all that was driven is there, and is equal."""
+        """Whether this is a success: the recording is complete, and every tick is equal."""
         return self.equal and not self.problems
 
 
@@ -61,7 +61,7 @@ def replay(
         header: of the recording.
         columns: of the state vectors that `advance` makes; must be the recorded ones.
         initial: the state vector before the first recorded tick.
-        advance: see `AdvanceRow`.
+        advance: see `AdvanceVector`.
         first_tick: the tick after `initial`, where the caller knows it.
         recorded_ticks: how many ticks were recorded, where the drive was finished and said so.
 
@@ -79,7 +79,7 @@ def replay(
     for record in records:
         if expected is not None and record.tick != expected:
             raise RecordingError(f"the recording cannot be replayed from tick {expected} on: it is missing")
-        inputs = record.vector[: header.input_columns].copy()  # a read-only view would be another type to numba
+        inputs = record.vector[: header.input_columns].copy()  # to numba a read-only view is another type
         vector = advance(record.tick, vector, inputs)
         digest = chain(digest, record.tick, vector.tobytes())
         if (field := first_unequal(record.vector, vector)) is not None:

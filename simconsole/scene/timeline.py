@@ -264,7 +264,7 @@ def _entries(table: dict[str, Array], times_ns: Ticks, seen: dict[str, float] | 
     alarm = notice_label(float(Notice.RECORDING_FAILED))
     found.extend((index, Entry(int(times_ns[index]), "ERROR", alarm)) for index in _changes(failed, before).tolist())
     for who, column in (("event", "events.events"), ("event on CAN", "events.ecu_events")):
-        events = table[column] - Event.RECORDING_FAILED * _recording_failed(table[column])  # it lasts: told once above
+        events = table[column] - Event.RECORDING_FAILED * _recording_failed(table[column])  # lasts: logged once above
         for index in np.flatnonzero(events).tolist():
             named = (str(event.name).lower().replace("_", " ") for event in Event if int(events[index]) & event)
             found.append((index, Entry(int(times_ns[index]), "INFO", f"{who}: {', '.join(named)}")))
@@ -272,7 +272,7 @@ def _entries(table: dict[str, Array], times_ns: Ticks, seen: dict[str, float] | 
 
 
 def _recording_failed(events: Array) -> Array:
-    """Return 1.0 where nothing more was kept."""
+    """Return 1.0 where recording has failed, else 0.0."""
     failed: Array = ((events.astype(np.int64) & int(Event.RECORDING_FAILED)) != 0).astype(np.float64)
     return failed
 

@@ -28,7 +28,7 @@ _RECORDING_FAILED = int(Event.RECORDING_FAILED)
 
 
 class DriveResult(NamedTuple):
-    """What is left of a drive: the bundle's folder and its summary."""
+    """The result of a drive: the bundle's folder and its summary."""
 
     folder: Path
     ticks: int
@@ -97,18 +97,18 @@ def drive(
 
 
 def warm_up(console: Console, state: ConsoleState) -> None:
-    """Run one tick into nothing: compiled code is made or loaded before any clock runs or client waits."""
+    """Run one tick and drop it: compiles or loads the kernels before any clock runs or client waits."""
     advance(state, TickInputs(NO_SAMPLE, NO_COMMAND, NO_EVENTS), console)
 
 
 class LogRecorder:
-    """The drive loop's recorder: every tick into the log, and an alarm into every tick after it failed."""
+    """The drive loop's recorder: logs every tick, and raises an alarm in every tick after the log has failed."""
 
     def __init__(self, log: LogWriter) -> None:
         self._log = log
 
     def write(self, snapshot: Snapshot) -> int:
-        """Append one tick; a failing disk, or whatever raises, is noted in the log's `failure` and told by an event."""
+        """Append one tick; an exception, as of a failing disk, goes into the log's `failure` and raises an event."""
         try:
             self._log.append(snapshot.tick, snapshot.vector)
         except Exception as error:

@@ -14,11 +14,11 @@ from simconsole.values.state_vector import Snapshot
 
 STAND_S = 0.02
 TOKEN_VARIABLE = "SIMCONSOLE_TOKEN"
-"""The environment's variable with the token that the commands show which connect to a server."""
+"""Environment variable with the token that commands show to the server they connect to."""
 
 
 class LockstepServer(Protocol):
-    """What this module needs of bridge.lockstep."""
+    """The interface that this module needs of the bridge in lockstep."""
 
     def exchange(self, snapshot: Snapshot, timeout_s: float, stop: Callable[[], bool]) -> bool:
         """Publish, then wait for the command that answers this very snapshot, until `stop` at most."""
@@ -30,7 +30,7 @@ class LockstepServer(Protocol):
         """Return the newest command and the events."""
 
     def stand(self, timeout_s: float) -> None:
-        """Serve for a moment without publishing anything."""
+        """Serve for a short time without publishing anything."""
 
     def counts(self) -> dict[str, int]:
         """Return how many messages went to and from all clients."""
@@ -72,7 +72,7 @@ class LockstepLink:
     def publish(self, snapshot: Snapshot) -> None:
         """Publish; at the end of a control period, wait for the answer."""
         if snapshot.tick % self._period_ticks:
-            return  # sockets are served at fixed ticks only, or the drive would depend on when bytes arrive
+            return  # sockets are served at fixed ticks only: the drive must not depend on when bytes arrive
         silent = self._silent_at is not None and self._silent_at == self._sequence
         if silent or not self._bridge.clients:
             self._bridge.publish(snapshot)

@@ -42,7 +42,7 @@ from simconsole.values.state_vector import Snapshot
 LOOKED_AT = 16
 """In a drive that is not paced, hops are timed in each 16th tick."""
 LOOK_S = 0.2
-"""How often a wait for somebody else asks whether it shall go on."""
+"""How often a wait for another process checks whether it was cancelled."""
 PROGRAM_END_S = 0.3
 """How long a program that the drive has started may take to close its connection; it has nothing else to finish."""
 
@@ -69,7 +69,7 @@ def open_headless(
     interrupt: Interrupt,
     stack: ExitStack,
 ) -> Opened:
-    """Open a drive that runs as fast as it goes, all of it in this process. A raised `interrupt` ends all waiting.
+    """Open a drive that runs as fast as it can, all of it in this process. A raised `interrupt` ends all waiting.
 
     Raises:
         ProfileError: the session needs lockstep for what it asks.
@@ -128,10 +128,10 @@ def open_realtime(
     A raised `interrupt` ends all waiting.
 
     Raises:
-        WorkerError: shared memory or the workers cannot be had.
+        WorkerError: shared memory or the workers cannot be created.
         BridgeError: the bridge worker does not listen.
         CanError: the CAN worker does not open its bus.
-        ProfileError: the session's commander has no way in.
+        ProfileError: the session's commander has no link to the console.
         DeviceError: a device is missing.
     """
     check_commander(resolved.session)
@@ -193,7 +193,7 @@ def _await_workers(
     supervisor: SupervisorHandle,
     check: Callable[[], None],
 ) -> str | None:
-    """Wait until every way in is open, starting the session's own autopilot; return where the bridge is."""
+    """Wait until bridge and CAN bus are open, starting the session's own autopilot; return the bridge's address."""
 
     def alive() -> bool:
         check()
@@ -210,7 +210,7 @@ def _await_workers(
 
 
 def _check_address(profile: BridgeProfile) -> None:
-    """Listen for a moment where the bridge will: a taken port is one line now, not a worker that dies and dies."""
+    """Listen briefly on the bridge's port: one in use is one error now, not a worker that fails at each restart."""
     from simconsole.bridge.ros2.node import check
     from simconsole.bridge.transport.message_files import load_registry
     from simconsole.bridge.transport.sockets import listen
@@ -221,12 +221,12 @@ def _check_address(profile: BridgeProfile) -> None:
 
 
 def _idle(snapshot: Snapshot) -> None:
-    """Leave the processor to others while simulated time stands and nobody else waits."""
+    """Sleep while simulated time stands, where no other standby function waits."""
     time.sleep(STAND_S)
 
 
 def new_nonce() -> str:
-    """Return what tells this drive from all others, for the programs that it starts."""
+    """Return a nonce that identifies this drive to the programs that it starts."""
     return secrets.token_hex(16)
 
 
@@ -247,7 +247,7 @@ def _open_lockstep(
     if course is not None:
         program = start_autopilot(bridge.url, course, session.outputs.bridge, drive, token)
         stack.callback(end, [program], PROGRAM_END_S)
-    stack.callback(bridge.close)  # its clients are told before the program's end is waited for
+    stack.callback(bridge.close)  # closes its clients' connections before the program's end is waited for
     if program is not None:
         stack.callback(tell_to_end, [program])
     _wait_for_controller(bridge, program, session.mode.wait_for_controller_s, interrupt.check)
@@ -255,7 +255,7 @@ def _open_lockstep(
 
 
 def _own_token(session: SessionProfile) -> str | None:
-    """Return what the session's own autopilot shows its bridge; None where it has to show nothing."""
+    """Return the token with which the session's own autopilot connects to its bridge; None where none is needed."""
     if session.outputs.bridge is None or session.features.autopilot is None:
         return None
     from simconsole.bridge.transport.credentials import control_token

@@ -76,7 +76,7 @@ class CommandPort:
         self._stood_at_tick = self._stood_from_ns = self._stood_until_ns = -1
 
     def stand(self, snapshot: Snapshot) -> None:
-        """Note that simulated time stands: what stands does not grow old."""
+        """Note that simulated time stands: commands do not age meanwhile."""
         now_ns = time.monotonic_ns()
         if snapshot.tick != self._stood_at_tick:
             self._stood_at_tick, self._stood_from_ns = snapshot.tick, now_ns
@@ -202,7 +202,7 @@ def wait_for_can(folder: Path, alive: Callable[[], bool], patience_s: float = ST
 
 
 def worker_latencies(folder: Path) -> dict[str, Any]:
-    """Return what the workers last said of their hops, at most a second old: `receive, hud`."""
+    """Return the workers' newest latency statistics, at most a second old, by hop and worker: `receive, hud`."""
     found = {}
     for name in ("bridge", "canbus", "hud"):
         try:
@@ -223,7 +223,7 @@ def acts_summary(folder: Path) -> dict[str, Any]:
 
 
 def bridge_summary(folder: Path) -> dict[str, Any]:
-    """Return what the bridge worker last counted, at most a second old; empty without one."""
+    """Return the bridge worker's newest counters, at most a second old; empty without one."""
     try:
         return {"bridge": msgspec.json.decode((folder / COUNTS).read_bytes())}
     except (OSError, msgspec.DecodeError):
@@ -231,7 +231,7 @@ def bridge_summary(folder: Path) -> dict[str, Any]:
 
 
 def can_summary(folder: Path) -> dict[str, Any]:
-    """Return what the CAN worker last said of itself, at most a second old; empty without one."""
+    """Return the CAN worker's newest status, at most a second old; empty without one."""
     try:
         return {"can": msgspec.json.decode((folder / CAN_STATUS).read_bytes())}
     except (OSError, msgspec.DecodeError):

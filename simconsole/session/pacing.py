@@ -21,7 +21,7 @@ STALL_NS: Final = 100_000_000
 """A longer stall is an event that the arbiter answers with a safe stop."""
 
 _PR_SET_TIMERSLACK: Final = 29  # linux/prctl.h
-_MCL_CURRENT: Final = 1  # sys/mman.h; not what comes later: a log of hours must not be locked
+_MCL_CURRENT: Final = 1  # sys/mman.h; not MCL_FUTURE: the log of a long drive must not be locked
 _PRIORITY: Final = 50
 
 
@@ -106,16 +106,16 @@ class UnpacedPacer:
         return 0
 
     def summary(self) -> dict[str, Any]:
-        """Return the fact that nothing was paced."""
+        """Return that the drive was not paced, for manifest and table."""
         return {"lateness": "not paced"}
 
 
 @contextmanager
 def realtime_hints() -> Iterator[list[str]]:
-    """Ask the system for punctual ticks where it may be asked, and take it back afterwards; yield what is missing.
+    """Ask the system for real-time behaviour where permitted, undo it afterwards; yield what was not granted.
 
-    First in, first out scheduling (reset on fork, so that no worker inherits it), locked memory, a timer slack of
-    1 ns and a garbage collector that leaves alone what was made before the drive. All of it is optional.
+    SCHED_FIFO scheduling (reset on fork, so that no worker inherits it), locked memory, a timer slack of
+    1 ns and a garbage collector that ignores the objects made before the drive. All of it is optional.
     """
     gc.collect()
     gc.freeze()

@@ -1,4 +1,4 @@
-"""What a process that draws the scene is given: the job of a live one and of an exported one."""
+"""The input of a scene process: the job of a live scene and of an exported one."""
 
 from typing import TYPE_CHECKING, Final
 
@@ -21,7 +21,7 @@ LIVE_SCENE: Final = "scene.live.rrd"
 
 
 def scene_job(resolved: ResolvedSession, vectors: Row, ticks: Ticks, columns: tuple[str, ...], tick_hz: int) -> "Job":
-    """Return what a scene process is given: state vectors (none for a live one), course and car."""
+    """Return the input of a scene process: state vectors (none for a live one), course and car."""
     from simconsole.scene.entities import Dimensions
     from simconsole.scene.viewer.job import Job
     from simconsole.world.drawing import draw

@@ -67,7 +67,7 @@ def _say(line: str) -> None:
 
 
 def _with_motor(devices: DeviceSource, cockpit: CockpitProfile, force: ForceFeedback, stack: ExitStack) -> Seating:
-    """Add the wheel's motor; without one everything else works, and the person is told."""
+    """Add the wheel's motor; without one everything else works, and a line says so."""
     from simconsole.devices.force_feedback.motor import MotorisedSource, NoHaptics, WheelMotor
     from simconsole.devices.haptics.back_ends import open_motor
     from simconsole.devices.haptics.watchdog_client import open_watchdog, with_watchdog

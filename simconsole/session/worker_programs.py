@@ -1,4 +1,4 @@
-"""The workers of a paced drive: each runs its room's own loop between the ring and the slots.
+"""The workers of a paced drive: each runs one part's loop between the ring and the slots.
 
 A worker's fields are its whole configuration; `simconsole.processes.worker` brings them into its process.
 """
@@ -87,7 +87,7 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
 
 
 class CanWorker(Worker, frozen=True, kw_only=True):
-    """Is on the CAN bus."""
+    """Runs the console's node on the CAN bus."""
 
     profile: CanProfile
     tick_hz: int
@@ -177,7 +177,7 @@ class SceneWorker(Worker, frozen=True, kw_only=True):
 
 
 def command_writer(path: Path) -> Callable[[RemoteCommand, int | None], None]:
-    """Return what puts a controller's command, and when it was received (ns), into its slot."""
+    """Return a function that writes a controller's command and its time of receipt (ns) into its slot."""
     slot = Ring.open(path, writable=True)
 
     def write_command(command: RemoteCommand, receipt_ns: int | None) -> None:
@@ -187,7 +187,7 @@ def command_writer(path: Path) -> Callable[[RemoteCommand, int | None], None]:
 
 
 class _Watch:
-    """Reads what a worker last wrote of itself; one that writes no more says nothing."""
+    """Reads a worker's newest status; one that was not renewed for SILENT_S counts as none."""
 
     LOOK_S: Final = 0.2
     SILENT_S: Final = 3.0
@@ -200,7 +200,7 @@ class _Watch:
         self._status: dict[str, Any] = {}
 
     def status(self) -> dict[str, Any]:
-        """Return what was seen at most LOOK_S ago, empty if nothing."""
+        """Return the status as read at most LOOK_S ago, empty where there is none."""
         now_s = self._clock_s()
         if now_s - self._looked_s >= self.LOOK_S:
             self._looked_s = now_s
@@ -233,7 +233,7 @@ class LinkWatch(_Watch):
 
 
 class Receipts:
-    """A worker's pages of the latency statistics, written out once a second."""
+    """A worker's part of the latency statistics, written to a file once a second."""
 
     SAVE_NS: Final = NS_PER_S
 
@@ -246,7 +246,7 @@ class Receipts:
         self._saved_ns = clock_ns()
 
     def received(self, record: Record) -> None:
-        """Note a record; one that was seen before is none."""
+        """Note a record; one that was noted before is not counted again."""
         self._fresh = record.number != self._number
         if self._fresh:
             self._number = record.number
@@ -269,7 +269,7 @@ class Receipts:
 
 
 class NewestOnce:
-    """Returns the newest snapshot, or None when it was returned before; `received` sees its record first."""
+    """Returns the newest snapshot, or None when it was returned before; `received` is called with its record first."""
 
     def __init__(self, ring: Ring, tick_hz: int, received: Callable[[Record], None] | None = None) -> None:
         self._ring = ring

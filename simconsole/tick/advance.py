@@ -112,7 +112,7 @@ def initial_state(console: Console) -> ConsoleState:
 def advance(
     state: ConsoleState, inputs: TickInputs, console: Console, mark: Mark = unheard
 ) -> tuple[ConsoleState, Snapshot]:
-    """Advance the console by one tick. `state` and its vector stay as they are; `mark` is told of each stage's end."""
+    """Advance the console by one tick. `state` is not changed; `mark` is called at the end of each stage."""
     row = advance_vector(state.vector, (*inputs.sample, *inputs.ros, *inputs.events, *inputs.ecu), console, mark)
     tick = state.tick + 1
     return ConsoleState(tick, row), Snapshot(tick, console.tick_hz, row)

@@ -1,8 +1,8 @@
-"""An exception in a part of a drive never ends it: the part falls silent, and the arbiter does the rest.
+"""An exception in a part of a drive never ends the drive: the part is isolated, and the arbiter reacts to its loss.
 
-Devices that raise are devices that are gone, and so they are where the person in the seat does; a controller whose
-source raises is a controller that was lost; an output or a recorder that raises sees nothing more; a pace that raises
-is a loop that stood still, and another one takes its place. Each is told once, on standard error.
+Devices that raise count as unplugged, also where the simulated person raises; a controller whose source raises counts
+as lost; an output or a recorder that raises is called no more; a pace that raises counts as a stall of the loop, and
+another one takes its place. Each failure is reported once, on standard error.
 """
 
 import contextlib
@@ -16,7 +16,7 @@ from simconsole.values.state_vector import Snapshot
 
 
 def isolated(components: Components, spare: Callable[[], Pace]) -> Components:
-    """Return the components of a drive with each kept from the others; `spare` makes a pace for one that has failed."""
+    """Return the components of a drive, each isolated; `spare` makes a pace for one that has failed."""
     seat = None if components.seat is None else IsolatedSeat(components.seat)
     return components._replace(
         devices=IsolatedDevices(components.devices, seat),
@@ -31,22 +31,22 @@ def isolated(components: Components, spare: Callable[[], Pace]) -> Components:
 
 
 class Told:
-    """Tells of the first failure of a part."""
+    """Reports the first failure of a part."""
 
     def __init__(self, part: str) -> None:
         self._part = part
         self.failed = False
 
     def tell(self, error: Exception) -> None:
-        """Say it, once."""
+        """Report the error on standard error, once."""
         if not self.failed:
-            with contextlib.suppress(OSError):  # nobody reads it: a closed terminal, a pipe without a reader
+            with contextlib.suppress(OSError):  # a closed terminal, a pipe without a reader
                 print(f"simconsole: {self._part} failed: {type(error).__name__}: {error}", file=sys.stderr, flush=True)
         self.failed = True
 
 
 class IsolatedDevices:
-    """Devices; while they raise, they are gone."""
+    """Devices; while they raise, they count as unplugged."""
 
     def __init__(self, devices: DeviceSource, seat: "IsolatedSeat | None" = None) -> None:
         self._devices = devices
@@ -56,7 +56,7 @@ class IsolatedDevices:
     def poll(self, tick: int) -> DeviceSample:
         """Return the newest sample."""
         if self._seat is not None and self._seat.failed:
-            return NO_SAMPLE  # the devices stay as they were left, the accelerator perhaps pressed
+            return NO_SAMPLE  # nobody moves the devices any more; the accelerator may be pressed
         try:
             return self._devices.poll(tick)
         except Exception as error:  # noqa: BLE001  whatever it is, the car must come to rest
@@ -69,7 +69,7 @@ class IsolatedDevices:
 
 
 class IsolatedSeat:
-    """A person; once it raised, nobody is there."""
+    """A simulated person; once it raised, it is called no more."""
 
     def __init__(self, seat: Seat) -> None:
         self._seat = seat
@@ -91,7 +91,7 @@ class IsolatedSeat:
 
 
 class IsolatedPace:
-    """A pace; where it raises, the loop has stood still for who knows how long, and another pace goes on."""
+    """A pace; one that raised is replaced by another, and counts as a stall: how long it took is unknown."""
 
     def __init__(self, pace: Pace, spare: Callable[[], Pace]) -> None:
         self._pace = pace
@@ -109,7 +109,7 @@ class IsolatedPace:
 
 
 class IsolatedRecorder:
-    """A recorder; once it raised, it is given nothing more: a log with a hole would be worse than a short one."""
+    """A recorder; once it raised, it is called no more: a log with a gap is worse than a short one."""
 
     def __init__(self, recorder: Recorder) -> None:
         self._recorder = recorder
@@ -126,14 +126,14 @@ class IsolatedRecorder:
 
 
 class IsolatedStandby:
-    """Somebody to call while simulated time stands; once it raised, it is called no more."""
+    """A function called while simulated time stands; once it raised, it is called no more."""
 
     def __init__(self, standby: Standby) -> None:
         self._standby = standby
         self._told = Told(getattr(standby, "__qualname__", type(standby).__name__))
 
     def __call__(self, snapshot: Snapshot) -> None:
-        """Serve, listen or rest for a moment."""
+        """Serve, listen or sleep for a short time."""
         if self._told.failed:
             return
         try:
@@ -161,7 +161,7 @@ class IsolatedCommands:
 
 
 class IsolatedOutput:
-    """An output; once it raised, it sees nothing more."""
+    """An output; once it raised, it is called no more."""
 
     def __init__(self, output: Output) -> None:
         self._output = output

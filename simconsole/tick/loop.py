@@ -11,7 +11,7 @@ from simconsole.values.state_vector import Snapshot, TickInputs
 
 
 class Recorder(Protocol):
-    """Where every tick goes first."""
+    """Gets every finished tick, before the outputs."""
 
     def write(self, snapshot: Snapshot) -> int:
         """Keep one tick and return the events (mask) that the next one brings; a failing disk must not raise."""
@@ -32,10 +32,10 @@ class Faults(Protocol):
 
 
 Standby = Callable[[Snapshot], None]
-"""Serves, listens or rests for a moment, with the last snapshot."""
+"""Serves, listens or sleeps for a short time; called with the last snapshot while simulated time stands."""
 
 AT_REST_S: Final = 20.0
-"""Simulated time after which a vehicle that still rolls is left alone."""
+"""Simulated time after which a drive ends even if the vehicle still rolls."""
 REST_MPS: Final = 0.05
 
 _END: Final = int(Event.END)
@@ -118,8 +118,8 @@ def come_to_rest(console: Console, state: ConsoleState, recorder: Recorder) -> C
     """End a drive whose loop has ended early, in the log only and without waiting; return the last state.
 
     The first tick has the event END and, where the vehicle moves, EMERGENCY_STOP; nobody is in the seat and nobody
-    commands. The last tick recorded is one at rest, or AT_REST_S later: whoever drives on from it, or replays it, sees
-    that nobody drove on.
+    commands. The last tick recorded is the first at rest, or AT_REST_S later. So the log itself shows that the drive
+    ended, to a replay and to a drive that goes on from it.
     """
     moves, last = abs(Snapshot(state.tick, console.tick_hz, state.vector).vehicle.vx_mps) > REST_MPS, 1
     if moves:
@@ -148,7 +148,7 @@ def _stand(
     """
     held, collected, collected_ecu = int(snapshot.driver.pressed), 0, 0
     while not finished(snapshot):
-        components.pace.wait()  # a loop that stands cannot stall
+        components.pace.wait()  # its events are dropped: a loop that waits on purpose cannot stall
         for stand in components.standby:
             stand(snapshot)
         coming = state.tick + 1

@@ -1,1 +1,1 @@
-"""The bottom: the values of a tick, their layout, units, errors, arithmetic. Imports nothing of ours."""
+"""The lowest layer: the values of a tick, their layout, units, errors, arithmetic. Imports no other package of ours."""

@@ -28,10 +28,10 @@ def is_kernel(value: object) -> bool:
 
 
 def forget() -> None:
-    """Do nothing; compiled code reads rows again from here on instead of keeping what it has read.
+    """Do nothing; compiled code reads arrays again from here on instead of keeping what it has read.
 
-    Numbers that are needed much later are better read there than kept: there are some thirty registers, and what does
-    not fit is written to the stack.
+    Numbers that are needed only much later are better read again there: there are some thirty registers, and what does
+    not fit into them is spilled to the stack.
     """
 
 
@@ -47,7 +47,7 @@ def put(row: Row, start: int, values: Iterable[float]) -> None:
 @kernel
 def clip(value: float, low: float, high: float) -> float:
     """Limit a *finite* value, `low` at most `high`. Test `is_finite` first: a NaN would pass every comparison."""
-    if value < low:  # one after the other, not one or the other: two instructions, a maximum and a minimum
+    if value < low:  # two separate tests, no `elif`: they compile to two instructions, a maximum and a minimum
         value = low
     if value > high:
         value = high

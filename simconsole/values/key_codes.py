@@ -7,7 +7,7 @@ from enum import IntFlag
 
 
 class Key(IntFlag):
-    """Keys held now. The mask is only ever a whole number, so a float64 or an int64 slot carries it exactly."""
+    """Keys held now. The mask is a small whole number, so a float64 or an int64 slot holds it exactly."""
 
     STEER_LEFT = 1
     STEER_RIGHT = 2

@@ -69,8 +69,8 @@ LINK_CONNECTING: Final = "connecting"
 LINK_RETRYING: Final = "retrying"
 LINK_DOWN: Final = "down"
 LINK_COMMANDER: Final = "commander"
-"""How the rosbridge link stands, beside `2 clients`: nobody has come yet, all have gone, the upstream server was
-never reached yet, it was lost and is tried again, the bridge itself does not run, somebody commands."""
+"""State of the rosbridge link, beside `2 clients`: no client yet, all clients have left, the upstream server not
+reached yet, the upstream server lost and tried again, the bridge itself not running, a client commands."""
 
 _COMMANDERS: Final[dict[float, str]] = {Commander.NOBODY: "none", Commander.ROS: "ROS", Commander.ECU: "CAN"}
 
@@ -102,7 +102,7 @@ def reason_label(reason: float) -> str:
 
 
 def notice_label(notice: float) -> str:
-    """Return what a person is told while it is so, in at most seven words; nothing where there is nothing to tell."""
+    """Return the text of a notice, in at most seven words; empty for NONE."""
     return _NOTICES.get(notice, f"notice {notice:g}")
 
 

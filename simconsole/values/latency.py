@@ -47,9 +47,9 @@ class Histogram:
         self.max_ns = 0
 
     def add(self, time_ns: int) -> None:
-        """Count one time, negative ones as zero."""
+        """Count one time; a negative one counts as zero."""
         index = 0
-        if time_ns > _FLOOR_NS:  # logarithm and ceiling: a tenth of the price of a search in the edges
+        if time_ns > _FLOOR_NS:  # logarithm and ceiling: takes a tenth of the time of a search in the edges
             index = min(math.ceil(_BINS_PER_DECADE * math.log10(time_ns / _FLOOR_NS)), len(self._bins) - 1)
         self._bins[index] += 1
         self.count += 1
@@ -75,7 +75,7 @@ class Histogram:
 
 
 Mark = Callable[[Hop], None]
-"""Told that a hop has ended now."""
+"""Called when a hop has ended."""
 
 
 def unheard(hop: Hop) -> None:
@@ -91,7 +91,7 @@ class LatencyStatistics:
         Args:
             clock_ns: A monotonic clock, the same in all processes of a drive.
             tick_hz: The session's tick rate.
-            every: Look at each n-th tick only: a drive that is not paced has better things to do.
+            every: Look at each n-th tick only: in a drive that is not paced timing every tick would slow it.
         """
         self._clock_ns = clock_ns
         self._ns_per_tick = NS_PER_S // tick_hz
@@ -101,7 +101,7 @@ class LatencyStatistics:
         self._histograms: dict[Hop, Histogram] = {}
 
     def begin(self, tick: int) -> Mark:
-        """Begin a tick; return where its hops are told."""
+        """Begin a tick; return the function to call at the end of each of its hops."""
         self._looks = tick % self._every == 0
         if not self._looks:
             return unheard
@@ -122,7 +122,7 @@ class LatencyStatistics:
                 return
 
     def received(self, stamp_ns: int) -> None:
-        """Count the time since somebody else's hop ended at `stamp_ns`, and go on from here."""
+        """Count the time since another process's hop ended at `stamp_ns`; the next hop begins now."""
         self._last_ns = stamp_ns
         self.mark(Hop.RECEIVE)
 

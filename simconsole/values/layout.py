@@ -60,7 +60,7 @@ def lay_out(layout: type[L]) -> L:
 
 
 def read(row: Row, part: Part[R]) -> R:
-    """Return the record that lies at `part` of a row."""
+    """Return the record that lies at `part` of a vector."""
     values = row[part.start : part.stop].tolist()
     return _built(part, values, part.start) if part.inner else part.record(*values)
 
@@ -73,7 +73,7 @@ def _built(part: Part[Any], values: list[float], start: int) -> Any:
 
 
 def write(row: Row, part: Part[R], record: R) -> None:
-    """Write a record to its place in a row."""
+    """Write a record to its place in a vector."""
     row[part.start : part.stop] = tuple(_floats(record))
 
 

@@ -60,7 +60,7 @@ class Platform(NamedTuple):
     step: Callable[[Row, Row, Row, int], None]
     steering_ratio: float  # hand-wheel angle per road-wheel angle
     max_road_wheel_rad: float
-    wheelbase_m: float  # of a ball its diameter: some length to judge its turning by
+    wheelbase_m: float  # of a ball its diameter: the length that stands in for a wheelbase
     length_m: float
     width_m: float
     height_m: float

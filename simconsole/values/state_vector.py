@@ -141,12 +141,12 @@ class Snapshot(NamedTuple):
 
     @property
     def recording_failed(self) -> bool:
-        """Whether nothing more is kept of this drive."""
+        """Whether recording has failed: no further tick is kept."""
         return bool(int(self.vector[LAYOUT.events.start]) & _RECORDING_FAILED)
 
     @property
     def notice(self) -> float:
-        """What people are told (`Notice`): a failed recording before anything that the arbiter tells."""
+        """What people are told (`Notice`): a failed recording takes precedence over the arbiter's notices."""
         return float(Notice.RECORDING_FAILED) if self.recording_failed else self.arbitration.notice
 
     @property

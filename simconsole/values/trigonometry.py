@@ -88,7 +88,7 @@ class Direction(NamedTuple):
 
 @kernel
 def direction(angle_rad: float) -> Direction:
-    """Return cosine and sine of an angle in rad at less than the price of both: the same bits as `cos` and `sin`."""
+    """Return cosine and sine of an angle in rad, faster than one after the other: the same bits as `cos` and `sin`."""
     turns = nearest(angle_rad * _TWO_OVER_PI)
     rest = ((angle_rad - turns * _PART_1) - turns * _PART_2) - turns * _PART_3
     quarter = turns - 4.0 * nearest(0.25 * turns)

@@ -93,7 +93,7 @@ class Course:
         Args:
             x_m: position in map.
             y_m: position in map.
-            s_hint_m: where the point was a moment ago; the answer continues from there (laps included). Without it,
+            s_hint_m: where the point was before; the answer continues from there (laps included). Without it,
                 or when it is more than 30 m wrong, the whole course is searched.
             yaw_rad: heading of the vehicle; without it the heading error is 0.
         """

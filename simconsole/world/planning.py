@@ -16,7 +16,7 @@ from simconsole.world.path_geometry import Piece, centre, travel, travel_all
 ORIGIN: Final = Pose(0.0, 0.0, 0.0)
 PLACES_M: Final = 10
 PLACES_RAD: Final = 13
-"""Decimals that a world keeps: far below what matters, far above what differs between machines."""
+"""Decimals of a world's figures: finer than any that matters, coarser than any difference between machines."""
 _BISECTIONS: Final = 80
 
 

@@ -19,7 +19,7 @@ _STEP_M: Final = 0.25
 _STUB_M: Final = 45.0  # roads that the course does not use end this far from the centre
 _QUARTERS: Final = 4
 _TOUCH_M: Final = 0.05
-_SHORTEST_M: Final = 5.0  # shorter rests of a boundary are pockets between entry, exit and ring: paved over
+_SHORTEST_M: Final = 5.0  # shorter pieces of boundary are pockets between entry, exit, ring: paved over
 _POCKET_M: Final = 5.0
 
 

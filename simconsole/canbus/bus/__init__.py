@@ -1,1 +1,1 @@
-"""Buses, and the worker that speaks on one."""
+"""CAN buses, and the worker that runs the console's node on one."""

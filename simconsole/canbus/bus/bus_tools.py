@@ -1,4 +1,4 @@
-"""The bus tools: watch a bus, be an ECU on it, play a log back. Each opens the bus for itself, beside any console."""
+"""The bus tools: monitor a bus, simulate an ECU, replay a log. Each opens the bus itself, beside any console."""
 
 import time
 from collections.abc import Callable
@@ -33,9 +33,9 @@ def monitor(
         profile: which bus.
         codec: the messages.
         say: shows a line about each message once a second.
-        duration_s: for so long; None until interrupted.
+        duration_s: how long; None: until interrupted.
         logs: files to keep what was seen (.blf, .log).
-        stop: ends it once it is True and no frame is left.
+        stop: ends it once it returns True and no frame is left.
 
     Returns:
         By message: frames by state, rate in 1/s, last values.
@@ -69,7 +69,7 @@ def monitor(
 
 
 def send(profile: CanProfile, codec: Codec, wish: Wish, *, duration_s: float | None = None) -> dict[str, Any]:
-    """Be the ECU: send ECU_COMMAND at its period, on absolute deadlines, and hear the console.
+    """Simulate the ECU: send ECU_COMMAND at its period, on absolute deadlines, and receive the console's messages.
 
     Returns:
         Frames sent, and what the console said last.
@@ -94,7 +94,7 @@ def send(profile: CanProfile, codec: Codec, wish: Wish, *, duration_s: float | N
             if ecu.mode is not None and modes[-1:] != [ecu.mode]:
                 modes.append(ecu.mode)
             top_mps = max(top_mps, abs(ecu.speed_mps or 0.0))
-            due = max(due, int((time.monotonic() - began_s) / period_s))  # late by periods: they are not made up for
+            due = max(due, int((time.monotonic() - began_s) / period_s))  # whole periods late: they are skipped
     except KeyboardInterrupt:
         pass
     finally:
@@ -109,7 +109,7 @@ def send(profile: CanProfile, codec: Codec, wish: Wish, *, duration_s: float | N
 
 
 def replay(profile: CanProfile, codec: Codec, path: Path, *, node: str, speed: float = 1.0) -> dict[str, Any]:
-    """Send what one node said in a log again, as it was and with its time spacing; other ids are left out.
+    """Send one node's frames of a log again, unchanged and with their time spacing; other ids are left out.
 
     Args:
         profile: which bus.

@@ -1,7 +1,7 @@
 """A CAN bus over UDP multicast that stays on this machine and does not hear itself.
 
 It sends from a socket of its own, so that its frames are known by their source port: the kernel drops them before
-anybody wakes up (Linux), or they are dropped here unread. On the wire it is python-can's `udp_multicast`, whose
+any process wakes up (Linux), or they are dropped here unread. On the wire it is python-can's `udp_multicast`, whose
 messages it packs and unpacks with functions that the caller gives.
 """
 
@@ -54,7 +54,7 @@ class LoopbackBus:
         self._out.send(self._pack(message))
 
     def recv(self, timeout: float | None = None) -> Any | None:
-        """Return the next message of somebody else, None when none came within `timeout` s."""
+        """Return the next message of another sender, None when none came within `timeout` s."""
         deadline_s = None if timeout is None else time.monotonic() + timeout
         while True:
             wait_ms = None if deadline_s is None else max(0.0, 1000.0 * (deadline_s - time.monotonic()))
@@ -63,7 +63,7 @@ class LoopbackBus:
             data, sender = self._in.recvfrom(_MAX_BYTES)
             if sender[1] == self._own_port:
                 continue
-            with contextlib.suppress(Exception):  # whatever else is sent to this port is no message
+            with contextlib.suppress(Exception):  # anything else that is sent to this port is ignored
                 return self._unpack(data, time.time())
 
     def fileno(self) -> int:
@@ -81,7 +81,7 @@ class LoopbackBus:
         self._out.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
         self._out.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, loopback)
         self._out.bind((_LOOPBACK, 0))
-        self._out.connect(self._address)  # one look at the routes for all frames
+        self._out.connect(self._address)  # one route lookup for all frames
         self._out.setblocking(False)
         self._own_port = self._out.getsockname()[1]
         self._in.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

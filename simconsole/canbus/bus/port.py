@@ -1,6 +1,6 @@
 """The bus itself: the only module that imports python-can, and the only way to it. See docs/can.md.
 
-Nothing leaves but ids on the whitelist, whatever the caller wants; nothing else comes in. A bus that goes off (error
+Only ids on the whitelists are sent and received, whatever the caller asks for. A bus that goes off (error
 frame, failed send, interface down) is closed, reported and opened again with growing waits; meanwhile sending does
 nothing and receiving returns nothing, so no loop stands still for it.
 """
@@ -26,15 +26,15 @@ if TYPE_CHECKING:
 
 LOG_FILES: Final = {"blf": "can.blf", "candump": "can.log"}
 _TOLD_S: Final = 10.0
-"""Error frames come in floods: they are counted, and told at most so often."""
+"""Error frames come in floods: they are counted, and logged at most once in this time."""
 _FULL: Final = (11, 105)  # EAGAIN, ENOBUFS: the send queue is full, which is no fault of the bus
 _UNDERWAY_MAX: Final = 256
-"""Frames looked at in one call at most: a flood of others' frames ends a call, not the caller's cycle."""
+"""Most frames read in one call: a flood of foreign frames must end the call, not delay the caller's cycle."""
 
 _logger = logging.getLogger("simconsole.canbus.bus.port")
 
 Opener = Callable[[CanProfile, frozenset[int]], "can.BusABC"]
-"""Opens a bus that passes on these ids (where its back end can filter)."""
+"""Opens a bus that receives only these ids (where its back end can filter)."""
 
 
 class PortCounters(NamedTuple):
@@ -83,7 +83,7 @@ class CanPort:
 
     @property
     def up(self) -> bool:
-        """Whether frames can be sent; tries to open a bus that went off when its time has come."""
+        """Whether frames can be sent; opens a bus that went off again once its wait has passed."""
         if self.recovery.is_due(self._clock_s()):
             self._try_again()
         return self.recovery.up
@@ -229,7 +229,7 @@ def open_bus(profile: CanProfile, receive_ids: frozenset[int]) -> "can.BusABC":
     if profile.bitrate_bps is not None:
         options["bitrate"] = profile.bitrate_bps
     filters: list[Any] | None = None
-    if profile.interface == "socketcan":  # in the kernel; error frames pass. Elsewhere `receive` does it.
+    if profile.interface == "socketcan":  # the kernel filters, error frames pass; else `receive` filters
         filters = [{"can_id": number, "can_mask": 0x7FF, "extended": False} for number in sorted(receive_ids)]
     try:
         if profile.interface == "udp_multicast":

@@ -36,12 +36,12 @@ def load_codec() -> Codec:
 
 
 def log_paths(profile: CanProfile, folder: Path) -> list[Path]:
-    """Return the logs that a profile wants, in a bundle's folder."""
+    """Return the files of the logs that a profile asks for, in a bundle's folder."""
     return [folder / LOG_FILES[kind] for kind in dict.fromkeys(profile.log)]
 
 
 class OnBus:
-    """A node and its port together: what both kinds of drive do with them."""
+    """A node with its port: the part that paced and headless drives share."""
 
     def __init__(self, node: CanNode, port: CanPort) -> None:
         self.node = node
@@ -85,7 +85,7 @@ def serve(
     on_status: OnStatus,
     stop: Callable[[], bool],
 ) -> None:
-    """Run the node until `stop`. Without a new tick it sends nothing: a console that hangs falls silent on the bus.
+    """Run the node until `stop`. Without a new tick it sends nothing: a console that hangs becomes silent on the bus.
 
     Args:
         on_bus: node and open port; closed by the caller.
@@ -138,7 +138,7 @@ class HeadlessCan:
         self._on_bus.send(snapshot, snapshot.t_ns)
 
     def listen(self, snapshot: Snapshot) -> None:
-        """Take the frames that are there: all that is done while simulated time stands."""
+        """Take the frames that are there; nothing else is done while simulated time stands."""
         self._tick, self._now_ns = snapshot.tick, snapshot.t_ns
         node = self._on_bus.node
         before = node.command.sequence

@@ -62,7 +62,7 @@ def decide(now: TickContext, person: Person, controllers: Controllers, steering:
     )
     shared = engage if engage != GRANTED else manual
     waited = mode == Mode.TAKEOVER_REQUESTED and now.memory.mode_ticks + 1.0 >= settings.minimal_risk_ticks
-    # A lost cockpit that is back ends the wait, not the request: autonomy is only ever granted by an act.
+    # A lost cockpit that is back ends the wait, not the request: autonomy needs an act of a person or an operator.
     no_reaction = waited and not (now.before.reason == Reason.DEVICE_LOST and person.trusted > 0.0)
     present = person_triggers(mode, person, steering, settings)
     present |= fault_triggers(link, controllers.events, no_reaction, standing)
@@ -83,8 +83,8 @@ def decide(now: TickContext, person: Person, controllers: Controllers, steering:
     reason = now.before.reason
     wait_begins = 0.0
     if mode == Mode.TAKEOVER_REQUESTED and asked.takeover > 0.0:
-        # Asked for again, by somebody: then the request does not end with the cause that it had first. Where that was a
-        # lost cockpit that is back by now, nobody is waited for any more: the new request begins a wait of its own.
+        # A take-over was requested again: then the request does not end with its first cause. Where that was a lost
+        # cockpit that is back by now, the first wait has ended, and the new request begins a wait of its own.
         wait_begins = 1.0 if reason == Reason.DEVICE_LOST and person.trusted > 0.0 else 0.0
         reason = Reason.REMOTE_ASKED
     driven = mode in (Mode.SHARED, Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED)
@@ -110,7 +110,7 @@ def decide(now: TickContext, person: Person, controllers: Controllers, steering:
 @kernel
 def _reason(after: float, trigger: int, asked: Asked) -> float:
     if after == Mode.TAKEOVER_REQUESTED and asked.takeover > 0.0:
-        return Reason.REMOTE_ASKED  # whatever was lost in the same tick: the request stays when that is back
+        return Reason.REMOTE_ASKED  # not a loss in the same tick: the request stays when that is over
     reason = reason_of(trigger)
     return Reason.OPERATOR_ASKED if reason == Reason.PERSON_ASKED and asked.by_person == 0.0 else reason
 

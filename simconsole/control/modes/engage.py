@@ -25,7 +25,7 @@ def engage_refusal(
 
     Args:
         mode: The mode that would be left; after a fault commands must have been good for longer.
-        person: Must be there and off the brake, unless the drive needs nobody.
+        person: Must be present and off the brake, unless the drive needs no person.
         link: Must be fresh and stable.
         remote: The command; its speed is compared with the vehicle's where it commands one.
         offered_road_wheel_rad: Where the command would put the road wheels ...

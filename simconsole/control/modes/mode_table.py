@@ -1,11 +1,11 @@
 """The mode table: (mode, trigger) -> mode, in this file and nowhere else. docs/modes.md is generated from it.
 
 Triggers stand in the order of their strength. Those that take authority from automation (EMERGENCY to NO_REACTION) all
-take effect in their tick, strongest first, each on the mode that the one before it left: none is lost. What asks for
-more automation, and every other step back towards driving, is granted only in a tick without such an effect, and only
-if the mode that it leads to would withstand every trigger of the tick; else it is refused and not kept. EMERGENCY_STOP
-and STOPPED latch: only an act of a person or an operator leaves them, and autonomy is only ever entered by such an act
-(AUTONOMOUS_ASKED, SHARED_ASKED).
+take effect in their tick, strongest first, each on the mode that results from the one before: none is lost. A request
+for more automation, and every other step back towards driving, is granted only in a tick without such an effect, and
+only if no trigger of the tick would take authority in the mode that it leads to; else it is refused and not kept.
+EMERGENCY_STOP and STOPPED latch: only an act of a person or an operator leaves them, and autonomy is only ever entered
+by such an act (AUTONOMOUS_ASKED, SHARED_ASKED).
 """
 
 from enum import IntEnum
@@ -16,7 +16,7 @@ from simconsole.values.signals import Mode, Reason
 
 
 class Trigger(IntEnum):
-    """What can change the mode, strongest first. Guards (who may ask when) are in control/triggers.py."""
+    """What can change the mode, strongest first. Guards (who may ask when) are in modes/triggers.py."""
 
     EMERGENCY = 0
     BRAKE = 1
@@ -126,7 +126,7 @@ REACTIONS: Final[dict[Mode, dict[Trigger, Mode]]] = {
         Trigger.RESET: Mode.PARKED,
     },
 }
-"""Where a trigger is not named, the mode stays."""
+"""By mode and trigger; a trigger that is not listed leaves the mode unchanged."""
 
 REASONS: Final[dict[Trigger, Reason]] = {
     Trigger.EMERGENCY: Reason.EMERGENCY,
@@ -156,7 +156,7 @@ _TAKERS: Final = int(Trigger.NO_REACTION) + 1
 
 
 class Outcome(NamedTuple):
-    """What the triggers of one tick make of a mode."""
+    """The mode after the triggers of one tick."""
 
     mode: float
     trigger: int  # the last `Trigger` that took effect; -1: none
@@ -164,7 +164,7 @@ class Outcome(NamedTuple):
 
 @kernel
 def outcome(mode: float, present: int) -> Outcome:
-    """Return what the triggers of the mask `present` (bit n: `Trigger` n) make of `mode` in one tick."""
+    """Return the mode that follows `mode` in one tick under the triggers of the mask `present` (bit n: `Trigger` n)."""
     after = mode
     decisive = -1
     for trigger in range(_TAKERS):

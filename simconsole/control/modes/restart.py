@@ -1,10 +1,10 @@
-"""Back to the start, and when not: the hand wheel is centred first, then the pedals are released.
+"""Restart of the drive, and when it is refused: the hand wheel is centred first, then the pedals are released.
 
-In a car that stands a restart waits for both: the wheel's motor centres the wheel (devices/torque.py), or the person is
-asked to. In a car that moves it never waits: the motor must not turn a wheel by which somebody steers.
+In a car that stands a restart waits for both: the wheel's motor centres the wheel (force_feedback/torque.py), or the
+person is asked to. In a car that moves it never waits: the motor must not turn a wheel by which somebody steers.
 
-A granted restart begins the drive anew from its first row: the vehicle at its start, everything engaged forgotten, only
-the devices stay armed. The tick goes on counting, and what was driven before stays in the record.
+A granted restart sets the drive back to its initial state: the vehicle at its start, nothing engaged; only the devices
+stay armed. The tick goes on counting, and what was driven before stays in the recording.
 """
 
 from typing import Final, NamedTuple
@@ -21,7 +21,7 @@ GRANTED: Final = 0.0
 
 
 class Restart(NamedTuple):
-    """What has become of a request to start again."""
+    """State of a request to restart."""
 
     ticks: float  # for how long it has waited; 0: none waits
     granted: float
@@ -53,7 +53,7 @@ def restart_of(now: TickContext, person: Person) -> Restart:
 
 @kernel
 def restart_refusal(mode: float, driver: DriverInput, person: Person, events: int, settings: ControlSettings) -> float:
-    """Return NOT_ASKED, GRANTED, or the `Reason` against a restart now. A cockpit that is not there holds up nothing.
+    """Return NOT_ASKED, GRANTED, or the `Reason` against a restart now. A missing cockpit delays nothing.
 
     Args:
         mode: Of the tick before: a latched emergency stop is reset first.

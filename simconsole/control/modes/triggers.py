@@ -1,4 +1,4 @@
-"""What happened in this tick, as the mask of triggers that the mode table understands, and why an ask was refused."""
+"""What happened in this tick, as the mask of triggers that the mode table understands, and why one was refused."""
 
 from typing import NamedTuple
 
@@ -90,7 +90,7 @@ def person_triggers(mode: float, person: Person, steering: bool, settings: Contr
 
 @kernel
 def fault_triggers(link: Link, events: int, no_reaction: bool, standing: bool) -> int:
-    """Return the triggers that nobody asked for."""
+    """Return the triggers that no request raises: faults, elapsed waits, standstill."""
     present = bit(Trigger.LOOP_STALL) if events & Event.LOOP_STALL != 0 else 0
     if events & Event.COMMANDER_LOST != 0:
         present |= bit(Trigger.COMMANDER_LOST)
@@ -132,11 +132,11 @@ def asked_triggers(asked: Asked, manual: float, reset: float, engage: float, sha
 def refusal_of(
     mode: float, after: float, asked: Asked, manual: float, reset: float, engage: float, shared: float
 ) -> float:
-    """Return why an ask of this tick was refused; 0 if none was, or what it asks for is in force.
+    """Return why a request of this tick was refused; 0 if none was, or what it asks for is in force.
 
     Args:
         mode: before this tick.
-        after: after it: an ask may have met something stronger.
+        after: after it: a stronger trigger may have overruled the request.
         asked: what was asked for.
         manual: 0, or the `Reason` against manual control in `mode`.
         reset: The same against a reset.
@@ -157,7 +157,7 @@ def refusal_of(
 
 @kernel
 def _unmet(mode: float, after: float, refusal: float, trigger: int) -> float:
-    """Return why an ask was not met: a latched emergency stop, its own refusal, something stronger, or the mode."""
+    """Return why a request failed: a latched emergency stop, its own refusal, a stronger trigger, or the mode."""
     if after == Mode.EMERGENCY_STOP:
         return Reason.REFUSED_EMERGENCY
     if refusal != GRANTED:

@@ -6,8 +6,9 @@ Both are watched every tick by the same kernels. The rule:
    fault; the other controller never takes its place unasked.
 2. Otherwise the preferred controller (the session's `features.commander`) commands while it holds a lease, which every
    fresh command renews for `commander_lease_s`; else the other one, while that one holds a lease; else nobody.
-3. The commander's requests count. Of an ECU that does not command only its emergency stop and its mark do; what else
-   it asks for is refused in words. Requests on the ROS side are an operator's, too, and always count.
+3. The commander's requests count. Of an ECU that does not command only its emergency stop and its mark count; any
+   other request of it is refused, and the refusal is shown. Requests on the ROS side may come from an operator and
+   always count.
 """
 
 from typing import Final, NamedTuple
@@ -44,7 +45,7 @@ class Controllers(NamedTuple):
 
 @kernel
 def assess(now: TickContext) -> Controllers:
-    """Look at both controllers, by the same rules, and say which of them commands."""
+    """Follow both controllers by the same rules, and decide which of them commands."""
     ros_link = watch_link(now.ros, now.ros_before, now.ros_age_before_ticks, now.vehicle, now.settings)
     ecu_link = watch_link(now.ecu, now.ecu_before, now.ecu_age_before_ticks, now.vehicle, now.settings)
     commander = commander_of(now.before, ros_link, ecu_link, now.settings)
@@ -70,7 +71,7 @@ def assess(now: TickContext) -> Controllers:
 def _offered(command: RemoteCommand, link: Link, integral_mps2: float, now: TickContext) -> RemoteRequest:
     """Return what a controller asks for.
 
-    A command that steers as it cannot be meant is refused whole: what is in force is held, except that it may slow the
+    A command that steers implausibly hard is refused whole: what is in force is held, except that it may slow the
     vehicle down.
     """
     held_rad = now.command_before.road_wheel_rad
@@ -80,7 +81,7 @@ def _offered(command: RemoteCommand, link: Link, integral_mps2: float, now: Tick
     if link.implausible_ticks == 0.0:
         return asked
     throttle, brake = now.command_before.throttle, now.command_before.brake
-    if now.before.mode == Mode.SHARED:  # its own part: what is in force is the person's, too
+    if now.before.mode == Mode.SHARED:  # its own part: the steering in force is partly the person's
         held_rad = now.before.remote_road_wheel_rad
         throttle, brake = now.before.remote_throttle, now.before.remote_brake
     direction = now.command_before.gear if now.command_before.automatic > 0.0 else asked.direction

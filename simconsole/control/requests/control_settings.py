@@ -11,7 +11,7 @@ SHARED_RULES: Final = ("fixed", "line_crossing", "traded")
 
 
 class ControlSettings(NamedTuple):
-    """What arbitration and the gate work under during a whole drive."""
+    """Settings of arbitration and gate, constant over a drive."""
 
     person_required: float
     manual_automatic: float
@@ -29,12 +29,12 @@ class ControlSettings(NamedTuple):
     throttle_held_ticks: float
     clutch_pressed: float
     fade_per_tick: float
-    # Who is the remote side, faults of its command and take-over requests.
+    # Choice of the remote side, faults of its command, and take-over requests.
     preferred_commander: float  # `Commander`
     lease_ticks: float
     stale_ticks: float
     invalid_commands_max: float
-    implausible_lateral_accel_mps2: float  # a command that steers harder than this cannot be meant
+    implausible_lateral_accel_mps2: float  # a command that steers harder than this is implausible
     escalation_ticks: float
     minimal_risk_ticks: float
     refusal_ticks: float
@@ -109,7 +109,7 @@ def settings(
     """Return the settings of one drive.
 
     Args:
-        profile: What the person wrote.
+        profile: The settings in the units of the profile.
         steering_ratio: Hand-wheel angle per road-wheel angle of the vehicle (> 0).
         max_road_wheel_rad: The vehicle's steering lock.
         wheelbase_m: The vehicle's (> 0), between curvature and road-wheel angle.
@@ -160,10 +160,10 @@ def _of_the_same_name(profile: ControlProfile) -> dict[str, float]:
 
 
 def _at_least(seconds: float, tick_hz: int) -> float:
-    """Return the whole ticks that last at least `seconds`, and at least one: for what must endure."""
+    """Return the whole ticks that last at least `seconds`, and at least one: for a condition that must last."""
     return max(1.0, float(math.ceil(seconds * tick_hz - 1e-9)))
 
 
 def _at_most(seconds: float, tick_hz: int) -> float:
-    """Return the whole ticks that last at most `seconds`, and at least one: for what must not last longer."""
+    """Return the whole ticks that last at most `seconds`, and at least one: for time-outs."""
     return max(1.0, float(math.floor(seconds * tick_hz + 1e-9)))

@@ -16,8 +16,8 @@ def watch_link(
 ) -> Link:
     """Follow one controller by one tick. A restarted counter (smaller than before) counts as nothing refused.
 
-    A command that steers too hard to be meant at the vehicle's speed counts as a refused one, and what was asked for
-    before is as old as it would be had the command not come: after the time of a stale command nothing is valid.
+    A command that steers implausibly hard for the vehicle's speed counts as refused, and the last plausible command
+    goes on ageing as if none had come: after the time-out for stale commands none is valid.
 
     Args:
         remote: Its newest command.

@@ -1,7 +1,7 @@
 """Accelerations and speeds to pedals, by inverting what the vehicle says its pedals would give now.
 
 The vehicle states three accelerations (released pedals, full throttle, full brake); between them pedals are taken as
-linear. What that misses, a small bounded integral takes up. All along the direction of travel: positive is faster.
+linear. A small bounded integral corrects the rest. All along the direction of travel: positive is faster.
 """
 
 from typing import Final, NamedTuple
@@ -10,7 +10,7 @@ from simconsole.control.requests.control_settings import ControlSettings
 from simconsole.values.kernels import clip, is_finite, kernel
 from simconsole.values.signals import VehicleState
 
-_LEAST_SPAN_MPS2: Final = 0.2  # less between released and full pedal is no usable statement (declutched, stalled)
+_LEAST_SPAN_MPS2: Final = 0.2  # a smaller difference of released and full pedal is unusable (declutched, stalled)
 _MOST_MPS2: Final = 50.0  # nor is more than five times gravity
 
 

@@ -23,13 +23,13 @@ class Person(NamedTuple):
 
 @kernel
 def mask(value: float) -> int:
-    """Return a bit mask that was stored as a float; nonsense is no bit at all, nor is anything below the first bit."""
+    """Return a bit mask that was stored as a float; 0 for values that are no mask (not finite, or below 1)."""
     return int(value) if 1.0 <= value <= _MOST_MASK else 0
 
 
 @kernel
 def person_of(driver: DriverInput, held_road_wheel_rad: float, settings: ControlSettings) -> Person:
-    """Return the person's request: brake over throttle, and nothing from what is not finite."""
+    """Return the person's request: brake over throttle, and nothing from inputs that are not finite."""
     wheel_trusted = is_trusted(driver.wheel_validity) and is_finite(driver.hand_wheel_rad)
     pedals_trusted = is_trusted(driver.throttle_validity) and is_trusted(driver.brake_validity)
     finite = is_finite(driver.throttle) and is_finite(driver.brake)

@@ -19,7 +19,7 @@ _MOST_MPS2: Final = 20.0
 _MOST_RADPS: Final = 20.0
 _MOST_RAD: Final = 2.0
 _STEERABLE_MPS: Final = 0.5  # slower than this a twist's curvature is taken as if driven at this speed
-_STANDING_MPS: Final = 0.05  # a commanded speed below this means: stand still
+_STANDING_MPS: Final = 0.05  # a commanded speed below this means standstill
 _CLOSING_MPS2: Final = 0.5  # least deceleration towards a commanded standstill: proportional control alone only creeps
 _WRONG_WAY_MPS: Final = 0.5
 
@@ -36,7 +36,7 @@ class RemoteRequest(NamedTuple):
 
 @kernel
 def command_finite(remote: RemoteCommand) -> bool:
-    """Return whether every field of the command is finite: one that is not spoils the whole command."""
+    """Return whether every field of the command is finite: one that is not makes the whole command invalid."""
     for value in remote:  # noqa: SIM110  (numba has no `all`)
         if not is_finite(value):
             return False
@@ -51,10 +51,10 @@ def known_kind(kind: float) -> bool:
 
 @kernel
 def implausible(remote: RemoteCommand, vehicle: VehicleState, settings: ControlSettings) -> bool:
-    """Return whether a finite command asks for more lateral acceleration than it can mean at the present speed.
+    """Return whether a finite command asks for an implausible lateral acceleration at the present speed.
 
     An angle by the kinematic single track, as the gate judges it; a twist says its yaw rate itself. Full lock is
-    plausible at walking pace and a mistake of the sender at speed.
+    plausible at walking pace, and an error of the sender at speed.
     """
     most_mps2 = settings.implausible_lateral_accel_mps2
     if remote.kind == RemoteKind.TWIST:

@@ -50,8 +50,8 @@ def safe_stop(
 ) -> Stopping:
     """Brake to a standstill, corrected by a bounded integral, never beyond 4 m/s2.
 
-    By the book (2.5 m/s2 reached with 1.5 m/s3) while somebody steers; harder where nobody knows the way: what is left
-    of it then decides whether the car stays in its lane (docs/decisions/0009-stops-that-nobody-steers.md).
+    2.5 m/s2 reached with 1.5 m/s3, the specified values, while the stop is steered; harder where it is not: then the
+    length of the stop decides whether the car stays in its lane (docs/decisions/0009-stops-that-nobody-steers.md).
     """
     if stands(vehicle, settings):
         return Stopping(settings.hold_brake, stop_accel_mps2, 0.0)

@@ -1,4 +1,4 @@
-"""Everything that arbitration decides one tick from, in one value."""
+"""The inputs of arbitration in one tick, in one value."""
 
 from typing import NamedTuple
 
@@ -16,7 +16,7 @@ from simconsole.values.signals import (
 
 
 class TickContext(NamedTuple):
-    """One tick as arbitration finds it: what comes in, and what the tick before has left."""
+    """The inputs of one tick, and the results of the tick before."""
 
     driver: DriverInput  # the person, calibrated, in this tick
     ros: RemoteCommand  # the ROS side's newest accepted command

@@ -1,4 +1,4 @@
-"""From raw axes to the person: polarity, dead zones, arming, validity, the lever. Pure kernels.
+"""From raw axes to the driver's input: polarity, dead zones, arming, validity, the lever. Pure kernels.
 
 Order of each reading: finite and in range (else refused, the last good one is held), fresh (else stale or lost),
 seen at rest (else unknown), and only then scaled.
@@ -133,7 +133,7 @@ def pedals(sample: DeviceSample, refused_ticks: float, before: DriverInput, sett
 
 @kernel
 def wheel_angle(raw: float, settings: CockpitSettings) -> float:
-    """Return where a good reading says that the hand wheel is."""
+    """Return the hand wheel's angle from a good reading."""
     offset = _beyond(raw - settings.wheel_centre_raw, settings.wheel_dead_raw)
     return _bent(offset, settings.wheel_curve) * settings.wheel_rad_per_raw
 
@@ -150,8 +150,8 @@ def wheel(
 ) -> Wheel:
     """Return the hand wheel: held where it was while it is not trusted, its rate through a first-order filter.
 
-    A wheel has no rest: it is armed by its first good reading. One that was lost stays so until it stands where the
-    car's own steering does (`model_rad`): the road wheels must not jump to wherever it comes back.
+    A wheel has no rest position: it is armed by its first good reading. One that was lost stays lost until its angle
+    matches the car's own steering (`model_rad`): the road wheels must not jump to the angle at which it comes back.
     """
     good = axis_good(raw)
     if before.validity == LOST and good:
@@ -189,7 +189,7 @@ def _bent(offset: float, curve: float) -> float:
 
 @kernel
 def lever(sample: DeviceSample, edges: int, refused_ticks: float, before: Lever, settings: CockpitSettings) -> Lever:
-    """Return the gear lever: kept where it was while it is not trusted or shows nonsense."""
+    """Return the gear lever: kept where it was while it is not trusted or its reading is invalid."""
     good = mask_good(sample.shifter_buttons) and mask_good(sample.wheel_buttons)
     shown = shown_gear(sample.wheel_buttons, sample.shifter_buttons, settings) if good else 0.0
     at_rest = good and (settings.sequential > 0.0 or shown == 0.0)

@@ -1,4 +1,4 @@
-"""Check of a cockpit while somebody tries it: ranges of its axes, buttons that fired, what is wrong. Pure."""
+"""Check of a cockpit while a person tries it: ranges of its axes, buttons that were pressed, problems. Pure."""
 
 from typing import Any, Final
 

@@ -88,7 +88,7 @@ def moved_axis(rest: SteadyReadings, now: SteadyReadings, taken: Sequence[tuple[
     Args:
         rest: Everything at rest.
         now: Held now.
-        taken: Axes that have a meaning already: they are passed over.
+        taken: Axes that have a meaning already: they are ignored.
 
     Raises:
         DeviceError: none is, or several are.

@@ -23,7 +23,7 @@ TWO_GEARS: Final = 99.0
 
 @kernel
 def hat_mask(hat_x: float, hat_y: float) -> int:
-    """Return the directions in which a hat is held, right and up positive; what is no number is none."""
+    """Return the directions in which a hat is held, right and up positive; a value that is not finite is none."""
     held = 0
     if hat_x < 0.0:
         held |= HAT_LEFT

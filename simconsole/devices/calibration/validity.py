@@ -32,7 +32,7 @@ def mask_good(mask: float) -> bool:
 
 @kernel
 def heard(age_ticks: float, stale_ticks: float) -> bool:
-    """Return whether a device has answered lately; an age that is none is never."""
+    """Return whether a device has answered lately; False for an age that is not finite."""
     if not is_finite(age_ticks):
         return False
     return 0.0 <= age_ticks <= stale_ticks

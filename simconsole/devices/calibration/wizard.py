@@ -1,4 +1,4 @@
-"""Calibration step by step: what is asked, in which order, and the profile that comes of it.
+"""Calibration step by step: the questions, their order, and the resulting profile.
 
 It reaches the outside through three functions: ask a question, print a line, read the devices while they are held.
 """
@@ -48,11 +48,11 @@ _GEARS: Final = 7
 
 
 class Skipped(Exception):  # nothing went wrong
-    """The person has no such thing."""
+    """The person has no such part (pedal, lever, button)."""
 
 
 class Entry(msgspec.Struct, frozen=True):
-    """What a device is, for its role."""
+    """A device that is plugged in: its name, and how many axes, buttons and hats it has."""
 
     name: str
     axes: int
@@ -61,7 +61,7 @@ class Entry(msgspec.Struct, frozen=True):
 
 
 class Wizard:
-    """Asks for one thing after the other until a profile is whole."""
+    """Asks for one input after the other until a profile is complete."""
 
     def __init__(
         self, base: CockpitProfile, entries: dict[DeviceKey, Entry], *, ask: Ask, say: Say, look: Look

@@ -1,7 +1,7 @@
-"""What the person's hands do to the wheel, estimated: no wheel of this class measures torque. Pure kernels.
+"""Estimate of the person's torque on the wheel: no wheel of this class measures torque. Pure kernels.
 
-A model of the rim turns under the motor's torque and the estimate; where the real wheel goes elsewhere, the person is
-the reason, and the estimate follows (a tracking filter of three states: angle, rate, torque).
+A model of the rim turns under the motor's torque and the estimate; where the real wheel deviates from it, the person
+is the reason, and the estimate follows (a tracking filter of three states: angle, rate, torque).
 """
 
 from typing import Final, NamedTuple
@@ -11,9 +11,9 @@ from simconsole.devices.force_feedback.rim import Rim, turn
 from simconsole.values.kernels import clip, kernel
 
 HUMAN_LIMIT_NM: Final = 30.0
-"""More than two arms do; keeps the estimate finite whatever the wheel reports."""
+"""More than two arms can apply; keeps the estimate finite whatever the wheel reports."""
 STUCK_S: Final = 0.3
-"""While the wheel sticks, friction may hold up what the estimate says: it goes to the smallest that explains rest."""
+"""In static friction any torque up to the friction fits: the estimate decays to the smallest that explains rest."""
 HANDS_S: Final = 0.12
 HANDS_OFF_SHARE: Final = 0.6
 

@@ -11,7 +11,7 @@ OBSERVER_RADPS: Final = 50.0
 
 
 class ForceSettings(NamedTuple):
-    """What the wheel's motor works under; `max_torque_nm` 0: there is none."""
+    """The settings of the wheel's motor; `max_torque_nm` 0: there is none."""
 
     max_torque_nm: float
     inertia_kgm2: float

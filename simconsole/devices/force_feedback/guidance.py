@@ -1,9 +1,9 @@
-"""Haptic guidance: in SHARED the controller speaks to the person's hands through the wheel. Pure kernels.
+"""Haptic guidance: in SHARED the controller applies torque to the wheel in the person's hands. Pure kernels.
 
 The law of four design choices (van Paassen, Boink, Abbink, Mulder, Mulder 2017, as in tud-hri/joan fdcacontroller.py):
 what the controller wants is its reference; support and feedback help to hold it against the car, authority is extra
-stiffness towards it. A command carries one angle and no parts, so that its slow part is taken for the road's bend (feed
-forward) and what is quicker for the correction (feedback).
+stiffness towards it. A command carries a single angle, so its slow part is taken as following the road's bend (feed
+forward), the rest as the correction (feedback).
 """
 
 from typing import Final, NamedTuple
@@ -44,14 +44,14 @@ def guidance_reference(
 
 @kernel
 def guidance(now: GuidanceReference, rim: Rim, rolling: float, share: float, force: ForceSettings) -> float:
-    """Return the guidance in N m, left-positive, bounded so that a person's hands always win.
+    """Return the guidance in N m, left-positive, bounded so that a person can always override it.
 
     share * (LoHS k slow + SoHF k (ref - slow) + LoHA (ref - angle) - b rate), k the car's own stiffness.
 
     Args:
         now: The controller's reference.
         rim: The wheel as estimated.
-        rolling: 0 (standing) to 1: how far the car's own torque is there.
+        rolling: 0 (standing) to 1: the share of the car's own torque that is in force.
         share: The controller's authority over steering, 0 to 1.
         force: Of this drive.
     """

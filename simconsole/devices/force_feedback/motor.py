@@ -1,7 +1,7 @@
 """The console's end of the wheel's motor: when a level is written, when the effect is started again, when it ends.
 
 Pure: time comes in with the clock, the device is a `HapticPort`. The effect lasts 200 ms and is started again every
-50 ms while ticks come: a loop that stands still, or a process that is stopped, lets go by itself.
+50 ms while ticks come: when the loop stands still or the process is stopped, the force ends by itself.
 """
 
 from collections.abc import Callable
@@ -82,7 +82,7 @@ class SimulatedWheelPort:
 
     @property
     def capability(self) -> Capability:
-        """Force, and nothing to set."""
+        """Constant force; no gain, autocentre or damper."""
         return Capability("simulated wheel", constant=self._open)
 
     def write(self, level: float) -> None:
@@ -128,7 +128,7 @@ class WheelMotor:
             port: The device.
             force: Its profile.
             clock_s: The time of a snapshot in s: real in a paced drive, simulated in any other.
-            say: Takes one line when there is no force, or no longer, or again.
+            say: Called with one line when there is no force, when it is lost and when it is back.
         """
         self._port = port
         self._force = force
@@ -154,7 +154,7 @@ class WheelMotor:
         return self.failure or self._port.capability.name
 
     def publish(self, snapshot: Snapshot) -> None:
-        """Hand one tick's torque to the device: on change and within its rate; nothing else keeps it going."""
+        """Write one tick's torque to the device, on change and within its rate; only this keeps the effect running."""
         if not self.obeys:
             return
         try:
@@ -215,7 +215,7 @@ class Source(Protocol):
 
 
 class MotorisedSource:
-    """A cockpit whose samples say whether the wheel's motor obeys: the pipeline must know what moves the wheel."""
+    """A cockpit whose samples say whether the wheel's motor obeys: the console must know what may move the wheel."""
 
     def __init__(self, source: Source, motor: WheelMotor, replugged: Callable[[], HapticPort | None]) -> None:
         """Wrap a source.

@@ -20,7 +20,7 @@ def turn(rim: Rim, torque_nm: float, inertia_kgm2: float, damping_nms: float, fr
 
     Args:
         rim: Before.
-        torque_nm: All that acts on it but its own friction.
+        torque_nm: All torque on it except its own friction.
         inertia_kgm2: Of all that turns (> 0).
         damping_nms: Viscous.
         friction_nm: Coulomb.

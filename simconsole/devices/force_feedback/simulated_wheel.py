@@ -24,7 +24,7 @@ class Arm(NamedTuple):
     damping_nms: float
     inertia_kgm2: float
     limit_nm: float
-    give_per_s: float  # how fast the hands' place follows the wheel; 0: they hold it
+    give_per_s: float  # rate at which the hands' angle follows the wheel; 0: they hold it
 
 
 HANDS_OFF: Final = Arm(0.0, 0.0, 0.0, 0.0, 0.0)
@@ -51,7 +51,7 @@ class WheelState(NamedTuple):
     radps: float
     motor_nm: float
     hands_rad: float  # where the hands want the wheel
-    human_nm: float  # what they do to it
+    human_nm: float  # their torque on it
 
 
 @kernel

@@ -1,7 +1,7 @@
-"""What the wheel's motor does: the car's torque and the wheel's own feel, or the servo that follows the road wheels.
+"""Torque of the wheel's motor: the car's torque and the wheel's own effects, or the servo that follows the road wheels.
 
-Pure kernels. The motor lets go at once, and comes back slowly, when the wheel is not trusted, the mode is one in
-which nobody is driven, the loop has stood still, or any part is not a number.
+Pure kernels. The torque goes to 0 at once, and comes back slowly, when the wheel is not trusted, the mode is one in
+which nobody is driven, the loop has stood still, or any part is not finite.
 """
 
 from typing import Final, NamedTuple
@@ -33,14 +33,14 @@ _RELEASE_PEDALS: Final = float(Notice.RELEASE_PEDALS)
 _STANDING: Final = int(Event.LOOP_STALL | Event.PAUSE)
 
 FRICTION_RADPS: Final = 1.0
-"""Rate over which simulated friction gets its sign: steeper, it would chatter through the motor's delay."""
+"""Rate over which simulated friction changes its sign; a steeper change would chatter due to the motor's delay."""
 END_STOP_NMS: Final = 1.0
 RESTING_S: Final = 0.05
-"""How fast what resting hands do is forgiven: as fast as the estimate tells resting hands from others."""
+"""Time constant with which the model follows a wheel with resting hands: that with which the estimate detects them."""
 CENTRING_RADPS: Final = 2.0
 """How fast the motor centres the wheel before a restart: a turn in 3 s, which hands that rest on it can follow."""
 CENTRING_LEAD_RAD: Final = 0.15
-"""How far its target may be ahead of the wheel: hands that hold the wheel feel no more than this times the servo."""
+"""Largest lead of the centring target over the wheel: a held wheel gets at most this times the servo's stiffness."""
 LONG_WAVE_RADPM: Final = 3.7
 SHORT_WAVE_RADPM: Final = 9.97
 """Two waves of rough road, 1.7 m and 0.63 m long: 6 to 32 Hz between 36 and 72 km/h, incommensurable."""
@@ -56,9 +56,9 @@ class TorqueParts(NamedTuple):
 
 
 class WheelTarget(NamedTuple):
-    """Where the wheel is to be."""
+    """The wheel's target position."""
 
-    known: bool  # all that it and the torque are made of is finite
+    known: bool  # all inputs of the target and of the torque are finite
     rim: Rim  # where the road wheels are: the servo goes there
     asked: GuidanceReference  # where the controller would have the person's hands
 
@@ -81,7 +81,7 @@ def servo(target: Rim, rim: Rim, force: ForceSettings) -> float:
 
 @kernel
 def soft_clip(torque_nm: float, force: ForceSettings) -> float:
-    """Return the torque below the motor's limit: as it is up to the knee, then bent, so that detail is not cut off.
+    """Return the torque below the motor's limit: unchanged up to the knee, then compressed, so that detail is kept.
 
     Beyond the knee k, with room r above it: k + r x / (r + x) for an excess x; continuous in value and slope.
     """
@@ -108,7 +108,7 @@ def end_stop(rim: Rim, force: ForceSettings) -> float:
 
 @kernel
 def road(vehicle: VehicleState, rolling: float, force: ForceSettings) -> float:
-    """Return the road's texture: of the distance alone, so that it stands still with the car and replays."""
+    """Return the torque of the road's texture: a function of distance only, so it rests with the car and replays."""
     waves = sin(LONG_WAVE_RADPM * vehicle.distance_m) + sin(SHORT_WAVE_RADPM * vehicle.distance_m)
     return 0.5 * force.texture_nm * rolling * waves
 
@@ -178,7 +178,7 @@ def wheel_target(
     force: ForceSettings,
     tick_s: float,
 ) -> WheelTarget:
-    """Return where the wheel is to be; where something is not a number, it is to stay, and this is not known."""
+    """Return the wheel's target; where an input is not finite, the last target with `known` False."""
     lock = force.end_stop_rad
     wanted_rad = vehicle.road_wheel_rad * force.hand_wheel_per_road_wheel
     known = is_finite(wanted_rad) and is_finite(vehicle.hand_wheel_torque_nm) and is_finite(vehicle.vx_mps)
@@ -231,8 +231,8 @@ def unattended_motion(
 ) -> UnattendedWheel:
     """Return where the motor alone would have the wheel: the rim under a servo of its own, with nobody at it.
 
-    Hands that only rest on the rim drag and add inertia: while they do no more than that against the servo, the model
-    goes to where the wheel is. So a take-over needs both, the angle and a person's torque.
+    Hands that only rest on the rim add drag and inertia: while the person's torque is no more than that, the model is
+    drawn to the wheel's real angle. So a take-over needs both, the angle and a person's torque.
 
     Args:
         driver: Angle and rate read now.

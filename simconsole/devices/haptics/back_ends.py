@@ -1,4 +1,4 @@
-"""Which way to the wheel's motor: SDL first, evdev where SDL finds none, or the one that the profile names."""
+"""The interface to the wheel's motor: SDL first, evdev where SDL finds none, or the one that the profile names."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""What a wheel's Linux driver lets one set beside its effects: gain and autocentre in sysfs, found, kept and put back.
+"""Settings of a wheel's Linux driver beside its effects: gain and autocentre in sysfs, found, saved and restored.
 
 Neither SDL nor evdev can read them; hid-lg4ff, new-lg4ff and hid-tmff2 offer them as files, 0 to 65535. All of it is
 optional: where a file is missing or forbidden, what the profile says is left behind.
@@ -49,7 +49,7 @@ class RestoringPort:
 
     @property
     def capability(self) -> Capability:
-        """The motor's."""
+        """What the motor can do."""
         return self._port.capability
 
     def close(self) -> None:

@@ -124,7 +124,7 @@ class EvdevHaptics:
         return self._upload(effect)
 
     def _add_damper(self, strength: int) -> None:
-        """Add a damper; a device that refuses it after all goes without: it is only comfort."""
+        """Add a damper; where the device refuses it after all, work without one: it is only comfort."""
         effect = bytearray(_EFFECT_BYTES)
         _HEAD.pack_into(effect, 0, _DAMPER, -1, _STEERING, 0, 0, _LENGTH_MS, 0)
         _CONDITION.pack_into(effect, _UNION_AT, _WHOLE, _WHOLE, strength, strength, 0, 0)

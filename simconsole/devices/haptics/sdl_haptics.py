@@ -1,4 +1,4 @@
-"""Force through SDL's haptics, by ctypes on the one SDL that pygame has mapped. All of its ctypes is here.
+"""Force through SDL's haptics, by ctypes on the one SDL that pygame has mapped. All ctypes of SDL's haptics is here.
 
 One constant effect of 200 ms in the direction of the steering axis, its level rewritten in place; the device's own
 damper where there is one. SDL_HapticOpenFromJoystick sets neither gain nor autocentre, so that both are set here and
@@ -202,7 +202,7 @@ class SdlHaptics:
         self._open = True
 
     def _add_damper(self, strength: int) -> None:
-        """Add a damper; a device that refuses it after all goes without: it is only comfort."""
+        """Add a damper; where the device refuses it after all, work without one: it is only comfort."""
         effect = _Effect()
         damper = effect.condition
         damper.type, damper.length, damper.direction.type = _DAMPER, _LENGTH_MS, _STEERING_AXIS

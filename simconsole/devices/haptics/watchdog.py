@@ -1,12 +1,12 @@
-"""A small process beside the console that ends every force when the console no longer says that it lives.
+"""A small process beside the console that ends every force when the console's heartbeat stops.
 
-The console counts a beat in shared memory whenever it starts its effects again (every 50 ms; watchdog_client.py). When
-100 ms pass without one while force is on, or when the console ends, the watchdog stops every effect of the wheel: only
-its owner may change an effect, but any process may stop it (`input_ff_event`, drivers/input/ff-core.c). Effects last
-200 ms at most, so that force also ends where there is no watchdog or it is late.
+The console counts a heartbeat in shared memory whenever it starts its effects again (every 50 ms; watchdog_client.py).
+When 100 ms pass without one while force is on, or when the console ends, the watchdog stops every effect of the wheel:
+only its owner may change an effect, but any process may stop it (`input_ff_event`, drivers/input/ff-core.c). Effects
+last 200 ms at most, so that force also ends where there is no watchdog or it is late.
 
-Run as `python -m simconsole.devices.haptics.watchdog`, told what to watch by a line of JSON on standard input, whose
-end is the end of the console. Loads neither numpy nor anything else that is large.
+Run as `python -m simconsole.devices.haptics.watchdog`. A line of JSON on standard input says what to watch; when the
+input closes, the console has ended. Loads neither numpy nor any other large library.
 """
 
 import json
@@ -27,12 +27,12 @@ POLL_S: Final = 0.02
 STALL_S: Final = 0.1
 RETRY_S: Final = 0.5
 BEATS, FORCE = 0, 1
-"""Words of the shared memory, int64: the beats so far; 1 while force is on."""
+"""Indices of the int64 values in shared memory: heartbeats so far; 1 while force is on."""
 MEMORY_BYTES: Final = 16
 
 
 class StallDetector:
-    """When silence is a stall. Pure: time comes in."""
+    """Decides when a missing heartbeat is a stall. Pure: time comes in."""
 
     def __init__(self) -> None:
         self._seen = -1
@@ -46,12 +46,12 @@ class StallDetector:
         return force and not self._done and now_s - self._since_s > STALL_S
 
     def stopped(self) -> None:
-        """Note that this silence has been dealt with."""
+        """Note that the effects of this stall have been stopped."""
         self._done = True
 
 
 class EffectStopper:
-    """The wheel's event device, opened as soon as it is there, so that nothing has to be found when it counts."""
+    """The wheel's event device, opened as soon as it is there, so that stopping its effects takes no search."""
 
     def __init__(self, identity: tuple[int, int]) -> None:
         self._identity = identity
@@ -105,8 +105,8 @@ def watch(memory: "memoryview[int]", stopper: EffectStopper, pipe: int) -> None:
 
 
 def main() -> int:
-    """Be the watchdog."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the console's; the pipe tells when to end
+    """Run the watchdog; return its exit code."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the console handles Ctrl-C; the pipe tells when to end
     line = read_told()
     if not line:
         return 1
@@ -114,7 +114,7 @@ def main() -> int:
     descriptor = os.open(told["memory"], os.O_RDONLY)
     memory = mmap.mmap(descriptor, MEMORY_BYTES, access=mmap.ACCESS_READ)
     os.close(descriptor)
-    Path(told["memory"]).unlink(missing_ok=True)  # both sides have it now: nothing is left behind, whoever is killed
+    Path(told["memory"]).unlink(missing_ok=True)  # both sides have it mapped: no file stays behind, whichever is killed
     watch(memoryview(memory).cast("q"), EffectStopper((told["vendor_id"], told["product_id"])), sys.stdin.fileno())
     return 0
 

@@ -19,7 +19,7 @@ END_S: Final = 2.0
 
 
 class Watchdog:
-    """The watchdog of a cockpit's wheel; one serves however often the wheel is plugged in again."""
+    """The watchdog of a cockpit's wheel; it stays the same when the wheel is plugged in again."""
 
     def __init__(self, identity: tuple[int, int]) -> None:
         """Start it.
@@ -46,7 +46,7 @@ class Watchdog:
 
     @property
     def process_id(self) -> int | None:
-        """Of its process; None when it has ended."""
+        """Id of its process; None when it has ended."""
         return None if self._process is None or self._process.poll() is not None else self._process.pid
 
     def beat(self, force: bool) -> None:
@@ -65,7 +65,7 @@ class Watchdog:
 
     def _start(self, identity: tuple[int, int]) -> None:
         told = {"memory": str(self._path), "vendor_id": identity[0], "product_id": identity[1]}
-        # Its group is its own, so that what stops or ends the console's group leaves the watchdog to act.
+        # A process group of its own: a signal that stops or ends the console's group must leave the watchdog running.
         self._process = spawn(["-m", "simconsole.devices.haptics.watchdog"], told=json.dumps(told).encode() + b"\n")
 
 
@@ -78,7 +78,7 @@ class WatchdogPort:
 
     @property
     def capability(self) -> Capability:
-        """That of the motor."""
+        """What the motor can do."""
         return self._port.capability
 
     def write(self, level: float) -> None:
@@ -102,7 +102,7 @@ class WatchdogPort:
 
 
 def open_watchdog(identity: tuple[int, int], say: Callable[[str], None]) -> Watchdog | None:
-    """Start a watchdog; where none can be had, say so: effects still end by themselves."""
+    """Start a watchdog; where none can be started, say so: effects still end by themselves."""
     try:
         return Watchdog(identity)
     except DeviceError as error:

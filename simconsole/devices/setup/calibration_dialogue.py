@@ -1,4 +1,4 @@
-"""`simconsole devices calibrate`: the wizard on real devices, or on virtual ones that do what they are asked."""
+"""`simconsole devices calibrate`: the wizard on real devices, or on virtual ones that do what each step asks for."""
 
 import time
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""`simconsole devices feel`: every force once, gently, the sign first. A force that turns the wheel is measured."""
+"""`simconsole devices feel`: play every force once, gently, the sign test first. Measure those that turn the wheel."""
 
 import math
 from collections.abc import Callable
@@ -24,7 +24,7 @@ from simconsole.values.state_vector import LAYOUT, PLATFORM_AT, Snapshot
 from simconsole.values.units import DEG_PER_RAD
 
 TURNED_DEG: Final = 3.0
-"""A wheel that turned this far under a steady force shows by itself which way it pulled."""
+"""From this angle on the wheel's own motion shows the direction of a steady force."""
 PUSH_S: Final = 0.5
 PAUSE_S: Final = 0.6
 LET_GO_S: Final = 0.25
@@ -96,7 +96,7 @@ def check_force_feedback(
             turned_deg = bench.play(kind, peak_nm, pace(tick_hz))
             results[kind.name] = _judge(kind, turned_deg, ask, say, force)
             if kind.name == "sign" and not results["sign"]["ok"]:
-                break  # every other force would be the wrong way round too
+                break  # every other force would have the wrong sign, too
         results["let go"] = _let_go(bench, peak_nm, pace(tick_hz), say)
     return {
         "cockpit": cockpit.title,
@@ -123,7 +123,7 @@ def _judge(kind: Force, turned_deg: float, ask: Callable[[str], str], say: Say, 
 
 
 def _let_go(bench: "_Bench", peak_nm: float, wait: Pace, say: Say) -> dict[str, Any]:
-    """Nothing starts the effect again: it must end by itself. Measured where the wheel can be trusted to turn."""
+    """Test by the wheel's motion that an effect which is not started again ends by itself; return the result."""
     moved_deg = bench.abandon(peak_nm, wait)
     say(f"let go: {moved_deg:.0f} deg further after {LET_GO_S:g} s without a tick")
     return {"ok": bench.is_slowing, "how": "the effect ended by itself", "turned_deg": round(moved_deg, 1)}

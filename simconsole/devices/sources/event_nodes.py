@@ -1,4 +1,4 @@
-"""Linux' event devices, found by USB identity: what the motor, the watchdog and `devices check` ask of them directly.
+"""Linux' event devices, found by USB identity: the direct access of motor, watchdog and `devices check`.
 
 Layout and numbers: linux/input.h, of 64-bit machines. Loads nothing but the standard library: the watchdog is small.
 """

@@ -1,4 +1,4 @@
-"""What the kernel and the wheel's driver do to a reading before anybody sees it, read where that is permitted.
+"""How the kernel and the wheel's driver alter a reading before SDL sees it, read where that is permitted.
 
 Fuzz and flat of an axis: Documentation/input/input-programming.rst (a T300 was seen with 255 of 65535, hid-tmff2#30).
 The steering range: the file `range` of the wheel's driver (hid-tmff2, new-lg4ff), to which the axis is scaled.
@@ -80,7 +80,7 @@ def problems(limits: KernelLimits, cockpit: CockpitProfile) -> list[str]:
 
 
 def notes(limits: KernelLimits) -> list[str]:
-    """Return what a person should know, one line each: dead zones of the kernel, or that it could not be asked."""
+    """Return what a person should know, one line each: dead zones of the kernel, or that they could not be read."""
     if limits.refused:
         return [f"the kernel's dead zone and the wheel's range could not be read: {limits.refused}"]
     found = []

@@ -1,4 +1,4 @@
-"""SDL's joystick half, started once per process and stopped when its last user lets go."""
+"""SDL's joystick half, started once per process and stopped when its last user releases it."""
 
 import os
 from typing import Any, Final
@@ -14,7 +14,7 @@ _ENVIRONMENT: Final = {
 
 
 class _Runtime:
-    """Who uses SDL, and what this module itself started."""
+    """Number of SDL's users, and what this module itself started."""
 
     users = 0
     started_display = False
@@ -23,7 +23,7 @@ class _Runtime:
 def acquire() -> Any:
     """Start SDL's joysticks and return the pygame module. Every call needs one `release`.
 
-    The environment is completed, never changed, and before pygame is imported: SDL reads it then.
+    Missing environment variables are set, existing ones kept, before pygame is imported: SDL reads them then.
 
     Raises:
         DeviceError: pygame is missing or SDL refuses.
@@ -37,7 +37,7 @@ def acquire() -> Any:
     if _Runtime.users == 0:
         try:
             _Runtime.started_display = not pygame.display.get_init()
-            pygame.display.init()  # the event queue hangs on it
+            pygame.display.init()  # the event queue needs it
             pygame.joystick.init()
         except pygame.error as error:
             raise DeviceError(f"SDL: joysticks: {error}: a working SDL") from error
@@ -48,7 +48,7 @@ def acquire() -> Any:
 
 
 def release() -> None:
-    """Let go; the last user's call stops what the first one's started."""
+    """Release SDL; the last user's call stops what the first one's started."""
     if _Runtime.users == 0:
         return
     _Runtime.users -= 1

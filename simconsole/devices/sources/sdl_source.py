@@ -14,9 +14,9 @@ from simconsole.values.errors import DeviceError, DeviceModeError, DeviceNotFoun
 from simconsole.values.signals import NEVER_TICKS, DeviceSample
 
 INVERTED_SHARE: Final = 0.95
-"""An accelerator beyond this at the start: nobody sits down on it, the profile has its ends swapped.
+"""An accelerator beyond this at the start: nobody presses it then, so the profile has its ends swapped.
 
-Brake and clutch are no sign: people start with a foot on either.
+Brake and clutch are no evidence: people start with a foot on either.
 """
 
 
@@ -150,7 +150,7 @@ class SdlSource:
         return None if bound is None else bound.instance_id
 
     def close(self) -> None:
-        """Let the devices go. Twice is harmless."""
+        """Release the devices. Twice is harmless."""
         if self._open:
             self._open = False
             self._bound.clear()

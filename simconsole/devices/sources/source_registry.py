@@ -1,4 +1,4 @@
-"""Where device samples come from: one protocol, a lazy registry of what stands behind it."""
+"""Where device samples come from: one protocol, and a lazy registry of its implementations."""
 
 from pathlib import Path
 

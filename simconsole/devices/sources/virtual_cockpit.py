@@ -25,7 +25,7 @@ class VirtualCockpit:
         self._keys = {binding.role: (binding.vendor_id, binding.product_id) for binding in profile.roles}
         self._specs = {(spec.vendor_id, spec.product_id): spec for spec in specs(profile)}
         self._devices: dict[tuple[int, int], VirtualDevice] = {}
-        self.plugged = 0  # how often a device was plugged in: then it is at rest, whatever was written before
+        self.plugged = 0  # number of plug-ins; each puts a device at rest, whatever was written before
         self._axes: dict[tuple[RoleName, int], float] = {}
         self._buttons: dict[RoleName, float] = {}
         self._hat = (0, 0)
@@ -37,7 +37,7 @@ class VirtualCockpit:
             raise
 
     def write(self, sample: DeviceSample) -> None:
-        """Put axes and buttons where `sample` says. Devices that are unplugged are passed over."""
+        """Put axes and buttons where `sample` says. Devices that are unplugged are skipped."""
         pedals = self._profile.pedals
         self._set_axis("wheel", self._profile.wheel.axis, sample.wheel_axis)
         self._set_axis("pedals", pedals.throttle.axis, sample.throttle_axis)
@@ -47,7 +47,7 @@ class VirtualCockpit:
         if pedals.handbrake is not None:
             self._set_axis(self._profile.played_by("handbrake"), pedals.handbrake.axis, sample.handbrake_axis)
         self._set_hat(int(sample.hat_x), int(sample.hat_y))
-        if self._keys["wheel"] == self._keys["shifter"]:  # one device plays both: its buttons are those of both
+        if self._keys["wheel"] == self._keys["shifter"]:  # one device has both roles: it gets the buttons of both
             self._set_buttons("wheel", float(int(sample.wheel_buttons) | int(sample.shifter_buttons)))
             return
         self._set_buttons("wheel", sample.wheel_buttons)

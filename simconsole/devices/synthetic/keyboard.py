@@ -18,7 +18,7 @@ Keys = Callable[[], tuple[int, int]]
 STEER_MAX_RAD: Final = 200.0 * RAD_PER_DEG
 STEER_RADPS: Final = 220.0 * RAD_PER_DEG
 CENTRE_RADPS: Final = 400.0 * RAD_PER_DEG
-"""The hands let go faster than they turn, as the self-aligning torque would."""
+"""The wheel centres faster than the hands turn it, as under the self-aligning torque."""
 
 # (rising, falling) share per s of each pedal: half a second for a full throttle, a second for the clutch to come up
 THROTTLE_PER_S: Final = (2.0, 5.0)
@@ -46,7 +46,7 @@ _BUTTONS: Final = (
 
 
 FRESH_S: Final = 0.05
-"""The window tells the keys at its frame rate, not at the tick's: between two frames the hands go on moving."""
+"""Longest age of keys that count: the window reports them once per frame, and the hands move between frames, too."""
 
 
 class KeyboardSource:
@@ -61,7 +61,7 @@ class KeyboardSource:
         self._intent = Intent()
 
     def poll(self, tick: int) -> DeviceSample:
-        """Return the cockpit one tick on. While the window is silent nothing moves; the age tells."""
+        """Return the cockpit one tick on. While the window is silent nothing moves; the growing age says so."""
         mask, age_ticks = self._keys()
         if age_ticks <= self._fresh_ticks:
             self._intent = self._moved(Key(mask))

@@ -6,7 +6,7 @@
     tick,wheel_axis,throttle_axis,...
     1,0.0,1.0,...
 
-Every tick stands there: time that goes back, repeats or jumps is refused with its line. Floats are written with
+Every tick has a line: time that goes back, repeats or jumps is refused, naming the line. Floats are written with
 `repr`, so that reading gives the same bits.
 """
 
@@ -22,7 +22,7 @@ from simconsole.values.signals import NO_SAMPLE, DeviceSample
 SCHEMA: Final = 1
 COLUMNS: Final = ("tick", *DeviceSample._fields)
 MAX_LINE: Final = 1000
-"""Longest line that is looked at: a file without line ends must not be read into memory."""
+"""Longest line that is read: a file without line ends must not be read into memory."""
 
 _HEADER: Final = re.compile(r"# simconsole trace schema (\d{1,9}) tick_hz (\d{1,9}) cockpit (\S{1,255})")
 
@@ -138,7 +138,7 @@ def aged(sample: DeviceSample, ticks: float) -> DeviceSample:
 
 
 class TracePlayer:
-    """Plays rows: the first poll gives the first row. After the last row the devices are silent: their ages grow."""
+    """Plays samples: the first poll gives the first one. After the last the devices are silent: their ages grow."""
 
     def __init__(self, rows: Iterator[tuple[int, DeviceSample]]) -> None:
         self._rows = rows
@@ -147,7 +147,7 @@ class TracePlayer:
         self._sample = NO_SAMPLE
 
     def poll(self, tick: int) -> DeviceSample:
-        """Return the row of this tick.
+        """Return the sample of this tick.
 
         Raises:
             ProfileError: the trace's next line cannot be used.

@@ -1,4 +1,4 @@
-"""The driver on the ROS side: a program that speaks nothing but rosbridge and follows a course (shell).
+"""The driver on the ROS side: a program that uses only rosbridge and follows a course (shell).
 
 It answers every odometry with one command that carries the odometry's own stamp, so that a console in lockstep knows
 which state the command was made for; also while a person drives, so that engagement finds a fresh command.
@@ -24,9 +24,9 @@ COMMAND: Final = "/control/command/control_cmd"
 CONTROL: Final = "autoware_control_msgs/Control"
 
 _DRIVING: Final = (Mode.AUTONOMOUS, Mode.SHARED, Mode.TAKEOVER_REQUESTED)
-"""In the other modes a remote share is the console's own: a parking hold or a stop."""
+"""In the other modes the remote share belongs to the console itself: a parking hold or a stop."""
 _PATIENCE_S: Final = 10.0  # for the console to open its port
-_WAIT_S: Final = 0.25  # how often `stop` is asked while nothing comes
+_WAIT_S: Final = 0.25  # how often `stop` is checked while no message comes
 
 
 def run(
@@ -41,12 +41,12 @@ def run(
     certificate: str | None = None,
     drive: str | None = None,
 ) -> dict[str, Any]:
-    """Drive until the server says good-bye or is gone for `patience_s`, or `stop()` says so; return statistics.
+    """Drive until the server ends the session, is gone for `patience_s`, or `stop()` is true; return statistics.
 
     Args:
         url: the rosbridge server, `ws://HOST:PORT`.
         course_name: a world profile, by name or path.
-        stop: asked after every message and four times a second.
+        stop: called after every message and four times a second.
         namespace: put before every topic, `/car1`.
         rename: names of topics in place of the standard ones; they win over the namespace.
         patience_s: how long to try to connect, at the start and after a connection was lost.
@@ -56,7 +56,7 @@ def run(
 
     Raises:
         ProfileError: the course cannot be read.
-        BridgeError: nobody answers at `url`.
+        BridgeError: no server answers at `url`.
         OtherDriveError: the server there belongs to another drive.
     """
     tracker = Tracker(Course(load("worlds", course_name, WorldProfile, max_bytes=MAX_DATA_BYTES)))
@@ -87,16 +87,16 @@ def _answer(
     stop: Callable[[], bool],
     patience_s: float,
 ) -> str:
-    """Answer odometry by commands (`topics`), until `stop` or nobody is there any more; return which.
+    """Answer odometry with commands (`topics`) until `stop` or until the server is gone; return which of both.
 
-    A lost connection is made again.
+    A lost connection is opened again.
 
     Raises:
-        BridgeError: the server has said good-bye.
+        BridgeError: the server has ended the session.
     """
     command = client.registry.struct(CONTROL)()
     odometry_topic, command_topic = topics
-    # A console says who drives; a server that says nothing has given us the car.
+    # A console publishes who drives; with a server that does not, this program drives from the start.
     engaged = True
     heard_s = time.monotonic()
     while not stop():

@@ -24,7 +24,7 @@ HEADING_GAIN: Final = 0.75
 CHARACTERISTIC_MPS: Final = 25.0
 """Speed at which the driver expects the car to turn half as sharply as its wheels point."""
 HAND_DEGPS: Final = 1000.0
-"""What a practised driver's hands reach for a moment."""
+"""Highest hand-wheel rate of a practised driver, held for a short time."""
 
 
 class Lane(NamedTuple):
@@ -128,7 +128,7 @@ class LaneChanger:
         return Intent(hand_wheel_rad=self._hand, throttle=throttle, gear=1.0)
 
     def _steer(self, snapshot: Snapshot, s_m: float) -> float:
-        """Turn as the path does a moment ahead, and back to it: side and heading of where the car will be then."""
+        """Steer by the path's curvature at a preview point, and by the offset and heading predicted there."""
         seen = snapshot.vehicle
         speed = max(seen.vx_mps, 1.0)
         middle = 0.4 * self._car.wheelbase_m  # about the centre of gravity

@@ -11,7 +11,7 @@ from simconsole.values.state_vector import Snapshot
 from simconsole.values.units import MPS_PER_KMH
 
 SETTLE_S: Final = 0.6
-"""Pedals at rest until the console has seen them; and what the automatic needs to leave its gear."""
+"""Pedals at rest until the console has seen them, and the time the automatic needs to leave its gear."""
 SPARE_MPS: Final = 1.0
 """The run-up goes beyond the test's speed; the car rolls down to it with nothing pressed."""
 
@@ -28,7 +28,7 @@ def keep_line(snapshot: Snapshot, ratio: float) -> float:
 
 
 class RunUp:
-    """A pilot that gets to a speed on the x axis and then hands over to the test."""
+    """A pilot that reaches a speed on the x axis and then hands over to the test."""
 
     def __init__(self, speed_kmh: float, ratio: float, steps: Steps, rolling: bool = True, most: float = 1.0) -> None:
         """Prepare the run-up.

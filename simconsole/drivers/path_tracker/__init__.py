@@ -1,1 +1,1 @@
-"""The ROS side's driver: a program that only speaks rosbridge."""
+"""The path tracker of the ROS side's driver: steering, planned speed, way back to the path. Pure."""

@@ -45,7 +45,7 @@ def plan_speed(course: Course, comfort: Comfort, top_mps: float | None = None) -
     top = (course.speed_limit_mps if top_mps is None else top_mps) - comfort.margin_mps
     bend = np.sqrt(comfort.lateral_mps2 / np.maximum(np.abs(curvature), 1e-9))
     speed = np.minimum(top, bend)
-    # What the smoothing below will mix into a bend from beside it must not be faster than the bend itself.
+    # The smoothing below averages over a bend's neighbourhood: there, too, no speed may exceed the bend's own.
     reach = max(1, round(0.25 * comfort.smoothing_s * float(speed.min()) / step))
     speed = np.min([np.roll(speed, shift) for shift in range(-reach, reach + 1)], axis=0)
     speed = _limited(speed, comfort.accelerate_mps2, step)

@@ -93,8 +93,8 @@ class Tracker:
     def step(self, seen: VehicleMotion, engaged: bool = True) -> TrackerCommand:
         """Return the command for the coming period.
 
-        While not `engaged` the command stays the one that would be right to begin with: the memory of steering and
-        acceleration follows the car instead of the own commands.
+        While not `engaged` the command is the one to begin with at an engagement: the memory of steering and
+        acceleration follows the car instead of the tracker's own commands.
         """
         found = self.s_m is not None
         place = self.course.project(seen.x_m, seen.y_m, self.s_m, seen.yaw_rad)

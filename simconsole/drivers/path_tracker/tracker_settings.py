@@ -1,4 +1,4 @@
-"""What the path tracker knows of its car and wants of the drive."""
+"""Parameters of the path tracker: the car's model, the comfort limits, the timing and the cost."""
 
 from typing import Final, NamedTuple
 

@@ -31,7 +31,7 @@ class TrackingStatistics:
         self.last_m = s_m
 
     def results(self) -> dict[str, Any]:
-        """Return the statistics; what needs an engaged autopilot is None without one."""
+        """Return the statistics; figures of engaged driving are None where the autopilot never drove."""
         count = self.engaged
         return {
             "commands": self.commands,

@@ -106,7 +106,7 @@ class PersonBehaviour:
         return self.phase in (Phase.SIT, Phase.WATCH, Phase.DONE)
 
     def carry_hands(self, hand_wheel_rad: float) -> None:
-        """Let the hands be where the wheel has taken them."""
+        """Set the hands to the angle to which the wheel has moved them."""
         self._intent = self._intent._replace(hand_wheel_rad=hand_wheel_rad)
 
     def decide(self, view: View) -> Intent:
@@ -230,7 +230,7 @@ class PersonBehaviour:
             self._go(Phase.STAND, view)
         clutch = 1.0 if view.speed_mps < CLUTCH_BY_MPS or self._intent.clutch > 0.0 else 0.0
         if view.gear != self._intent.gear:
-            clutch = 1.0  # the automatic has left another gear in: clutch first, then the lever counts again
+            clutch = 1.0  # the automatic has left another gear in: the clutch gives the lever its effect back
         return _PedalTarget(0.0, self._plan.habits.brake, clutch)
 
     def _stand(self, view: View) -> _PedalTarget:
@@ -248,7 +248,7 @@ class PersonBehaviour:
         return _PedalTarget(0.0, self._plan.habits.brake, 1.0)
 
     def _may_stop(self, view: View) -> bool:
-        """After everything else in the plan; without a moment of its own, as soon as the person has taken back."""
+        """Stop after everything else in the plan; without a `stop` of its own, as soon as the person has taken back."""
         plan = self._plan
         if plan.autonomy is not None and not self._has_driven_itself:
             return False
@@ -260,7 +260,7 @@ class PersonBehaviour:
         if self.phase in (Phase.WATCH, Phase.DONE):
             return self._intent.hand_wheel_rad
         if self.phase is Phase.TAKE_BACK:
-            firmness = max(1.0, self._in_phase_s(view))  # further still, should the car not let go
+            firmness = max(1.0, self._in_phase_s(view))  # turns further while the car does not hand over
             return self._steady_rad + firmness * self._plan.habits.take_back_deg * RAD_PER_DEG
         if abs(view.speed_mps) < STANDING_MPS or self._line is None:
             return self._intent.hand_wheel_rad

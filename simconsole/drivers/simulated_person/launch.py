@@ -7,12 +7,12 @@ from simconsole.profiles.person import Habits
 from simconsole.values.units import RADPS_PER_RPM, RPM_PER_RADPS
 
 BITE_FROM: Final = 0.8
-"""Clutch pedals transmit nothing above this: the foot may be quick until there."""
+"""Above this pedal position a clutch transmits nothing, so the foot moves quickly down to it."""
 HOLD_RPM: Final = 1250.0
 """Where a foot stops letting the clutch up in a launch: faster engine, further up; slower engine, back down."""
 SENSE_RPM: Final = 250.0
 ALARM: Final = -6.0
-"""How much quicker than up the foot goes down before the engine dies."""
+"""Factor by which the foot presses the clutch faster than it releases it, to keep the engine from stalling."""
 LAUNCH_GAIN_S: Final = 0.006
 LAUNCH_THROTTLE: Final = 0.2
 

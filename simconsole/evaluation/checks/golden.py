@@ -1,4 +1,4 @@
-"""Goldens: what a scripted drive gave when it was accepted, thinned to a readable table. Pure but for numpy.
+"""Goldens: the accepted result of a scripted drive, thinned to a readable table. Pure but for numpy.
 
 A golden is CSV text: one line per sample, every column of the state vector, `repr` of each float (exact), and the
 chained hash of the whole drive in the header. Equal hash means every bit of every tick is equal; otherwise the table
@@ -32,7 +32,7 @@ def step_ticks(tick_hz: int, rate_hz: int) -> int:
 
 
 def head(digest: str, tick_hz: int, columns: tuple[str, ...]) -> str:
-    """Return the first two lines; they are as long for any other drive of these columns."""
+    """Return the first two lines; their length depends on the columns only, so they can be overwritten at the end."""
     return f"# simconsole golden schema {SCHEMA} tick_hz {tick_hz} hash {digest}\n{','.join(('tick', *columns))}\n"
 
 
@@ -111,7 +111,7 @@ class Comparison:
                 return
 
     def first_difference(self) -> Difference | None:
-        """Return where the drive, which is over now, first left its golden; None when nowhere."""
+        """Return the first difference between the finished drive and its golden, None where there is none."""
         while self._next is not None:
             self._skip(self._next[0])
         if self._missing is not None:

@@ -9,7 +9,7 @@ from simconsole.values.kernels import Row
 from simconsole.values.state_vector import Snapshot
 
 FIRST_TICKS: Final = 4096
-"""Room is taken for so many at first, and twice as much whenever it is full."""
+"""Ticks that memory is allocated for at first; it doubles whenever it is full."""
 
 
 class MemoryRecorder:

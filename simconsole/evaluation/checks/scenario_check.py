@@ -36,7 +36,7 @@ R = TypeVar("R", bound=Recorder)
 
 
 class Verdict(NamedTuple):
-    """What became of one scenario."""
+    """The result of one scenario."""
 
     scenario: str
     passed: bool
@@ -113,7 +113,7 @@ def drive_scenario(scenario: ScenarioProfile, recorder_of: Callable[[Console], R
     ecu = ScriptedCommands(scenario.ecu, scenario.ecu_events, tick_hz)
     components = Components(devices, commands, recorder, outputs=(), pace=UnpacedPacer(), ecu=ecu)
     components = isolated(with_faults(components, resolved, tick_hz), UnpacedPacer)
-    components = components._replace(recorder=recorder)  # here a recorder that fails is a failure
+    components = components._replace(recorder=recorder)  # in a check, unlike in a drive, a failing recorder raises
     run(console, state, components, round(scenario.duration_s * tick_hz))
     return recorder
 
@@ -122,8 +122,8 @@ class Watch:
     """The recorder of a check: looks at every tick as it is driven and keeps none, so that a drive may be long.
 
     Attributes:
-        bounds: what every tick is held to.
-        samples: the golden's side.
+        bounds: checked at every tick.
+        samples: writes the golden, or compares with it.
         ticks: seen so far.
         digest: chained hash of them.
     """
@@ -165,10 +165,10 @@ class Bound:
         self._found: str | None = None
 
     def see(self, tick: int, vector: Row) -> None:
-        """Hold one tick to it; the first that breaks it is what counts."""
+        """Check one tick; the first that breaks the bound is kept."""
         if self._found is None and self._first <= tick and (self._last is None or tick <= self._last):
             value = float(vector[self._at])
-            if not self._low <= value <= self._high:  # so that NaN is never good
+            if not self._low <= value <= self._high:  # so that NaN always fails
                 self._found = f"tick {tick}: {self._column}: {value!r} not in {self._low} to {self._high}"
 
     def problem(self, ticks: int) -> str | None:
@@ -188,14 +188,14 @@ def _ticks(check: Check, tick_hz: int) -> tuple[int, int | None]:
 
 
 class Accepting:
-    """Writes what is driven as the new golden, which takes its place at the end."""
+    """Writes the drive as the new golden, which replaces the old one at the end."""
 
     def __init__(self, path: Path, tick_hz: int, columns: tuple[str, ...]) -> None:
         self._path, self._tick_hz, self._columns = path, tick_hz, columns
         self._stack = ExitStack()
 
     def __enter__(self) -> Self:
-        """Open its draft."""
+        """Open the draft of the golden."""
         self._path.parent.mkdir(exist_ok=True)
         draft = self._stack.enter_context(replaced(self._path))
         self._file = self._stack.enter_context(draft.open("w", encoding="utf-8", newline="\n"))
@@ -203,7 +203,7 @@ class Accepting:
         return self
 
     def __exit__(self, *error: Any) -> None:
-        """Put it in its place, or remove it after an error."""
+        """Replace the golden by the draft, or remove the draft after an error."""
         self._stack.__exit__(*error)
 
     def see(self, tick: int, vector: Row) -> None:
@@ -211,7 +211,7 @@ class Accepting:
         self._file.write(golden.line(tick, vector))
 
     def end(self, digest: str) -> list[str]:
-        """Write the hash of the drive into its head; what is accepted differs from nothing."""
+        """Write the hash of the drive into the golden's head; return no differences, for the drive is accepted."""
         self._file.seek(0)
         self._file.write(self._head(digest))
         return []
@@ -221,7 +221,7 @@ class Accepting:
 
 
 class Comparing:
-    """Holds what is driven against its golden."""
+    """Compares the drive with its golden."""
 
     def __init__(self, path: Path, tick_hz: int, columns: tuple[str, ...]) -> None:
         self._path, self._columns = path, columns
@@ -231,7 +231,7 @@ class Comparing:
         """Open the golden, if there is one.
 
         Raises:
-            ProfileError: it is none of this version.
+            ProfileError: it is no golden of this version.
         """
         if self._path.is_file():
             self._file = self._path.open(encoding="utf-8", newline="")
@@ -250,7 +250,7 @@ class Comparing:
             self._comparison.see(tick, vector)
 
     def end(self, digest: str) -> list[str]:
-        """Return what is unlike the golden after the whole drive, one line or none."""
+        """Return how the finished drive differs from the golden, one line or none."""
         if self._file is None:
             return [f"{self._path}: no golden; accept one with --update-golden"]
         difference = self._comparison.first_difference()

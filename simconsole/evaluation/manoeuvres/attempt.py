@@ -44,12 +44,12 @@ class Result(NamedTuple):
 
 
 def undriven(attempt: str, speed_kmh: float) -> Result:
-    """Return the result of a car that did not get to the manoeuvre's speed."""
+    """Return the result of a car that did not reach the manoeuvre's speed."""
     return Result({}, (), f"{attempt}: the car has not held {speed_kmh:g} km/h, where the manoeuvre begins")
 
 
 Driving: TypeAlias = Generator[Attempt, Drive, Result]
-"""A running manoeuvre: it yields one attempt after the other and is sent the drive of each."""
+"""A running manoeuvre: a generator that yields one attempt after the other and is sent the drive of each."""
 
 
 def traces(title: str, y_label: str, drives: dict[str, tuple[Drive, Array]], every: int = 5) -> Panel:

@@ -14,7 +14,7 @@ from simconsole.values.units import DEG_PER_RAD, KMH_PER_MPS, MPS_PER_KMH
 STOPPED_MPS = 0.05
 WHEELS = ("fl", "fr", "rl", "rr")
 LOCK_FROM_KMH = 10.0
-"""Below this speed a locked wheel is none (as in UN R13-H, annex 6, at 15 km/h)."""
+"""Below this speed a locked wheel does not count as locked (as in UN R13-H, annex 6, at 15 km/h)."""
 
 
 def straight_braking(spec: StraightBraking, car: Platform) -> Driving:

@@ -1,4 +1,4 @@
-"""What a scripted drive was like: launch, stall, hill start, reverse, parking."""
+"""Characteristic values of a scripted drive: launch, stall, hill start, reverse, parking."""
 
 import numpy as np
 

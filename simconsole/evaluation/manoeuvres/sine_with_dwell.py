@@ -18,14 +18,14 @@ from simconsole.values.units import DEG_PER_RAD, RAD_PER_DEG, STANDARD_GRAVITY_M
 SLOW_DEGPS = 13.5
 A_MPS2 = 0.3 * STANDARD_GRAVITY_MPS2
 WATCHED_S = 1.75
-"""After completion of steer; the last moment that counts."""
+"""Time after completion of steer up to which the car is evaluated."""
 DISPLACED_S = 1.07
 RESPONSIVE_FROM = 5.0
-"""Factor of A from which the displacement counts."""
+"""Multiple of A from which on the displacement is evaluated."""
 
 
 class Turn(NamedTuple):
-    """What counts of one sine."""
+    """The evaluated values of one sine."""
 
     ratio_100: float  # yaw rate 1.00 s after completion of steer, as a share of its second peak
     ratio_175: float
@@ -120,7 +120,7 @@ def _sine(
 
 
 def _judge(spec: SineWithDwell, drive: Drive) -> Turn:
-    """Return what counts; the second peak is the largest yaw rate after the steering has changed its side."""
+    """Return the evaluated values; the second peak is the largest yaw rate after the steering has changed its side."""
     yaw_rate = np.abs(drive.column("vehicle.yaw_rate_radps"))
     second = slice(round(0.5 / spec.frequency_hz * drive.tick_hz), round(completion_s(spec) * drive.tick_hz))
     peak = float(yaw_rate[second].max())

@@ -14,7 +14,7 @@ from simconsole.values.units import DEG_PER_RAD, MPS_PER_KMH, RAD_PER_DEG
 
 LONGEST_STEER_S = 25.0
 SMOOTHED_S = 0.5
-"""Moving mean over which the steady-state circle reads its signals: steering is slow, the foot's ripple is not."""
+"""Window of the moving mean over the circle's signals: removes the throttle's ripple, steering is slower."""
 
 
 def steady_circle(spec: SteadyCircle, car: Platform) -> Driving:

@@ -1,4 +1,4 @@
-"""What a drive was like in numbers. Pure: state vectors and course in, figures out."""
+"""Metrics of a drive. Pure: state vectors and course in, figures out."""
 
 import math
 from collections.abc import Sequence
@@ -18,7 +18,7 @@ REFUSED_FROM: Final = 20
 """Reasons from this number on tell why a change was refused (signals.Reason)."""
 
 JUMP_M: Final = 1.0
-"""A vehicle that moved further in one tick was put there, it did not drive."""
+"""A vehicle that moved further in one tick was put there (a restart): it did not drive."""
 
 _PERCENT: Final = 95.0
 
@@ -33,7 +33,7 @@ class ModeChange(NamedTuple):
     refused: bool
     x_m: float
     y_m: float
-    distance_m: float  # driven before it
+    distance_m: float  # distance driven before it
 
 
 class Track(NamedTuple):

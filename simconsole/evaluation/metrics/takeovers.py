@@ -1,4 +1,4 @@
-"""Take-overs of a drive, measured as studies of drivers want them. Pure: state vectors and course in, figures out."""
+"""Take-over metrics as used in driver studies. Pure: state vectors and course in, figures out."""
 
 from typing import Any, Final, NamedTuple
 
@@ -11,7 +11,7 @@ from simconsole.values.signals import Mode
 from simconsole.values.units import RAD_PER_DEG
 
 FIRST_STEER_RAD: Final = 2.0 * RAD_PER_DEG
-"""More than this is a reaction (Gold, Damboeck, Lorenz, Bengler 2013); less happens to resting hands."""
+"""More than this is a reaction (Gold, Damboeck, Lorenz, Bengler 2013); resting hands cause less."""
 FIRST_PEDAL: Final = 0.05
 AFTER_S: Final = 10.0
 """How long after the take-over its quality is measured."""
@@ -23,7 +23,7 @@ _DRIVEN: Final = (float(Mode.AUTONOMOUS), float(Mode.TAKEOVER_REQUESTED), float(
 
 
 class Span(NamedTuple):
-    """Row numbers of one take-over."""
+    """One take-over, as indices of ticks in the drive."""
 
     start: int  # the request or, unasked, the earliest motion that may belong to it
     authority: int  # MANUAL

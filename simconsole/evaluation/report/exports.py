@@ -18,7 +18,7 @@ from simconsole.world.course import Course
 REPORT: Final = "report.html"
 SCENE: Final = "scene.rrd"
 WORKER_LOGS: Final = ("can.blf", "can.log", "topics.mcap")
-"""What workers recorded beside the log."""
+"""Files that workers recorded beside the log."""
 
 
 def write_exports(folder: Path, report: bool = True, scene: bool = True) -> dict[str, Any]:
@@ -72,7 +72,7 @@ def write_scene(folder: Path) -> Path:
 
 
 def open_viewer(path: Path) -> None:
-    """Open a scene in rerun's viewer, in a process of its own; it is the person's, and stays when this one ends."""
+    """Open a scene in rerun's viewer, in a process of its own that stays open when this one ends."""
     subprocess.Popen([sys.executable, "-m", "rerun", str(path)], stdin=subprocess.DEVNULL)
 
 

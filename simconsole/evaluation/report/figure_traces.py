@@ -16,8 +16,8 @@ from simconsole.world.course import Course
 
 _POINTS: Final = 1600
 _CM_PER_M: Final = 100.0
-_ROOM: Final = 1.35  # of the deviation's axis above its largest value
-_NARROW: Final = 0.05  # shares of the drive too short for the mode's word
+_ROOM: Final = 1.35  # upper end of the deviation's axis over its largest value
+_NARROW: Final = 0.05  # share of the drive below which the mode's label does not fit
 
 
 def draw_traces(figure: Any, drive: Drive, way: Track, changes: list[ModeChange], course: Course | None) -> None:

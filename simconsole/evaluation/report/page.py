@@ -66,7 +66,7 @@ def write_report(
     faults: Sequence[str] = (),
     latency_us: Mapping[str, Mapping[str, float]] | None = None,
 ) -> dict[str, Any]:
-    """Write the report of a drive and return its metrics (report/metrics.py).
+    """Write the report of a drive and return its metrics (metrics/drive_metrics.py).
 
     Args:
         path: the HTML file.

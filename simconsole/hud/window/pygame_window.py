@@ -1,6 +1,6 @@
 """The cluster in a window, in a process of its own: reads the newest snapshot, draws, reports the keys held.
 
-Everything outside comes in as three callables (`Ports`), so the loop runs the same on shared memory and in a test.
+Everything from outside comes in as callables (`Ports`), so the loop runs the same on shared memory and in a test.
 """
 
 import os
@@ -103,7 +103,7 @@ class Window:
         pygame.display.set_caption("simconsole")
         if profile.fullscreen:
             pygame.mouse.set_visible(False)
-        # Nobody sees these: they load the fonts, for longer than a keyboard may be silent before it is lost.
+        # Never shown. They load the fonts, which takes longer than a keyboard may be silent before it counts as lost.
         before: list[DrawItem] = []
         for sample in sample_views():
             after = layout(sample, self._screen)
@@ -113,7 +113,7 @@ class Window:
     def frame(
         self, snapshot: Snapshot | None, now_s: float, can_up: bool | None = None, link: str | None = None
     ) -> None:
-        """Draw one frame; a picture equal to the last one costs nothing. `can_up`, `link`: None without such a one."""
+        """Draw one frame; one equal to the last costs nothing. `can_up`, `link`: None without CAN bus or bridge."""
         import pygame
 
         items = layout(self._content(snapshot, now_s, can_up, link), self._screen)
@@ -137,9 +137,9 @@ class Window:
 
 
 def choose_display() -> None:
-    """Draw into memory where no desktop can be reached; a driver that the user names stays. Before SDL starts.
+    """Select SDL's `dummy` video driver where no desktop can be reached, unless the user names a driver.
 
-    SDL would end there too, but its Wayland probe complains on standard error first.
+    Call it before SDL starts. SDL would fall back to `dummy` by itself, but its Wayland probe prints an error first.
     """
     reachable = ("DISPLAY", "WAYLAND_DISPLAY", "XDG_RUNTIME_DIR")
     if sys.platform == "linux" and not any(os.environ.get(name) for name in reachable):

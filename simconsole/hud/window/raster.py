@@ -28,14 +28,14 @@ if TYPE_CHECKING:
 CAP_PER_SIZE: Final = 0.501
 """Height of a capital in pygame's own font at size 1."""
 FONT_SCALE: Final = 0.6875
-"""What pygame takes a size for its own font times."""
+"""Factor by which pygame scales the size that is asked of its own font (`Font(None, size)`)."""
 KEPT: Final = 600
 """Drawn shapes and texts kept for the next frame."""
 LARGE_PX: Final = 200.0
 """Shapes above this size are smoothed two times instead of four."""
 ARC_STEP_DEG: Final = 1.5
 WORDS_SCALE: Final = 4
-"""How much larger texts are drawn before they are scaled down."""
+"""Factor by which texts are drawn larger before they are scaled down."""
 
 
 class Painter:
@@ -47,7 +47,7 @@ class Painter:
         from pygame.pkgdata import getResource
 
         pygame.font.init()
-        # Read once: pygame would keep the file open for every size there is.
+        # Read once: otherwise pygame keeps the file open for each font size.
         with getResource(pygame.font.get_default_font()) as file:  # type: ignore[no-untyped-call]
             self._typeface: bytes = file.read()
         self._fonts: dict[int, pygame.font.Font] = {}

@@ -37,7 +37,7 @@ LOG: Final = "drive.log"
 SESSION_FILE: Final = "session.json"
 _EVENTS: Final = "events.events"
 BLOCK_BYTES: Final = 1 << 12
-"""What a file system allots at a time: the last ticks may begin and end inside a block."""
+"""Allocation unit of a file system: the last ticks may begin and end inside a block."""
 
 
 class Bundle:
@@ -65,7 +65,7 @@ class Bundle:
         return failed + [f"{self.log.path}: {part}" for part in self.log.breaks if not self._expected(part)]
 
     def remarks(self) -> list[str]:
-        """Return what is worth knowing, and no problem."""
+        """Return what is worth knowing about the bundle but is no problem, one line each."""
         unfinished = [] if self.manifest.finished else [_unfinished(self.folder)]
         return unfinished + [
             f"{self.log.path}: {part}: the last tick, as a drive that was killed leaves it"
@@ -93,11 +93,11 @@ class Bundle:
 class BundleWriter:
     """Records one drive. Leaving it without `finish` keeps an unfinished but readable bundle.
 
-    Leaving it by an error before the first tick leaves nothing: a device or port could not be had, no drive began.
+    Leaving it by an error before the first tick removes the folder: a device or port was not available, no drive began.
 
     Attributes:
         folder: where it is.
-        log: append one state vector per tick here; look at `log.failure` for a disk that gave up.
+        log: append one state vector per tick here; `log.failure` says why the disk took no more.
     """
 
     def __init__(
@@ -136,7 +136,7 @@ class BundleWriter:
             reserve(folder / MANIFEST, ROOM_BYTES + last_ticks_bytes)
             free_room = partial(give_back, folder / MANIFEST, ROOM_BYTES)
             self.log = LogWriter(folder / LOG, header, free_room=free_room)
-            sync_folder(folder)  # a power cut takes ticks, not files
+            sync_folder(folder)  # a power cut may lose ticks, but no files
         except OSError as error:
             self._discard()
             raise RecordingError(f"{folder}: cannot be recorded to: {error.strerror}") from None
@@ -147,8 +147,8 @@ class BundleWriter:
     def finish(self, summary: Mapping[str, Any]) -> Manifest:
         """Close the log and write the manifest with its checksums; `summary` holds JSON values.
 
-        Where the manifest cannot be written, the unfinished one stays, and what is returned says so. A folder that was
-        removed under the drive is made again, with all that was recorded.
+        Where the manifest cannot be written, the unfinished one stays, and the returned manifest says so. A folder that
+        was removed during the drive is made again, with all that was recorded.
         """
         with contextlib.suppress(OSError):
             self._put_back()
@@ -189,7 +189,7 @@ class BundleWriter:
         if error is not None and self.log.ticks == 0:
             self._discard()
         with contextlib.suppress(OSError):
-            draft_of(self.folder / MANIFEST).unlink(missing_ok=True)  # the room for an end that never came
+            draft_of(self.folder / MANIFEST).unlink(missing_ok=True)  # the space reserved for the final manifest
 
     def _discard(self) -> None:
         """Remove what was made. The folder was empty before, so that all in it belongs to this drive."""
@@ -201,7 +201,7 @@ class BundleWriter:
 
 
 def open_bundle(folder: Path) -> Bundle:
-    """Open a bundle after checking that everything the drive needs is there in full size.
+    """Open a bundle after checking that every file of the drive is there in full size.
 
     Raises:
         RecordingError: no bundle, a file missing or truncated, a newer schema, another byte order.

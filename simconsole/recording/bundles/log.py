@@ -32,10 +32,10 @@ from simconsole.values.host.files import replaced
 from simconsole.values.kernels import Row
 
 SYNC_INTERVAL_S: Final = 1.0
-"""Longest time whose ticks a power cut may take."""
+"""Longest time whose ticks a power cut may lose."""
 
 LAST_TICKS: Final = 2
-"""So many more ticks are tried once recording has failed: the one that failed, and the next, which holds the alarm."""
+"""Ticks still tried once recording has failed: the one that failed, and the next, which holds the alarm."""
 
 _READ_BYTES: Final = 1 << 20
 
@@ -65,8 +65,8 @@ class LogWriter:
         Args:
             path: the file.
             header: what its state vectors mean.
-            sync_interval_s: longest time whose ticks a power cut may take.
-            free_room: gives back the room that was kept for the last ticks; may raise OSError.
+            sync_interval_s: longest time whose ticks a power cut may lose.
+            free_room: frees the disk space that was reserved for the last ticks; may raise OSError.
 
         Raises:
             RecordingError: the file cannot be created or takes no header.
@@ -98,7 +98,7 @@ class LogWriter:
     def append(self, tick: int, vector: Row) -> None:
         """Write one tick. Once recording has failed, only the last ticks.
 
-        A failed write is tried once more in the room that was kept for it, so that the log's last tick can tell.
+        A failed write is tried once more in the space reserved for it, so that the log's last tick can hold the alarm.
 
         Raises:
             ValueError: a state vector of another width, which is a bug.
@@ -155,18 +155,18 @@ class LogWriter:
         self.close()
 
     def _problem(self, frame: bytes) -> str | None:
-        """Write a frame; return why it is not in the file. A part of one is taken back."""
+        """Write a frame; return why it is not in the file, None if it is. A frame written in part is truncated away."""
         try:
             written = os.write(self._fd, frame)
             if 0 < written < len(frame):
-                written += os.write(self._fd, frame[written:])  # a disk says only now why not all of it fitted
+                written += os.write(self._fd, frame[written:])  # only this second write tells why not all of it fitted
             if written == len(frame) and os.fstat(self._fd).st_nlink > 0:
                 self.size_bytes += written
                 return None
             problem = "the file was removed" if written == len(frame) else f"only {written} of {len(frame)} bytes fit"
         except OSError as error:
             problem = str(error.strerror)
-        with suppress(OSError):  # else the torn tail stays; readers name it and keep what is whole
+        with suppress(OSError):  # else the torn tail stays: readers report it and keep all whole frames
             os.ftruncate(self._fd, self.size_bytes)
         return problem
 
@@ -175,7 +175,7 @@ class LogWriter:
             self.failure = f"{self.path}: recording stopped at tick {tick}: {problem}"
 
     def _parts(self, start: int) -> Iterator[bytes]:
-        """Read whole frames back, from a byte of the file on."""
+        """Yield the whole frames written so far as blocks of bytes, from byte `start` of the file on."""
         end = self.size_bytes
         while start < end and (part := os.pread(self._fd, min(_READ_BYTES, end - start), start)):
             yield part

@@ -13,7 +13,7 @@ SCHEMA: Final = 1
 MANIFEST: Final = "manifest.json"
 MAX_MANIFEST_BYTES: Final = 1 << 20
 ROOM_BYTES: Final = 1 << 16
-"""Kept on the disk from the start of a drive, so that its end can be written whatever fills the disk meanwhile."""
+"""Reserved on the disk from the start of a drive, so that its end can be written even if the disk fills meanwhile."""
 
 
 class FileEntry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -107,7 +107,7 @@ def write_manifest(folder: Path, manifest: Manifest) -> None:
     """Replace manifest.json at once: a crash leaves the old one or the new one. Raises OSError."""
     text = _text(manifest)
     if manifest.recording_failure is not None and len(text) > ROOM_BYTES:
-        text = _text(msgspec.structs.replace(manifest, summary={}))  # why it failed matters more, and has its room
+        text = _text(msgspec.structs.replace(manifest, summary={}))  # the reason matters more; its space is reserved
     write_atomically(folder / MANIFEST, text)
 
 

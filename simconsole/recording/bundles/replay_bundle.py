@@ -36,7 +36,7 @@ def sources_sha256(console: Console) -> str:
 
 
 def state_at(folder: Path, tick: int) -> tuple[Console, ConsoleState]:
-    """Return the console of a bundle and its state after `tick`, where a drive can go on: a vector is the whole state.
+    """Return the console of a bundle and its state after `tick`; the vector is the whole state, so a drive can go on.
 
     Raises:
         RecordingError: not a bundle, of another version, or without this tick.

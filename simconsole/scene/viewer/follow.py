@@ -19,7 +19,7 @@ from simconsole.values.state_vector import Snapshot
 POLL_S = 0.01
 LINK_LANE = "lanes/link"
 QUIET = "warn,re_log_encoding::rrd::file_sink=error"
-"""What rerun logs: it warns of each file without an index."""
+"""rerun's RUST_LOG: by default it warns of each file without an index."""
 
 
 class Ports(NamedTuple):
@@ -57,7 +57,7 @@ def follow(ports: Ports, job: Job, path: Path) -> None:
         waiting += ports.new_ticks()
         state = ports.link()
         if waiting and state is not None and state != seen:
-            # Of wall time, so in no state vector: it stands at the newest tick that is known.
+            # The link changes in wall time and is in no state vector: it is logged at the newest known tick.
             seen = state
             link.times_ns.append(waiting[-1].t_ns)
             link.states.append(state)

@@ -1,4 +1,4 @@
-"""What a scene process is given, as one .npz file: state vectors (none for a live drive), the course, the car."""
+"""The input of a scene process, as one .npz file: state vectors (none for a live drive), the course, the car."""
 
 from pathlib import Path
 from typing import Any, Final, NamedTuple

@@ -81,7 +81,7 @@ class RerunView:
             self._still(lane, rr.StateConfiguration(values=list(colours), colors=list(colours.values())))
         if world is not None:
             self._world(world)
-        # Single log calls wait in a batch; a process killed from here on leaves at least the world behind.
+        # rerun batches single log calls. After this flush even a killed process leaves a file with the world in it.
         self._flush()
 
     def add(self, piece: Piece) -> None:

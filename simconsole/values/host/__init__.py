@@ -1,1 +1,1 @@
-"""What every room needs of the machine: compilation of kernels, files written whole."""
+"""What every package needs of the machine: compilation of kernels, files written atomically."""

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Final
 
 DRAFT: Final = ".new"
-"""What is put behind a file's name while its next content is being written."""
+"""Suffix of the draft that holds a file's next content while it is being written."""
 
 _FILE: Final = os.O_RDWR | os.O_CREAT | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
 
@@ -24,10 +24,10 @@ def write_atomically(path: Path, content: bytes | str, durable: bool = True) -> 
     Args:
         path: the file; it need not exist.
         content: what it holds afterwards.
-        durable: wait until the disk has it. Files that a power cut may take, as those in shared memory, need not.
+        durable: wait until it is on the disk. Files that a power cut may lose, as in shared memory, need not be.
     """
     with replaced(path) as draft:
-        # Not truncated first: what `reserve` took is used, and so is there on a disk that has filled since.
+        # Not truncated first: so it uses the space that `reserve` took, even on a disk that has filled since.
         descriptor = os.open(draft, _FILE, 0o644)
         try:
             content = content.encode() if isinstance(content, str) else content
@@ -42,7 +42,7 @@ def write_atomically(path: Path, content: bytes | str, durable: bool = True) -> 
 
 
 def sync_folder(folder: Path) -> None:
-    """Wait until the disk knows the names in a folder. Raises OSError. Nothing where folders cannot be opened."""
+    """Sync the names in a folder to the disk. Raises OSError. Does nothing where folders cannot be opened."""
     if os.name != "posix":
         return
     descriptor = os.open(folder, os.O_RDONLY)
@@ -54,7 +54,7 @@ def sync_folder(folder: Path) -> None:
 
 @contextmanager
 def replaced(path: Path) -> Iterator[Path]:
-    """Give a draft to be written; leaving it puts it in the place of `path`, leaving it by an error removes it."""
+    """Yield a draft to write; on leaving, it replaces `path`, or is removed after an error."""
     draft = draft_of(path)
     try:
         yield draft
@@ -66,7 +66,7 @@ def replaced(path: Path) -> Iterator[Path]:
 
 
 def reserve(path: Path, size_bytes: int) -> None:
-    """Take room for the next `write_atomically` of `path`: it succeeds on a full disk too. Raises OSError."""
+    """Reserve space for the next `write_atomically` of `path`: it then succeeds on a full disk. Raises OSError."""
     descriptor = os.open(draft_of(path), _FILE, 0o644)
     try:
         _take_room(descriptor, size_bytes)
@@ -79,7 +79,7 @@ def reserve(path: Path, size_bytes: int) -> None:
 
 
 def give_back(path: Path, size_bytes: int) -> None:
-    """Keep only `size_bytes` of what `reserve` took; nothing where there is less. Raises OSError."""
+    """Shrink the space that `reserve` took to `size_bytes`; does nothing where it is smaller. Raises OSError."""
     if draft_of(path).stat().st_size > size_bytes:
         os.truncate(draft_of(path), size_bytes)
 

@@ -1,4 +1,4 @@
-"""Compile kernels with numba: the fast twin of the plain functions.
+"""Compile kernels with numba: a compiled twin for each plain function.
 
 Each kernel is copied with the kernels it calls replaced by their compiled twins. numba's own cache does not notice an
 edited callee or constant in another file, so each twin is cached in a folder named by the digest of everything that
@@ -29,7 +29,7 @@ from simconsole.values.layout import Part, read, write
 F = TypeVar("F", bound=Callable[..., Any])
 
 _COMPILER: Final = b"".join(Path(source).read_bytes() for source in (__file__, lowering.__file__))
-"""What compiles, as this process runs it: read now, since the files may be edited while it runs."""
+"""Source of the compiler that this process runs: read at import, since the files may be edited afterwards."""
 
 KEEP_UNUSED_S: Final = 30 * 24 * 3600.0
 """Compiled code that nobody has loaded for a month is removed when something new is compiled."""
@@ -44,7 +44,7 @@ def compiled(function: F) -> F:
     """Return the compiled twin of a kernel. Compiles at its first call, or loads from the user's cache.
 
     Raises:
-        TypeError: `function` is not a kernel, or uses something that the digest cannot see through.
+        TypeError: `function` is not a kernel, or uses something that the digest cannot cover.
     """
     return _entry(function)  # type: ignore[no-any-return]
 
@@ -82,7 +82,7 @@ def _codes(code: types.CodeType) -> Iterator[types.CodeType]:
 
 
 def _used(function: Callable[..., Any]) -> dict[str, Any]:
-    """Return what a function uses from around it, by name: globals, and variables of the function that made it."""
+    """Return what a function uses from outside, by name: globals, and enclosed variables (its closure)."""
     instructions = (step for code in _codes(function.__code__) for step in dis.get_instructions(code))
     names = {step.argval for step in instructions if step.opname == "LOAD_GLOBAL"}
     used = {name: function.__globals__[name] for name in names & function.__globals__.keys()}
@@ -95,7 +95,7 @@ def _enclosed(function: Callable[..., Any]) -> dict[str, Any]:
 
 
 def _stamp(value: object, user: Callable[..., Any]) -> str:
-    """Return text that identifies a value from around a kernel, the same in every process."""
+    """Return text that identifies a value which a kernel uses from outside, the same in every process."""
     if value is user or value is forget or value is read or value is write:
         return "itself"
     if is_kernel(value):
@@ -118,7 +118,7 @@ def _stamp(value: object, user: Callable[..., Any]) -> str:
 
 
 def _type_stamp(kind: Any) -> str:
-    """Return text that identifies a type; a record's has the fields, whose places are in the machine code."""
+    """Return text that identifies a type; that of a record names its fields, for their offsets are compiled in."""
     if not isinstance(kind, type):
         return repr(kind)
     fields = [(name, _type_stamp(kind.__annotations__[name])) for name in getattr(kind, "_fields", ())]
@@ -136,7 +136,7 @@ def compiled_for_each(step: Callable[..., Any]) -> Callable[..., None]:
     """
     namespace = {"__name__": __name__, "step": _inner(step), "prange": _numba().prange}
     twin = types.FunctionType(_for_each.__code__, namespace, "for_each")
-    twin.__module__ = __name__  # of which numba asks when it loads compiled code from the cache
+    twin.__module__ = __name__  # numba asks for it when it loads compiled code from the cache
     return _cached(twin, digest(step) + "-each", parallel=True)  # type: ignore[no-any-return]
 
 
@@ -156,7 +156,7 @@ def _cached(twin: types.FunctionType, name: str, **options: bool) -> Any:
 
     numba keys its cache by path, content and line of the source file too; the empty file in the folder takes its place,
     so that the digest alone decides, and an installation finds what a checkout compiled. It would also key by the bytes
-    of enclosed values: those of a dispatcher are others in every process.
+    of enclosed values, which for a dispatcher differ in every process.
     """
     numba = _numba()
     folder = _own_folder(name)
@@ -196,7 +196,7 @@ def _for_numba(value: Any) -> Any:
 
 @cache
 def _numbers(codes: EnumType) -> Any:
-    """Return the members of an enumeration as rows hold them: floats, of a mask ints."""
+    """Return the members of an enumeration as numbers: floats as in the state vector, of a mask ints."""
     number = int if issubclass(codes, Flag) else float
     names: Any = codes.__members__
     members = {name: number(member) for name, member in names.items()}

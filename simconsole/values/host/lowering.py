@@ -1,4 +1,4 @@
-"""What numba is taught: the kernel primitives that are no kernels themselves."""
+"""numba extensions: the kernel primitives that are no kernels themselves."""
 
 from importlib import import_module
 from typing import Any
@@ -8,13 +8,13 @@ from simconsole.values.layout import Part, read, write
 
 
 def teach() -> None:
-    """Teach numba `kernels.forget`, `layout.read` and `layout.write`; once in a process."""
+    """Register `kernels.forget`, `layout.read` and `layout.write` with numba; once in a process."""
     _teach_forget()
     _teach_parts()
 
 
 def _teach_forget() -> None:
-    """An empty instruction of which the compiler believes that it changes memory."""
+    """Compile `forget` to a barrier: an empty instruction that the compiler must assume changes memory."""
     types: Any = import_module("numba.core.types")
     extending: Any = import_module("numba.extending")
     ir: Any = import_module("llvmlite.ir")
@@ -35,7 +35,7 @@ def _teach_parts() -> None:
     extending: Any = import_module("numba.extending")
 
     class PartType(types.Type):  # type: ignore[misc]  # numba is not typed
-        """One part: a constant that takes no room at run time."""
+        """The numba type of one part: a constant that takes no memory at run time."""
 
         def __init__(self, part: Part[Any]) -> None:
             self.part = part

@@ -1,8 +1,8 @@
-"""The values of one tick: what the rooms hand to each other, with the unit in every field name.
+"""The values of one tick that the packages exchange, with the unit in every field name.
 
 Frames: ISO 8855 / REP-103, x forward, y left, z up, angles left-positive; poses are of `base_link`, the centre of
-the rear axle on the ground, in `map`. Every field is a float64, so that one row holds a whole tick (rows.py) and
-the same classes serve the compiled functions. Enumerations are stored as their number.
+the rear axle on the ground, in `map`. Every field is a float64, so that one vector holds a whole tick
+(state_vector.py) and the same classes serve the compiled functions. Enumerations are stored as their number.
 """
 
 from simconsole.values.signals.codes import (

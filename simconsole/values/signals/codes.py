@@ -1,4 +1,4 @@
-"""What the numbers of a tick mean: enumerations and masks. A row stores their value, so a value never changes."""
+"""What the numbers of a tick mean: enumerations and masks. The state vector holds their values: none ever changes."""
 
 from enum import IntEnum, IntFlag
 
@@ -14,7 +14,7 @@ class Validity(IntEnum):
 
 
 class Mode(IntEnum):
-    """Who drives. The transitions are the table of control/modes.py and nothing else."""
+    """Who drives. The transitions are those of control/modes/mode_table.py and no others."""
 
     PARKED = 0
     MANUAL = 1
@@ -65,18 +65,18 @@ class Reason(IntEnum):
 
 
 class Notice(IntEnum):
-    """What a person is told for as long as it is so, without a change of mode."""
+    """A condition that a person is told of while it lasts, without a change of mode."""
 
     NONE = 0
     THROTTLE_HELD = 1  # the accelerator has overridden the controller for long
     CENTRING_WHEEL = 2  # by its motor, before a restart
     CENTRE_WHEEL = 3  # the same, where it has no motor
     RELEASE_PEDALS = 4
-    RECORDING_FAILED = 5  # said by the console itself (rows.Snapshot.notice): the arbiter has no part in it
+    RECORDING_FAILED = 5  # said by the console itself (Snapshot.notice): the arbiter has no part in it
 
 
 class Commander(IntEnum):
-    """Which controller is the remote side: control/commander.py holds the rule."""
+    """Which controller is the remote side: control/requests/commander.py has the rule."""
 
     NOBODY, ROS, ECU = range(3)
 
@@ -88,7 +88,7 @@ class LinkState(IntEnum):
 
 
 class RemoteKind(IntEnum):
-    """What a remote command means; control/remote.py turns each kind into one request."""
+    """What a remote command means; control/requests/remote.py turns each kind into one request."""
 
     NONE = 0
     ACCELERATION = 1

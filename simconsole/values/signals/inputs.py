@@ -56,10 +56,10 @@ class EventInput(NamedTuple):
 
 
 NO_SAMPLE: Final = DeviceSample(*(0.0,) * 9, *(NEVER_TICKS,) * 4)
-"""A cockpit that is not there."""
+"""A cockpit whose devices are all gone."""
 
 NO_COMMAND: Final = RemoteCommand(*(0.0,) * len(RemoteCommand._fields))._replace(age_ticks=NEVER_TICKS, direction=1.0)
-"""A controller that has said nothing; until it does, forwards is the direction it means."""
+"""A controller that has sent nothing; until it does, its direction counts as forwards."""
 
 NO_EVENTS: Final = EventInput(events=0.0)
 """A tick in which nothing happened."""

@@ -63,7 +63,7 @@ class Velocity(NamedTuple):
 
 @kernel
 def step(previous: Row, row: Row, parameters: Row, substeps: int) -> None:
-    """Advance the ball by one tick: the platform interface of vehicle/platform.py."""
+    """Advance the ball by one tick: the platform interface of values/platform.py."""
     p = read(parameters, PARAMETERS)
     command = read(row, LAYOUT.command)
     state = read(previous, BALL)
@@ -91,8 +91,8 @@ def towards(from_x: float, from_y: float, to_x: float, to_y: float, most: float)
 def desired(s: BallState, p: BallParameters, command: VehicleCommand, brake: float) -> Velocity:
     """Return the velocity wanted now: the desired speed, less near the target so that the ball can stop there.
 
-    sqrt(a * d) needs half of the deceleration a over the distance d, which leaves room to be late; the last bit is
-    exponential with `approach_s`.
+    sqrt(a * d) needs half of the deceleration a over the distance d, which leaves room to be late; the last part of
+    the way is exponential with `approach_s`.
     """
     x = command.target_x_m - s.x_m
     y = command.target_y_m - s.y_m
@@ -111,7 +111,7 @@ def desired(s: BallState, p: BallParameters, command: VehicleCommand, brake: flo
 
 @kernel
 def follow(s: BallState, p: BallParameters, command: VehicleCommand, brake: float) -> BallState:
-    """Return the ball 1 ms later, driven towards its target; it turns to face the way it rolls."""
+    """Return the ball 1 ms later, driven towards its target; its heading turns to the direction of motion."""
     wanted = desired(s, p, command, brake)
     most = STEP_S * (p.max_accel_mps2 + brake * p.brake_mps2)
     v = towards(
@@ -138,7 +138,7 @@ def pushed(s: BallState, p: BallParameters, command: VehicleCommand, brake: floa
     push = STEP_S * way * throttle * p.max_accel_mps2
     c = cos(turn)
     d = sin(turn)
-    # Turning takes the velocity along: a ball has no side grip that could do it.
+    # Turning rotates the velocity, too: a ball has no side grip that could do so.
     x = s.vx_map_mps * c - s.vy_map_mps * d + STEP_S * p.gravity_x_mps2 + push * cos(s.yaw_rad)
     y = s.vx_map_mps * d + s.vy_map_mps * c + STEP_S * p.gravity_y_mps2 + push * sin(s.yaw_rad)
     return rolled(s, p, towards(x, y, 0.0, 0.0, STEP_S * (p.rolling_mps2 + brake * p.brake_mps2)), turn)

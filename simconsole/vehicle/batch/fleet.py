@@ -1,7 +1,7 @@
-"""Many vehicles in one compiled call: fleets, parameter sweeps, the guesses of a predictive controller.
+"""Many vehicles in one compiled call: fleets, parameter sweeps, the predictions of a predictive controller.
 
-A plain loop over vehicles on all cores of the machine; every vehicle gets exactly the bits that its own step would give
-it alone, whatever the number of threads (`NUMBA_NUM_THREADS`).
+A plain loop over vehicles on all cores of the machine; every vehicle gets exactly the bits of its own single
+step, whatever the number of threads (`NUMBA_NUM_THREADS`).
 """
 
 from collections.abc import Sequence
@@ -63,7 +63,7 @@ class Fleet:
         _write(self._rows[:, LAYOUT.command.slice], commands)
 
     def restore(self, states: ArrayLike) -> None:
-        """Put every vehicle into a state, float64 as `states`: to guess again from the same one, or from another.
+        """Put every vehicle into a state, float64 as `states`: to predict again from the same state, or from another.
 
         Raises:
             ValueError: another shape.

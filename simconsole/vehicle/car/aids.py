@@ -1,6 +1,6 @@
 """Driver aids: anti-lock brakes, traction control, stability control, hill hold. Each has its switch in the profile.
 
-They know the true speed over ground, as a car's estimator wants to: no wheel-speed filter stands in between.
+They use the true speed over ground, which a real car has to estimate from its wheel speeds.
 """
 
 from typing import Final, NamedTuple
@@ -26,9 +26,9 @@ STABILITY_LAG_S: Final = 0.02
 HOLD_S: Final = 2.0
 HOLD_SLOPE: Final = 0.03
 LEAVING_THROTTLE: Final = 0.02
-"""Of the pedal beyond which somebody is about to leave: the hill hold waits for the drive instead of for the time."""
+"""Throttle beyond which the driver is about to drive off: the hill hold then waits for the drive, not for the time."""
 DOWNHILL_SHARE: Final = 0.1
-"""Of the hill's pull with which a drive that goes down with it frees the hill hold."""
+"""Share of the hill's pull from which on a drive torque in the downhill direction frees the hill hold."""
 
 
 class Brakes(NamedTuple):
@@ -75,9 +75,9 @@ def traction(
 def stability(car: Car, p: CarParameters, handbrake: float, step_s: float) -> float:
     """Return the torque with which ESC brakes one wheel, positive where it turns the car to the left.
 
-    The car should yaw as a linear single track with its understeer would, r = v d / (L (1 + k v^2)), and no more than
-    the ground can give at that speed. What it yaws beyond a dead band is braked away. Whoever pulls
-    the hand brake wants the tail round, so ESC lets him.
+    The reference is the yaw rate of a linear single track with the car's understeer, r = v d / (L (1 + k v^2)), limited
+    to what the ground allows at that speed. A deviation beyond a dead band is corrected by braking. While the hand
+    brake is pulled ESC does not act: the driver wants the rear to slide.
     """
     body = car.body
     speed = body.vx_mps
@@ -97,7 +97,7 @@ def stability(car: Car, p: CarParameters, handbrake: float, step_s: float) -> fl
 
 @kernel
 def carried(drive_n: float, pull_n: float) -> bool:
-    """Return whether the drive bears what the tyres must push against the hill, or goes down with it."""
+    """Return whether the drive force carries the hill's pull, or acts downhill like it."""
     if pull_n < 0.0:
         return drive_n <= pull_n or drive_n > -DOWNHILL_SHARE * pull_n
     return drive_n >= pull_n or drive_n < -DOWNHILL_SHARE * pull_n
@@ -105,10 +105,10 @@ def carried(drive_n: float, pull_n: float) -> bool:
 
 @kernel
 def hill_hold(car: Car, p: CarParameters, request: Request, axles: Axles, ratio: float, step_s: float) -> AidState:
-    """Return how long which brake is held: a latch set by braking at rest on a hill, freed by the drive or by time.
+    """Return pedal and remaining time of the hill hold: set by braking at rest on a hill, freed by drive or time.
 
-    While the car stands, its tyres together push what the hill pulls. As soon as the driven wheels bring that alone,
-    the brake has nothing left to hold.
+    While the car stands, its tyres together balance the hill's pull. As soon as the driven wheels do so alone, the
+    brake has nothing left to hold.
     """
     s = car.aids
     left = s.hold_left_s
@@ -116,7 +116,7 @@ def hill_hold(car: Car, p: CarParameters, request: Request, axles: Axles, ratio:
     steep = abs(p.body.slope_x) + abs(p.body.slope_y) > HOLD_SLOPE
     drive_n = car.shafts.clutch_impulse_nms * ratio * (p.gears.per_wheel_radius_m * (1.0 / step_s))
     if p.aids.hill_hold != 0.0 and steep and request.brake > 0.1 and abs(car.body.vx_mps) < 0.05:
-        # A foot that leaves the pedal slowly leaves its pressure behind.
+        # A pedal that is released slowly must not lower the held pressure.
         if left == 0.0 or request.brake > brake:
             brake = request.brake
         left = HOLD_S

@@ -1,4 +1,4 @@
-"""The four wheels on the ground: where their contact patches slide, what their tyres push."""
+"""The four wheels on the ground: the motion of their contact patches, and the forces of their tyres."""
 
 from collections.abc import Callable
 from typing import Any, Final, NamedTuple
@@ -17,7 +17,7 @@ KingpinMoment = Callable[[SteeringParameters, Any, float], float]
 """A kernel that returns the moment about the kingpin, as `kingpin_moment`, from what the tyre's kernel returns."""
 
 LIGHT_SHARE: Final = 0.1
-"""Of the static load below which a standing wheel is about to lift and keeps what it has."""
+"""Share of the static load below which a standing wheel is about to lift: it keeps its deflection as it is."""
 
 
 class Contact(NamedTuple):
@@ -57,9 +57,9 @@ class Axles(NamedTuple):
 def kept_share(axle: AxleParameters, wheel: Wheel, step_s: float) -> float:
     """Return the share of its deflection that a held wheel's contact patch keeps while the load on it changes.
 
-    The side force is proportional to the load, but the rubber that more load brings to the ground comes without
-    deflection: the force stays. Else a stored force would follow the load and push back nothing; two tyres of an axle
-    that hold against each other then make the body sway ever more, out of nothing.
+    The side force is proportional to the load, but the rubber that more load brings to the ground has no deflection:
+    the force stays. Otherwise a stored force would follow the load without resisting it, and two tyres of an
+    axle that are braced against each other would feed energy into the body's sway.
     """
     load = axle.static_n - axle.carcass_npm * wheel.lift_m
     before = load + axle.carcass_npm * wheel.lift_mps * step_s
@@ -113,7 +113,7 @@ def steered_tyre(
     side: float,
     step_s: float,
 ) -> Contact:
-    """Return the same of a wheel that points along (c, s) and has just turned by `turned_rad`."""
+    """Return the same as `tyre_contact` for a wheel that points along (c, s) and has just turned by `turned_rad`."""
     # The contact patch stays on the ground while the wheel turns about it: its deflection turns back in the wheel.
     x = wheel.deflection_x_m + turned_rad * wheel.deflection_y_m
     y = wheel.deflection_y_m - turned_rad * x
@@ -141,8 +141,8 @@ def kingpin_moment(p: SteeringParameters, tyre_force: Tyre, rolling_mps: float) 
 def side_speed(axle: AxleParameters, body: BodyState, left: Wheel, right: Wheel) -> float:
     """Return the velocity of an axle's contact patches to the left.
 
-    Rolling moves them against the body with the same arms with which their forces roll it: whoever leaves one of the
-    two out makes energy of nothing.
+    Rolling moves them against the body with the same arms with which their forces roll it: leaving out one
+    of the two would create energy.
     """
     turning = body.vy_mps + axle.ahead_m * body.yaw_rate_radps
     return (

@@ -11,7 +11,7 @@ from simconsole.vehicle.car.state import BodyState, Car, Wheel
 from simconsole.vehicle.car.suspension import Travel, axle_roll, strut, travel
 
 MOST_LEAN_RAD = 0.5
-"""Where small angles and springs are no model any more: the body leans and the wheels lift no further."""
+"""Limit of the model of small angles and springs: the body leans and the wheels lift no further."""
 MOST_LIFT_M = 0.5
 
 
@@ -36,7 +36,7 @@ class Motion(NamedTuple):
 
 @kernel
 def stopped(rate: float, place: float, most: float) -> float:
-    """Return the rate of what is at `place`: at the end of its way it goes no further and stores no speed."""
+    """Return the rate of something at `place`: 0 at the end of its travel, where it keeps no speed."""
     if place >= most and rate > 0.0:
         return 0.0
     if place <= -most and rate < 0.0:

@@ -40,14 +40,14 @@ AIR_KGPM3: Final = 1.225
 """Density of air, ISO 2533 standard atmosphere at sea level."""
 
 LEAST_FRICTION: Final = 0.01
-"""Slipperier than wet ice; with none at all a tyre would have no limit to divide by."""
+"""Least friction, below that of wet ice: without any a tyre would have a force limit of 0 to divide by."""
 
 TRAIL_END: Final = 1.7
 """Demand at which the pneumatic trail is gone: before the side force has its maximum, as measured tyres show."""
 
 RAMPS: Final = 8
 LIMIT_BAND_RPM: Final = 100.0
-"""Over which the limiter takes the torque away; wide enough that it does not chatter at 1 ms."""
+"""Band over which the limiter reduces the torque to 0; wide enough that it does not chatter at 1 ms."""
 
 
 def build_car(profile: CarProfile, pose: Pose, ground: Ground) -> Platform:
@@ -120,7 +120,7 @@ def car_parameters(profile: CarProfile, ground: Ground) -> CarParameters:
 
 
 def _patches(ground: Ground) -> dict[str, PatchParameters]:
-    """Return the patches, filled up with nothing.
+    """Return the patches, filled up with empty ones.
 
     Raises:
         ValueError: more than MOST_PATCHES.

@@ -14,7 +14,7 @@ from simconsole.vehicle.car.state import AidState, Car, Gearbox, ShaftState, Whe
 
 ANTI_STALL_FROM: Final = 0.6
 ANTI_STALL_TO: Final = 0.9
-"""Shares of idle speed between which the automatic's clutch gives way at once, whatever its actuator does."""
+"""Shares of idle speed between which the automatic's clutch opens at once, however slow its actuator is."""
 
 
 class Driveline(NamedTuple):
@@ -50,7 +50,7 @@ def spun(axle: AxleParameters, wheel: Wheel, on_ground: Contact, step_s: float) 
 
 @kernel
 def friction_nms(axle: AxleParameters, brake_nm: float, on_ground: Contact, step_s: float) -> float:
-    """Return what brake and rolling resistance can do in a step: both are a friction on the wheel."""
+    """Return the capacity of brake and rolling resistance in a step: both are a friction on the wheel."""
     return step_s * (brake_nm + axle.rolling_resistance * on_ground.load_n * axle.radius_m)
 
 

@@ -7,7 +7,7 @@ from simconsole.vehicle.car.parameters import EngineParameters
 
 
 class EngineDrive(NamedTuple):
-    """What burns in this step. Friction is separate: it works even when nothing burns."""
+    """Combustion torque of this step. Friction is separate: it acts even without combustion."""
 
     torque_nm: float
     friction_nm: float
@@ -52,7 +52,7 @@ def above_idle(p: EngineParameters, speed_radps: float) -> float:
 
 @kernel
 def idle_torque(p: EngineParameters, speed_radps: float, friction_nm: float) -> float:
-    """Return what burns at closed throttle: just the friction at idle speed, more below, less and less above."""
+    """Return the combustion torque at closed throttle: the friction at idle speed, more below, less and less above."""
     below = p.idle_radps - speed_radps
     if below <= 0.0:
         return friction_nm * (1.0 - above_idle(p, speed_radps))

@@ -12,7 +12,7 @@ from simconsole.vehicle.car.parameters import GearParameters
 from simconsole.vehicle.car.state import Gearbox
 
 BACKWARDS_RADPS = -40.0
-"""How fast a gear may turn the engine's side backwards when it goes in: rolling at a slow walking pace."""
+"""A gear that would turn the engine's side backwards faster than this does not go in: a slow walking pace."""
 
 ROLLING_MPS = 1.0
 """Above this speed the automatic does not engage a gear of the other direction (a slow walking pace)."""
@@ -124,7 +124,7 @@ def automatic_clutch(p: GearParameters, box: Gearbox, engine_radps: float, wheel
         closed = clip(launch if launch > lock else lock, 0.0, 1.0)
     target = p.bite_open - closed * (p.bite_open - p.bite_closed)
     if closed == 1.0:
-        target = 0.0  # as a foot that rests beside the pedal
+        target = 0.0  # fully closed, as with the pedal released
     rate = p.clutch_opening_per_s if target > box.clutch else p.clutch_closing_per_s
     return approach(box.clutch, target, rate * step_s)
 

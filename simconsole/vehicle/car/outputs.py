@@ -17,7 +17,7 @@ SMOOTH_MPS: Final = 0.3
 
 
 class RoadAndWind(NamedTuple):
-    """How the ground's plane and the wind lie to the car."""
+    """The ground's slope and the wind in the car's directions."""
 
     slope_along: float
     wind_mps: float  # along the car
@@ -35,7 +35,7 @@ class Pedals(NamedTuple):
 
 @kernel
 def road_and_wind(body: BodyParameters, yaw_rad: float) -> RoadAndWind:
-    """Return how they lie to a car that points to `yaw_rad`."""
+    """Return slope and wind for a car that points to `yaw_rad`."""
     ahead = direction(yaw_rad)
     c = ahead.cos
     s = ahead.sin
@@ -87,7 +87,7 @@ def vehicle_state(car: Car, p: CarParameters, automatic: float) -> VehicleState:
     """
     body = p.body
     now = car.body
-    # Level and calm is what most fleets drive on.
+    # Most drives are on level ground without wind: skip the trigonometry there.
     lie = RoadAndWind(0.0, 0.0, 0.0, 0.0)
     if body.slope_x != 0.0 or body.slope_y != 0.0 or body.wind_x_mps != 0.0 or body.wind_y_mps != 0.0:
         lie = road_and_wind(body, now.yaw_rad)

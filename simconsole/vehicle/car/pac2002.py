@@ -5,7 +5,7 @@ has them: ISO, a slip angle is positive where the contact patch slides to the le
 brackets is that of the equation in the Adams manual, as OpenTirePython names it. The manual itself was not at hand:
 checked are the numbers, against OpenTirePython (all of force and moment, to 1e-13 of the load, tests/vehicle/
 test_tir_published.py), and against CommonRoad's tyre (forces); and by reading, against Project Chrono's ChPac02Tire
-(`LFZO`, friction ellipse). Where Chrono differs it is alone: `1 + PDY3 gamma^2`, the sign of the equivalent slip.
+(`LFZO`, friction ellipse). Chrono differs from all the others in `1 + PDY3 gamma^2` and the sign of the equivalent slip.
 Not here: turn slip, inflation pressure, overturning couple and rolling resistance of the file.
 """
 
@@ -291,7 +291,7 @@ def weight(b: float, c: float, e: float, slip: float, shift: float) -> float:
 
 @kernel
 def combined_angle(tangent: float, other: float) -> float:
-    """Return the slip angle, of the side of `tangent`, that stands for both slips (84, 85)."""
+    """Return the equivalent slip angle of both slips, with the sign of `tangent` (84, 85)."""
     return atan(sqrt(tangent * tangent + other * other)) * sign(tangent)
 
 

@@ -1,7 +1,7 @@
 """Engine, clutch, differential and driven wheels as friction constraints, solved as impulses.
 
 Engine friction, clutch, both wheel brakes and the differential's lock each try to bring a relative speed to exactly
-zero and may use at most their capacity: sticking and slipping are one law, nothing is divided by a speed, nothing
+zero and may use at most their capacity: sticking and slipping follow one law, nothing is divided by a speed, nothing
 chatters. They act on one set of shafts, so they are solved together: projected Gauss-Seidel sweeps that start from the
 last step's impulses (Catto, Iterative Dynamics with Temporal Coherence, GDC 2005), which makes a car parked in gear
 stand with no creep. Left and right are always treated alike, so that mirrored drives stay mirrored to the last bit.
@@ -39,7 +39,7 @@ class Capacity(NamedTuple):
 
 
 class Inertia(NamedTuple):
-    """Of one shaft."""
+    """Inertia of one shaft."""
 
     kgm2: float
     per_kgm2: float  # 1 / kgm2
@@ -124,8 +124,8 @@ def solve_shafts(before: Shafts, ratio: float, flywheel: Inertia, wheel: Inertia
         right_impulse_nms=right_brake,
         lock_impulse_nms=lock,
     )
-    # Clutch and lock do not change what the other has found. While everything turns, engine friction and brakes are at
-    # their bounds: then they find after the first sweep that nothing has changed, and it is the solution.
+    # Clutch and lock do not influence each other. While everything turns, engine friction and brakes are at their
+    # bounds: then nothing changes after the first sweep, and its result is the solution.
     shafts = slowed(start, flywheel, wheel, most)
     sweeps = 0.0
     moved = True
@@ -138,7 +138,7 @@ def solve_shafts(before: Shafts, ratio: float, flywheel: Inertia, wheel: Inertia
         )
         shafts = now
         sweeps += 1.0
-    # The brake holds: what rounding left is not motion, and the tyre asks whether its wheel is held.
+    # A held wheel gets exactly 0, not a rounding error: the tyre tests for 0 to know that its wheel is held.
     return Shafts(
         engine_radps=shafts.engine_radps,
         left_radps=0.0 if abs(shafts.left_impulse_nms) < most.left_nms else shafts.left_radps,

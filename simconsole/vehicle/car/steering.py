@@ -62,7 +62,7 @@ def aligning_moment(p: SteeringParameters, force_y_n: float, demand: float, roll
 
 @kernel
 def hand_wheel_torque(p: SteeringParameters, moment_nm: float, road_wheel_radps: float, speed_mps: float) -> float:
-    """Return the torque at the rim in N m, left-positive: the assistance leaves less of it the more there is."""
+    """Return the torque at the rim in N m, left-positive: the more torque, the smaller the share that is left."""
     carried = (p.hand_torque_gain + p.hand_torque_gain_per_mps * clip(abs(speed_mps), 0.0, 50.0)) * moment_nm
     bent = carried / (1.0 + abs(carried) * p.per_hand_torque_most_nm)
     dry = p.hand_friction_nm * road_wheel_radps / (abs(road_wheel_radps) + SLOW_RADPS)

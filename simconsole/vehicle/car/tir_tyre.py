@@ -73,7 +73,7 @@ def make_tyre(p: Pac2002) -> TyreModel:
         load = load_n if load_n > LEAST_LOAD_N else LEAST_LOAD_N
         along = x * axle.decay_x_per_m
         across = -y * axle.decay_y_per_m
-        # Stiffness over load falls without end: under an impact the patch would slide only when it is out of sight.
+        # Stiffness over load falls without bound: under an impact the patch would slide only at an absurd deflection.
         usual = clip(load, LEAST_LOAD_N, MOST_NOMINAL * p.fnomin)
         firm_x = stiffness_x(p, usual) * along
         firm_y = stiffness_y(p, usual, camber_rad) * across
@@ -117,7 +117,7 @@ def make_tyre(p: Pac2002) -> TyreModel:
 
 @kernel
 def tir_kingpin_moment(p: SteeringParameters, tyre_force: TirForce, rolling_mps: float) -> float:
-    """Return the moment about the kingpin: the tyre's own, which turns over when it rolls back, and the caster's."""
+    """Return the moment about the kingpin: the tyre's own, which changes sign when rolling back, and the caster's."""
     way = rolling_mps / (abs(rolling_mps) + ROLLING_MPS)
     return tyre_force.moment_nm * way - tyre_force.force_y_n * p.caster_trail_m
 

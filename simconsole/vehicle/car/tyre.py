@@ -88,7 +88,7 @@ def tyre(
         y = y * share
         demand = axle.slide_demand
     elastic = load_n / (1.0 + 0.25 * demand * demand)
-    # The damping of a rolling tyre's carcass fades with grip: sliding rubber does not store. A wheel that the brake
+    # The damping of a rolling tyre's carcass fades with grip: sliding rubber stores no energy. A wheel that the brake
     # holds moves with the whole car instead of its own small inertia, so it can and must be damped more, at any grip:
     # where it slides, its deflection stays the same and there is nothing to damp.
     damping = axle.locked_damping_nspm
