@@ -5,8 +5,8 @@ has them: ISO, a slip angle is positive where the contact patch slides to the le
 brackets is that of the equation in the Adams manual, as OpenTirePython names it. The manual itself was not at hand:
 checked are the numbers, against OpenTirePython (all of force and moment, to 1e-13 of the load, tests/vehicle/
 test_tir_published.py), and against CommonRoad's tyre (forces); and by reading, against Project Chrono's ChPac02Tire
-(`LFZO`, friction ellipse). Chrono differs from all the others in `1 + PDY3 gamma^2` and the sign of the equivalent slip.
-Not here: turn slip, inflation pressure, overturning couple and rolling resistance of the file.
+(`LFZO`, friction ellipse). Chrono differs from all the others in `1 + PDY3 gamma^2` and the sign of the equivalent
+slip. Not here: turn slip, inflation pressure, overturning couple and rolling resistance of the file.
 """
 
 from collections.abc import Callable
