@@ -113,7 +113,7 @@ def steered_tyre(
     side: float,
     step_s: float,
 ) -> Contact:
-    """Return the same as `tyre_contact` for a wheel that points along (c, s) and has just turned by `turned_rad`."""
+    """Return the same as `unsteered_tyre` for a wheel that points along (c, s) and has just turned by `turned_rad`."""
     # The contact patch stays on the ground while the wheel turns about it: its deflection turns back in the wheel.
     x = wheel.deflection_x_m + turned_rad * wheel.deflection_y_m
     y = wheel.deflection_y_m - turned_rad * x
