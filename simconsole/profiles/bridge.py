@@ -13,7 +13,7 @@ Path = Annotated[str, Meta(min_length=1, max_length=4096)]
 
 
 class CommandLimits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What a command may ask at most; anything beyond is refused whole, because it is a mistake and not a wish."""
+    """Limits of a command; one beyond any of them is refused whole, because it is an error of the sender."""
 
     road_wheel_rad: Annotated[float, Meta(gt=0.0, le=1.2)] = 1.2
     road_wheel_radps: Annotated[float, Meta(gt=0.0, le=100.0)] = 20.0
@@ -24,7 +24,7 @@ class CommandLimits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
 
 class BridgeLimits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """How much one client, or all together, may take."""
+    """Resources that one client, or all together, may use."""
 
     clients: Annotated[int, Meta(ge=1, le=1024)] = 64
     message_bytes: Annotated[int, Meta(ge=1024, le=16_777_216)] = 262_144
@@ -34,7 +34,7 @@ class BridgeLimits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     calls: Annotated[int, Meta(ge=1, le=4096)] = 64
     call_s: Annotated[float, Meta(gt=0.0, le=3600.0)] = 30.0
     commands_hz: Annotated[float, Meta(ge=1.0, le=100_000.0)] = 500.0
-    """Of one client, held over a second; what comes above it is passed over, not queued."""
+    """Of one client, averaged over a second; commands beyond this rate are dropped, not queued."""
     queue_length: Annotated[int, Meta(ge=1, le=100_000)] = 1000
     queued_bytes: Annotated[int, Meta(ge=65_536, le=67_108_864)] = 1_048_576
 
@@ -44,7 +44,7 @@ class Ros2Profile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
     node: Annotated[str, Meta(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", max_length=64)] = "simconsole"
     domain_id: Annotated[int, Meta(ge=0, le=232)] | None = None
-    """Without: what ROS_DOMAIN_ID says."""
+    """If missing: ROS_DOMAIN_ID."""
     role: Literal["view", "publish", "control"] | None = None
     """What the nodes of the graph may do; without: what a rosbridge client that shows no token may, at least view."""
     discovery: Literal["localhost", "subnet"] = "localhost"
@@ -74,8 +74,8 @@ class BridgeProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     port: Annotated[int, Meta(ge=0, le=65_535)] = 9090
     """0 lets the system choose."""
     transport: Literal["websockets", "picows"] = "websockets"
-    """The library that carries clients' connections; picows (extra `picows`) serves many for less time. No matter in
-    lockstep, where the core serves its own sockets."""
+    """The library that carries clients' connections; picows (extra `picows`) takes less time for many. Without
+    effect in lockstep, where the core serves its own sockets."""
     namespace: Namespace = ""
     rename: dict[TopicName, TopicName] = field(default_factory=dict)
     rates_hz: dict[TopicName, Rate] = field(default_factory=dict)
@@ -108,10 +108,10 @@ class BridgeProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     max_stamp_age_ms: Annotated[float, Meta(gt=0.0, le=10_000.0)] = 200.0
     lease_ms: Annotated[float, Meta(ge=50.0, le=10_000.0)] = 500.0
     ping_interval_s: Annotated[float, Meta(gt=0.0, le=60.0)] = 1.0
-    """A client that says nothing for so long is asked for a sign of life."""
+    """A client that sends nothing for so long is sent a ping."""
     dead_after_s: Annotated[float, Meta(gt=0.0, le=600.0)] = 3.0
     """A client is taken for gone when for so long nothing came from it and its machine acknowledged nothing."""
     stall_close_s: Annotated[float, Meta(gt=0.0, le=600.0)] = 10.0
-    """A client that is there but takes nothing for so long is cut."""
+    """A client that is connected but reads nothing for so long is disconnected."""
     limits: BridgeLimits = BridgeLimits()
     commands: CommandLimits = CommandLimits()

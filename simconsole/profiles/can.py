@@ -27,11 +27,11 @@ class CanProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     log: tuple[Literal["blf", "candump"], ...] = ("blf",)
     """Which logs of the bus lie in the bundle: can.blf, can.log."""
     command_timeout_ms: Annotated[float, Meta(ge=20.0, le=10_000.0)] = 200.0
-    """No good command for so long: the reception starts anew (facts: commands are stale after 200 ms)."""
+    """After so long without a good command the reception starts anew (commands are stale after 200 ms)."""
     counter_step_max: Annotated[int, Meta(ge=1, le=7)] = 2
     """Largest step of a message's counter that is still in sequence: 2 lets one frame be lost."""
     invalid_max: Annotated[int, Meta(ge=1, le=100)] = 5
-    """So many bad frames in a row, and the counter is learnt anew (opendbc: 5 wrong counters)."""
+    """After so many bad frames in a row the counter is taken anew from the last (opendbc: 5 wrong counters)."""
     retry_first_s: Annotated[float, Meta(ge=1.0, le=30.0)] = 1.0
     retry_last_s: Annotated[float, Meta(ge=1.0, le=30.0)] = 30.0
     """A bus that went off is opened again after the first time, then after twice as long each, up to the last."""

@@ -16,7 +16,7 @@ Slew: TypeAlias = Annotated[float, msgspec.Meta(ge=0.5, le=50.0)]
 
 
 class ControlProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Settings of control/ as a person writes them; `control.settings.settings` turns them into SI and ticks."""
+    """Settings of arbitration and gate in a person's units; control/requests/control_settings.py converts them."""
 
     # The cockpit and the vehicle it drives.
     person_required: bool = True  # False: drives with no person in the seat (the ball); autonomy starts from PARKED

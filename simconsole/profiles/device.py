@@ -13,11 +13,11 @@ ButtonIndex: TypeAlias = Annotated[int, Meta(ge=0, le=23)]
 Raw: TypeAlias = Annotated[float, Meta(ge=-1.0, le=1.0)]
 Share: TypeAlias = Annotated[float, Meta(ge=0.0, le=1.0)]
 Curve: TypeAlias = Annotated[float, Meta(ge=0.2, le=5.0)]
-"""1: straight. Above: gentle at first, by so much less than straight; below: the other way round."""
+"""1: linear. Above 1: gentle at first, the slope at rest is 1 / curve of the linear one; below 1: steep at first."""
 Title: TypeAlias = Annotated[str, Meta(max_length=200)]
 
 MIN_TRAVEL_RAW = 0.2
-"""A pedal whose ends lie closer together than this cannot be told from its own noise."""
+"""A pedal whose ends lie closer together than this cannot be distinguished from its noise."""
 
 
 class OtherDevice(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -162,7 +162,7 @@ class Limits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Provenance(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Where a part of the profile comes from, so that nobody takes a guess for a measurement."""
+    """Source of a part of the profile, so that no guess is mistaken for a measurement."""
 
     status: Literal["captured", "documented", "unverified", "chosen"]
     source: Title
@@ -251,7 +251,7 @@ ButtonName: TypeAlias = Literal[
 
 
 class ScriptPoint(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What the person does at one instant. A key left out goes on as before, on the line to its next mention."""
+    """What the person does at one instant. A key left out is interpolated to its next mention."""
 
     time_s: Annotated[float, Meta(ge=0.0, le=86_400.0)]
     throttle: Share | None = None

@@ -1,7 +1,7 @@
 """Faults of a drive, for tests: which, when, for how long. The closed list of every kind stands at the end.
 
 A kind is a struct with its own parameters on top of `Onset`; whoever adds one adds it to `Fault` and gives it a layer
-in faulting.py, the one place that knows what each kind does to whom.
+in faults/schedule.py, the one place that maps each kind to its layer.
 """
 
 from typing import Annotated, Any, Literal, TypeAlias
@@ -32,7 +32,7 @@ EdgeName: TypeAlias = Literal[
 ]
 
 MAX_FAULTS = 48
-"""The row tells which faults are on as bits of one float64."""
+"""The state vector holds the faults that are on as bits of one float64."""
 
 _ONSETS = ("at_s", "at_distance_m", "near", "on_mode", "on_event")
 
@@ -57,7 +57,7 @@ class Onset(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     for_s: Annotated[float, Meta(gt=0.0, le=86_400.0)] | None = None  # None: to the end of the drive
 
     def __post_init__(self) -> None:
-        """Refuse a fault that never begins, or says twice when.
+        """Refuse a fault without an onset, or with more than one.
 
         Raises:
             ValueError: names what is given.
@@ -74,13 +74,13 @@ class Unplug(Onset, frozen=True, kw_only=True, tag_field="kind", tag="unplug"):
 
 
 class Freeze(Onset, frozen=True, kw_only=True, tag_field="kind", tag="freeze"):
-    """The device stays open but says nothing new: its last values, growing old."""
+    """The device stays open but sends nothing new: its last values stay, and their age grows."""
 
     device: RoleName
 
 
 class Stuck(Onset, frozen=True, kw_only=True, tag_field="kind", tag="stuck"):
-    """One axis stays where it is, or jumps to `raw` and stays there; nothing tells its age."""
+    """One axis stays where it is, or jumps to `raw` and stays there; its age does not grow."""
 
     axis: AxisName
     raw: Raw | None = None
@@ -112,7 +112,7 @@ class Noise(Onset, frozen=True, kw_only=True, tag_field="kind", tag="noise"):
 
 
 class Late(Onset, frozen=True, kw_only=True, tag_field="kind", tag="late"):
-    """Everything of one device arrives `by_ms` late. `stamped`: its stamps tell, so the age is known."""
+    """Everything of one device arrives `by_ms` late. `stamped`: the device stamps its data, so the age is known."""
 
     device: RoleName
     by_ms: Annotated[float, Meta(gt=0.0, le=5000.0)]
@@ -120,7 +120,7 @@ class Late(Onset, frozen=True, kw_only=True, tag_field="kind", tag="late"):
 
 
 class Invalid(Onset, frozen=True, kw_only=True, tag_field="kind", tag="invalid"):
-    """One axis reads what no axis can: NaN, an infinity or a number far outside."""
+    """One axis reads an impossible value: NaN, an infinity or a number far outside its range."""
 
     axis: AxisName
     reading: Literal["not_a_number", "infinite", "minus_infinite", "huge"] = "not_a_number"
@@ -152,25 +152,25 @@ class TwoGears(Onset, frozen=True, kw_only=True, tag_field="kind", tag="two_gear
 
 
 DeviceFault: TypeAlias = Unplug | Freeze | Stuck | Swapped | Noise | Late | Invalid | Burst | TwoGears
-"""Between the devices and the cockpit (devices/faults.py)."""
+"""Between the devices and the cockpit (faults/cockpit_faults.py)."""
 
 ControllerName: TypeAlias = Literal["ros", "can"]
 
 
 class Silent(Onset, frozen=True, kw_only=True, tag_field="kind", tag="silent"):
-    """The controller's commands stop coming; nobody says so."""
+    """The controller's commands stop without notice."""
 
     controller: ControllerName = "ros"
 
 
 class Disconnected(Onset, frozen=True, kw_only=True, tag_field="kind", tag="disconnected"):
-    """The controller's connection closes: its loss is told once, then there is silence."""
+    """The controller's connection closes: its loss is reported once, then nothing comes."""
 
     controller: ControllerName = "ros"
 
 
 class Refused(Onset, frozen=True, kw_only=True, tag_field="kind", tag="refused"):
-    """Every command is refused at the bridge: an old stamp, no number, out of range, a wrong type or frame."""
+    """Every command is refused at the bridge: an old stamp, not finite, out of range, a wrong type or frame."""
 
     controller: ControllerName = "ros"
 
@@ -183,20 +183,20 @@ class LateCommands(Onset, frozen=True, kw_only=True, tag_field="kind", tag="late
 
 
 class NotFinite(Onset, frozen=True, kw_only=True, tag_field="kind", tag="not_finite"):
-    """A command that is no number passes the bridge all the same: the arbiter and the gate are a second line."""
+    """A command that is not finite passes the bridge: the arbiter and the gate are the second line of defence."""
 
     controller: ControllerName = "ros"
 
 
 class Astray(Onset, frozen=True, kw_only=True, tag_field="kind", tag="astray"):
-    """The controller asks for another road-wheel angle, in range and finite: the gate lets it come slowly at most."""
+    """The controller asks for another road-wheel angle, in range and finite: the gate limits only its rate."""
 
     road_wheel_deg: Annotated[float, Meta(ge=-60.0, le=60.0)]
     controller: ControllerName = "ros"
 
 
 CommandFault: TypeAlias = Silent | Disconnected | Refused | LateCommands | NotFinite | Astray
-"""Between a controller and the arbiter (commanding_faults.py)."""
+"""Between a controller and the arbiter (faults/command_faults.py)."""
 
 
 class Stall(Onset, frozen=True, kw_only=True, tag_field="kind", tag="stall"):
@@ -212,7 +212,7 @@ class Raises(Onset, frozen=True, kw_only=True, tag_field="kind", tag="raises"):
 
 
 ProcessFault: TypeAlias = Stall | Raises
-"""Of the process that the loop runs in (process_faults.py)."""
+"""In the process that the loop runs in (faults/process_faults.py)."""
 
 Fault: TypeAlias = DeviceFault | CommandFault | ProcessFault
 """Every kind there is."""
@@ -221,7 +221,7 @@ Faults: TypeAlias = Annotated[tuple[Fault, ...], Meta(max_length=MAX_FAULTS)]
 
 
 def fault_label(fault: Fault) -> str:
-    """Return a fault for people, without its onset: `stuck axis throttle raw -1.0`."""
+    """Return a fault as text, without its onset: `stuck axis throttle raw -1.0`."""
     plain: dict[str, Any] = msgspec.to_builtins(fault)
     own = {key: value for key, value in plain.items() if key not in Onset.__struct_fields__ and value is not None}
     return " ".join((str(own.pop("kind")), *(f"{key} {value}" for key, value in own.items())))

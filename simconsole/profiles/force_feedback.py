@@ -9,7 +9,7 @@ Percent: TypeAlias = Annotated[int, Meta(ge=0, le=100)]
 
 
 class Motor(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The wheel as a machine. `take_over` detection and the torque estimate rest on these figures."""
+    """Mechanics of the wheel. Take-over detection and the torque estimate rest on these figures."""
 
     inertia_kgm2: Annotated[float, Meta(ge=0.005, le=0.5)] = 0.05
     damping_nms: Annotated[float, Meta(ge=0.0, le=2.0)] = 0.03
@@ -22,7 +22,7 @@ Gain: TypeAlias = Annotated[float, Meta(ge=0.0, le=3.0)]
 
 
 class Guidance(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The controller's voice in the wheel while control is shared, each times its authority over steering.
+    """Haptic guidance while control is shared: gains, each times the controller's authority over steering.
 
     Support, feedback and stiffness are JOAN's; a belt-driven wheel needs more authority than its 1 N m/rad to be moved.
     """
@@ -67,6 +67,6 @@ class ForceFeedback(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     gain_after_percent: Percent = 100  # what is left behind when the console lets go of the wheel
     autocentre_after_percent: Annotated[int, Meta(ge=0, le=99)] = 20
     device_damper: Annotated[float, Meta(ge=0.0, le=1.0)] = 0.1  # share of the device's own damper; 0: none
-    # Hands. No more than the first is what hands that rest on the rim do to a wheel that turns under them.
+    # Hands. The first is the largest torque of hands that only rest on the rim while the wheel turns under them.
     resting_hands_nm: Annotated[float, Meta(ge=0.0, le=3.0)] = 1.2
     hands_on_nm: Annotated[float, Meta(ge=0.05, le=5.0)] = 0.25

@@ -1,6 +1,6 @@
-"""Test manoeuvres as descriptions: what is driven, not how; `simconsole/handling` drives and evaluates them.
+"""Test manoeuvres as descriptions: what is driven, not how; simconsole.evaluation.manoeuvres drives and evaluates them.
 
-The figures that the kinds have as defaults are those of the standards named with them.
+The default values are those of the standard that is named with each kind.
 """
 
 from typing import Annotated, Literal, TypeAlias
@@ -71,7 +71,7 @@ class CoastDown(Section, frozen=True, kw_only=True, tag_field="kind", tag="coast
 
 
 class Observed(Section, frozen=True, kw_only=True, tag_field="kind", tag="observed"):
-    """The scenario's own script, observed from one moment to another: launch, stall, hill start, reverse, parking."""
+    """The scenario's own script, observed from one time to another: launch, stall, hill start, reverse, parking."""
 
     from_s: Annotated[float, Meta(ge=0.0, le=3600.0)] = 0.0
     until_s: Annotated[float, Meta(gt=0.0, le=3600.0)] | None = None
@@ -83,7 +83,7 @@ Manoeuvre: TypeAlias = (
 
 
 class Limit(Section, frozen=True, kw_only=True):
-    """What a characteristic value must be."""
+    """Bounds on a characteristic value."""
 
     value: str
     min: float | None = None

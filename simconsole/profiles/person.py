@@ -1,4 +1,4 @@
-"""The simulated person's plan: what they do in a drive, and how they are used to doing it."""
+"""The simulated person's plan: what they do in a drive, and their habits in doing so."""
 
 from typing import Annotated, Literal, TypeAlias
 
@@ -9,13 +9,13 @@ Seconds: TypeAlias = Annotated[float, Meta(ge=0.0, le=86_400.0)]
 
 
 class When(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A moment: when every limit that is given has been reached."""
+    """A point of the drive: reached when every given limit has been reached."""
 
     distance_m: Metres | None = None  # driven since the start
     time_s: Seconds | None = None  # since the start
 
     def __post_init__(self) -> None:
-        """Refuse a moment that nothing leads to.
+        """Refuse a point without any limit: it would never be reached.
 
         Raises:
             ValueError: neither limit is given.
@@ -42,7 +42,7 @@ class Habits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class PersonPlan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """One drive: drive off, hand over, take back, stop. A moment left out never comes (`stop`: at once)."""
+    """One drive: drive off, hand over, take back, stop. A point left out is never reached (`stop`: at once)."""
 
     schema: Literal[1] = 1
     title: Annotated[str, Meta(max_length=200)] = ""

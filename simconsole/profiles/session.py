@@ -79,7 +79,7 @@ class Features(Section, frozen=True, kw_only=True):
     control: ControlProfile = ControlProfile()
     aids: Aids = Aids()
     commander: Literal["ros", "can"] = "ros"
-    """Whose commands drive where both could: the ROS side's, or the ECU's on `outputs.can` (control/commander.py)."""
+    """Whose commands drive where both could: the ROS side's or, on `outputs.can`, the ECU's (requests/commander.py)."""
     autopilot: Name | None = None
     """Start `simconsole autopilot` on this course, as a program of its own that only speaks rosbridge."""
 

@@ -42,7 +42,7 @@ def parse(text: str, origin: str) -> Plain:
     """Return the one document in `text` as plain values; `origin` (a file name) opens every message.
 
     Raises:
-        ProfileError: the text is not YAML, or uses a part of it that profiles do without.
+        ProfileError: the text is not YAML, or uses a part of it that profiles must not use.
     """
     try:
         return _Reader(yaml.parse(text, Loader=_LOADER), origin).document()

@@ -25,7 +25,7 @@ Path = tuple[str | int, ...]
 
 
 def convert(values: object, struct: type[T], origin: str) -> T:
-    """Return `values` (from `profile_text.parse`) as `struct`; `origin` (a file name) opens the message.
+    """Return `values` (from `strict_yaml.parse`) as `struct`; `origin` (a file name) opens the message.
 
     Raises:
         ProfileError: `FILE: KEY: value VALUE: what is allowed`, for the first thing that does not fit.

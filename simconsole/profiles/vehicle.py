@@ -1,4 +1,4 @@
-"""Profiles of vehicles: what a person would read off a data sheet or set by hand, with bounds and units in the keys."""
+"""Profiles of vehicles: values from a data sheet or set by hand, with bounds and units in the keys."""
 
 from itertools import pairwise
 from typing import Annotated, Literal, TypeAlias
@@ -258,7 +258,7 @@ class BallProfile(
     max_accel_mps2: Annotated[float, msgspec.Meta(ge=0.1, le=20.0)]
     brake_mps2: Annotated[float, msgspec.Meta(ge=0.1, le=20.0)]
     rolling_mps2: Annotated[float, msgspec.Meta(ge=0.0, le=5.0)]  # deceleration when it rolls by itself
-    approach_s: Annotated[float, msgspec.Meta(ge=0.02, le=5.0)]  # time constant of the last bit to the target
+    approach_s: Annotated[float, msgspec.Meta(ge=0.02, le=5.0)]  # time constant of the last part of the way
     turn_per_s: Annotated[float, msgspec.Meta(ge=0.0, le=20.0)]  # heading rate per road-wheel angle
     steering_ratio: Annotated[float, msgspec.Meta(ge=1.0, le=30.0)]
     max_road_wheel_deg: Annotated[float, msgspec.Meta(ge=5.0, le=60.0)]

@@ -1,1 +1,1 @@
-"""The only door to YAML: profiles read from files."""
+"""Profiles read from files: the only package that reads YAML."""

@@ -8,7 +8,7 @@ from simconsole.profiles.vehicle import CarProfile, VehicleProfile
 
 
 def load_vehicle(name_or_path: str) -> VehicleProfile:
-    """Return the profile, its tyre's coefficients filled in: whoever records the profile records the tyre.
+    """Return the profile, its tyre's coefficients filled in: so a recorded profile contains the tyre.
 
     Raises:
         ProfileError: the profile or its tyre file cannot be used; names file and key.
