@@ -1,4 +1,4 @@
-"""What the car remembers from one step to the next: its columns of the row, and the same in groups for the kernels."""
+"""What the car remembers between steps: its columns of the state vector, and the same in groups for the kernels."""
 
 from typing import Final, NamedTuple
 
@@ -162,4 +162,4 @@ class CarState(NamedTuple):
 
 
 CAR: Final = Part(Car, PLATFORM_AT)
-"""Where the state lies in a row."""
+"""Where the state lies in a state vector."""
