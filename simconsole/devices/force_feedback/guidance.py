@@ -6,14 +6,12 @@ stiffness towards it. A command carries a single angle, so its slow part is take
 forward), the rest as the correction (feedback).
 """
 
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 from simconsole.devices.force_feedback.force_settings import ForceSettings
 from simconsole.devices.force_feedback.rim import Rim
 from simconsole.values.kernels import clip, kernel
 from simconsole.values.signals import Mode
-
-_SHARED: Final = float(Mode.SHARED)
 
 
 class GuidanceReference(NamedTuple):
@@ -37,7 +35,7 @@ def guidance_reference(
         tick_s: Length of a tick.
     """
     rad = clip(road_wheel_rad * force.hand_wheel_per_road_wheel, -force.end_stop_rad, force.end_stop_rad)
-    if mode != _SHARED:
+    if mode != Mode.SHARED:
         return GuidanceReference(rad, rad)
     return GuidanceReference(rad, slow_before_rad + (rad - slow_before_rad) * (tick_s / (tick_s + force.guide_slow_s)))
 

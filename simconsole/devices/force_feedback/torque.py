@@ -24,12 +24,6 @@ from simconsole.values.signals import (
 from simconsole.values.trigonometry import sin
 from simconsole.values.validity import is_trusted
 
-_MANUAL: Final = float(Mode.MANUAL)
-_SHARED: Final = float(Mode.SHARED)
-_AUTONOMOUS: Final = float(Mode.AUTONOMOUS)
-_TAKEOVER_REQUESTED: Final = float(Mode.TAKEOVER_REQUESTED)
-_CENTRING_WHEEL: Final = float(Notice.CENTRING_WHEEL)
-_RELEASE_PEDALS: Final = float(Notice.RELEASE_PEDALS)
 _STANDING: Final = int(Event.LOOP_STALL | Event.PAUSE)
 
 FRICTION_RADPS: Final = 1.0
@@ -166,7 +160,7 @@ def estimate(
 @kernel
 def centring(arbitration: Arbitration) -> bool:
     """Return whether the wheel is to be centred, and to be held there until the pedals are released."""
-    return arbitration.notice in (_CENTRING_WHEEL, _RELEASE_PEDALS)
+    return arbitration.notice in (Notice.CENTRING_WHEEL, Notice.RELEASE_PEDALS)
 
 
 @kernel
@@ -297,9 +291,9 @@ def wheel_torque(
     motor_nm = memory.motor_nm + force.motor_lag_share * (before.torque_nm - memory.motor_nm)
     estimated = estimate(driver, live, motor_nm, before, memory, force, tick_s)
     rim = Rim(estimated.rad, estimated.radps)
-    follows = mode in (_AUTONOMOUS, _TAKEOVER_REQUESTED) or centring(arbitration)
+    follows = mode in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED) or centring(arbitration)
     target = wheel_target(arbitration, vehicle, estimated, memory, force, tick_s)
-    driven = follows or mode in (_MANUAL, _SHARED)
+    driven = follows or mode in (Mode.MANUAL, Mode.SHARED)
     enabled = live and target.known and driven and int(events) & _STANDING == 0
     ramp = approach(before.ramp, 1.0, force.ramp_per_tick) if enabled else 0.0
     torque = WheelTorque(
@@ -314,7 +308,7 @@ def wheel_torque(
         hands_on=estimated.hands_on,
     )
     if enabled:
-        guided = arbitration.remote_guidance if mode == _SHARED else 0.0
+        guided = arbitration.remote_guidance if mode == Mode.SHARED else 0.0
         parts = torque_parts(follows, target.rim, rim, vehicle, target.asked, guided, force)
         torque = limited_torque(parts, ramp, estimated, before, force)
     share = ramp if follows else 0.0
