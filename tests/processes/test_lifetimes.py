@@ -150,11 +150,13 @@ def test_only_what_multiprocessing_started_has_such_a_parent() -> None:
 
 
 HELD = """
-import os, signal, sys
+import os, signal, sys, time
 from pathlib import Path
 from simconsole.processes.lifetimes import Interrupt, handled, interrupted, undone
 from simconsole.processes.shared_memory import temporary_folder
 def broken(): raise RuntimeError
+def hold():  # not signal.pause(): a signal that comes just before it would be seen by nobody
+    while True: time.sleep(0.01)
 with handled(interrupted), temporary_folder() as folder, undone(broken):
     (folder / "file").write_text("half made")
     print(folder, flush=True)
@@ -163,8 +165,8 @@ with handled(interrupted), temporary_folder() as folder, undone(broken):
             os.kill(os.getpid(), signal.SIGTERM)
             while not interrupt.raised: pass
             print("noted", flush=True)
-            signal.pause()
-    signal.pause()
+            hold()
+    hold()
 """
 
 
