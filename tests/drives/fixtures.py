@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import pytest
 
 from simconsole.recording.bundles.bundle import open_bundle
-from simconsole.recording.bundles.log import LogTable
+from simconsole.recording.reading import LogTable
 from tests.drives.console import results, simconsole
 
 SCRIPT = """\

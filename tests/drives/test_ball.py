@@ -12,8 +12,8 @@ import pytest
 
 import simconsole
 from simconsole.recording.bundles.bundle import open_bundle, verify
-from simconsole.recording.bundles.log import LogTable
 from simconsole.recording.bundles.replay_bundle import replay_bundle
+from simconsole.recording.reading import LogTable
 from simconsole.values.signals import Mode
 from tests.drives.console import Running, environment
 from tests.drives.controllers import free_port

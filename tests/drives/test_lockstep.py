@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from simconsole.recording.bundles.bundle import open_bundle
-from simconsole.recording.bundles.log import LogTable
 from simconsole.recording.bundles.replay_bundle import replay_bundle
+from simconsole.recording.reading import LogTable
 from simconsole.session.lifecycle import DriveResult, drive
 from simconsole.session.resolution import load_session, override, resolve
 from simconsole.values.signals import Event, Mode, Reason

@@ -14,8 +14,8 @@ import pytest
 from websockets.sync.client import ClientConnection
 
 from simconsole.recording.bundles.bundle import open_bundle
-from simconsole.recording.bundles.log import LogTable
 from simconsole.recording.bundles.replay_bundle import state_at
+from simconsole.recording.reading import LogTable
 from simconsole.session.lifecycle import drive
 from simconsole.session.resolution import load_session, override, resolve
 from simconsole.tick.advance import advance_vector

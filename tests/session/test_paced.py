@@ -15,8 +15,8 @@ import pytest
 from simconsole.processes.shared_memory import Ring
 from simconsole.processes.supervisor import STATUS, WorkerStatus
 from simconsole.recording.bundles.bundle import open_bundle, verify
-from simconsole.recording.bundles.log import LogTable
 from simconsole.recording.bundles.replay_bundle import replay_bundle
+from simconsole.recording.reading import LogTable
 from simconsole.session.worker_programs import SNAPSHOTS, snapshot_of
 from simconsole.values.signals import Event, Mode, Reason
 from simconsole.values.state_vector import Snapshot

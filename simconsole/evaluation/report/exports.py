@@ -9,8 +9,8 @@ from typing import Any, Final
 from simconsole.processes.lifetimes import remove_half_made, undone
 from simconsole.profiles.faults import fault_label
 from simconsole.recording.bundles.bundle import add_export, open_bundle
-from simconsole.recording.bundles.log import LogTable
 from simconsole.recording.bundles.replay_bundle import recorded_session
+from simconsole.recording.reading import LogTable
 from simconsole.session.scene_job import LIVE_SCENE, scene_job
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.world.course import Course

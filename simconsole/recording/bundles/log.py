@@ -6,16 +6,16 @@ end of a long drive does not wait for one.
 """
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from hashlib import sha256
+from itertools import islice
 from pathlib import Path
 from threading import Event, Thread
 from types import TracebackType
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from simconsole.recording.framing import (
     START_OF_CHAIN,
@@ -24,9 +24,9 @@ from simconsole.recording.framing import (
     Record,
     Scan,
     encode_header,
-    frame_size,
     seal,
 )
+from simconsole.recording.reading import BLOCK_TICKS, Block, LogTable, gathered, places
 from simconsole.values.errors import RecordingError
 from simconsole.values.host.files import replaced
 from simconsole.values.kernels import Row
@@ -197,26 +197,6 @@ class LogWriter:
                 return
 
 
-class LogTable(NamedTuple):
-    """A whole log in memory: ticks (n) and state vectors (n, columns)."""
-
-    columns: tuple[str, ...]
-    tick_hz: int
-    ticks: NDArray[np.int64]
-    vectors: NDArray[np.float64]
-
-    def column(self, name: str) -> NDArray[np.float64]:
-        """Return one column over all ticks.
-
-        Raises:
-            RecordingError: no such column in this recording.
-        """
-        if name not in self.columns:
-            raise RecordingError(f"the recording has no column {name!r}")
-        values: NDArray[np.float64] = self.vectors[:, self.columns.index(name)]
-        return values
-
-
 class LogReader:
     """A recorded log. Iterating passes over the file anew, in constant memory.
 
@@ -250,12 +230,22 @@ class LogReader:
                 yield record
         self.breaks, self.last = tuple(scan.breaks), record
 
-    def table(self) -> LogTable:
-        """Return all whole records as arrays."""
-        width = len(self.header.columns)
-        most = self.path.stat().st_size // frame_size(width) + 1
-        ticks, vectors, count = np.empty(most, np.int64), np.empty((most, width), np.float64), 0
-        for record in self:
-            ticks[count], vectors[count] = record.tick, record.vector
-            count += 1
-        return LogTable(self.header.columns, self.header.tick_hz, ticks[:count], vectors[:count])
+    def blocks(self, columns: Sequence[str] | None = None) -> Iterator[Block]:
+        """Yield the whole records in blocks of at most BLOCK_TICKS, with only these columns (None: all).
+
+        Raises:
+            RecordingError: no such column in this recording.
+        """
+        wanted = None if columns is None else places(self.header, columns)
+        records = iter(self)
+        while part := list(islice(records, BLOCK_TICKS)):
+            vectors = np.array([record.vector if wanted is None else record.vector[wanted] for record in part])
+            yield Block(np.array([record.tick for record in part]), vectors)
+
+    def table(self, columns: Sequence[str] | None = None) -> LogTable:
+        """Return all whole records as arrays, with only these columns (None: all).
+
+        Raises:
+            RecordingError: no such column in this recording.
+        """
+        return gathered(self.header, columns, self.blocks(columns))
