@@ -19,7 +19,7 @@ from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.synthetic.script import ScriptSource
 from simconsole.drivers.scripted_controller import ScriptedCommands
 from simconsole.recording.bundles.log import LogWriter
-from simconsole.recording.framing import LogHeader
+from simconsole.recording.log_header import ACTS, LogHeader, message_stream, vector_stream
 from simconsole.session.lifecycle import LogRecorder, warm_up
 from simconsole.session.pacing import UnpacedPacer
 from simconsole.session.resolution import load_scenario, resolve
@@ -32,8 +32,7 @@ from simconsole.values.state_vector import INPUT_WIDTH
 def header(columns: tuple[str, ...], tick_hz: int) -> LogHeader:
     return LogHeader(
         tick_hz=tick_hz,
-        columns=columns,
-        input_columns=INPUT_WIDTH,
+        streams=(vector_stream(columns, INPUT_WIDTH), message_stream(ACTS)),
         console_version="benchmark",
         source_sha256="",
         session_sha256="",

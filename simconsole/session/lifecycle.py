@@ -14,7 +14,7 @@ from simconsole.profiles.files.loader import to_text
 from simconsole.recording.bundles.bundle import SESSION_FILE, BundleWriter
 from simconsole.recording.bundles.log import LogWriter
 from simconsole.recording.bundles.replay_bundle import sources_sha256
-from simconsole.recording.framing import LogHeader
+from simconsole.recording.log_header import ACTS, LogHeader, message_stream, vector_stream
 from simconsole.session.opening import Opened, open_headless, open_realtime
 from simconsole.tick.advance import Console, ConsoleState, advance
 from simconsole.tick.assembly import ResolvedSession, assemble
@@ -133,8 +133,7 @@ def _bundle(resolved: ResolvedSession, console: Console, folder: Path) -> Bundle
     text = to_text(resolved)
     header = LogHeader(
         tick_hz=console.tick_hz,
-        columns=console.columns,
-        input_columns=INPUT_WIDTH,
+        streams=(vector_stream(console.columns, INPUT_WIDTH), message_stream(ACTS)),
         console_version=__version__,
         source_sha256=sources_sha256(console),
         session_sha256=hashlib.sha256(text.encode()).hexdigest(),
