@@ -20,8 +20,9 @@ from simconsole.devices.synthetic.script import ScriptSource
 from simconsole.drivers.scripted_controller import ScriptedCommands
 from simconsole.recording.bundles.log import LogWriter
 from simconsole.recording.log_header import ACTS, LogHeader, message_stream, vector_stream
-from simconsole.session.lifecycle import LogRecorder, warm_up
+from simconsole.session.lifecycle import warm_up
 from simconsole.session.pacing import UnpacedPacer
+from simconsole.session.recorder import LogRecorder
 from simconsole.session.resolution import load_scenario, resolve
 from simconsole.tick.assembly import assemble
 from simconsole.tick.loop import Components, run
