@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from simconsole.devices.synthetic.trace_format import COLUMNS
-from simconsole.recording.bundles.bundle import open_bundle, verify
+from simconsole.recording.bundles.bundle import open_bundle
+from simconsole.recording.bundles.verification import verify
 from simconsole.values.signals import NEVER_TICKS, Mode, Validity
 from tests.drives.console import results, simconsole
 

@@ -18,7 +18,8 @@ import pytest
 
 from simconsole.bridge.client.bridge_client import BridgeClient
 from simconsole.processes.lifetimes import DRIVE_VARIABLE
-from simconsole.recording.bundles.bundle import open_bundle, verify
+from simconsole.recording.bundles.bundle import open_bundle
+from simconsole.recording.bundles.verification import verify
 from simconsole.values.errors import OtherDriveError
 from simconsole.values.signals import Event, Mode
 from tests.drives.console import Running, environment, simconsole, words

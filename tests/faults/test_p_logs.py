@@ -13,9 +13,10 @@ from pathlib import Path
 import pytest
 
 from simconsole.recording.bundles import log
-from simconsole.recording.bundles.bundle import open_bundle, verify
+from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.log import SYNC_INTERVAL_S, LogReader
 from simconsole.recording.bundles.replay_bundle import replay_bundle
+from simconsole.recording.bundles.verification import verify
 from simconsole.recording.framing import frame_size
 from simconsole.recording.scan import Scan
 from simconsole.session.lifecycle import drive

@@ -31,7 +31,10 @@ class FileEntry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
 
 
 class Manifest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """manifest.json, less its own checksum. Before the drive is finished it lists the profiles but not the log."""
+    """manifest.json, to which sealing.py adds its own checksum.
+
+    Before the drive is finished it lists the profiles but not the log.
+    """
 
     schema: int = SCHEMA
     finished: bool = False

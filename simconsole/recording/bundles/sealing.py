@@ -19,8 +19,8 @@ _START: Final = b"{\n"
 _LINE: Final = re.compile(rb'\{\n  "sha256": "([0-9a-f]{64})",\n')
 
 
-def sealed(content: msgspec.Struct) -> bytes:
-    """Return the text of a record with at least one field, its own checksum in the second line."""
+def sealed(content: msgspec.Struct | dict[str, Any]) -> bytes:
+    """Return the text of a JSON object with at least one field, its own checksum in the second line."""
     text = msgspec.json.format(msgspec.json.encode(content), indent=2) + b"\n"
     return _START + b'  "%s": "%s",\n' % (KEY.encode(), sha256(text).hexdigest().encode()) + text[len(_START) :]
 

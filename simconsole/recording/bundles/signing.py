@@ -27,7 +27,7 @@ PUBLIC: Final = ".pub"
 
 
 class Signature(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """signature.json, less its own checksum."""
+    """signature.json, to which sealing.py adds its own checksum."""
 
     schema: Literal[1] = 1
     algorithm: Literal["Ed25519"] = "Ed25519"

@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 
 from simconsole.evaluation.report.exports import REPORT, SCENE, write_exports, write_report, write_scene
-from simconsole.recording.bundles.bundle import open_bundle, verify
+from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.manifest import MANIFEST
+from simconsole.recording.bundles.verification import verify
 from simconsole.session.scene_job import LIVE_SCENE
 from simconsole.values.errors import RecordingError
 
