@@ -1,4 +1,4 @@
-"""Write the JSON Schema of every kind of profile: `python scripts/make_schemas.py [docs/schemas]`.
+"""Write the JSON Schema of profiles and of a bundle's files: `python scripts/make_schemas.py [docs/schemas]`.
 
 An editor that knows the schema completes keys and shows bounds:
 `# yaml-language-server: $schema=docs/schemas/vehicle.schema.json` as the first line of a profile.
@@ -17,6 +17,9 @@ from simconsole.profiles.scenario import ScenarioProfile
 from simconsole.profiles.session import SessionProfile
 from simconsole.profiles.vehicle import VehicleProfile
 from simconsole.profiles.world import WorldProfile
+from simconsole.recording.bundles.manifest import Manifest
+from simconsole.recording.bundles.sealing import KEY
+from simconsole.recording.bundles.signing import Signature
 
 FOLDER = Path(__file__).resolve().parents[1] / "docs" / "schemas"
 KINDS = {
@@ -27,15 +30,32 @@ KINDS = {
     "world": WorldProfile,
 }
 """By the folder of `profiles/`, less its s."""
+SEALED = {"manifest": Manifest, "signature": Signature}
+"""Files of a bundle, which hold their own checksum."""
 
 
 def schemas() -> dict[str, str]:
     """Return the text of each schema by its file name."""
     dialect = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
+    found = {kind: msgspec.json.schema(profile) for kind, profile in KINDS.items()}
+    found |= {kind: with_checksum(msgspec.json.schema(record)) for kind, record in SEALED.items()}
     return {
-        f"{kind}.schema.json": json.dumps(dialect | unindented(msgspec.json.schema(profile)), indent=1) + "\n"
-        for kind, profile in KINDS.items()
+        f"{kind}.schema.json": json.dumps(dialect | unindented(schema), indent=1) + "\n"
+        for kind, schema in found.items()
     }
+
+
+def with_checksum(schema: dict[str, Any]) -> dict[str, Any]:
+    """Return the schema of a record as it lies in its file, its own checksum first."""
+    record = schema["$defs"][schema["$ref"].rpartition("/")[2]]
+    checksum = {
+        "type": "string",
+        "pattern": "^[0-9a-f]{64}$",
+        "description": "SHA-256 of the file without its second line, which this is.",
+    }
+    record["properties"] = {KEY: checksum} | record["properties"]
+    record["required"] = [KEY, *record["required"]]
+    return schema
 
 
 def unindented(part: Any) -> Any:

@@ -9,6 +9,7 @@ from simconsole.cli.driven import finish
 from simconsole.cli.outcome import Outcome
 from simconsole.cli.progress import Progress
 from simconsole.profiles.session import SessionProfile
+from simconsole.recording.bundles.provenance import Given
 from simconsole.session.lifecycle import drive as drive_session
 from simconsole.session.resolution import load_session, override, resolve
 from simconsole.values.errors import DeviceNotFound, ProfileError
@@ -18,10 +19,11 @@ def drive(options: Namespace) -> Outcome:
     """Drive the named session with the options of the command line laid over it."""
     session = _with_options(load_session(options.session), options)
     resolved = resolve(session, options.cockpit)
+    given = Given(participant=options.participant, trial=options.trial, notes=tuple(options.note)).checked()
     folder = Path(options.out) if options.out else Path("out") / time.strftime("drive-%Y%m%d-%H%M%S")
     with Progress("driving", resolved.world.length_m if resolved.world else 0.0) as progress:
         try:
-            result = drive_session(resolved, folder, progress.watch)
+            result = drive_session(resolved, folder, progress.watch, given=given)
         except DeviceNotFound as error:
             raise DeviceNotFound(f"{error}; without it: --driver keyboard, or simconsole demo") from None
     return finish(result, report=session.outputs.report, scene=session.outputs.scene is not None)

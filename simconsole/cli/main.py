@@ -118,6 +118,9 @@ def _driving(commands: Any) -> None:
     drive.add_argument("--cockpit", metavar="PROFILE", help="a cockpit by name, or the file that `calibrate` wrote")
     drive.add_argument("--for", dest="duration_s", type=float, metavar="S", help="end after S simulated seconds")
     drive.add_argument("--out", metavar="DIR", help="where the bundle goes (default: out/drive-TIME)")
+    drive.add_argument("--participant", default="", metavar="ID", help="who drives; kept in the bundle from the start")
+    drive.add_argument("--trial", default="", metavar="ID", help="which of their drives")
+    drive.add_argument("--note", action="append", default=[], metavar="TEXT", help="may be given several times")
 
     check = _command(commands, "check", "check:check", "drive scripted scenarios headless against their goldens")
     check.add_argument("scenarios", nargs="+", metavar="SCENARIO", help="by name, or a .yaml file")
@@ -167,11 +170,18 @@ def _driving(commands: Any) -> None:
 
 def _recordings(commands: Any) -> None:
     replay = _command(commands, "replay", "recordings:replay", "re-simulate a bundle; 0 only if every tick is equal")
-    verify = _command(commands, "verify", "recordings:verify", "check a bundle's manifest and checksums")
+    verify = _command(commands, "verify", "recordings:verify", "check every byte of a bundle, and its signature")
+    sign = _command(commands, "sign", "recordings:sign", "sign a bundle, so that nobody changes it unnoticed")
+    sign.add_argument("bundle", nargs="?", metavar="BUNDLE", help="the folder that a drive has written")
+    sign.add_argument("--key", metavar="FILE", help="the private key to sign with, Ed25519 in PEM")
+    sign.add_argument("--name", default="", metavar="TEXT", help="who signs, for people to read")
+    sign.add_argument("--new-key", metavar="FILE", help="make a key there, and its public half in FILE.pub")
+    sign.add_argument("--remove", action="store_true", help="take the signature away, to change the bundle")
     report = _command(commands, "report", "recordings:report", "write the HTML report of a bundle")
     view = _command(commands, "view", "recordings:view", "write a bundle's scene.rrd, and open it in rerun")
     for command in (replay, verify, report, view):
         command.add_argument("bundle", metavar="BUNDLE", help="the folder that a drive has written")
+    verify.add_argument("--signer", metavar="FILE.pub", help="the public key that must have signed it")
     view.add_argument("--no-open", action="store_true", help="only write scene.rrd")
     compare = _command(commands, "compare", "recordings:compare", "find the first differing tick and field")
     compare.add_argument("bundle", metavar="A")

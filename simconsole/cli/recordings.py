@@ -1,4 +1,4 @@
-"""`simconsole replay | verify | compare | report | view`: what can be done with a bundle."""
+"""`simconsole replay | verify | sign | compare | report | view`: what can be done with a bundle."""
 
 from argparse import Namespace
 from pathlib import Path
@@ -6,8 +6,10 @@ from typing import Any
 
 from simconsole.cli.outcome import Outcome
 from simconsole.recording.bundles.bundle import open_bundle
-from simconsole.recording.bundles.bundle import verify as verify_bundle
+from simconsole.recording.bundles.manifest import SIGNATURE, read_manifest, refuse_signed
+from simconsole.recording.bundles.verification import coverage, examine
 from simconsole.recording.compare import compare as compare_logs
+from simconsole.values.errors import RecordingError
 
 
 def replay(options: Namespace) -> Outcome:
@@ -15,6 +17,7 @@ def replay(options: Namespace) -> Outcome:
     from simconsole.recording.bundles.replay_bundle import replay_bundle
 
     result = replay_bundle(Path(options.bundle))
+    covered = coverage(Path(options.bundle))
     results = {
         "equal": result.equal,
         "ticks": result.ticks,
@@ -22,6 +25,7 @@ def replay(options: Namespace) -> Outcome:
         "difference": None if result.difference is None else result.difference._asdict(),
         "problems": result.problems,
         "remarks": result.remarks,
+        "vouches_for": covered.replayed if result.good else [],
     }
     if not result.equal:
         verdict = f"{options.bundle}: differs at {result.difference}"
@@ -29,15 +33,42 @@ def replay(options: Namespace) -> Outcome:
         verdict = f"{options.bundle}: {result.ticks} ticks replayed, equal, but they are not the whole drive"
     else:
         verdict = f"{options.bundle}: {result.ticks} ticks replayed, every hash equal"
+        says = f"this vouches for {', '.join(covered.replayed)}; for {', '.join(covered.others)}: simconsole verify"
+        verdict = f"{verdict}\n{says}"
     return Outcome(0 if result.good else 1, results, "\n".join((verdict, *result.problems, *result.remarks)))
 
 
 def verify(options: Namespace) -> Outcome:
-    """Check a bundle's manifest, checksums and hash chain; code 1 with one line for each problem."""
-    problems = verify_bundle(Path(options.bundle))
-    if problems:
-        return Outcome(1, {"good": False, "problems": problems}, "\n".join(problems))
-    return Outcome(0, {"good": True, "problems": []}, f"{options.bundle}: whole")
+    """Check every byte of a bundle, and its signature; code 1 with one line for each problem."""
+    found = examine(Path(options.bundle), Path(options.signer) if options.signer else None)
+    results = {"good": not found.problems, "problems": found.problems, "remarks": found.remarks}
+    verdict = found.problems or [f"{options.bundle}: whole"]
+    return Outcome(1 if found.problems else 0, results, "\n".join((*verdict, *found.remarks)))
+
+
+def sign(options: Namespace) -> Outcome:
+    """Sign a whole bundle, take its signature away, or make a key; code 1 if the bundle is not whole."""
+    from simconsole.recording.bundles.signing import make_key, remove_signature
+    from simconsole.recording.bundles.signing import sign as sign_bundle
+
+    asked = [word for word in ("key", "new_key", "remove") if getattr(options, word)]
+    if len(asked) != 1 or (options.bundle is None) != (asked == ["new_key"]):
+        raise RecordingError("command line: BUNDLE --key FILE, BUNDLE --remove, or --new-key FILE alone")
+    if options.new_key:
+        public = make_key(Path(options.new_key))
+        text = f"{options.new_key}: keep it secret; {options.new_key}.pub: give it to who shall check ({public})"
+        return Outcome(0, {"key": options.new_key, "public_key": public}, text)
+    folder = Path(options.bundle)
+    if options.remove:
+        remove_signature(folder)
+        return Outcome(0, {"removed": True}, f"{folder}: signed no longer")
+    refuse_signed(folder)
+    if problems := examine(folder).problems:
+        said = [f"{folder}: not signed, for it is not whole", *problems]
+        return Outcome(1, {"signed": False, "problems": problems}, "\n".join(said))
+    signature = sign_bundle(folder, Path(options.key), options.name)
+    results = {"signed": True, "problems": [], "public_key": signature.public_key}
+    return Outcome(0, results, f"{folder / SIGNATURE}: signed with the key {signature.public_key}")
 
 
 def compare(options: Namespace) -> Outcome:
@@ -65,10 +96,12 @@ def report(options: Namespace) -> Outcome:
 
 
 def view(options: Namespace) -> Outcome:
-    """Write scene.rrd into the bundle and open it in rerun, unless told not to."""
-    from simconsole.evaluation.report.exports import open_viewer, write_scene
+    """Write scene.rrd into the bundle and open it in rerun, unless told not to. That of a signed bundle stays."""
+    from simconsole.evaluation.report.exports import SCENE, open_viewer, write_scene
 
-    path = write_scene(Path(options.bundle))
+    folder = Path(options.bundle)
+    signed = (folder / SIGNATURE).exists() and SCENE in read_manifest(folder).files
+    path = folder / SCENE if signed else write_scene(folder)
     if not options.no_open:
         open_viewer(path)
     return _of_whole_drive(options.bundle, {"scene": str(path)}, str(path))

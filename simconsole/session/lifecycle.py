@@ -3,7 +3,7 @@
 import hashlib
 import time
 from collections.abc import Callable
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -11,13 +11,17 @@ from simconsole import __version__
 from simconsole.processes.lifetimes import Interrupt, remove_half_made, undone
 from simconsole.processes.shared_memory import sweep
 from simconsole.profiles.files.loader import to_text
-from simconsole.recording.bundles.bundle import SESSION_FILE, BundleWriter
+from simconsole.recording.bundles.bundle import SESSION_FILE, BundleWriter, add_export, unlisted
+from simconsole.recording.bundles.manifest import Manifest
+from simconsole.recording.bundles.provenance import NOTHING_GIVEN, Given
 from simconsole.recording.bundles.replay_bundle import sources_sha256
 from simconsole.recording.log_header import ACTS, LogHeader, message_stream, vector_stream
 from simconsole.session.opening import Opened, open_headless, open_realtime
+from simconsole.session.provenance import package_versions, provenance_at_start, with_devices
 from simconsole.tick.advance import Console, ConsoleState, advance
 from simconsole.tick.assembly import ResolvedSession, assemble
 from simconsole.tick.loop import come_to_rest, run
+from simconsole.values.errors import RecordingError
 from simconsole.values.host.jit import compiled
 from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE
 from simconsole.values.state_vector import INPUT_WIDTH, Snapshot, TickInputs
@@ -41,10 +45,12 @@ def drive(
     folder: Path,
     watch: Callable[[Snapshot], bool] = lambda snapshot: False,
     on_bridge: Callable[[str], None] = lambda url: None,
+    given: Given = NOTHING_GIVEN,
 ) -> DriveResult:
     """Drive a session into a new bundle in `folder`. `watch` sees every tick; True ends the drive.
 
-    `on_bridge` is told where the bridge of a paced drive listens, once it does.
+    `on_bridge` is told where the bridge of a paced drive listens, once it does. `given` is what whoever starts the
+    drive says of it; it is kept with the rest of its provenance before the first tick.
 
     SIGINT, SIGTERM and SIGHUP end it in order: the vehicle comes to rest in the log, torque goes off, the bundle is
     finished, then everything is closed. A second one ends the process at once; before the first tick nothing is left.
@@ -59,7 +65,7 @@ def drive(
     ticks = ENDLESS_TICKS if duration_s is None else round(duration_s * console.tick_hz)
     with ExitStack() as stack:
         interrupt = stack.enter_context(Interrupt())
-        bundle = stack.enter_context(_bundle(resolved, console, folder))
+        bundle = stack.enter_context(_bundle(resolved, console, folder, given))
         stack.enter_context(undone(lambda: remove_half_made(folder)))
         stack.enter_context(undone(lambda: bundle.__exit__(KeyboardInterrupt, KeyboardInterrupt(), None)))
         opened = _open(resolved, console, bundle, interrupt, stack)
@@ -84,6 +90,7 @@ def drive(
             **opened.summary(),
         }
         manifest = bundle.finish(summary)
+    _list_what_workers_wrote(folder, manifest)
     return DriveResult(
         folder=folder,
         ticks=manifest.ticks,
@@ -107,10 +114,20 @@ def _open(
     else:
         opened = open_headless(resolved, console, bundle.log, bundle.folder, interrupt, stack)
     interrupt.check()
+    if opened.identities:
+        bundle.extend_provenance(with_devices(bundle.manifest.provenance, opened.identities))
     return opened
 
 
-def _bundle(resolved: ResolvedSession, console: Console, folder: Path) -> BundleWriter:
+def _list_what_workers_wrote(folder: Path, manifest: Manifest) -> None:
+    """List the files that workers have written beside the log; they are whole only once their workers have ended."""
+    if not manifest.finished:
+        return
+    with suppress(RecordingError, OSError):  # the drive is recorded; `verify` names what is not listed
+        add_export(folder, *unlisted(folder, manifest))
+
+
+def _bundle(resolved: ResolvedSession, console: Console, folder: Path, given: Given) -> BundleWriter:
     text = to_text(resolved)
     header = LogHeader(
         tick_hz=console.tick_hz,
@@ -119,4 +136,5 @@ def _bundle(resolved: ResolvedSession, console: Console, folder: Path) -> Bundle
         source_sha256=sources_sha256(console),
         session_sha256=hashlib.sha256(text.encode()).hexdigest(),
     )
-    return BundleWriter(folder, header, {SESSION_FILE: text}, {"simconsole": __version__})
+    provenance = provenance_at_start(resolved.session.title, given)
+    return BundleWriter(folder, header, {SESSION_FILE: text}, package_versions(), provenance)

@@ -36,7 +36,7 @@ from simconsole.tick.isolation import isolated
 from simconsole.tick.loop import Components, Standby
 from simconsole.values.errors import BridgeError, ProfileError
 from simconsole.values.latency import LatencyStatistics
-from simconsole.values.protocols import CommandSource, NobodyCommands, Output
+from simconsole.values.protocols import CommandSource, DeviceIdentity, NobodyCommands, Output
 from simconsole.values.state_vector import Snapshot
 
 LOOKED_AT = 16
@@ -59,6 +59,8 @@ class Opened(NamedTuple):
     summary: Callable[[], dict[str, Any]]
     bridge_url: str | None = None
     """Where the bridge listens, of a paced drive."""
+    identities: tuple[DeviceIdentity, ...] = ()
+    """Of the cockpit's devices."""
 
 
 def open_headless(
@@ -113,7 +115,7 @@ def open_headless(
         own = {**counters(), **of_can(), **recorder.acts_summary()}
         return {**pace.summary(), **own, "latency_us": latencies.summary_us()}
 
-    return Opened(components, seating.finished, summary)
+    return Opened(components, seating.finished, summary, identities=seating.identities)
 
 
 def open_realtime(
@@ -185,7 +187,7 @@ def open_realtime(
         latency = {**latencies.summary_us(), **worker_latencies(folder)}
         return {**pace.summary(), **workers, "latency_us": latency, "not_granted": missing}
 
-    return Opened(components, seating.finished, summary, address)
+    return Opened(components, seating.finished, summary, address, seating.identities)
 
 
 def _await_workers(

@@ -12,11 +12,12 @@ from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import ProfileError
 from simconsole.values.host.jit import compiled
-from simconsole.values.protocols import DeviceSource, NobodySeated, Output, Seat
+from simconsole.values.protocols import DeviceIdentity, DeviceSource, NobodySeated, Output, Seat
 from simconsole.values.state_vector import Snapshot
 
 if TYPE_CHECKING:
     from simconsole.devices.force_feedback.motor import HapticPort
+    from simconsole.devices.sources.sdl_source import SdlSource
 
 
 class Seating(NamedTuple):
@@ -26,6 +27,8 @@ class Seating(NamedTuple):
     seat: Seat | None = None
     outputs: tuple[Output, ...] = ()
     finished: Callable[[Snapshot], bool] = lambda snapshot: False
+    identities: tuple[DeviceIdentity, ...] = ()
+    """Of the devices that a person or a simulated one works; none of a trace, a script or the keyboard."""
 
 
 def open_seating(
@@ -50,31 +53,32 @@ def open_seating(
         return _open_person(resolved, console, stack)
     if driver == "keyboard" and keys is None:
         raise ProfileError("devices.driver: value keyboard: needs a window, so not with --headless or hud: false")
+    from simconsole.devices.sources.sdl_source import SdlSource
     from simconsole.devices.sources.source_registry import open_source
 
     devices = open_source(driver, resolved.cockpit, tick_hz=console.tick_hz, keys=keys)
     stack.callback(devices.close)
-    if driver != "sdl":
+    if not isinstance(devices, SdlSource):
         return Seating(devices)
+    identities = devices.identities()
     if resolved.cockpit.force_feedback is None:
         _say(f"no force feedback: {resolved.cockpit.title} has none; everything else works")
-        return Seating(devices)
-    return _with_motor(devices, resolved.cockpit, resolved.cockpit.force_feedback, stack)
+        return Seating(devices, identities=identities)
+    seating = _with_motor(devices, resolved.cockpit, resolved.cockpit.force_feedback, stack)
+    return seating._replace(identities=identities)
 
 
 def _say(line: str) -> None:
     print(f"simconsole: {line}", file=sys.stderr, flush=True)
 
 
-def _with_motor(devices: DeviceSource, cockpit: CockpitProfile, force: ForceFeedback, stack: ExitStack) -> Seating:
+def _with_motor(devices: "SdlSource", cockpit: CockpitProfile, force: ForceFeedback, stack: ExitStack) -> Seating:
     """Add the wheel's motor; without one everything else works, and a line says so."""
     from simconsole.devices.force_feedback.motor import MotorisedSource, NoHaptics, WheelMotor
     from simconsole.devices.haptics.back_ends import open_motor
     from simconsole.devices.haptics.watchdog_client import open_watchdog, with_watchdog
     from simconsole.devices.sources.kernel_limits import notes, problems, wheel_limits
-    from simconsole.devices.sources.sdl_source import SdlSource
 
-    assert isinstance(devices, SdlSource)
     wheel = {"id": devices.instance_id("wheel")}
     identity = next((role.vendor_id, role.product_id) for role in cockpit.roles if role.role == "wheel")
     limits = wheel_limits(cockpit)
@@ -121,11 +125,15 @@ def _open_person(resolved: ResolvedSession, console: Console, stack: ExitStack) 
     force = resolved.cockpit.force_feedback
     if force is None:
         person = SimulatedPerson(plan, cockpit, numbers, tick_hz=tick_hz)
-        return Seating(devices, person, finished=lambda snapshot: person.finished)
+        return Seating(devices, person, finished=lambda snapshot: person.finished, identities=devices.identities())
     wheel = SimulatedWheel(force, resolved.cockpit.wheel.lock_to_lock_deg, tick_hz=tick_hz, step=compiled(step_wheel))
     person = SimulatedPerson(plan, cockpit, numbers, tick_hz=tick_hz, wheel=wheel)
     motor = WheelMotor(SimulatedWheelPort(wheel), force, lambda snapshot: snapshot.t_s)
     stack.callback(motor.close)
     return Seating(
-        MotorisedSource(devices, motor, lambda: None), person, (motor,), finished=lambda snapshot: person.finished
+        MotorisedSource(devices, motor, lambda: None),
+        person,
+        (motor,),
+        finished=lambda snapshot: person.finished,
+        identities=devices.identities(),
     )

@@ -1,6 +1,6 @@
 """What the drive loop needs of the world outside: four small protocols and their empty forms."""
 
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE, DeviceSample, EventInput, RemoteCommand
 from simconsole.values.state_vector import Snapshot
@@ -14,6 +14,16 @@ class DeviceSource(Protocol):
 
     def close(self) -> None:
         """Release the devices."""
+
+
+class DeviceIdentity(NamedTuple):
+    """Which device it was that somebody drove with: a label for people, nothing that a tick depends on."""
+
+    roles: tuple[str, ...]
+    name: str
+    usb_id: str  # vendor:product, hexadecimal
+    port: str  # where it is plugged in; empty where the system does not tell
+    serial: str
 
 
 class CommandSource(Protocol):

@@ -9,7 +9,8 @@ import pytest
 
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load
-from simconsole.recording.bundles.bundle import open_bundle, verify
+from simconsole.recording.bundles.bundle import open_bundle
+from simconsole.recording.bundles.verification import verify
 from simconsole.values.signals import Button, Event, Mode, Reason, Validity
 from simconsole.values.units import RAD_PER_DEG
 from tests.drives.fixtures import Demo

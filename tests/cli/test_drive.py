@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from simconsole.devices.synthetic.trace_format import COLUMNS
-from simconsole.recording.bundles.bundle import open_bundle, verify
+from simconsole.recording.bundles.bundle import open_bundle
+from simconsole.recording.bundles.verification import verify
 from simconsole.values.signals import NEVER_TICKS, Mode, Validity
-from tests.drives.console import results, simconsole
+from tests.drives.console import complaint, results, simconsole
 
 PERSON = """\
 schema: 1
@@ -117,3 +118,15 @@ def test_a_session_finds_its_script_beside_itself(tmp_path: Path, script: Path) 
     done = simconsole("drive", session, "--for", 1, "--out", tmp_path / "bundle", "--json")
     assert done.returncode == 0, done.stderr
     assert open_bundle(tmp_path / "bundle").log.table().column("driver.clutch").max() == pytest.approx(1.0)
+
+
+def test_participant_trial_and_notes_are_kept_in_the_bundle(plain: Path, tmp_path: Path) -> None:
+    options = ["--driver", "none", "--for", 0.1, "--participant", "P07", "--trial", 3]
+    done = simconsole("drive", plain, *options, "--note", "tired", "--note", "glasses", "--out", tmp_path / "b")
+    assert done.returncode == 0, done.stderr
+    known = open_bundle(tmp_path / "b").manifest.provenance
+    assert (known.participant, known.trial, known.notes) == ("P07", "3", ("tired", "glasses"))
+    assert known.devices == (), "nobody sat there"
+    refused = complaint(simconsole("drive", plain, "--participant", "P" * 65, "--out", tmp_path / "c"))
+    assert "participant: value of 65 characters: up to 64" in refused
+    assert not (tmp_path / "c").exists()

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.drives.console import results, simconsole
+from tests.drives.console import complaint, results, simconsole
 
 
 def test_verify_says_that_a_bundle_is_whole_or_what_is_wrong(short: Path, tmp_path: Path) -> None:
@@ -79,3 +79,56 @@ def test_compare_names_the_first_difference_with_a_window(
     assert difference["tick"] == FORGED_TICK
     assert "vehicle.vx_mps" in str(difference)
     assert "7.25" in done.stdout
+
+
+@pytest.fixture
+def key(tmp_path: Path) -> Path:
+    made = simconsole("sign", "--new-key", tmp_path / "lab.pem", "--json")
+    assert made.returncode == 0, made.stderr
+    assert results(made)["public_key"] in made.stdout.splitlines()[0]
+    return tmp_path / "lab.pem"
+
+
+def test_a_bundle_is_signed_checked_and_changed_only_without_its_signature(copy: Path, key: Path) -> None:
+    assert simconsole("verify", copy, "--signer", f"{key}.pub").returncode == 1, "not signed yet"
+    done = simconsole("sign", copy, "--key", key, "--name", "Lab 2", "--json")
+    assert done.returncode == 0, done.stderr
+    checked = simconsole("verify", copy, "--signer", f"{key}.pub")
+    assert checked.returncode == 0, checked.stdout
+    assert checked.stdout.splitlines()[0] == f"{copy}: whole"
+    assert f"by Lab 2 with the key of {key}.pub" in checked.stdout
+    assert results(simconsole("verify", copy, "--json"))["good"]
+    for command in ("report", "sign"):
+        refused = complaint(simconsole(command, copy, *(["--key", key] if command == "sign" else [])))
+        assert f"take the signature away first: simconsole sign {copy} --remove" in refused
+    assert simconsole("view", copy, "--no-open").stdout == f"{copy / 'scene.rrd'}\n", "the one that was signed"
+    assert simconsole("replay", copy).returncode == 0
+    assert simconsole("verify", copy, "--signer", f"{key}.pub").returncode == 0
+    assert simconsole("sign", copy, "--remove").returncode == 0
+    assert simconsole("report", copy).returncode == 0
+    assert simconsole("verify", copy).returncode == 0
+
+
+def test_only_a_whole_bundle_is_signed(copy: Path, key: Path) -> None:
+    (copy / "notes.txt").write_text("not the drive's")
+    done = simconsole("sign", copy, "--key", key)
+    assert done.returncode == 1
+    assert done.stdout.splitlines() == [
+        f"{copy}: not signed, for it is not whole",
+        f"{copy / 'notes.txt'}: not in manifest.json: nothing vouches for it",
+    ]
+    assert not (copy / "signature.json").exists()
+
+
+def test_sign_says_what_it_needs(copy: Path, key: Path) -> None:
+    for words in ((), (copy,), ("--key", key), (copy, "--key", key, "--remove"), (copy, "--new-key", key)):
+        assert "command line: BUNDLE --key FILE, BUNDLE --remove, or --new-key" in complaint(simconsole("sign", *words))
+    assert "exists; another file for the new key" in complaint(simconsole("sign", "--new-key", key))
+    assert "lab.pem.pub: no private key in PEM" in complaint(simconsole("sign", copy, "--key", f"{key}.pub"))
+
+
+def test_a_changed_manifest_is_one_line_to_every_command(copy: Path) -> None:
+    path = copy / "manifest.json"
+    path.write_bytes(path.read_bytes().replace(b'"lateness": "not paced"', b'"lateness": "all paced"'))
+    for command in ("verify", "replay", "report"):
+        assert f"{path}: altered: sha256 " in complaint(simconsole(command, copy))

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 import simconsole
-from simconsole.recording.bundles.bundle import open_bundle, verify
+from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.replay_bundle import replay_bundle
+from simconsole.recording.bundles.verification import verify
 from simconsole.recording.reading import LogTable
 from simconsole.values.signals import Mode
 from tests.drives.console import Running, environment

@@ -1,11 +1,12 @@
 """A short drive to record, and what a drive that did not end leaves."""
 
-import json
 from pathlib import Path
+from typing import Any
 
 from simconsole.profiles.session import SessionProfile
 from simconsole.session.resolution import load_session, override, resolve
 from simconsole.tick.assembly import ResolvedSession
+from tests.manifests import forge
 
 SECONDS = 2.0
 HZ = 250
@@ -26,8 +27,11 @@ def session(script: Path, seconds: float = SECONDS) -> ResolvedSession:
 
 def unfinish(folder: Path, **changes: object) -> None:
     """Leave what a drive that did not end leaves."""
-    manifest = json.loads((folder / "manifest.json").read_text())
-    for key in ("ticks", "digest", "summary"):
-        del manifest[key]
-    del manifest["files"]["drive.log"]
-    (folder / "manifest.json").write_text(json.dumps({**manifest, "finished": False, **changes}))
+
+    def change(manifest: dict[str, Any]) -> None:
+        for key in ("ticks", "digest", "summary"):
+            del manifest[key]
+        del manifest["files"]["drive.log"]
+        manifest.update(finished=False, **changes)
+
+    forge(folder, change)

@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 
 from simconsole.cli.driven import finish
-from simconsole.recording.bundles.bundle import open_bundle, verify
+from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.replay_bundle import replay_bundle
+from simconsole.recording.bundles.verification import verify
 from simconsole.session.lifecycle import drive
 from simconsole.values.errors import RecordingError
 from simconsole.values.signals import Event

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from simconsole.bridge.client.bridge_client import BridgeClient
-from simconsole.recording.bundles.bundle import verify
+from simconsole.recording.bundles.verification import verify
 from tests.drives.console import Running, results
 from tests.drives.controllers import free_port
 from tests.faults.test_whole_drives import PERSON

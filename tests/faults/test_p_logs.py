@@ -13,9 +13,10 @@ from pathlib import Path
 import pytest
 
 from simconsole.recording.bundles import log
-from simconsole.recording.bundles.bundle import open_bundle, verify
+from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.log import SYNC_INTERVAL_S, LogReader
 from simconsole.recording.bundles.replay_bundle import replay_bundle
+from simconsole.recording.bundles.verification import verify
 from simconsole.recording.framing import frame_size
 from simconsole.recording.scan import Scan
 from simconsole.session.lifecycle import drive
@@ -29,6 +30,7 @@ from tests.samples import Measured, Sample
 KILLED = """
 import mmap, os, sys, time
 from pathlib import Path
+from simconsole.recording.bundles.provenance import Given
 from simconsole.session.lifecycle import drive
 from tests.faults.recorded import session
 folder = Path(sys.argv[1])
@@ -43,7 +45,7 @@ for name in sys.stdin:
     begun[0] = 0
     child = os.fork()
     if child == 0:
-        drive(resolved, folder / name.strip(), watch)
+        drive(resolved, folder / name.strip(), watch, given=Given(participant=f"P{name.strip()}", notes=("tired",)))
         os._exit(1)
     print(child, flush=True)
     os.waitpid(child, 0)
@@ -77,6 +79,9 @@ def test_p02_kill_9_of_a_drive_loses_at_most_the_tick_in_work(
             assert drives.stdout.readline() == "dead\n"
             bundle = open_bundle(tmp_path / str(turn))
             assert not bundle.manifest.finished
+            told = bundle.manifest.provenance
+            assert (told.participant, told.notes) == (f"P{turn}", ("tired",))
+            assert told.machine is not None
             ticks = [record.tick for record in bundle.log]
             assert ticks == list(range(1, len(ticks) + 1))
             assert begun() - 1 <= len(ticks) <= begun() + 1

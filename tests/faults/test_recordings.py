@@ -1,6 +1,5 @@
 """F05 of the fault catalogue, from the command line: a recording that cannot be read is one line and exit code 2."""
 
-import json
 import shutil
 import sys
 from collections.abc import Callable
@@ -9,6 +8,8 @@ from pathlib import Path
 import pytest
 
 from tests.drives.console import complaint, results, simconsole
+from tests.faults.recorded import unfinish
+from tests.manifests import forge
 from tests.recording.conftest import change_header, rewrite_checksums
 
 __all__ = ["rewrite_checksums"]
@@ -19,22 +20,23 @@ def copy(short: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(short, tmp_path / "copy"))
 
 
+def resize(bundle: Path) -> None:
+    size = (bundle / "drive.log").stat().st_size
+    forge(bundle, lambda manifest: manifest["files"]["drive.log"].update(size_bytes=size))
+
+
 @pytest.mark.fault("F05")
 @pytest.mark.parametrize("command", ["replay", "report"])
 def test_f05_recording_of_a_newer_version(copy: Path, rewrite_checksums: Callable[[Path], None], command: str) -> None:
     change_header(copy / "drive.log", schema=99)
-    manifest = json.loads((copy / "manifest.json").read_text())
-    entry = manifest["files"]["drive.log"]
-    entry["size_bytes"] = (copy / "drive.log").stat().st_size
-    (copy / "manifest.json").write_text(json.dumps(manifest))
+    resize(copy)
     line = complaint(simconsole(command, copy))
     assert f"{copy / 'drive.log'}: schema: 99 cannot be read, this simconsole reads 1 to 2" in line
 
 
 @pytest.mark.fault("F05")
 def test_f05_bundle_of_a_newer_version(copy: Path) -> None:
-    manifest = json.loads((copy / "manifest.json").read_text())
-    (copy / "manifest.json").write_text(json.dumps({**manifest, "schema": 99, "invented": True}))
+    forge(copy, lambda manifest: manifest.update(schema=99, invented=True))
     for command in ("replay", "verify", "report"):
         assert f"{copy / 'manifest.json'}: schema: 99 cannot be read" in complaint(simconsole(command, copy))
 
@@ -43,9 +45,7 @@ def test_f05_bundle_of_a_newer_version(copy: Path) -> None:
 def test_f05_recording_of_another_endianness(copy: Path) -> None:
     other = "big" if sys.byteorder == "little" else "little"
     change_header(copy / "drive.log", byte_order=other)
-    manifest = json.loads((copy / "manifest.json").read_text())
-    manifest["files"]["drive.log"]["size_bytes"] = (copy / "drive.log").stat().st_size
-    (copy / "manifest.json").write_text(json.dumps(manifest))
+    resize(copy)
     line = complaint(simconsole("replay", copy))
     assert f"{copy / 'drive.log'}: byte_order: '{other}' cannot be read here" in line
 
@@ -60,9 +60,7 @@ def test_f05_recording_cut_in_its_header(copy: Path) -> None:
 @pytest.mark.fault("F05")
 def test_f05_drive_that_was_killed_can_still_be_replayed(copy: Path) -> None:
     # What a kill -9 leaves: the first manifest, and a log that ends in the middle of a tick.
-    manifest = json.loads((copy / "manifest.json").read_text())
-    del manifest["files"]["drive.log"], manifest["ticks"], manifest["digest"], manifest["summary"]
-    (copy / "manifest.json").write_text(json.dumps({**manifest, "finished": False}))
+    unfinish(copy)
     log = copy / "drive.log"
     with log.open("r+b") as file:
         file.truncate(log.stat().st_size - 100)

@@ -3,6 +3,7 @@ import json
 import struct
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 from zlib import crc32
 
 import msgspec
@@ -11,8 +12,10 @@ import pytest
 
 from simconsole.recording.bundles.bundle import BundleWriter
 from simconsole.recording.bundles.log import LogReader
+from simconsole.recording.bundles.provenance import Provenance
 from simconsole.recording.framing import START_OF_CHAIN, seal, seal_message
 from simconsole.recording.log_header import MAGIC, LogHeader, encode_header, message_stream, vector_stream
+from tests.manifests import forge
 
 TEXTS = {"session.yaml": "schema: 1\n", "vehicle.yaml": "mass_kg: 1500\n"}
 COLUMNS = ("sample.brake_axis", "sample.throttle_axis", "driver.brake", "vehicle.vx_mps")
@@ -123,12 +126,13 @@ def rewrite_checksums() -> Callable[[Path], None]:
     """Make a manifest agree with the files of its bundle again."""
 
     def rewrite(folder: Path) -> None:
-        manifest = json.loads((folder / "manifest.json").read_text())
-        for name, entry in manifest["files"].items():
-            content = (folder / name).read_bytes()
-            entry.update(size_bytes=len(content), sha256=hashlib.sha256(content).hexdigest())
-        manifest["digest"] = [record.digest for record in LogReader(folder / "drive.log")][-1].hex()
-        (folder / "manifest.json").write_text(json.dumps(manifest))
+        def change(manifest: dict[str, Any]) -> None:
+            for name, entry in manifest["files"].items():
+                content = (folder / name).read_bytes()
+                entry.update(size_bytes=len(content), sha256=hashlib.sha256(content).hexdigest())
+            manifest["digest"] = [record.digest for record in LogReader(folder / "drive.log")][-1].hex()
+
+        forge(folder, change)
 
     return rewrite
 
@@ -150,7 +154,7 @@ def rewrite_session(rewrite_checksums: Callable[[Path], None]) -> Callable[..., 
 @pytest.fixture
 def bundle(tmp_path: Path, header: LogHeader, rows: list[np.ndarray]) -> Path:
     folder = tmp_path / "drive"
-    with BundleWriter(folder, header, TEXTS, {"simconsole": "0"}, {"started": "noon"}) as writer:
+    with BundleWriter(folder, header, TEXTS, {"simconsole": "0"}, Provenance(participant="P07")) as writer:
         for tick, row in enumerate(rows, start=1):
             writer.log.append(tick, row)
         writer.finish({"late_p99_us": 12.5})

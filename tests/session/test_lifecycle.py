@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from simconsole.recording.bundles.bundle import open_bundle
+from simconsole.recording.bundles.verification import verify
 from simconsole.session.lifecycle import DriveResult, drive
 from simconsole.session.resolution import load_session, override, resolve
 from simconsole.tick.assembly import ResolvedSession
@@ -48,3 +49,16 @@ def test_who_watches_may_end_it_and_equal_ticks_are_equal(resolved: ResolvedSess
     assert 30 <= first.ticks <= 31
     assert first.digest == second.digest
     assert not first.interrupted
+
+
+def test_what_workers_wrote_beside_the_log_is_listed_once_they_have_ended(
+    resolved: ResolvedSession, tmp_path: Path
+) -> None:
+    def watch(found: Snapshot) -> bool:
+        if found.tick == 3:
+            (tmp_path / "b" / "topics.mcap").write_bytes(b"as a worker would")
+        return found.tick == 10
+
+    drive(resolved, tmp_path / "b", watch)
+    assert open_bundle(tmp_path / "b").manifest.files["topics.mcap"].export
+    assert verify(tmp_path / "b") == []

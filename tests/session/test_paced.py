@@ -14,8 +14,9 @@ import pytest
 
 from simconsole.processes.shared_memory import Ring
 from simconsole.processes.supervisor import STATUS, WorkerStatus
-from simconsole.recording.bundles.bundle import open_bundle, verify
+from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.replay_bundle import replay_bundle
+from simconsole.recording.bundles.verification import verify
 from simconsole.recording.reading import LogTable
 from simconsole.session.worker_programs import SNAPSHOTS, snapshot_of
 from simconsole.values.signals import Event, Mode, Reason

@@ -43,6 +43,7 @@ def test_cockpit_without_the_section_has_no_motor_worker() -> None:
         seating = open_seating(bare, console, stack)
         assert seating.outputs == ()
         assert console.force_feedback is None
+        assert "044f:b65e" in [device.usb_id for device in seating.identities]
 
 
 def test_simulated_person_sits_at_a_wheel_with_a_motor() -> None:
@@ -51,6 +52,7 @@ def test_simulated_person_sits_at_a_wheel_with_a_motor() -> None:
         seating = open_seating(resolved, assemble(resolved, plain)[0], stack)
         (motor,) = seating.outputs
         assert isinstance(motor, WheelMotor)
+        assert {role for device in seating.identities for role in device.roles} >= {"wheel", "pedals"}
         assert isinstance(seating.devices, MotorisedSource)
         assert seating.devices.poll(1).wheel_motor == 1.0
     assert not motor.obeys, "closed with the session"

@@ -13,8 +13,8 @@ from simconsole.evaluation.checks.memory_recorder import MemoryRecorder
 from simconsole.profiles.device import ScriptProfile
 from simconsole.profiles.files.loader import parse
 from simconsole.profiles.session import SessionProfile
-from simconsole.recording.bundles.bundle import verify
 from simconsole.recording.bundles.log import LogWriter
+from simconsole.recording.bundles.verification import verify
 from simconsole.session.lifecycle import drive
 from simconsole.session.pacing import UnpacedPacer
 from simconsole.session.resolution import override, resolve

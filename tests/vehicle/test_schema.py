@@ -1,4 +1,4 @@
-"""The published JSON Schemas are those of the profiles, and the shipped profiles keep to them."""
+"""The published JSON Schemas are the present ones, and the shipped profiles keep to theirs."""
 
 import json
 import re
@@ -27,8 +27,11 @@ TYPES: dict[str, tuple[type, ...]] = {
 }
 
 
-def fits(value: Any, kind: dict[str, Any], schema: dict[str, Any]) -> bool:
+def fits(value: Any, kind: dict[str, Any] | bool, schema: dict[str, Any]) -> bool:
     """Return whether a value is what the schema allows, as far as our schemas say it."""
+    if kind in (True, False, {}):
+        return kind is not False
+    assert isinstance(kind, dict)
     if "$ref" in kind:
         return fits(value, schema["$defs"][kind["$ref"].rpartition("/")[2]], schema)
     if "anyOf" in kind:
@@ -41,8 +44,7 @@ def fits(value: Any, kind: dict[str, Any], schema: dict[str, Any]) -> bool:
     if isinstance(value, dict):
         known, more = kind.get("properties", {}), kind.get("additionalProperties", True)
         return set(kind.get("required", [])) <= set(value) and all(
-            fits(part, known[key], schema) if key in known else isinstance(more, dict) and fits(part, more, schema)
-            for key, part in value.items()
+            fits(part, known.get(key, more), schema) for key, part in value.items()
         )
     if isinstance(value, list):
         counted = kind.get("minItems", 0) <= len(value) <= kind.get("maxItems", len(value))

@@ -9,8 +9,10 @@ from typing import Any, Final, NamedTuple
 
 from simconsole.devices.calibration.calibrator import travel
 from simconsole.devices.sources import sdl_runtime
+from simconsole.devices.sources.usb_places import place_of
 from simconsole.profiles.device import CockpitProfile, OtherDevice, RoleBinding, RoleName
 from simconsole.values.errors import DeviceError, DeviceModeError, DeviceNotFound
+from simconsole.values.protocols import DeviceIdentity
 from simconsole.values.signals import NEVER_TICKS, DeviceSample
 
 INVERTED_SHARE: Final = 0.95
@@ -38,6 +40,7 @@ class _Bound:
     def __init__(self, joystick: Any) -> None:
         self.joystick = joystick
         self.instance_id: int = joystick.get_instance_id()
+        self.usb_id = identity(joystick.get_guid())
         self.buttons = min(joystick.get_numbuttons(), 24)
         self.hats: int = joystick.get_numhats()
         self.fresh = False  # SDL reads the first values at the first pump after opening
@@ -148,6 +151,22 @@ class SdlSource:
         """Return SDL's number of the device that plays this role now; None while it is not there."""
         bound = self._bound.get(self._keys[role])
         return None if bound is None else bound.instance_id
+
+    def identities(self) -> tuple[DeviceIdentity, ...]:
+        """Return which devices play the cockpit's roles now, each once."""
+        found = []
+        for key, bound in self._bound.items():
+            name, place = bound.joystick.get_name(), place_of(bound.usb_id)
+            found.append(
+                DeviceIdentity(
+                    roles=tuple(role for role, wanted in self._keys.items() if wanted == key),
+                    name=name,
+                    usb_id=f"{bound.usb_id[0]:04x}:{bound.usb_id[1]:04x}",
+                    port=place.port,
+                    serial=place.serial,
+                )
+            )
+        return tuple(found)
 
     def close(self) -> None:
         """Release the devices. Twice is harmless."""

@@ -9,6 +9,8 @@ from typing import Any, Final
 from simconsole.processes.lifetimes import remove_half_made, undone
 from simconsole.profiles.faults import fault_label
 from simconsole.recording.bundles.bundle import add_export, open_bundle
+from simconsole.recording.bundles.manifest import Manifest, refuse_signed
+from simconsole.recording.bundles.provenance import facts as provenance_facts
 from simconsole.recording.bundles.replay_bundle import recorded_session
 from simconsole.recording.reading import LogTable
 from simconsole.session.scene_job import LIVE_SCENE, scene_job
@@ -17,8 +19,6 @@ from simconsole.world.course import Course
 
 REPORT: Final = "report.html"
 SCENE: Final = "scene.rrd"
-WORKER_LOGS: Final = ("can.blf", "can.log", "topics.mcap")
-"""Files that workers recorded beside the log."""
 
 
 def write_exports(folder: Path, report: bool = True, scene: bool = True) -> dict[str, Any]:
@@ -27,9 +27,11 @@ def write_exports(folder: Path, report: bool = True, scene: bool = True) -> dict
     The scene is made by a process of its own meanwhile (rerun is never called in this one).
 
     Raises:
-        RecordingError: not a bundle.
+        RecordingError: not a bundle, or a signed one.
         WorkerError: the scene's process failed.
     """
+    if report or scene:
+        refuse_signed(folder)
     with undone(lambda: remove_half_made(folder)):
         return _write_exports(folder, report, scene)
 
@@ -37,15 +39,15 @@ def write_exports(folder: Path, report: bool = True, scene: bool = True) -> dict
 def _write_exports(folder: Path, report: bool, scene: bool) -> dict[str, Any]:
     bundle = open_bundle(folder)
     resolved, table = recorded_session(bundle), bundle.log.table()
-    with ThreadPoolExecutor(1) as beside:
-        pending = beside.submit(_scene, folder, resolved, table) if scene else None
-        metrics = _report(folder, resolved, table, bundle.manifest.summary, report)
-        if pending is not None:
-            pending.result()
-    made = ((name, (folder / name).exists()) for name in WORKER_LOGS)
-    for name, wanted in ((REPORT, report), (SCENE, scene), *made):
-        if wanted:
-            add_export(folder, name)
+    try:
+        with ThreadPoolExecutor(1) as beside:
+            pending = beside.submit(_scene, folder, resolved, table) if scene else None
+            metrics = _report(folder, resolved, table, bundle.manifest, report)
+            if pending is not None:
+                pending.result()
+    finally:  # where one could not be made, the other is listed all the same
+        made = [name for name, wanted in ((REPORT, report), (SCENE, scene)) if wanted and (folder / name).exists()]
+        add_export(folder, *made, instead_of=LIVE_SCENE if SCENE in made else None)
     return metrics
 
 
@@ -53,7 +55,7 @@ def write_report(folder: Path) -> dict[str, Any]:
     """Write report.html into the bundle and return its metrics.
 
     Raises:
-        RecordingError: not a bundle.
+        RecordingError: not a bundle, or a signed one.
     """
     return write_exports(folder, scene=False)
 
@@ -62,12 +64,13 @@ def write_scene(folder: Path) -> Path:
     """Write scene.rrd into the bundle and return its path.
 
     Raises:
-        RecordingError: not a bundle.
+        RecordingError: not a bundle, or a signed one.
         WorkerError: the process that writes it failed.
     """
+    refuse_signed(folder)
     bundle = open_bundle(folder)
     _scene(folder, recorded_session(bundle), bundle.log.table())
-    add_export(folder, SCENE)
+    add_export(folder, SCENE, instead_of=LIVE_SCENE)
     return folder / SCENE
 
 
@@ -80,9 +83,7 @@ def _course(resolved: ResolvedSession) -> Course | None:
     return None if resolved.world is None else Course(resolved.world)
 
 
-def _report(
-    folder: Path, resolved: ResolvedSession, table: LogTable, summary: dict[str, Any], page: bool
-) -> dict[str, Any]:
+def _report(folder: Path, resolved: ResolvedSession, table: LogTable, manifest: Manifest, page: bool) -> dict[str, Any]:
     from simconsole.evaluation.metrics.drive_metrics import metrics
     from simconsole.evaluation.metrics.table import drive_of
     from simconsole.evaluation.report.page import write_report as write_page
@@ -98,22 +99,27 @@ def _report(
             table.tick_hz,
             course,
             title,
-            _facts(resolved, summary),
+            _facts(resolved, manifest),
             first_tick=first_tick,
             faults=faults,
-            latency_us=summary.get("latency_us"),
+            latency_us=manifest.summary.get("latency_us"),
         )
     return metrics(drive_of(table.vectors, table.columns, table.tick_hz, first_tick), course, None, faults)
 
 
-def _facts(resolved: ResolvedSession, summary: dict[str, Any]) -> dict[str, object]:
+def _facts(resolved: ResolvedSession, manifest: Manifest) -> dict[str, object]:
     session = resolved.session
     return {
+        **provenance_facts(manifest.provenance),
         "vehicle": session.scenario.vehicle,
         "world": session.environment.world or "none",
         "driver": session.devices.driver,
         "pacing": session.mode.pacing,
-        **{key.replace("_", " "): value for key, value in summary.items() if not isinstance(value, dict | list)},
+        **{
+            key.replace("_", " "): value
+            for key, value in manifest.summary.items()
+            if not isinstance(value, dict | list)
+        },
     }
 
 
@@ -121,4 +127,3 @@ def _scene(folder: Path, resolved: ResolvedSession, table: LogTable) -> None:
     from simconsole.scene.viewer.export import export_apart
 
     export_apart(scene_job(resolved, table.vectors, table.ticks, table.columns, table.tick_hz), folder / SCENE)
-    (folder / LIVE_SCENE).unlink(missing_ok=True)

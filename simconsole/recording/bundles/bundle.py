@@ -1,12 +1,12 @@
 """A bundle: the folder that holds one drive, with a manifest of what belongs to it.
 
 `drive.log` and the resolved profiles are the drive itself; report.html, scene.rrd and other exports are made from
-them and may be missing. The manifest is written twice: at the start, so that a killed drive is still a bundle, and
-at the end with sizes and checksums.
+them and may be missing. The manifest is written at the start, with all that is known of where the drive comes from,
+again when the devices are open, and at the end with sizes and checksums: a killed drive is a bundle too.
 """
 
 import contextlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from functools import partial
 from hashlib import sha256
 from pathlib import Path
@@ -19,20 +19,21 @@ from simconsole.recording.bundles.log import LAST_TICKS, LogReader, LogWriter
 from simconsole.recording.bundles.manifest import (
     MANIFEST,
     ROOM_BYTES,
+    SIGNATURE,
     FileEntry,
     Manifest,
-    checksum_problem,
     file_entry,
     plain_name,
     read_manifest,
     size_problem,
     write_manifest,
 )
-from simconsole.recording.framing import START_OF_CHAIN, chain, frame_size
+from simconsole.recording.bundles.provenance import UNKNOWN, Provenance
+from simconsole.recording.framing import frame_size
 from simconsole.recording.log_header import LogHeader
 from simconsole.recording.scan import Break
 from simconsole.values.errors import RecordingError
-from simconsole.values.host.files import draft_of, give_back, reserve, sync_folder, write_atomically
+from simconsole.values.host.files import DRAFT, draft_of, give_back, reserve, sync_folder, write_atomically
 from simconsole.values.signals import Event
 
 LOG: Final = "drive.log"
@@ -62,14 +63,14 @@ class Bundle:
         The log counts as found by the latest complete pass. A torn last tick of a drive that was not finished is what
         a kill leaves, and no problem; see `remarks`.
         """
-        failure = self.manifest.recording_failure or _alarm(self.log)
+        failure = self.manifest.recording_failure or alarm(self.log)
         failed = [] if failure is None else [failure]
         return failed + [f"{self.log.path}: {part}" for part in self.log.breaks if not self._expected(part)]
 
     def remarks(self) -> list[str]:
         """Return what is worth knowing about the bundle but is no problem, one line each."""
-        unfinished = [] if self.manifest.finished else [_unfinished(self.folder)]
-        return unfinished + [
+        left = [] if self.manifest.finished else [unfinished(self.folder)]
+        return left + [
             f"{self.log.path}: {part}: the last tick, as a drive that was killed leaves it"
             for part in self.log.breaks
             if self._expected(part)
@@ -108,9 +109,16 @@ class BundleWriter:
         header: LogHeader,
         texts: Mapping[str, str],
         versions: Mapping[str, str] | None = None,
-        labels: Mapping[str, str] | None = None,
+        provenance: Provenance = UNKNOWN,
     ) -> None:
-        """Make the folder, write `texts` (resolved profiles, file name to content) and open the log.
+        """Make the folder, write the resolved profiles and the first manifest, and open the log.
+
+        Args:
+            folder: new, or empty.
+            header: of the log.
+            texts: resolved profiles, file name to content.
+            versions: of the packages that make the result.
+            provenance: what is known now of where the drive comes from; see `extend_provenance`.
 
         Raises:
             RecordingError: the folder exists and is not empty, or cannot be written.
@@ -131,11 +139,10 @@ class BundleWriter:
             self.manifest = Manifest(
                 files={name: file_entry(folder / name) for name in texts},
                 versions=dict(versions or {}),
-                labels=dict(labels or {}),
+                provenance=provenance,
             )
-            write_manifest(folder, self.manifest)
-            last_ticks_bytes = LAST_TICKS * frame_size(len(header.columns)) + 2 * BLOCK_BYTES
-            reserve(folder / MANIFEST, ROOM_BYTES + last_ticks_bytes)
+            self._room_bytes = ROOM_BYTES + LAST_TICKS * frame_size(len(header.columns)) + 2 * BLOCK_BYTES
+            self._write_first()
             free_room = partial(give_back, folder / MANIFEST, ROOM_BYTES)
             self.log = LogWriter(folder / LOG, header, free_room=free_room)
             sync_folder(folder)  # a power cut may lose ticks, but no files
@@ -145,6 +152,23 @@ class BundleWriter:
         except RecordingError:
             self._discard()
             raise
+
+    def extend_provenance(self, provenance: Provenance) -> None:
+        """Keep what has become known since the start, at once and before the first tick, so that no kill can lose it.
+
+        Raises:
+            RecordingError: it cannot be written.
+        """
+        self.manifest = msgspec.structs.replace(self.manifest, provenance=provenance)
+        try:
+            self._write_first()
+        except OSError as error:
+            raise RecordingError(f"{self.folder}: cannot be recorded to: {error.strerror}") from None
+
+    def _write_first(self) -> None:
+        """Write an unfinished manifest, and reserve space for the next one. Raises OSError."""
+        write_manifest(self.folder, self.manifest)
+        reserve(self.folder / MANIFEST, self._room_bytes)
 
     def finish(self, summary: Mapping[str, Any]) -> Manifest:
         """Close the log and write the manifest with its checksums; `summary` holds JSON values.
@@ -215,42 +239,48 @@ def open_bundle(folder: Path) -> Bundle:
     return Bundle(folder, manifest)
 
 
-def add_export(folder: Path, name: str) -> None:
-    """List a file made from the drive (report.html, scene.rrd), already in the folder, in its manifest.
+def add_export(folder: Path, *names: str, instead_of: str | None = None) -> None:
+    """List files made from the drive (report.html, scene.rrd), already in the folder, in its manifest.
+
+    Args:
+        folder: of the bundle.
+        names: of the files.
+        instead_of: the file whose place they take; it is removed, listed or not.
 
     Raises:
-        RecordingError: no bundle, or the file is not there.
+        RecordingError: no bundle, a signed one, or a file is not there.
     """
     manifest = read_manifest(folder)
+    files = {name: entry for name, entry in manifest.files.items() if name != instead_of}
+    name = MANIFEST
     try:
-        entry = msgspec.structs.replace(file_entry(folder / plain_name(name, folder)), export=True)
-        write_manifest(folder, msgspec.structs.replace(manifest, files={**manifest.files, name: entry}))
+        for name in names:
+            files[name] = msgspec.structs.replace(file_entry(folder / plain_name(name, folder)), export=True)
+        if instead_of is not None:
+            (folder / plain_name(instead_of, folder)).unlink(missing_ok=True)
+        if files != manifest.files:
+            write_manifest(folder, msgspec.structs.replace(manifest, files=files))
     except OSError as error:
         raise RecordingError(f"{folder / name}: cannot be added to {MANIFEST}: {error.strerror}") from None
 
 
-def verify(folder: Path) -> list[str]:
-    """Check every file, checksum, record and hash; return one line for each problem, none if all is well.
+def unlisted(folder: Path, manifest: Manifest) -> list[str]:
+    """Return what lies in the folder and is not in the manifest, the manifest's own files apart.
 
-    Raises:
-        RecordingError: the folder has no manifest that can be read.
+    Of an unfinished drive that is neither its log nor a draft: these are there from the start.
     """
-    manifest = read_manifest(folder)
-    problems = [] if manifest.finished else [_unfinished(folder)]
-    if manifest.recording_failure:
-        problems.append(manifest.recording_failure)
-    for name, entry in manifest.files.items():
-        if problem := size_problem(folder / name, entry) or checksum_problem(folder / name, entry):
-            problems.append(problem)
-    problems += _log_problems(folder / LOG, manifest)
-    return problems
+    found = sorted(path.name for path in folder.iterdir())
+    if not manifest.finished:
+        found = [name for name in found if name != LOG and not name.endswith(DRAFT)]
+    return [name for name in found if name not in manifest.files and name not in (MANIFEST, SIGNATURE)]
 
 
-def _unfinished(folder: Path) -> str:
+def unfinished(folder: Path) -> str:
+    """Return the line that says so of a bundle whose drive did not come to its end."""
     return f"{folder / MANIFEST}: the drive was not finished"
 
 
-def _alarm(log: LogReader) -> str | None:
+def alarm(log: LogReader) -> str | None:
     """Return one line if the last tick holds the alarm: a drive that was killed after its recording had failed."""
     if log.last is None or _EVENTS not in log.header.columns:
         return None
@@ -265,31 +295,3 @@ def session_problem(path: Path, text: str, header: LogHeader) -> str | None:
     if found == header.session_sha256:
         return None
     return f"{path}: altered: sha256 {found}, {LOG} was recorded with {header.session_sha256}"
-
-
-def _log_problems(path: Path, manifest: Manifest) -> Iterator[str]:
-    try:
-        log = LogReader(path)
-    except RecordingError as error:
-        yield str(error)
-        return
-    digest, ticks, broken = START_OF_CHAIN, 0, None
-    for record in log:
-        digest = chain(digest, record.tick, record.vector.tobytes())
-        if broken is None and digest != record.digest:
-            broken = record.tick
-        digest = record.digest
-        ticks += 1
-    session = path.parent / SESSION_FILE
-    if SESSION_FILE in manifest.files:
-        with contextlib.suppress(OSError, UnicodeDecodeError):  # named with the other files
-            if problem := session_problem(session, session.read_text("utf-8"), log.header):
-                yield problem
-    if manifest.recording_failure is None and (alarm := _alarm(log)):
-        yield alarm
-    yield from (f"{path}: {part}" for part in log.breaks)
-    if broken is not None:
-        yield f"{path}: the chained hash does not hold at tick {broken}"
-    found, stated = f"{ticks} ticks, hash {digest.hex()}", f"{manifest.ticks} ticks, hash {manifest.digest}"
-    if manifest.finished and found != stated:
-        yield f"{path}: {found}, {MANIFEST} says {stated}"

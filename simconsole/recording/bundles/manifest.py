@@ -1,4 +1,7 @@
-"""The manifest of a bundle: which files belong to it, how large they are, and what they hash to."""
+"""The manifest of a bundle: which files belong to it, how large they are, what they hash to, and where it comes from.
+
+It holds its own checksum (sealing.py), so that it vouches for itself too. Manifests of schema 1 had none.
+"""
 
 from hashlib import sha256
 from pathlib import Path
@@ -6,11 +9,14 @@ from typing import Any, Final
 
 import msgspec
 
+from simconsole.recording.bundles.provenance import Provenance
+from simconsole.recording.bundles.sealing import KEY, read_object, seal_problem, sealed
 from simconsole.values.errors import RecordingError
 from simconsole.values.host.files import write_atomically
 
-SCHEMA: Final = 1
+SCHEMA: Final = 2
 MANIFEST: Final = "manifest.json"
+SIGNATURE: Final = "signature.json"
 MAX_MANIFEST_BYTES: Final = 1 << 20
 ROOM_BYTES: Final = 1 << 16
 """Reserved on the disk from the start of a drive, so that its end can be written even if the disk fills meanwhile."""
@@ -25,37 +31,70 @@ class FileEntry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
 
 
 class Manifest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """manifest.json. Before the drive is finished it lists the profiles but not the log."""
+    """manifest.json, to which sealing.py adds its own checksum.
+
+    Before the drive is finished it lists the profiles but not the log.
+    """
 
     schema: int = SCHEMA
     finished: bool = False
     files: dict[str, FileEntry] = {}
-    versions: dict[str, str] = {}
-    labels: dict[str, str] = {}  # for people: wall time, machine; nothing that a replay needs
+    versions: dict[str, str] = {}  # of the packages that make the result
+    provenance: Provenance = Provenance()
     ticks: int = 0
     digest: str = ""  # chained hash after the last tick, hexadecimal
     recording_failure: str | None = None
     summary: dict[str, Any] = {}  # figures of the session: lateness percentiles, counters
+
+    @property
+    def vouches_for_itself(self) -> bool:
+        """Whether a change in the manifest itself would have been noticed; not so in schema 1."""
+        return self.schema > 1
 
 
 def read_manifest(folder: Path) -> Manifest:
     """Read manifest.json.
 
     Raises:
-        RecordingError: missing, too large, not JSON, unknown keys, newer schema, a name that leaves the folder.
+        RecordingError: missing, too large, not JSON, unknown keys, newer schema, changed since it was written, a name
+            that leaves the folder.
     """
-    path = folder / MANIFEST
+    return parse_manifest(folder, read_bounded(folder / MANIFEST))
+
+
+def read_bounded(path: Path) -> bytes:
+    """Return the content of manifest.json or signature.json.
+
+    Raises:
+        RecordingError: missing, or too large.
+    """
     try:
         if path.stat().st_size > MAX_MANIFEST_BYTES:
             raise RecordingError(f"{path}: {path.stat().st_size} bytes, allowed up to {MAX_MANIFEST_BYTES}")
-        raw = msgspec.json.decode(path.read_bytes(), type=dict[str, Any])
-        schema = raw.get("schema")
-        if not isinstance(schema, int) or not 1 <= schema <= SCHEMA:
-            raise RecordingError(f"{path}: schema: {schema!r} cannot be read, this simconsole reads 1 to {SCHEMA}")
-        manifest = msgspec.convert(raw, Manifest)
+        return path.read_bytes()
     except OSError as error:
         raise RecordingError(f"{path}: not a bundle: {error.strerror}") from None
-    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
+
+
+def parse_manifest(folder: Path, content: bytes) -> Manifest:
+    """Return the manifest whose text is `content`.
+
+    Raises:
+        RecordingError: as `read_manifest`, but for the file itself.
+    """
+    path, raw = folder / MANIFEST, read_object(folder / MANIFEST, content)
+    schema = raw.get("schema")
+    if not isinstance(schema, int) or not 1 <= schema <= SCHEMA:
+        raise RecordingError(f"{path}: schema: {schema!r} cannot be read, this simconsole reads 1 to {SCHEMA}")
+    if schema == 1:
+        raw.pop("labels", None)  # nothing was ever written there
+    elif problem := seal_problem(path, content):
+        raise RecordingError(problem)
+    else:
+        del raw[KEY]
+    try:
+        manifest = msgspec.convert(raw, Manifest)
+    except (msgspec.MsgspecError, RecursionError) as error:
         raise RecordingError(f"{path}: {error}") from None
     for name in manifest.files:
         plain_name(name, folder)
@@ -66,9 +105,9 @@ def plain_name(name: str, folder: Path) -> str:
     """Return `name` if it names a file right in a bundle.
 
     Raises:
-        RecordingError: it could leave the folder, or is the manifest itself.
+        RecordingError: it could leave the folder, or is the manifest itself or its signature.
     """
-    if not name or name in {".", "..", MANIFEST} or any(character in name for character in "/\\\0:"):
+    if not name or name in {".", "..", MANIFEST, SIGNATURE} or any(character in name for character in "/\\\0:"):
         raise RecordingError(f"{folder / MANIFEST}: files: {name!r} is not a plain file name")
     return name
 
@@ -104,12 +143,27 @@ def checksum_problem(path: Path, entry: FileEntry) -> str | None:
 
 
 def write_manifest(folder: Path, manifest: Manifest) -> None:
-    """Replace manifest.json at once: a crash leaves the old one or the new one. Raises OSError."""
-    text = _text(manifest)
+    """Replace manifest.json at once: a crash leaves the old one or the new one. Raises OSError.
+
+    Raises:
+        RecordingError: the bundle is signed.
+    """
+    refuse_signed(folder)
+    manifest = msgspec.structs.replace(manifest, schema=SCHEMA)
+    text = sealed(manifest)
     if manifest.recording_failure is not None and len(text) > ROOM_BYTES:
-        text = _text(msgspec.structs.replace(manifest, summary={}))  # the reason matters more; its space is reserved
+        text = sealed(msgspec.structs.replace(manifest, summary={}))  # the reason matters more; its space is reserved
     write_atomically(folder / MANIFEST, text)
 
 
-def _text(manifest: Manifest) -> bytes:
-    return msgspec.json.format(msgspec.json.encode(manifest), indent=2) + b"\n"
+def refuse_signed(folder: Path) -> None:
+    """Do nothing with a bundle that may still be changed.
+
+    Raises:
+        RecordingError: it is signed; any change would make its signature void.
+    """
+    if (folder / SIGNATURE).exists():
+        raise RecordingError(
+            f"{folder / SIGNATURE}: signed, so nothing of this bundle may change; take the signature away first: "
+            f"simconsole sign {folder} --remove"
+        )

@@ -61,6 +61,22 @@ def test_guid_tells_the_usb_identity() -> None:
     assert identity("0300b6364f0400005eb6000011010000") == (0x044F, 0xB65E)
 
 
+def test_each_device_is_named_once_with_all_that_it_plays(
+    source: SdlSource, plugged: VirtualCockpit, t500: CockpitProfile
+) -> None:
+    found = source.identities()
+    roles = [role for device in found for role in device.roles]
+    assert len(roles) == len(set(roles))
+    assert set(roles) == {"wheel", "pedals", "shifter"}
+    for device in found:
+        binding = next(binding for binding in t500.roles if binding.role in device.roles)
+        assert device.usb_id == f"{binding.vendor_id:04x}:{binding.product_id:04x}"
+        assert device.name
+    plugged.unplug("shifter")
+    source.poll(1)
+    assert "shifter" not in [role for device in source.identities() for role in device.roles]
+
+
 def test_first_sample_shows_pedals_at_rest(source: SdlSource) -> None:
     sample = source.poll(1)
     assert (sample.throttle_axis, sample.brake_axis, sample.clutch_axis) == pytest.approx((1.0,) * 3, abs=1e-4)

@@ -4,11 +4,15 @@ import subprocess
 import sys
 from pathlib import Path
 
+import msgspec
 import pytest
 
+from simconsole.evaluation.report import exports
 from simconsole.evaluation.report.exports import REPORT, SCENE, write_exports, write_report, write_scene
-from simconsole.recording.bundles.bundle import open_bundle, verify
-from simconsole.recording.bundles.manifest import MANIFEST
+from simconsole.recording.bundles.bundle import add_export, open_bundle
+from simconsole.recording.bundles.manifest import MANIFEST, read_manifest, write_manifest
+from simconsole.recording.bundles.signing import make_key, sign
+from simconsole.recording.bundles.verification import verify
 from simconsole.session.scene_job import LIVE_SCENE
 from simconsole.values.errors import RecordingError
 
@@ -33,6 +37,47 @@ def test_exports_are_listed_and_change_nothing_of_the_drive(bare: Path) -> None:
     assert verify(bare) == []
     assert {name for name, entry in open_bundle(bare).manifest.files.items() if entry.export} == {REPORT, SCENE}
     assert not (bare / LIVE_SCENE).exists(), "the whole scene takes its place"
+
+
+def test_a_listed_live_scene_gives_way_to_the_whole_one(bare: Path) -> None:
+    (bare / LIVE_SCENE).write_bytes(b"what a scene worker saw")
+    add_export(bare, LIVE_SCENE)
+    write_exports(bare)
+    assert LIVE_SCENE not in open_bundle(bare).manifest.files
+    assert verify(bare) == []
+
+
+def test_where_the_report_fails_the_scene_is_listed_all_the_same(bare: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr(exports, "_report", fail)
+    with pytest.raises(MemoryError):
+        write_exports(bare)
+    assert open_bundle(bare).manifest.files[SCENE].export
+    assert not [problem for problem in verify(bare) if SCENE in problem]
+
+
+def test_exports_of_a_signed_bundle_stay_as_they_are(short: Path, tmp_path: Path) -> None:
+    folder = Path(shutil.copytree(short, tmp_path / "signed"))
+    make_key(tmp_path / "key")
+    sign(folder, tmp_path / "key")
+    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+    for make in (write_exports, write_report, write_scene):
+        with pytest.raises(RecordingError, match="signed, so nothing of this bundle may change"):
+            make(folder)
+    assert write_exports(folder, report=False, scene=False)["duration_s"] == 3.0
+    assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
+
+
+def test_the_report_says_who_drove_on_what(bare: Path) -> None:
+    known = msgspec.structs.replace(read_manifest(bare).provenance, participant="P<07>", notes=("tired",))
+    write_manifest(bare, msgspec.structs.replace(read_manifest(bare), provenance=known))
+    write_report(bare)
+    page = (bare / REPORT).read_text("utf-8")
+    assert "P&lt;07&gt;" in page
+    assert "tired" in page
+    assert "CPUs, " in page
 
 
 def test_a_report_alone_leaves_the_scene_alone(bare: Path) -> None:

@@ -6,8 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from simconsole.recording.bundles.bundle import LOG, BundleWriter, add_export, open_bundle, verify
+from simconsole.recording.bundles.bundle import LOG, BundleWriter, add_export, open_bundle
 from simconsole.recording.bundles.manifest import read_manifest
+from simconsole.recording.bundles.verification import verify
 from simconsole.recording.log_header import LogHeader
 from simconsole.values.errors import RecordingError
 from tests.recording.conftest import TEXTS
@@ -19,7 +20,7 @@ def test_a_finished_bundle_opens_and_verifies(bundle: Path) -> None:
     assert len(list(opened.log)) == opened.manifest.ticks == 40
     assert opened.manifest.summary == {"late_p99_us": 12.5}
     assert opened.manifest.versions == {"simconsole": "0"}
-    assert opened.manifest.labels == {"started": "noon"}
+    assert opened.manifest.provenance.participant == "P07"
     assert verify(bundle) == []
 
 

@@ -15,15 +15,18 @@ from simconsole.recording.bundles.manifest import (
 )
 from simconsole.recording.log_header import LogHeader
 from simconsole.values.errors import RecordingError
+from tests.manifests import content_of, forge
+from tests.paths import ROOT
+from tests.vehicle.test_schema import fits
 
 
-@pytest.mark.parametrize("name", ["../x.yaml", "/etc/x", "a/b", "manifest.json", "", "..", "a\0b", "c:x", "a\\b"])
+@pytest.mark.parametrize(
+    "name", ["../x.yaml", "/etc/x", "a/b", "manifest.json", "signature.json", "", "..", "a\0b", "c:x", "a\\b"]
+)
 def test_names_that_leave_the_folder_are_refused(tmp_path: Path, header: LogHeader, name: str, bundle: Path) -> None:
     with pytest.raises(RecordingError, match="not a plain file name"):
         BundleWriter(tmp_path / "other", header, {name: ""})
-    raw = json.loads((bundle / "manifest.json").read_text())
-    raw["files"][name] = raw["files"]["drive.log"]
-    (bundle / "manifest.json").write_text(json.dumps(raw))
+    forge(bundle, lambda manifest: manifest["files"].update({name: manifest["files"]["drive.log"]}))
     with pytest.raises(RecordingError, match="not a plain file name"):
         open_bundle(bundle)
 
@@ -34,7 +37,9 @@ def test_names_that_leave_the_folder_are_refused(tmp_path: Path, header: LogHead
         ("", "truncated"),
         ("{", "truncated"),
         ("[]", "Expected `object`"),
-        ('{"schema": 2, "new": 1}', "schema: 2 cannot be read, this simconsole reads 1 to 1"),
+        ('{"schema": 3, "new": 1}', "schema: 3 cannot be read, this simconsole reads 1 to 2"),
+        ('{"schema": 2}', "altered: its second line is not its own sha256"),
+        ('{"schema": 1, "sha256": ""}', "sha256"),
         ('{"schema": 1, "extra": 1}', "extra"),
         ('{"schema": 1, "ticks": "many"}', "ticks"),
         ("[" * 100_000, ""),
@@ -90,3 +95,52 @@ def test_a_failure_is_written_though_its_summary_has_no_room(tmp_path: Path) -> 
     assert (tmp_path / "manifest.json").stat().st_size <= ROOM_BYTES
     found = read_manifest(tmp_path)
     assert (found.summary, found.recording_failure) == ({}, "no space left")
+
+
+def test_every_other_byte_in_a_manifest_is_refused_in_one_line(bundle: Path) -> None:
+    """Changed, added or removed, in every place: whitespace, the summary and its own checksum included."""
+    path = bundle / "manifest.json"
+    content = path.read_bytes()
+    assert b"late_p99_us" in content
+    for at in range(len(content) + 1):
+        wrong = [content[:at] + bytes([byte]) + content[at:] for byte in b" \n0,"]
+        if at < len(content):
+            wrong += [content[:at] + content[at + 1 :], content[:at] + bytes([content[at] ^ 1]) + content[at + 1 :]]
+            wrong.append(content[:at] + bytes([content[at] ^ 0x20]) + content[at + 1 :])  # the other case of a letter
+        for text in wrong:
+            path.write_bytes(text)
+            with pytest.raises(RecordingError) as caught:
+                read_manifest(bundle)
+            assert str(caught.value).startswith(f"{path}: ")
+            assert "\n" not in str(caught.value)
+
+
+def test_a_manifest_of_schema_1_is_read_and_does_not_vouch_for_itself(bundle: Path) -> None:
+    now = read_manifest(bundle)
+    assert now.vouches_for_itself
+    content = content_of(bundle)
+    del content["provenance"]
+    (bundle / "manifest.json").write_text(json.dumps({**content, "schema": 1, "labels": {}}, indent=2))
+    before = read_manifest(bundle)
+    assert not before.vouches_for_itself
+    assert (before.files, before.digest, before.summary) == (now.files, now.digest, now.summary)
+    write_manifest(bundle, before)
+    assert read_manifest(bundle).vouches_for_itself
+
+
+def test_a_signed_bundle_takes_no_other_manifest(bundle: Path) -> None:
+    (bundle / "signature.json").write_text("{}")
+    before = (bundle / "manifest.json").read_bytes()
+    with pytest.raises(RecordingError, match=rf"signed, .* simconsole sign {bundle} --remove$"):
+        write_manifest(bundle, Manifest())
+    assert (bundle / "manifest.json").read_bytes() == before
+
+
+def test_a_manifest_keeps_to_its_published_schema(bundle: Path, short: Path) -> None:
+    schema = json.loads((ROOT / "docs" / "schemas" / "manifest.schema.json").read_text())
+    for folder in (bundle, short):
+        manifest = json.loads((folder / "manifest.json").read_text())
+        assert fits(manifest, schema, schema)
+        assert not fits(manifest | {"files": []}, schema, schema)
+        assert not fits(manifest | {"invented": 1}, schema, schema)
+        assert not fits(manifest | {"sha256": "short"}, schema, schema)

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 from simconsole.profiles.files.loader import profiles_folder
-from simconsole.recording.bundles.bundle import open_bundle, verify
+from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.replay_bundle import replay_bundle
+from simconsole.recording.bundles.verification import verify
 from simconsole.recording.replay import ReplayResult
 from tests.drives.console import complaint, results, simconsole
 from tests.drives.fixtures import Demo
@@ -37,8 +38,11 @@ def test_replay_of_the_demo_finds_every_hash_equal(demo: Demo) -> None:
         "difference": None,
         "problems": [],
         "remarks": [],
+        "vouches_for": ["drive.log", "session.json"],
     }
     assert "every hash equal" in done.stdout
+    says = "this vouches for drive.log, session.json; for manifest.json, report.html, scene.rrd: simconsole verify"
+    assert says in done.stdout.splitlines()
 
 
 def test_twenty_replays_of_the_demo_are_equal(demo: Demo) -> None:

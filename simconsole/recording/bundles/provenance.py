@@ -1,0 +1,107 @@
+"""Where a drive comes from: who drove when, on what, with which code. It stands in the manifest from the start.
+
+For people and for statistics: no replay needs it. Nothing of it is in the log, so that equal drives make equal logs.
+"""
+
+from datetime import UTC, datetime
+from typing import Final
+
+import msgspec
+
+from simconsole.values.errors import RecordingError
+
+NOTE_CHARS: Final = 500
+ID_CHARS: Final = 64
+NOTES_MAX: Final = 20
+
+
+class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The computer. Its name is left out: it often is a person's."""
+
+    platform: str  # operating system and architecture
+    kernel: str
+    cpu: str
+    cpus: int
+    python: str
+
+
+class Source(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The simconsole that drove."""
+
+    version: str
+    sha256: str  # of every module's path and text
+    commit: str | None = None  # None: the modules lie in no git checkout
+    changed: bool | None = None  # whether they differ from the commit
+
+
+class Device(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """One device of the cockpit, as it was found when it was opened."""
+
+    roles: tuple[str, ...]
+    name: str
+    usb_id: str  # vendor:product, hexadecimal
+    port: str = ""  # where it is plugged in; empty where the system does not tell
+    serial: str = ""
+
+
+class Provenance(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """All of it. What nobody told is empty."""
+
+    started_utc: str = ""  # ISO 8601, from the machine's clock
+    title: str = ""
+    participant: str = ""
+    trial: str = ""
+    notes: tuple[str, ...] = ()
+    machine: Machine | None = None
+    source: Source | None = None
+    devices: tuple[Device, ...] = ()
+
+
+UNKNOWN: Final = Provenance()
+
+
+class Given(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What whoever starts a drive says of it."""
+
+    participant: str = ""
+    trial: str = ""
+    notes: tuple[str, ...] = ()
+
+    def checked(self) -> "Given":
+        """Return it.
+
+        Raises:
+            RecordingError: a text is too long, or there are too many.
+        """
+        if len(self.notes) > NOTES_MAX:
+            raise RecordingError(f"notes: value {len(self.notes)} of them: up to {NOTES_MAX}")
+        ids = (("participant", self.participant, ID_CHARS), ("trial", self.trial, ID_CHARS))
+        for name, text, most in (*ids, *(("note", note, NOTE_CHARS) for note in self.notes)):
+            if len(text) > most:
+                raise RecordingError(f"{name}: value of {len(text)} characters: up to {most}")
+            if not ("".join(text.split()) if name == "note" else text).isprintable():
+                raise RecordingError(f"{name}: value {text!r}: printable characters")
+        return self
+
+
+NOTHING_GIVEN: Final = Given()
+
+
+def facts(provenance: Provenance) -> dict[str, str]:
+    """Return what is known, one short text for each fact, for a page that people read."""
+    machine, source = provenance.machine, provenance.source
+    found = {"started": provenance.started_utc, "participant": provenance.participant, "trial": provenance.trial}
+    found["notes"] = "; ".join(provenance.notes)
+    found["devices"] = ", ".join(f"{device.name} ({device.usb_id})" for device in provenance.devices)
+    if machine is not None:
+        found["machine"] = f"{machine.cpu}, {machine.cpus} CPUs, {machine.platform} {machine.kernel}, {machine.python}"
+    if source is not None:
+        changed = " with changes" if source.changed else ""
+        commit = "" if source.commit is None else f", commit {source.commit[:12]}{changed}"
+        found["simconsole"] = f"{source.version}{commit}, sources {source.sha256[:12]}"
+    return {name: text for name, text in found.items() if text}
+
+
+def utc_now() -> str:
+    """Return what the machine's clock says, in UTC, ISO 8601, to the second."""
+    return datetime.now(UTC).isoformat(timespec="seconds")

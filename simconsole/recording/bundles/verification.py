@@ -1,0 +1,121 @@
+"""What can be said of a bundle without driving it again: is every byte of every file as the drive has left it?"""
+
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import NamedTuple
+
+from simconsole.recording.bundles.bundle import LOG, SESSION_FILE, alarm, session_problem, unfinished, unlisted
+from simconsole.recording.bundles.log import LogReader
+from simconsole.recording.bundles.manifest import (
+    MANIFEST,
+    SIGNATURE,
+    Manifest,
+    checksum_problem,
+    parse_manifest,
+    read_bounded,
+    read_manifest,
+    size_problem,
+)
+from simconsole.recording.bundles.signing import signature_problem, signed_by
+from simconsole.recording.framing import START_OF_CHAIN, chain
+from simconsole.values.errors import RecordingError
+
+
+class Examination(NamedTuple):
+    """What was found, one line each: what is wrong, and what is worth knowing."""
+
+    problems: list[str]
+    remarks: list[str]
+
+
+class Coverage(NamedTuple):
+    """Names of a bundle's files: those whose every byte a good replay vouches for, and the others."""
+
+    replayed: list[str]
+    others: list[str]
+
+
+def verify(folder: Path) -> list[str]:
+    """Check every byte of every file; return one line for each problem, none if all is well.
+
+    Raises:
+        RecordingError: the folder has no manifest that can be read, or one that was changed.
+    """
+    return examine(folder).problems
+
+
+def examine(folder: Path, signer: Path | None = None) -> Examination:
+    """Check every byte of every file: sizes, checksums, records, chained hashes, the manifest, its signature.
+
+    Args:
+        folder: of the bundle.
+        signer: file of the public key that must have signed it; None: a signature is checked if there is one, with
+            the key that it names itself.
+
+    Raises:
+        RecordingError: the folder has no manifest that can be read, or one that was changed; no such key.
+    """
+    content = read_bounded(folder / MANIFEST)
+    manifest = parse_manifest(folder, content)
+    problems = [] if manifest.finished else [unfinished(folder)]
+    if manifest.recording_failure:
+        problems.append(manifest.recording_failure)
+    for name, entry in manifest.files.items():
+        if problem := size_problem(folder / name, entry) or checksum_problem(folder / name, entry):
+            problems.append(problem)
+    problems += _log_problems(folder / LOG, manifest)
+    strays = [f"{folder / name}: not in {MANIFEST}: nothing vouches for it" for name in unlisted(folder, manifest)]
+    remarks = [] if manifest.finished else strays  # as workers of a drive that was killed leave them
+    problems += strays if manifest.finished else []
+    signed = (folder / SIGNATURE).exists()
+    if signed or signer is not None:
+        if problem := signature_problem(folder, content, signer):
+            problems.append(problem)
+        else:
+            remarks.append(signed_by(folder, signer))
+    elif not manifest.vouches_for_itself:
+        remarks.append(
+            f"{folder / MANIFEST}: schema 1, which does not vouch for itself: changes in its own figures go unnoticed"
+        )
+    return Examination(problems, remarks)
+
+
+def coverage(folder: Path) -> Coverage:
+    """Say which files a replay reads and compares whole, and for which files of the folder it says nothing.
+
+    Raises:
+        RecordingError: the folder has no manifest that can be read, or one that was changed.
+    """
+    manifest = read_manifest(folder)
+    files = manifest.files if manifest.finished else {**manifest.files, LOG: None}
+    replayed = sorted(name for name, entry in files.items() if entry is None or not entry.export)
+    return Coverage(replayed, sorted(path.name for path in folder.iterdir() if path.name not in replayed))
+
+
+def _log_problems(path: Path, manifest: Manifest) -> Iterator[str]:
+    try:
+        log = LogReader(path)
+    except RecordingError as error:
+        yield str(error)
+        return
+    digest, ticks, broken = START_OF_CHAIN, 0, None
+    for record in log:
+        digest = chain(digest, record.tick, record.vector.tobytes())
+        if broken is None and digest != record.digest:
+            broken = record.tick
+        digest = record.digest
+        ticks += 1
+    session = path.parent / SESSION_FILE
+    if SESSION_FILE in manifest.files:
+        with suppress(OSError, UnicodeDecodeError):  # named with the other files
+            if problem := session_problem(session, session.read_text("utf-8"), log.header):
+                yield problem
+    if manifest.recording_failure is None and (said := alarm(log)):
+        yield said
+    yield from (f"{path}: {part}" for part in log.breaks)
+    if broken is not None:
+        yield f"{path}: the chained hash does not hold at tick {broken}"
+    found, stated = f"{ticks} ticks, hash {digest.hex()}", f"{manifest.ticks} ticks, hash {manifest.digest}"
+    if manifest.finished and found != stated:
+        yield f"{path}: {found}, {MANIFEST} says {stated}"
