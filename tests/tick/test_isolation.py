@@ -1,6 +1,7 @@
 """A part of a drive that raises falls silent; the others go on, and it is told once."""
 
 import io
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NoReturn
 
@@ -260,10 +261,10 @@ def test_a_drive_without_a_tick_has_nothing_to_stop() -> None:
 def test_a_log_that_raises_is_a_recording_that_failed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     append = LogWriter.append
 
-    def broken(log: LogWriter, tick: int, row: Row) -> None:
+    def broken(log: LogWriter, tick: int, row: Row, messages: Sequence[tuple[str, bytes]] = ()) -> None:
         if tick == 100:
             raise RuntimeError("broken")
-        append(log, tick, row)
+        append(log, tick, row, messages)
 
     monkeypatch.setattr(LogWriter, "append", broken)
     session = override(parse(SESSION, SessionProfile, "session"), scenario={"duration_s": 1.0})
