@@ -1,33 +1,21 @@
 """The console's side of the bridge: snapshots out, commands in, names as the profile wants them. No socket."""
 
-from collections.abc import Callable
 from typing import Any
 
 from simconsole.bridge.console.command_decoder import CommandDecoder
 from simconsole.bridge.console.counters import bridge_status, total_counts
 from simconsole.bridge.console.input_slots import BridgeInputs, OnCommand, OnEvents
 from simconsole.bridge.console.operator_acts import ACTS_MAX, OPERATE, OPERATE_TYPE, Act, OnAct, Operator
-from simconsole.bridge.console.topics import GLOBAL_TOPICS, ODOMETRY, ONCE, Outputs, PublishedTick, is_due
+from simconsole.bridge.console.output_schedule import OutputSchedule, topic_names
+from simconsole.bridge.console.topics import Outputs, PublishedTick
 from simconsole.bridge.messages import Registry, standard_registry
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.client_session import ClientSession
 from simconsole.bridge.protocol.rosapi import RosApi
 from simconsole.bridge.protocol.server_protocol import Outcome, Router
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.values.errors import ProfileError
 from simconsole.values.signals import Event
 from simconsole.values.state_vector import Snapshot
-
-
-class _Output:
-    """One output topic at work."""
-
-    def __init__(self, standard: str, name: str, rate_hz: float, build: Callable[[PublishedTick], Any]) -> None:
-        self.standard = standard
-        self.name = name
-        self.rate_hz = rate_hz
-        self.build = build
-        self.last_tick: int | None = None
 
 
 class ConsoleBridge:
@@ -70,33 +58,28 @@ class ConsoleBridge:
         self._now_ns = 0
         self._out = Outputs(self.router.registry, profile, lambda: bridge_status(self.router, self._now_ns))
         outputs, commands = self._out.topics(), self._command_decoder.topics()
-        self.names = _names(profile, [*(topic.name for topic in outputs), *(topic.name for topic in commands)])
-        _check_known("rates_hz", profile.rates_hz, [topic.name for topic in outputs])
-        self._outputs = []
-        for output in outputs:
-            rate_hz = profile.rates_hz.get(output.name, output.rate_hz)
-            if rate_hz:
-                name = self.names[output.name]
-                self.router.add_output(name, output.type, latch=output.rate_hz == ONCE)
-                self._outputs.append(_Output(output.name, name, rate_hz, output.build))
+        self.names = topic_names(profile, [*(topic.name for topic in outputs), *(topic.name for topic in commands)])
+        self._schedule = OutputSchedule(outputs, self.names, profile)
+        for output in self._schedule.outputs:
+            self.router.add_output(output.name, output.type, latch=output.latched)
         for command in commands:
             self.router.add_command(self.names[command.name], command.type, command.accept, command.leased)
 
     def publish(self, snapshot: Snapshot, now_ns: int, *, odometry: bool = False) -> None:
         """Queue every message of `snapshot` that is due and wanted; with `odometry`, that in any case."""
+        self.keep_time(snapshot, now_ns)
+        tick: PublishedTick | None = None
+        for output in self._schedule.due(snapshot, odometry=odometry):
+            if self.router.has_subscribers(output.name):
+                tick = tick or self._out.published_tick(snapshot)
+                self.router.publish(output.name, output.build(tick), now_ns)
+
+    def keep_time(self, snapshot: Snapshot, now_ns: int) -> None:
+        """Take what time it is from a finished tick, without publishing anything."""
         self.operator.tick = snapshot.tick
         self.router.ros_time_ns = self._command_decoder.ros_time_ns = snapshot.t_ns
         self.router.calls.expire(now_ns)
         self._now_ns = now_ns
-        tick: PublishedTick | None = None
-        for output in self._outputs:
-            due = is_due(snapshot.tick, output.last_tick, snapshot.tick_hz, output.rate_hz)
-            if not due and not (odometry and output.standard == ODOMETRY):
-                continue
-            output.last_tick = snapshot.tick
-            if self.router.has_subscribers(output.name):
-                tick = tick or self._out.published_tick(snapshot)
-                self.router.publish(output.name, output.build(tick), now_ns)
 
     def take_acts(self) -> list[Act]:
         """Return the acts since the last call."""
@@ -127,23 +110,3 @@ class ConsoleBridge:
         if commanded:
             self.inputs.raise_events(int(Event.COMMANDER_LOST))
         return commanded
-
-
-def _names(profile: BridgeProfile, standard: list[str]) -> dict[str, str]:
-    _check_known("rename", profile.rename, standard)
-    names = {
-        name: profile.rename.get(name) or (name if name in GLOBAL_TOPICS else profile.namespace + name)
-        for name in standard
-    }
-    seen: dict[str, str] = {}
-    for name, here in names.items():
-        if here in seen:
-            raise ProfileError(f"outputs.bridge.rename: {name} and {seen[here]} would both be {here}")
-        seen[here] = name
-    return names
-
-
-def _check_known(key: str, given: dict[str, Any], known: list[str]) -> None:
-    for name in given:
-        if name not in known:
-            raise ProfileError(f"outputs.bridge.{key}: {name} is no topic of the console, only {', '.join(known)}")

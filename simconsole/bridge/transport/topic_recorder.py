@@ -12,9 +12,9 @@ import cbor2
 import msgspec
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
-from simconsole.bridge.messages.definition_text import full_text
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.message_decoding import Binary
+from simconsole.bridge.transport.topic_file import TopicFile
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import BridgeError
 from simconsole.values.units import NS_PER_S
@@ -35,20 +35,14 @@ class TopicRecorder:
         Raises:
             BridgeError: it cannot be made.
         """
-        from mcap.writer import Writer
-
         self._router = console.router
         self._patterns = patterns
-        self._channels: dict[str, tuple[str, int]] = {}
-        self._schemas: dict[str, int] = {}
-        self._sequences: dict[str, int] = {}
         self._failed = False
         try:
             self._file = _new_file(folder)
         except OSError as error:
             raise BridgeError(f"outputs.bridge.record: {folder}: {error}") from None
-        self._writer: Writer | None = Writer(self._file)
-        self._writer.start(profile="ros2", library="simconsole")
+        self._writer: TopicFile | None = TopicFile(self._file, self._router.registry)
         self._session = self._router.connect("record", self._drain, role=Role.VIEW)
         self._session.set_level("none")
 
@@ -61,7 +55,7 @@ class TopicRecorder:
         for name, topic in self._router.topics.items():
             fits = any(fnmatchcase(name, pattern) for pattern in self._patterns)
             if fits and name not in self._session.queues:
-                self._channel(name, topic.type)
+                self._writer.add(name, topic.type)
                 self._submit(now_ns, op="subscribe", topic=name, compression="cbor-raw", queue_length=_QUEUE)
             elif not topic.owned and name in self._session.queues and not topic.publishers:
                 others = topic.subscribers.keys() - {self._session.number}
@@ -83,18 +77,6 @@ class TopicRecorder:
     def _submit(self, now_ns: int, **operation: Any) -> None:
         self._router.receive(self._session, msgspec.json.encode(operation), now_ns)
 
-    def _channel(self, name: str, type_name: str) -> int:
-        assert self._writer is not None
-        known = self._channels.get(name)
-        if known is not None and known[0] == type_name:
-            return known[1]
-        if type_name not in self._schemas:
-            text = full_text(self._router.registry.with_parts(type_name))
-            self._schemas[type_name] = self._writer.register_schema(type_name, "ros2msg", text.encode())
-        channel = self._writer.register_channel(name, "cdr", self._schemas[type_name])
-        self._channels[name] = (type_name, channel)
-        return channel
-
     def _drain(self) -> None:
         """Write what has come, at once: nothing waits here, so nothing is lost to a bound."""
         while self._writer is not None and (text := self._session.next_text(0)) is not None:
@@ -103,9 +85,8 @@ class TopicRecorder:
             published = cbor2.loads(text)
             name, message = published["topic"], published["msg"]
             time_ns = message["secs"] * NS_PER_S + message["nsecs"]
-            number = self._sequences[name] = self._sequences.get(name, 0) + 1
             try:
-                self._writer.add_message(self._channels[name][1], time_ns, message["bytes"], time_ns, number)
+                self._writer.write(name, time_ns, message["bytes"])
             except OSError as error:
                 _logger.warning("%s: recording ends: %s", self._file.name, error)
                 self._failed = True

@@ -1,0 +1,69 @@
+"""Which output topics are due in which tick, under the names and at the rates of a bridge's profile."""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from simconsole.bridge.console.topics import GLOBAL_TOPICS, ODOMETRY, ONCE, OutputTopic, PublishedTick, is_due
+from simconsole.profiles.bridge import BridgeProfile
+from simconsole.values.errors import ProfileError
+from simconsole.values.state_vector import Snapshot
+
+
+class ScheduledOutput:
+    """One output topic at work."""
+
+    def __init__(self, output: OutputTopic, name: str, rate_hz: float) -> None:
+        self.standard = output.name
+        self.name = name
+        self.type = output.type
+        self.latched = output.rate_hz == ONCE
+        self.rate_hz = rate_hz
+        self.build: Callable[[PublishedTick], Any] = output.build
+        self.last_tick: int | None = None
+
+
+class OutputSchedule:
+    """The output topics that a profile wants. A bridge asks it which of them to send, an export which to write."""
+
+    def __init__(self, outputs: tuple[OutputTopic, ...], names: dict[str, str], profile: BridgeProfile) -> None:
+        """Take the table of outputs and what its standard names are called (`topic_names`).
+
+        Raises:
+            ProfileError: the profile rates a topic that does not exist.
+        """
+        _check_known("rates_hz", profile.rates_hz, [output.name for output in outputs])
+        rated = [(output, profile.rates_hz.get(output.name, output.rate_hz)) for output in outputs]
+        self.outputs = tuple(ScheduledOutput(output, names[output.name], rate) for output, rate in rated if rate)
+
+    def due(self, snapshot: Snapshot, *, odometry: bool = False) -> Iterator[ScheduledOutput]:
+        """Yield the topics that are due in this tick, in the table's order; with `odometry`, that in any case."""
+        for output in self.outputs:
+            due = is_due(snapshot.tick, output.last_tick, snapshot.tick_hz, output.rate_hz)
+            if due or (odometry and output.standard == ODOMETRY):
+                output.last_tick = snapshot.tick
+                yield output
+
+
+def topic_names(profile: BridgeProfile, standard: list[str]) -> dict[str, str]:
+    """Return what each standard name is called under a profile's namespace and renames.
+
+    Raises:
+        ProfileError: the profile renames a topic that does not exist, or gives two topics one name.
+    """
+    _check_known("rename", profile.rename, standard)
+    names = {
+        name: profile.rename.get(name) or (name if name in GLOBAL_TOPICS else profile.namespace + name)
+        for name in standard
+    }
+    seen: dict[str, str] = {}
+    for name, here in names.items():
+        if here in seen:
+            raise ProfileError(f"outputs.bridge.rename: {name} and {seen[here]} would both be {here}")
+        seen[here] = name
+    return names
+
+
+def _check_known(key: str, given: dict[str, Any], known: list[str]) -> None:
+    for name in given:
+        if name not in known:
+            raise ProfileError(f"outputs.bridge.{key}: {name} is no topic of the console, only {', '.join(known)}")
