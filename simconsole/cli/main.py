@@ -39,6 +39,7 @@ def parser() -> argparse.ArgumentParser:
     commands = root.add_subparsers(dest="command", required=True, metavar="COMMAND")
     _driving(commands)
     _recordings(commands)
+    _exchange(commands)
     _tools(commands)
     _can(commands)
     return root
@@ -115,6 +116,7 @@ def _driving(commands: Any) -> None:
     )
     drive.add_argument("--headless", action="store_true", help="no window, as fast as it goes")
     drive.add_argument("--driver", metavar="D", help="sdl | virtual | trace:F | script:F | keyboard | none")
+    drive.add_argument("--commands", metavar="C", help="bag:FILE[:TOPIC]: recorded commands in place of a controller's")
     drive.add_argument("--cockpit", metavar="PROFILE", help="a cockpit by name, or the file that `calibrate` wrote")
     drive.add_argument("--for", dest="duration_s", type=float, metavar="S", help="end after S simulated seconds")
     drive.add_argument("--out", metavar="DIR", help="where the bundle goes (default: out/drive-TIME)")
@@ -186,6 +188,30 @@ def _recordings(commands: Any) -> None:
     compare = _command(commands, "compare", "recordings:compare", "find the first differing tick and field")
     compare.add_argument("bundle", metavar="A")
     compare.add_argument("other", metavar="B")
+
+
+def _exchange(commands: Any) -> None:
+    export = _command(commands, "export", "exchange:export_bundle", "write a bundle in a format of other tools")
+    export.add_argument("bundle", metavar="BUNDLE", help="the folder that a drive has written")
+    export.add_argument("--to", required=True, choices=("mcap", "rosbag2", "csv", "parquet"))
+    export.add_argument("--out", metavar="PATH", help="the new file or folder (default: beside the bundle)")
+    export.add_argument("--columns", nargs="+", metavar="PATTERN", help="csv, parquet: names, * and ? (default: all)")
+    export.add_argument(
+        "--rate", dest="rate_hz", type=float, metavar="HZ", help="csv, parquet: rows (default: every tick)"
+    )
+    export.add_argument("--units", choices=("si", "display"), help="csv, parquet: display is deg, km/h, 1/min")
+    export.add_argument("--labels", action="store_true", help="csv, parquet: modes and reasons as words")
+    export.add_argument("--layout", action="store_true", help="mcap, rosbag2: a layout for Foxglove beside it")
+
+    into = _command(commands, "import", "exchange:import_bag", "make a driver's trace from a bag of any system")
+    into.add_argument("bag", metavar="BAG", help="an .mcap, .bag or .db3 file, or a folder of rosbag2")
+    into.add_argument("--to", choices=("trace",), default="trace")
+    into.add_argument("--out", metavar="FILE", default="trace.csv", help="the trace (default: trace.csv)")
+    into.add_argument("--topic", metavar="TOPIC", help="which sensor_msgs/Joy (default: the only one)")
+    into.add_argument("--tick-hz", type=int, default=250, metavar="HZ", help="of the session that plays it")
+    into.add_argument("--cockpit", default="t500rs_th8rs", metavar="PROFILE", help="whose axes the trace then has")
+    into.add_argument("--axes", metavar="MAP", help="such as wheel=-0,throttle=2: place of each axis, - turns it round")
+    into.add_argument("--buttons", metavar="MAP", help="such as wheel=0:13,shifter=13:10: first place and number")
 
 
 def _can(commands: Any) -> None:

@@ -48,6 +48,12 @@ class Progress:
             self._write(f"{self._what}: {snapshot.t_s:7.1f} s  {way}  {speed}  {mode_label(float(mode))}{alarm}")
         return False
 
+    def count(self, done: int, total: int = 0) -> None:
+        """Show how many ticks of `total` (0: unknown) are done, at most every INTERVAL_S."""
+        if self._shown and time.monotonic() >= self._next_s:
+            self._next_s = time.monotonic() + INTERVAL_S
+            self._write(f"{self._what}: {done} ticks" + (f" of {total}" if total else ""))
+
     def _write(self, line: str) -> None:
         if self._shown:
             with suppress(OSError):  # the terminal was closed

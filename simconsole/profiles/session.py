@@ -114,6 +114,11 @@ class ModeSection(Section, frozen=True, kw_only=True):
     wait_for_controller_s: Annotated[float, Meta(gt=0.0, le=3600.0)] = 60.0
     answer_timeout_s: Annotated[float, Meta(gt=0.0, le=60.0)] = 2.0
 
+    @property
+    def control_period_ticks(self) -> int:
+        """Ticks from one answer of the controller to the next, in lockstep."""
+        return max(1, self.control_period_ms * self.tick_hz // 1000)
+
 
 class SessionProfile(Section, frozen=True, kw_only=True):
     """One drive."""

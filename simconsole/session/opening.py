@@ -242,7 +242,7 @@ def _open_lockstep(
     session = resolved.session
     if session.outputs.bridge is None:
         raise ProfileError("outputs.bridge: value missing: a bridge, where mode.pacing is lockstep")
-    period_ticks = max(1, session.mode.control_period_ms * console.tick_hz // 1000)
+    period_ticks = session.mode.control_period_ticks
     token, drive = _own_token(session), new_nonce()
     odometry_hz = console.tick_hz / period_ticks
     bridge = LockstepBridge(session.outputs.bridge, odometry_hz=odometry_hz, folder=folder, drive=drive)

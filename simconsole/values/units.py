@@ -27,6 +27,55 @@ def unit_of(name: str) -> str:
     return _UNITS.get(suffix, "1") if separator else "1"
 
 
+_SYMBOLS: Final = {
+    "m": "m",
+    "mps": "m/s",
+    "mps2": "m/s2",
+    "s": "s",
+    "ns": "ns",
+    "n": "N",
+    "npm": "N/m",
+    "nspm": "N s/m",
+    "nm": "N m",
+    "nms": "N m s",
+    "nmprad": "N m/rad",
+    "kg": "kg",
+    "kgm2": "kg m2",
+    "rad": "rad",
+    "radps": "rad/s",
+    "ticks": "tick",
+    "deg": "deg",
+    "degps": "deg/s",
+    "kmh": "km/h",
+    "rpm": "1/min",
+}
+"""Unit by the suffix of a name (docs/units.md), and those of displays."""
+DISPLAYED: Final[dict[str, tuple[str, float]]] = {
+    "engine_radps": ("engine_rpm", RPM_PER_RADPS),
+    "radps": ("degps", DEG_PER_RAD),
+    "rad": ("deg", DEG_PER_RAD),
+    "mps": ("kmh", KMH_PER_MPS),
+}
+"""What people read in place of a suffix, and the factor; the longest suffix that fits a name counts."""
+
+
+def unit_of(name: str) -> str:
+    """Return the unit that the suffix of a name says; "1" for shares, counts, flags and enumerations, which have none.
+
+    A suffix stands behind a word: `m` alone names a column, not a unit.
+    """
+    word, _, suffix = name.rpartition("_")
+    return _SYMBOLS.get(suffix, "1") if word else "1"
+
+
+def displayed(name: str) -> tuple[str, float]:
+    """Return what a value is called in the units of displays, and the factor from its own unit to that; 1 for none."""
+    for suffix, (shown, factor) in DISPLAYED.items():
+        if name.endswith((f"_{suffix}", f".{suffix}")):
+            return name.removesuffix(suffix) + shown, factor
+    return name, 1.0
+
+
 def tick_time_ns(tick: int, tick_hz: int) -> int:
     """Return the simulated time of `tick` in ns, exact in integers: no drift over any length of drive."""
     return tick * NS_PER_S // tick_hz

@@ -6,17 +6,18 @@ from simconsole.bridge.messages import Registry
 from simconsole.bridge.messages.definition_text import full_text
 
 LATCHED: Final = """\
-- history: keep_last
+- history: 1
   depth: 1
-  reliability: reliable
-  durability: transient_local
+  reliability: 1
+  durability: 1
   deadline: {sec: 0, nsec: 0}
   lifespan: {sec: 0, nsec: 0}
-  liveliness: automatic
+  liveliness: 1
   liveliness_lease_duration: {sec: 0, nsec: 0}
   avoid_ros_namespace_conventions: false
 """
-"""Quality of service of a latched topic, as rosbag2 keeps it: who plays the file latches it again."""
+"""Quality of service of a latched topic in rosbag2's numbers (keep last, reliable, transient local): who plays the file
+latches it again."""
 
 
 class TopicFile:

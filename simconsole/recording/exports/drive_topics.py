@@ -1,0 +1,111 @@
+"""A recorded drive as messages of topics: what a client of its bridge would have got, and the commands it took."""
+
+from collections.abc import Callable, Iterator
+from typing import Any, Final, NamedTuple
+
+import msgspec
+import numpy as np
+
+from simconsole.bridge.console.command_decoder import CommandDecoder
+from simconsole.bridge.console.command_messages import CommandMessages
+from simconsole.bridge.console.input_slots import BridgeInputs
+from simconsole.bridge.console.output_schedule import OutputSchedule, topic_names
+from simconsole.bridge.console.topics import BRIDGE, ODOMETRY, Outputs
+from simconsole.bridge.messages import standard_registry
+from simconsole.bridge.messages.cdr import serialize
+from simconsole.profiles.bridge import BridgeProfile
+from simconsole.profiles.session import SessionProfile
+from simconsole.recording.reading import Recording
+from simconsole.values.kernels import Row
+from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE
+from simconsole.values.state_vector import INPUT_WIDTH, LAYOUT, PLATFORM_AT, Snapshot
+from simconsole.values.units import tick_time_ns
+
+OnTick = Callable[[int], None]
+"""Told, now and then, the last tick that was written."""
+
+UNRECORDED: Final = (BRIDGE,)
+"""Topics whose content is not in the log: counters of connections."""
+
+
+class TopicMessage(NamedTuple):
+    """One message as it was published: CDR, and its simulated time."""
+
+    topic: str
+    type: str
+    latched: bool
+    time_ns: int
+    data: bytes
+
+
+class DriveTopics:
+    """Makes the messages of one drive, in the order of their times, by the code that the bridge has."""
+
+    def __init__(self, session: SessionProfile) -> None:
+        """Take names and rates of the session's bridge, or of a bridge as shipped where it has none.
+
+        Raises:
+            ProfileError: the session's bridge renames or rates a topic that does not exist.
+        """
+        profile = session.outputs.bridge or BridgeProfile()
+        self.registry = standard_registry()
+        self._step_ticks = 1
+        self._lockstep = session.mode.pacing == "lockstep"
+        if self._lockstep:
+            self._step_ticks = session.mode.control_period_ticks
+            odometry_hz = session.mode.tick_hz / self._step_ticks
+            profile = msgspec.structs.replace(profile, rates_hz={**profile.rates_hz, ODOMETRY: odometry_hz})
+        self._outputs = Outputs(self.registry, profile)
+        outputs, commands = self._outputs.topics(), CommandDecoder(BridgeInputs(), profile).topics()
+        self.names = topic_names(profile, [topic.name for topic in (*outputs, *commands)])
+        recorded = tuple(output for output in outputs if output.name not in UNRECORDED)
+        self._command_types = {command.name: self.registry.resolve(command.type) for command in commands}
+        rates_hz = {name: rate for name, rate in profile.rates_hz.items() if name not in UNRECORDED}
+        self._schedule = OutputSchedule(recorded, self.names, msgspec.structs.replace(profile, rates_hz=rates_hz))
+        self._output_types = {output.standard: self.registry.resolve(output.type) for output in self._schedule.outputs}
+
+    def messages(self, recording: Recording, on_tick: OnTick = lambda tick: None) -> Iterator[TopicMessage]:
+        """Yield every message of a recording. Memory does not grow with its length."""
+        commands = CommandMessages(self.registry, self._command_types)
+        for snapshot in snapshots(recording, on_tick):
+            for name, message in commands.of(snapshot):
+                sent_ns = tick_time_ns(snapshot.tick - 1, snapshot.tick_hz)
+                yield self._message(name, self._command_types[name], False, sent_ns, message)
+            if snapshot.tick % self._step_ticks:
+                continue
+            published = None
+            for output in self._schedule.due(snapshot, odometry=self._lockstep):
+                published = published or self._outputs.published_tick(snapshot)
+                type_name, message = self._output_types[output.standard], output.build(published)
+                yield self._message(output.standard, type_name, output.latched, snapshot.t_ns, message)
+
+    def _message(self, name: str, type_name: str, latched: bool, time_ns: int, message: Any) -> TopicMessage:
+        data = serialize(self.registry, type_name, message)
+        return TopicMessage(self.names[name], type_name, latched, time_ns, data)
+
+
+def snapshots(recording: Recording, on_tick: OnTick = lambda tick: None) -> Iterator[Snapshot]:
+    """Yield the ticks of a recording as this version sees them, its columns found by name.
+
+    What the recording does not have is as if nothing had come: other versions have other columns.
+    """
+    header = recording.header
+    here = [f"{stage}.{field}" for stage, part in LAYOUT._asdict().items() for field in part.names]
+    known = set(header.columns)
+    names = [name for name in here if name in known]
+    places = [here.index(name) for name in names]
+    empty = empty_vector()
+    for block in recording.blocks(names):
+        vectors = np.tile(empty, (len(block.ticks), 1))
+        vectors[:, places] = block.vectors
+        for tick, vector in zip(block.ticks.tolist(), vectors, strict=True):
+            yield Snapshot(tick, header.tick_hz, vector)
+        if len(block.ticks):
+            on_tick(int(block.ticks[-1]))
+
+
+def empty_vector() -> Row:
+    """Return the stages of a tick in which nothing has come from outside and nothing has happened."""
+    vector = np.zeros(PLATFORM_AT)
+    vector[:INPUT_WIDTH] = (*NO_SAMPLE, *NO_COMMAND, *NO_EVENTS, *NO_COMMAND)
+    return vector

@@ -1,0 +1,1 @@
+"""Recordings of other systems as inputs of a drive: commands to play, traces of a driver."""
