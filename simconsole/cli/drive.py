@@ -39,6 +39,10 @@ def _with_options(session: SessionProfile, options: Namespace) -> SessionProfile
         if options.driver == "keyboard":
             devices["cockpit"] = "keyboard"  # keys are not the axes of the session's wheel
         session = override(session, devices=devices)
+    if options.commands is not None:
+        session = override(session, features={"commands": options.commands, "autopilot": None})
+        if options.headless and session.mode.pacing == "lockstep":
+            session = override(session, mode={"pacing": "free"})  # nobody is left to wait for
     if options.headless:
         pacing = "free" if session.mode.pacing == "realtime" else session.mode.pacing
         session = override(session, outputs={"hud": None}, mode={"pacing": pacing})

@@ -208,7 +208,10 @@ def _exchange(commands: Any) -> None:
     into.add_argument("--to", choices=("trace",), default="trace")
     into.add_argument("--out", metavar="FILE", default="trace.csv", help="the trace (default: trace.csv)")
     into.add_argument("--topic", metavar="TOPIC", help="which sensor_msgs/Joy (default: the only one)")
-    into.add_argument("--tick-hz", type=int, default=250, metavar="HZ", help="of the session that plays it")
+    rates = (50, 100, 125, 200, 250, 500, 1000)
+    into.add_argument(
+        "--tick-hz", type=int, default=250, choices=rates, metavar="HZ", help="of the session that plays it"
+    )
     into.add_argument("--cockpit", default="t500rs_th8rs", metavar="PROFILE", help="whose axes the trace then has")
     into.add_argument("--axes", metavar="MAP", help="such as wheel=-0,throttle=2: place of each axis, - turns it round")
     into.add_argument("--buttons", metavar="MAP", help="such as wheel=0:13,shifter=13:10: first place and number")

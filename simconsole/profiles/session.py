@@ -80,6 +80,8 @@ class Features(Section, frozen=True, kw_only=True):
     aids: Aids = Aids()
     commander: Literal["ros", "can"] = "ros"
     """Whose commands drive where both could: the ROS side's or, on `outputs.can`, the ECU's (requests/commander.py)."""
+    commands: Annotated[str, Meta(pattern=r"^bag:.{1,1000}$")] | None = None
+    """bag:FILE or bag:FILE:/TOPIC plays recorded commands in place of a controller's, where `mode.pacing` is free."""
     autopilot: Name | None = None
     """Start `simconsole autopilot` on this course, as a program of its own that only speaks rosbridge."""
 

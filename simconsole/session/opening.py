@@ -49,6 +49,7 @@ PROGRAM_END_S = 0.3
 if TYPE_CHECKING:
     from simconsole.bridge.transport.lockstep_server import LockstepBridge
     from simconsole.canbus.bus.worker import HeadlessCan
+    from simconsole.recording.imports.bag_commands import BagCommands
 
 
 class Opened(NamedTuple):
@@ -75,6 +76,7 @@ def open_headless(
 
     Raises:
         ProfileError: the session needs lockstep for what it asks.
+        RecordingError: the bag with its commands cannot be used.
         BridgeError: the bridge cannot listen, or the autopilot did not connect.
         CanError: the CAN bus cannot be opened.
         DeviceError: a device is missing.
@@ -90,6 +92,9 @@ def open_headless(
     if resolved.session.mode.pacing == "lockstep":
         link = _open_lockstep(resolved, console, bundle, interrupt, stack)
         commands, outputs, counters, take_acts, standby = link, (link,), link.counters, link.take_acts, (link.stand,)
+    elif resolved.session.features.commands is not None:
+        bag = _open_bag(resolved.session, console, stack)
+        commands, outputs, counters = bag, (bag,), bag.summary
     elif resolved.session.features.autopilot is not None:
         raise ProfileError("mode.pacing: value free: lockstep or realtime, where features.autopilot drives")
     can = _open_can(resolved, console, bundle, stack)
@@ -258,6 +263,15 @@ def _open_lockstep(
     return LockstepLink(bridge, period_ticks, session.mode.answer_timeout_s, lambda: interrupt.raised)
 
 
+def _open_bag(session: SessionProfile, console: Console, stack: ExitStack) -> "BagCommands":
+    from simconsole.recording.imports.bag_commands import BagCommands, bag_choice
+
+    choice = bag_choice(session.features.commands or "")
+    bag = BagCommands(choice, session.outputs.bridge or BridgeProfile(), console.tick_hz)
+    stack.callback(bag.close)
+    return bag
+
+
 def _own_token(session: SessionProfile) -> str | None:
     """Return the token with which the session's own autopilot connects to its bridge; None where none is needed."""
     if session.outputs.bridge is None or session.features.autopilot is None:
@@ -286,7 +300,10 @@ def check_commander(session: SessionProfile) -> None:
     Raises:
         ProfileError: it could not.
     """
-    if session.features.commander != "can":
+    features = session.features
+    if features.commands is not None and (session.mode.pacing != "free" or features.autopilot is not None):
+        raise ProfileError(f"features.commands: value {features.commands}: mode.pacing free, and no autopilot")
+    if features.commander != "can":
         return
     if session.outputs.can is None:
         raise ProfileError("features.commander: value can: needs outputs.can")

@@ -76,6 +76,10 @@ def _files_beside(session: SessionProfile, path: Path) -> SessionProfile:
     if name:
         beside = _beside(path, "devices.driver", session.devices.driver, name)
         session = override(session, devices={"driver": f"{kind}:{beside}"})
+    commands = session.features.commands
+    if commands is not None:
+        beside = _beside(path, "features.commands", commands, commands.removeprefix("bag:"))
+        session = override(session, features={"commands": f"bag:{beside}"})
     bridge = session.outputs.bridge
     if bridge is not None and bridge.messages is not None:
         beside = _beside(path, "outputs.bridge.messages", bridge.messages, bridge.messages)

@@ -53,4 +53,4 @@ class TopicFile:
 
     def finish(self) -> None:
         """Write the index. The file itself stays open."""
-        self._writer.finish()
+        self._writer.finish()  # type: ignore[no-untyped-call]

@@ -1,4 +1,4 @@
-"""Columns of a recorded drive as a table for people's tools: which ones, how often, in which units, with which words."""
+"""Columns of a recorded drive as a table for other tools: which ones, how often, in which units, in which words."""
 
 from collections.abc import Callable, Iterator
 from fnmatch import fnmatchcase

@@ -57,7 +57,7 @@ class DriveTopics:
             profile = msgspec.structs.replace(profile, rates_hz={**profile.rates_hz, ODOMETRY: odometry_hz})
         self._outputs = Outputs(self.registry, profile)
         outputs, commands = self._outputs.topics(), CommandDecoder(BridgeInputs(), profile).topics()
-        self.names = topic_names(profile, [topic.name for topic in (*outputs, *commands)])
+        self.names = topic_names(profile, [*(topic.name for topic in outputs), *(topic.name for topic in commands)])
         recorded = tuple(output for output in outputs if output.name not in UNRECORDED)
         self._command_types = {command.name: self.registry.resolve(command.type) for command in commands}
         rates_hz = {name: rate for name, rate in profile.rates_hz.items() if name not in UNRECORDED}
