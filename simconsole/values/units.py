@@ -18,38 +18,8 @@ _UNITS: Final = {
     "m": "m", "mps": "m/s", "mps2": "m/s^2", "s": "s", "ns": "ns", "ticks": "ticks",
     "rad": "rad", "radps": "rad/s", "n": "N", "nm": "N m", "nms": "N m s", "nmprad": "N m/rad",
     "npm": "N/m", "nspm": "N s/m", "kg": "kg", "kgm2": "kg m^2",
+    "deg": "deg", "degps": "deg/s", "kmh": "km/h", "rpm": "1/min",
 }  # fmt: skip
-
-
-def unit_of(name: str) -> str:
-    """Return the unit that the suffix of a name states; "1" for shares, raw axes, counts, flags and enumerations."""
-    _, separator, suffix = name.rpartition("_")
-    return _UNITS.get(suffix, "1") if separator else "1"
-
-
-_SYMBOLS: Final = {
-    "m": "m",
-    "mps": "m/s",
-    "mps2": "m/s2",
-    "s": "s",
-    "ns": "ns",
-    "n": "N",
-    "npm": "N/m",
-    "nspm": "N s/m",
-    "nm": "N m",
-    "nms": "N m s",
-    "nmprad": "N m/rad",
-    "kg": "kg",
-    "kgm2": "kg m2",
-    "rad": "rad",
-    "radps": "rad/s",
-    "ticks": "tick",
-    "deg": "deg",
-    "degps": "deg/s",
-    "kmh": "km/h",
-    "rpm": "1/min",
-}
-"""Unit by the suffix of a name (docs/units.md), and those of displays."""
 DISPLAYED: Final[dict[str, tuple[str, float]]] = {
     "engine_radps": ("engine_rpm", RPM_PER_RADPS),
     "radps": ("degps", DEG_PER_RAD),
@@ -60,12 +30,9 @@ DISPLAYED: Final[dict[str, tuple[str, float]]] = {
 
 
 def unit_of(name: str) -> str:
-    """Return the unit that the suffix of a name says; "1" for shares, counts, flags and enumerations, which have none.
-
-    A suffix stands behind a word: `m` alone names a column, not a unit.
-    """
-    word, _, suffix = name.rpartition("_")
-    return _SYMBOLS.get(suffix, "1") if word else "1"
+    """Return the unit that the suffix of a name states; "1" for shares, raw axes, counts, flags and enumerations."""
+    _, separator, suffix = name.rpartition("_")
+    return _UNITS.get(suffix, "1") if separator else "1"
 
 
 def displayed(name: str) -> tuple[str, float]:

@@ -69,3 +69,18 @@ def test_every_unit_of_the_documented_table_is_known() -> None:
     suffixes = re.findall(r"`_(\w+)` \|", table)
     assert len(suffixes) == 16
     assert all(units.unit_of(f"value_{suffix}") != "1" for suffix in suffixes)
+
+
+@pytest.mark.parametrize(
+    ("name", "shown", "factor"),
+    [
+        ("vehicle.yaw_rad", "vehicle.yaw_deg", units.DEG_PER_RAD),
+        ("vehicle.yaw_rate_radps", "vehicle.yaw_rate_degps", units.DEG_PER_RAD),
+        ("vehicle.vx_mps", "vehicle.vx_kmh", units.KMH_PER_MPS),
+        ("vehicle.engine_radps", "vehicle.engine_rpm", units.RPM_PER_RADPS),
+        ("vehicle.ax_mps2", "vehicle.ax_mps2", 1.0),
+        ("driver.gear", "driver.gear", 1.0),
+    ],
+)
+def test_displays_have_their_own_names_and_units(name: str, shown: str, factor: float) -> None:
+    assert units.displayed(name) == (shown, factor)

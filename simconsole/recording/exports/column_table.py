@@ -92,7 +92,7 @@ class ColumnTable:
                 raise RecordingError(f"--columns: value {pattern!r}: fits no column of {', '.join(stages)}")
         chosen = [name for name in header.columns if any(fnmatchcase(name, pattern) for pattern in choice.columns)]
         self.columns = (
-            TableColumn(TICK, unit_of("_ticks"), int),
+            TableColumn(TICK, "ticks", int),
             TableColumn(TIME, unit_of(TIME), float),
             *(_column(name, choice) for name in chosen),
         )
