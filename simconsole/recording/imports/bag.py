@@ -3,7 +3,6 @@
 Nothing in such a file is trusted: whatever the reader trips over is one error that names the file.
 """
 
-import dataclasses
 from collections.abc import Generator, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -20,7 +19,7 @@ METADATA: Final = "metadata.yaml"
 MAX_METADATA_BYTES: Final = 16 << 20
 WALL_TIME_NS: Final = 10**18
 """Times from here on (September 2001) are those of a wall clock; a simulation that counts from 0 never comes there."""
-_NO_CONTENT: Final = ("structure_needs_at_least_one_member", "__msgtype__")
+_PLACEHOLDER: Final = "structure_needs_at_least_one_member"
 
 
 class BagTopic(NamedTuple):
@@ -84,7 +83,7 @@ class Bag:
             if not wanted:
                 return
             for connection, time_ns, data in reader.messages(connections=wanted):
-                content = _plain(reader.deserialize(data, connection.msgtype))
+                content = _plain(reader.typestore, reader.deserialize(data, connection.msgtype))
                 yield BagMessage(connection.topic, int(time_ns) - offset_ns, content)
 
     @contextmanager
@@ -125,13 +124,14 @@ def _typestore(types: Sequence[str]) -> Any:
     return store
 
 
-def _plain(value: Any) -> Any:
-    """Return a message of the reading library as plain values."""
-    if dataclasses.is_dataclass(value):
-        names = (field.name for field in dataclasses.fields(value) if field.name not in _NO_CONTENT)
-        return {name: _plain(getattr(value, name)) for name in names}
+def _plain(store: Any, value: Any) -> Any:
+    """Return a message of the reading library as plain values: its fields, without constants and placeholders."""
+    kind = getattr(value, "__msgtype__", None)
+    if kind is not None:
+        names = (name for name, _ in store.fielddefs[kind][1] if name != _PLACEHOLDER)
+        return {name: _plain(store, getattr(value, name)) for name in names}
     if isinstance(value, np.ndarray):
         return value.tobytes() if value.dtype == np.uint8 else value.tolist()
     if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
+        return [_plain(store, item) for item in value]
     return value.item() if isinstance(value, np.generic) else value

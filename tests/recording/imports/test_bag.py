@@ -9,7 +9,7 @@ import pytest
 
 from simconsole.recording.imports.bag import MAX_METADATA_BYTES, Bag, BagTopic
 from simconsole.values.errors import RecordingError
-from tests.recording.imports.bags import ACKERMANN, EPOCH_NS, JOY, ackermann, joy, said, write_bag
+from tests.recording.imports.bags import ACKERMANN, EPOCH_NS, JOY, Written, ackermann, joy, said, write_bag
 from tests.samples import Sample
 
 KINDS = {"mcap": "bag", "sqlite3": "bag", "ros1": "drive.bag"}
@@ -50,6 +50,12 @@ def test_simulated_times_stay_as_they_are(write: Callable[..., Path], kind: str)
         2_019_000_000,
         2_041_500_000,
     ]
+
+
+def test_constants_of_a_type_are_no_fields(tmp_path: Path) -> None:
+    lever = Written("/lever", "autoware_vehicle_msgs/msg/GearCommand", 7, {"command": 20})
+    (found,) = Bag(write_bag(tmp_path / "bag", [lever])).messages(["/lever"])
+    assert found.plain == {"stamp": {"sec": 0, "nanosec": 0}, "command": 20}
 
 
 def test_a_bag_without_definitions_is_read_with_ours(write: Callable[..., Path]) -> None:
