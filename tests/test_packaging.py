@@ -69,14 +69,14 @@ def tracked(pattern: str) -> set[str]:
     return {path.relative_to(ROOT).as_posix() for path in ROOT.glob(pattern) if path.is_file()}
 
 
-DEFINITIONS = "simconsole/bridge/messages/definitions/*/*/*"
+DATA = ("simconsole/bridge/messages/definitions/*/*/*", "simconsole/recording/exports/*.json")
 
 
 def test_wheel_holds_the_package_and_every_profile_and_nothing_else(wheel: Path) -> None:
     with zipfile.ZipFile(wheel) as archive:
         names = {name for name in archive.namelist() if ".dist-info/" not in name}
         profiles = {f"simconsole/_{name}" for name in tracked("profiles/**/*")}
-        assert names == tracked("simconsole/**/*.py") | tracked(DEFINITIONS) | profiles
+        assert names == tracked("simconsole/**/*.py").union(*map(tracked, DATA)) | profiles
         for name in profiles:
             assert archive.read(name) == (ROOT / name.removeprefix("simconsole/_")).read_bytes()
 

@@ -11,6 +11,8 @@ COMMANDS = {
     "replay",
     "verify",
     "compare",
+    "export",
+    "import",
     "check",
     "report",
     "view",
