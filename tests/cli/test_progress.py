@@ -79,3 +79,16 @@ def test_on_a_pipe_there_is_nothing_and_a_closed_terminal_ends_nothing(monkeypat
     monkeypatch.setattr("sys.stderr", terminal)
     with Progress("driving") as progress:
         assert not progress.watch(snapshot(TICKS_BETWEEN_LOOKS))
+
+
+def test_ticks_are_counted_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = Terminal()
+    monkeypatch.setattr("sys.stderr", terminal)
+    with Progress("exporting") as progress:
+        progress.count(300, 1000)
+        progress.count(600, 1000)  # too soon after the last
+    assert "exporting: 300 ticks of 1000" in terminal.getvalue()
+    assert "600" not in terminal.getvalue()
+    with Progress("importing") as progress:
+        progress.count(7)
+    assert terminal.getvalue().endswith("importing: 7 ticks\r\x1b[K")

@@ -29,3 +29,18 @@ def test_commander_with_no_way_in_is_refused(
 ) -> None:
     with pytest.raises(ProfileError, match=words):
         check_commander(override(session, **changes))
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"mode": {"pacing": "realtime"}},
+        {"mode": {"pacing": "lockstep"}},
+        {"mode": {"pacing": "free"}, "features": {"commands": "bag:drive.mcap", "autopilot": "urban"}},
+    ],
+)
+def test_a_bag_commands_only_where_no_other_controller_is_waited_for(changes: dict[str, dict[str, object]]) -> None:
+    session = override(load_session("seated"), features={"commands": "bag:drive.mcap"})
+    check_commander(override(session, mode={"pacing": "free"}))
+    with pytest.raises(ProfileError, match=r"features\.commands: value bag:drive\.mcap: mode\.pacing free"):
+        check_commander(override(session, **changes))

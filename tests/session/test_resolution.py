@@ -68,6 +68,18 @@ def test_script_and_trace_of_a_session_lie_beside_it(tmp_path: Path) -> None:
         assert load_session(path).devices.driver == whole
 
 
+def test_a_bag_of_a_session_lies_beside_it(tmp_path: Path) -> None:
+    for commands, whole in (
+        ("bag:drive.mcap", f"bag:{tmp_path / 'drive.mcap'}"),
+        ("bag:bags/drive.bag:/ego/cmd", f"bag:{tmp_path / 'bags' / 'drive.bag'}:/ego/cmd"),
+    ):
+        path = write(tmp_path / "session.yaml", f"schema: 1\nfeatures: {{commands: '{commands}'}}\n")
+        assert load_session(path).features.commands == whole
+    path = write(tmp_path / "session.yaml", "schema: 1\nfeatures: {commands: 'bag:../drive.mcap'}\n")
+    with pytest.raises(ProfileError, match=r'features\.commands: value "bag:\.\./drive\.mcap": a file inside'):
+        load_session(path)
+
+
 def test_message_types_of_a_session_lie_beside_it(tmp_path: Path) -> None:
     path = write(tmp_path / "session.yaml", "schema: 1\noutputs: {bridge: {messages: types}}\n")
     bridge = load_session(path).outputs.bridge
