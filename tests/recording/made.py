@@ -5,8 +5,10 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from simconsole.profiles.session import SessionProfile
-from simconsole.recording.framing import Break, LogHeader, Record
+from simconsole.recording.framing import Message, Record
+from simconsole.recording.log_header import ACTS, LogHeader, message_stream, vector_stream
 from simconsole.recording.reading import Block, LogTable, places
+from simconsole.recording.scan import Break
 from simconsole.values.layout import write
 from simconsole.values.signals import EventInput, RemoteCommand
 from simconsole.values.state_vector import LAYOUT, PLATFORM_AT
@@ -20,10 +22,19 @@ BLOCK = 300
 class MadeRecording:
     """Blocks of a drive. It offers no table: whoever asks for one does not stream."""
 
-    def __init__(self, vectors: np.ndarray, columns: tuple[str, ...] = COLUMNS, tick_hz: int = 250) -> None:
+    def __init__(
+        self,
+        vectors: np.ndarray,
+        columns: tuple[str, ...] = COLUMNS,
+        tick_hz: int = 250,
+        acts: tuple[Message, ...] | None = (),
+    ) -> None:
+        """`acts` None: recorded by a version that had no stream of them."""
+        streams = (vector_stream(columns, 1), *(() if acts is None else (message_stream(ACTS),)))
         self.header = LogHeader(
-            tick_hz=tick_hz, columns=columns, input_columns=1, console_version="", source_sha256="", session_sha256=""
+            tick_hz=tick_hz, streams=streams, console_version="", source_sha256="", session_sha256=""
         )
+        self.acts = acts
         self.vectors = vectors
         self.breaks: tuple[Break, ...] = ()
         self.last: Record | None = None
@@ -34,6 +45,11 @@ class MadeRecording:
 
     def table(self, columns: Sequence[str] | None = None) -> LogTable:
         raise AssertionError("read as a whole")
+
+    def messages(self, stream: str) -> Iterator[Message]:
+        assert stream == ACTS
+        assert self.acts is not None
+        return iter(self.acts)
 
     def blocks(self, columns: Sequence[str] | None = None) -> Iterator[Block]:
         self.passes += 1

@@ -15,6 +15,8 @@ from simconsole.bridge.messages import standard_registry
 from simconsole.bridge.messages.cdr import serialize
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.session import SessionProfile
+from simconsole.recording.framing import Message
+from simconsole.recording.log_header import ACTS
 from simconsole.recording.reading import Recording
 from simconsole.values.kernels import Row
 from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE
@@ -26,6 +28,11 @@ OnTick = Callable[[int], None]
 
 UNRECORDED: Final = (BRIDGE,)
 """Topics whose content is not in the log: counters of connections."""
+
+
+ACTS_TOPIC: Final = "/console/acts"
+ACTS_TYPE: Final = "std_msgs/msg/String"
+"""What operators did, with their notes: the JSON of the log's stream of acts."""
 
 
 class TopicMessage(NamedTuple):
@@ -59,6 +66,7 @@ class DriveTopics:
         outputs, commands = self._outputs.topics(), CommandDecoder(BridgeInputs(), profile).topics()
         self.names = topic_names(profile, [*(topic.name for topic in outputs), *(topic.name for topic in commands)])
         recorded = tuple(output for output in outputs if output.name not in UNRECORDED)
+        self.names[ACTS_TOPIC] = profile.namespace + ACTS_TOPIC
         self._command_types = {command.name: self.registry.resolve(command.type) for command in commands}
         rates_hz = {name: rate for name, rate in profile.rates_hz.items() if name not in UNRECORDED}
         self._schedule = OutputSchedule(recorded, self.names, msgspec.structs.replace(profile, rates_hz=rates_hz))
@@ -67,9 +75,15 @@ class DriveTopics:
     def messages(self, recording: Recording, on_tick: OnTick = lambda tick: None) -> Iterator[TopicMessage]:
         """Yield every message of a recording. Memory does not grow with its length."""
         commands = CommandMessages(self.registry, self._command_types)
+        acts = _acts(recording)
+        act = next(acts, None)
         for snapshot in snapshots(recording, on_tick):
+            sent_ns = tick_time_ns(snapshot.tick - 1, snapshot.tick_hz)
+            while act is not None and act.tick <= snapshot.tick:
+                text = self.registry.struct(ACTS_TYPE)(act.content.decode("utf-8", "replace"))
+                yield self._message(ACTS_TOPIC, ACTS_TYPE, False, sent_ns, text)
+                act = next(acts, None)
             for name, message in commands.of(snapshot):
-                sent_ns = tick_time_ns(snapshot.tick - 1, snapshot.tick_hz)
                 yield self._message(name, self._command_types[name], False, sent_ns, message)
             if snapshot.tick % self._step_ticks:
                 continue
@@ -82,6 +96,12 @@ class DriveTopics:
     def _message(self, name: str, type_name: str, latched: bool, time_ns: int, message: Any) -> TopicMessage:
         data = serialize(self.registry, type_name, message)
         return TopicMessage(self.names[name], type_name, latched, time_ns, data)
+
+
+def _acts(recording: Recording) -> Iterator[Message]:
+    """Return the acts of operators; none in a log of earlier versions, which has no such stream."""
+    known = any(stream.name == ACTS for stream in recording.header.streams)
+    return recording.messages(ACTS) if known else iter(())
 
 
 def snapshots(recording: Recording, on_tick: OnTick = lambda tick: None) -> Iterator[Snapshot]:

@@ -10,6 +10,7 @@ from simconsole.bridge.messages.cdr import deserialize
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.session import SessionProfile
 from simconsole.recording.exports.drive_topics import DriveTopics, TopicMessage, empty_vector, snapshots
+from simconsole.recording.framing import Message
 from simconsole.values.signals import NEVER_TICKS, NO_COMMAND, NO_SAMPLE
 from tests.recording.made import COLUMNS, SESSION, MadeRecording, made_vectors
 
@@ -56,6 +57,22 @@ def test_a_command_stands_at_the_tick_before_the_one_that_took_it(recording: Mad
         message.time_ns for message in DriveTopics(SESSION).messages(recording) if message.topic.endswith("control_cmd")
     ]
     assert times == [5 * number * 4_000_000 for number in range(1, 200)]
+
+
+def test_acts_of_operators_are_a_topic_with_their_words() -> None:
+    content = b'{"tick":9,"act":"mark","note":"cut in \xc3\xa9"}'
+    acts = (Message(10, content), Message(10, b"{}"), Message(999, b"{}"))
+    topics = DriveTopics(with_bridge(namespace="/ego"))
+    messages = list(topics.messages(MadeRecording(made_vectors(), acts=acts)))
+    found = [message for message in messages if message.topic == "/ego/console/acts"]
+    assert [message.time_ns for message in found] == [36_000_000, 36_000_000, 998 * 4_000_000]
+    assert deserialize(topics.registry, found[0].type, found[0].data) == {"data": content.decode()}
+    times_ns = [message.time_ns for message in messages]
+    assert times_ns == sorted(times_ns)
+
+
+def test_a_log_without_a_stream_of_acts_has_none() -> None:
+    assert "/console/acts" not in counts(DriveTopics(SESSION).messages(MadeRecording(made_vectors(50), acts=None)))
 
 
 def test_in_lockstep_only_the_controller_s_ticks_are_published(recording: MadeRecording) -> None:
