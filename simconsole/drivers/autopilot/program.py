@@ -10,7 +10,8 @@ from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 from simconsole.bridge.client.bridge_client import BridgeClient
-from simconsole.drivers.path_tracker.tracker import Tracker, TrackerCommand, VehicleMotion
+from simconsole.drivers.path_tracker.state_estimator import VehicleMotion
+from simconsole.drivers.path_tracker.tracker import Tracker, TrackerCommand
 from simconsole.drivers.path_tracker.tracking_statistics import TrackingStatistics
 from simconsole.profiles.files.loader import MAX_DATA_BYTES, load
 from simconsole.profiles.world import WorldProfile
@@ -115,8 +116,9 @@ def _answer(
         if seen is None:
             statistics.skipped += 1
             continue
-        answer = tracker.step(seen, engaged)
-        fill_command(command, message.header.stamp, answer)
+        stamp = message.header.stamp
+        answer = tracker.step(seen, engaged, stamp.sec + stamp.nanosec * 1e-9)
+        fill_command(command, stamp, answer)
         client.publish(command_topic, command)
         statistics.add(engaged, tracker.s_m or 0.0, tracker.lateral_m, seen.vx_mps)
     return "stopped"

@@ -37,10 +37,11 @@ class CarModel(NamedTuple):
 class Comfort(NamedTuple):
     """Limits of the speed profile."""
 
-    lateral_mps2: float = 2.5
+    lateral_mps2: float = 2.15
     accelerate_mps2: float = 1.6
     brake_mps2: float = 2.0
     smoothing_s: float = 1.0  # window of the moving average: jerk is bounded by the change of acceleration over it
+    lateral_jerk_mps3: float = 3.0  # on the curvature ramps; the console's gate lets 7 pass
     margin_mps: float = 0.3  # kept below the speed limit, so that overshoot does not exceed it
 
 
@@ -48,8 +49,10 @@ class Timing(NamedTuple):
     """The control loop's time structure."""
 
     period_s: float = 0.02
-    delay_s: float = 0.01  # from the pose's time stamp to the command at the actuator; at most one period
+    delay_s: float = 0.01  # from the pose's time stamp to the command at the actuator
     preview_steps: int = 60
+    pose_share: float = 0.04  # of a measured position in the estimate; the rest is the measured velocities' work
+    yaw_share: float = 0.02
 
 
 class Weights(NamedTuple):
@@ -58,6 +61,7 @@ class Weights(NamedTuple):
     offset: float = 1.0
     drift: float = 0.05
     change: float = 5.0
+    gentle_mps: float = 8.0
 
 
 HATCHBACK: Final = CarModel()
