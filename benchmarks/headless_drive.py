@@ -19,9 +19,10 @@ from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.synthetic.script import ScriptSource
 from simconsole.drivers.scripted_controller import ScriptedCommands
 from simconsole.recording.bundles.log import LogWriter
-from simconsole.recording.framing import LogHeader
-from simconsole.session.lifecycle import LogRecorder, warm_up
+from simconsole.recording.log_header import ACTS, LogHeader, message_stream, vector_stream
+from simconsole.session.lifecycle import warm_up
 from simconsole.session.pacing import UnpacedPacer
+from simconsole.session.recorder import LogRecorder
 from simconsole.session.resolution import load_scenario, resolve
 from simconsole.tick.assembly import assemble
 from simconsole.tick.loop import Components, run
@@ -32,8 +33,7 @@ from simconsole.values.state_vector import INPUT_WIDTH
 def header(columns: tuple[str, ...], tick_hz: int) -> LogHeader:
     return LogHeader(
         tick_hz=tick_hz,
-        columns=columns,
-        input_columns=INPUT_WIDTH,
+        streams=(vector_stream(columns, INPUT_WIDTH), message_stream(ACTS)),
         console_version="benchmark",
         source_sha256="",
         session_sha256="",

@@ -191,6 +191,46 @@ class EventCounters:
         return sum(1 << bit for bit in moved.tolist())
 
 
+class TextQueue:
+    """Texts from one writer to one reader: each arrives once, in order. A full queue takes none, so that none is lost.
+
+    Reader and writer each move a number of their own, and neither waits: how many were written, and how many were read.
+    """
+
+    _TAKEN: Final = 4  # the word of the header that the reader moves
+
+    def __init__(self, ring: Ring) -> None:
+        self._ring = ring
+        self._head = ring._head
+
+    @classmethod
+    def create(cls, path: Path, text_bytes: int, capacity: int) -> "TextQueue":
+        """Make the file, for `capacity` texts of at most `text_bytes` (a multiple of 8). Errors as `Ring.create`."""
+        return cls(Ring.create(path, text_bytes // 8, capacity))
+
+    @classmethod
+    def open(cls, path: Path, *, writable: bool = False) -> "TextQueue":
+        """Open a queue that somebody else made. Errors as `Ring.open`."""
+        return cls(Ring.open(path, writable=writable))
+
+    def put(self, text: bytes) -> bool:
+        """Add a text; return False where it is too long or the queue is full. Only ever called by the one writer."""
+        room_bytes = 8 * self._ring.width
+        if len(text) > room_bytes or self._ring.newest - int(self._head[self._TAKEN]) >= self._ring.capacity:
+            return False
+        self._ring.write(np.frombuffer(text.ljust(room_bytes, b"\0"), np.float64), stamp=len(text))
+        return True
+
+    def take(self) -> list[bytes]:
+        """Return the texts since the last call, oldest first. Only ever called by the one reader."""
+        newest, taken = self._ring.newest, int(self._head[self._TAKEN])
+        if newest == taken:  # nearly every tick
+            return []
+        records = [self._ring._read(number) for number in range(taken + 1, newest + 1)]
+        self._head[self._TAKEN] = newest
+        return [record.values.tobytes()[: record.stamp] for record in records if record is not None]
+
+
 def make_run_folder() -> Path:
     """Return a new folder of mode 0700 for this process's files; folders of dead owners are removed first.
 

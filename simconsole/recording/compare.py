@@ -9,7 +9,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from simconsole.recording.framing import LogHeader, Record
+from simconsole.recording.framing import Record
+from simconsole.recording.log_header import LogHeader
 from simconsole.values.kernels import Row
 
 CONTEXT_TICKS: Final = 3

@@ -6,7 +6,9 @@ from typing import Final, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from simconsole.recording.framing import Break, LogHeader, Record
+from simconsole.recording.framing import Message, Record
+from simconsole.recording.log_header import LogHeader
+from simconsole.recording.scan import Break
 from simconsole.values.errors import RecordingError
 
 BLOCK_TICKS: Final = 8192
@@ -55,6 +57,13 @@ class Recording(Protocol):
 
     def __iter__(self) -> Iterator[Record]:
         """Yield all whole records in the order of their ticks."""
+
+    def messages(self, stream: str) -> Iterator[Message]:
+        """Yield the messages of one stream in the order in which they arrived.
+
+        Raises:
+            RecordingError: no such stream in this recording.
+        """
 
     def blocks(self, columns: Sequence[str] | None = None) -> Iterator[Block]:
         """Yield the ticks in blocks of at most BLOCK_TICKS, with only these columns (None: all), in this order.

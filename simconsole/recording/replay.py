@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from simconsole.recording.framing import START_OF_CHAIN, LogHeader, Record, chain
+from simconsole.recording.framing import START_OF_CHAIN, Record, chain
+from simconsole.recording.log_header import LogHeader
 from simconsole.values.errors import RecordingError
 from simconsole.values.kernels import Row
 

@@ -12,19 +12,17 @@ from simconsole.processes.lifetimes import Interrupt, remove_half_made, undone
 from simconsole.processes.shared_memory import sweep
 from simconsole.profiles.files.loader import to_text
 from simconsole.recording.bundles.bundle import SESSION_FILE, BundleWriter
-from simconsole.recording.bundles.log import LogWriter
 from simconsole.recording.bundles.replay_bundle import sources_sha256
-from simconsole.recording.framing import LogHeader
+from simconsole.recording.log_header import ACTS, LogHeader, message_stream, vector_stream
 from simconsole.session.opening import Opened, open_headless, open_realtime
 from simconsole.tick.advance import Console, ConsoleState, advance
 from simconsole.tick.assembly import ResolvedSession, assemble
 from simconsole.tick.loop import come_to_rest, run
 from simconsole.values.host.jit import compiled
-from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE, Event
+from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE
 from simconsole.values.state_vector import INPUT_WIDTH, Snapshot, TickInputs
 
 ENDLESS_TICKS = 2**53
-_RECORDING_FAILED = int(Event.RECORDING_FAILED)
 
 
 class DriveResult(NamedTuple):
@@ -101,30 +99,13 @@ def warm_up(console: Console, state: ConsoleState) -> None:
     advance(state, TickInputs(NO_SAMPLE, NO_COMMAND, NO_EVENTS), console)
 
 
-class LogRecorder:
-    """The drive loop's recorder: logs every tick, and raises an alarm in every tick after the log has failed."""
-
-    def __init__(self, log: LogWriter) -> None:
-        self._log = log
-
-    def write(self, snapshot: Snapshot) -> int:
-        """Append one tick; an exception, as of a failing disk, goes into the log's `failure` and raises an event."""
-        try:
-            self._log.append(snapshot.tick, snapshot.vector)
-        except Exception as error:
-            self._log.failure = self._log.failure or f"{type(error).__name__}: {error}"
-            raise
-        return 0 if self._log.failure is None else _RECORDING_FAILED
-
-
 def _open(
     resolved: ResolvedSession, console: Console, bundle: BundleWriter, interrupt: Interrupt, stack: ExitStack
 ) -> Opened:
-    recorder = LogRecorder(bundle.log)
     if resolved.session.mode.pacing == "realtime":
-        opened = open_realtime(resolved, console, recorder, bundle.folder, interrupt, stack)
+        opened = open_realtime(resolved, console, bundle.log, bundle.folder, interrupt, stack)
     else:
-        opened = open_headless(resolved, console, recorder, bundle.folder, interrupt, stack)
+        opened = open_headless(resolved, console, bundle.log, bundle.folder, interrupt, stack)
     interrupt.check()
     return opened
 
@@ -133,8 +114,7 @@ def _bundle(resolved: ResolvedSession, console: Console, folder: Path) -> Bundle
     text = to_text(resolved)
     header = LogHeader(
         tick_hz=console.tick_hz,
-        columns=console.columns,
-        input_columns=INPUT_WIDTH,
+        streams=(vector_stream(console.columns, INPUT_WIDTH), message_stream(ACTS)),
         console_version=__version__,
         source_sha256=sources_sha256(console),
         session_sha256=hashlib.sha256(text.encode()).hexdigest(),

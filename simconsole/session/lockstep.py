@@ -39,8 +39,8 @@ class LockstepServer(Protocol):
     def clients(self) -> int:
         """Connected clients."""
 
-    def acts(self) -> list[dict[str, Any]]:
-        """What operators have done."""
+    def take_acts(self) -> list[bytes]:
+        """Return what operators have done since the last call, each as JSON."""
 
 
 class LockstepLink:
@@ -88,9 +88,9 @@ class LockstepLink:
         """Serve the clients while simulated time stands."""
         self._bridge.stand(STAND_S)
 
-    def acts(self) -> list[dict[str, Any]]:
-        """Return what operators have done, as plain values."""
-        return self._bridge.acts()
+    def take_acts(self) -> list[bytes]:
+        """Return what operators have done since the last call, each as JSON."""
+        return self._bridge.take_acts()
 
     def counters(self) -> dict[str, Any]:
         """Return how often the drive waited for the controller, how often in vain, and what the bridge counted."""

@@ -8,17 +8,16 @@ from pathlib import Path
 from subprocess import Popen
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from simconsole.bridge.console.operator_acts import summarise_acts
 from simconsole.faults.schedule import with_faults
 from simconsole.processes.lifetimes import Interrupt, end, tell_to_end, undone
 from simconsole.processes.shared_memory import make_run_folder, remove_run_folder
 from simconsole.processes.supervisor import SupervisorHandle
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.session import SessionProfile
+from simconsole.recording.bundles.log import LogWriter
 from simconsole.session.lockstep import STAND_S, LockstepLink, start_autopilot
 from simconsole.session.paced import (
     CommandPort,
-    acts_summary,
     add_can_memory,
     bridge_address,
     bridge_summary,
@@ -29,11 +28,12 @@ from simconsole.session.paced import (
     worker_specs,
 )
 from simconsole.session.pacing import Pacer, UnpacedPacer, realtime_hints
+from simconsole.session.recorder import LogRecorder
 from simconsole.session.seat import open_seating
 from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.tick.isolation import isolated
-from simconsole.tick.loop import Components, Recorder, Standby
+from simconsole.tick.loop import Components, Standby
 from simconsole.values.errors import BridgeError, ProfileError
 from simconsole.values.latency import LatencyStatistics
 from simconsole.values.protocols import CommandSource, NobodyCommands, Output
@@ -64,7 +64,7 @@ class Opened(NamedTuple):
 def open_headless(
     resolved: ResolvedSession,
     console: Console,
-    recorder: Recorder,
+    log: LogWriter,
     bundle: Path,
     interrupt: Interrupt,
     stack: ExitStack,
@@ -84,16 +84,17 @@ def open_headless(
     standby: tuple[Standby, ...] = (_idle,)
     counters: Callable[[], dict[str, Any]] = dict
     of_can: Callable[[], dict[str, Any]] = dict
-    acts: Callable[[], list[dict[str, Any]]] = list
+    take_acts: Callable[[], list[bytes]] = list
     if resolved.session.mode.pacing == "lockstep":
         link = _open_lockstep(resolved, console, bundle, interrupt, stack)
-        commands, outputs, counters, acts, standby = link, (link,), link.counters, link.acts, (link.stand,)
+        commands, outputs, counters, take_acts, standby = link, (link,), link.counters, link.take_acts, (link.stand,)
     elif resolved.session.features.autopilot is not None:
         raise ProfileError("mode.pacing: value free: lockstep or realtime, where features.autopilot drives")
     can = _open_can(resolved, console, bundle, stack)
     if can is not None:
         outputs, of_can = (*outputs, can), can.summary
     seating = open_seating(resolved, console, stack)
+    recorder = LogRecorder(log, take_acts)
     components = Components(
         devices=seating.devices,
         commands=commands,
@@ -109,7 +110,7 @@ def open_headless(
     components = isolated(faulty, UnpacedPacer)._replace(latencies=latencies)
 
     def summary() -> dict[str, Any]:
-        own = {**counters(), **of_can(), **summarise_acts(acts())}
+        own = {**counters(), **of_can(), **recorder.acts_summary()}
         return {**pace.summary(), **own, "latency_us": latencies.summary_us()}
 
     return Opened(components, seating.finished, summary)
@@ -118,7 +119,7 @@ def open_headless(
 def open_realtime(
     resolved: ResolvedSession,
     console: Console,
-    recorder: Recorder,
+    log: LogWriter,
     bundle: Path,
     interrupt: Interrupt,
     stack: ExitStack,
@@ -142,12 +143,13 @@ def open_realtime(
     stack.callback(remove_run_folder, folder)
     opening = stack.enter_context(ExitStack())
     opening.enter_context(undone(lambda: remove_run_folder(folder)))
-    ring, port, keys = make_memory(folder, console)
+    memory = make_memory(folder, console)
+    recorder = LogRecorder(log, memory.acts.take)
     ecu = add_can_memory(resolved, console, folder)
     supervisor = SupervisorHandle(folder, worker_specs(resolved, console, folder, bundle, drive))
     programs: list[Popen[bytes]] = []
     stack.callback(end, programs, PROGRAM_END_S)
-    stack.callback(supervisor.stop, lambda: ring.is_empty)
+    stack.callback(supervisor.stop, lambda: memory.snapshots.is_empty)
     stack.callback(tell_to_end, programs)
     supervisor.start()
     opening.close()  # from here on the supervisor removes the folder, however the core ends
@@ -160,25 +162,25 @@ def open_realtime(
         interrupt.check,
     )
     with_window = resolved.session.outputs.hud is not None
-    seating = open_seating(resolved, console, stack, keys if with_window else None)
+    seating = open_seating(resolved, console, stack, memory.keys if with_window else None)
     missing = stack.enter_context(realtime_hints())
     pace = Pacer(console.tick_hz)
     components = Components(
         devices=seating.devices,
-        commands=port,
+        commands=memory.commands,
         recorder=recorder,
-        outputs=(*seating.outputs, ring, supervisor),
+        outputs=(*seating.outputs, memory.snapshots, supervisor),
         pace=pace,
         seat=seating.seat,
         ecu=ecu,
-        standby=(supervisor.publish, port.stand, *((ecu.stand,) if isinstance(ecu, CommandPort) else ())),
+        standby=(supervisor.publish, memory.commands.stand, *((ecu.stand,) if isinstance(ecu, CommandPort) else ())),
     )
     latencies = LatencyStatistics(time.monotonic_ns, console.tick_hz)
     faulty = with_faults(components, resolved, console.tick_hz)
     components = isolated(faulty, lambda: Pacer(console.tick_hz))._replace(latencies=latencies)
 
     def summary() -> dict[str, Any]:
-        kept = {**bridge_summary(folder), **can_summary(folder), **acts_summary(folder)}
+        kept = {**bridge_summary(folder), **can_summary(folder), **recorder.acts_summary()}
         workers = {"station_restarts": supervisor.counters(), **kept}
         latency = {**latencies.summary_us(), **worker_latencies(folder)}
         return {**pace.summary(), **workers, "latency_us": latency, "not_granted": missing}

@@ -3,13 +3,13 @@
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import msgspec
 import numpy as np
 
-from simconsole.bridge.console.operator_acts import summarise_acts
-from simconsole.processes.shared_memory import EventCounters, Ring
+from simconsole.bridge.console.operator_acts import ACT_BYTES, ACTS_MAX
+from simconsole.processes.shared_memory import EventCounters, Ring, TextQueue
 from simconsole.processes.worker import Worker, WorkerSpec
 from simconsole.session.scene_job import LIVE_SCENE, scene_job
 from simconsole.session.worker_programs import (
@@ -113,7 +113,16 @@ class KeyPort:
         return int(record.values[0]), age_ns * self._tick_hz // NS_PER_S
 
 
-def make_memory(folder: Path, console: Console) -> tuple[RingOutput, CommandPort, KeyPort]:
+class Memory(NamedTuple):
+    """What the core shares with its workers, from the core's side."""
+
+    snapshots: RingOutput
+    commands: CommandPort
+    keys: KeyPort
+    acts: TextQueue
+
+
+def make_memory(folder: Path, console: Console) -> Memory:
     """Make every file of the run folder, as their writers' side or readers' side in the core.
 
     Raises:
@@ -123,7 +132,12 @@ def make_memory(folder: Path, console: Console) -> tuple[RingOutput, CommandPort
     command = Ring.create(folder / COMMAND, LAYOUT.ros.width, SLOT_CAPACITY)
     keys = Ring.create(folder / KEY_CODES, 1, SLOT_CAPACITY)
     events = EventCounters.create(folder / EVENTS)
-    return RingOutput(snapshots), CommandPort(command, events, console.tick_hz), KeyPort(keys, console.tick_hz)
+    return Memory(
+        snapshots=RingOutput(snapshots),
+        commands=CommandPort(command, events, console.tick_hz),
+        keys=KeyPort(keys, console.tick_hz),
+        acts=TextQueue.create(folder / ACTS, ACT_BYTES, ACTS_MAX),
+    )
 
 
 def add_can_memory(resolved: ResolvedSession, console: Console, folder: Path) -> CommandSource:
@@ -211,15 +225,6 @@ def worker_latencies(folder: Path) -> dict[str, Any]:
             continue
         found.update({f"{hop}, {name}": page for hop, page in pages.items()})
     return found
-
-
-def acts_summary(folder: Path) -> dict[str, Any]:
-    """Return the operator's acts that the bridge's process has kept; empty without any."""
-    try:
-        lines = (folder / ACTS).read_bytes().splitlines()
-    except OSError:
-        return {}
-    return summarise_acts([msgspec.json.decode(line) for line in lines])
 
 
 def bridge_summary(folder: Path) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from typing import Any, Final
 import msgspec
 import numpy as np
 
-from simconsole.processes.shared_memory import EventCounters, Record, Ring
+from simconsole.processes.shared_memory import EventCounters, Record, Ring, TextQueue
 from simconsole.processes.worker import Worker
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.can import CanProfile
@@ -31,7 +31,7 @@ COMMAND: Final = "bridge.command"
 EVENTS: Final = "bridge.events"
 KEY_CODES: Final = "hud.keys"
 ADDRESS: Final = "bridge.address"
-ACTS: Final = "operator.jsonl"
+ACTS: Final = "bridge.acts"
 COUNTS: Final = "bridge.json"
 LINK_STATUS: Final = "link.json"
 CAN_COMMAND: Final = "can.command"
@@ -65,9 +65,10 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
         snapshots = NewestOnce(Ring.open(folder / SNAPSHOTS), self.tick_hz, receipts.received)
         events = EventCounters.open(folder / EVENTS, writable=True)
 
-        def keep_act(act: Act) -> None:
-            with (folder / ACTS).open("ab") as file:
-                file.write(msgspec.json.encode(act) + b"\n")
+        acts = TextQueue.open(folder / ACTS, writable=True)
+
+        def keep_act(act: Act) -> bool:
+            return acts.put(msgspec.json.encode(act))
 
         def ready(port: int) -> None:
             url = address_url(profile.host, port, profile.certificate is not None)

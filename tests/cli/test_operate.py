@@ -9,9 +9,10 @@ import pytest
 
 from simconsole.cli.main import main
 from simconsole.recording.bundles.bundle import open_bundle
+from simconsole.recording.bundles.log import LogReader
 from simconsole.values.signals import Event, Mode
 from tests.drives.console import Running, results, simconsole
-from tests.patience import wait_until
+from tests.patience import PATIENCE_S, wait_until
 
 SESSION = """schema: 1
 scenario: {vehicle: hatchback, duration_s: 4}
@@ -55,6 +56,9 @@ def test_acts_of_an_operator_are_in_the_drive_and_in_its_bundle(
     assert [entry["act"] for entry in acts][-5:] == ["start", "pause", "mark", "start", "estop"]
     assert [entry.get("note") for entry in acts][-4:-2] == ["phone rang", "while time stands"]
     assert (opened.manifest.summary["participant"], opened.manifest.summary["trial"]) == ("P07", "B-3")
+    recorded = [(message.tick, json.loads(message.content)) for message in opened.log.messages("acts")]
+    assert [act for _, act in recorded] == acts
+    assert all(tick > act["tick"] for tick, act in recorded)
     table = opened.log.table()
     events = table.column("events.events").astype(int)
     pauses = np.flatnonzero(events & Event.PAUSE)
@@ -65,4 +69,31 @@ def test_acts_of_an_operator_are_in_the_drive_and_in_its_bundle(
     assert len(events) == 1000, "four seconds were driven, whatever the clock on the wall said"
     stopped = np.flatnonzero(events & Event.EMERGENCY_STOP)
     assert table.column("arbitration.mode")[stopped[0]] == Mode.EMERGENCY_STOP
+    assert simconsole("replay", bundle).returncode == 0
+
+
+def test_what_an_operator_wrote_outlives_a_drive_that_is_killed(tmp_path: Path) -> None:
+    session, bundle = tmp_path / "session.yaml", tmp_path / "bundle"
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    session.write_text(SESSION.replace("PORT", str(port)).replace("duration_s: 4", "duration_s: 400"))
+
+    def operate(*arguments: str) -> int:
+        return simconsole("operate", *arguments, "--url", f"ws://127.0.0.1:{port}", "--json").returncode
+
+    with Running(tmp_path / "output", "drive", session, "--out", bundle) as drive:
+        wait_until(lambda: operate("start", "--participant", "P07", "--trial", "B-3") == 0, "the console")
+        assert operate("mark", "--note", "cut in") == 0
+        ticks = sum(1 for _ in LogReader(bundle / "drive.log"))
+        wait_until(lambda: sum(1 for _ in LogReader(bundle / "drive.log")) > ticks + 1, "two ticks more")
+        drive.process.kill()
+        drive.process.wait(PATIENCE_S)
+    opened = open_bundle(bundle)
+    assert not opened.manifest.finished
+    acts = [json.loads(message.content) for message in opened.log.messages("acts")]
+    assert [{**act, "tick": None} for act in acts] == [
+        {"tick": None, "act": "start", "participant": "P07", "trial": "B-3"},
+        {"tick": None, "act": "mark", "note": "cut in"},
+    ]
     assert simconsole("replay", bundle).returncode == 0

@@ -16,7 +16,8 @@ from simconsole.recording.bundles import log
 from simconsole.recording.bundles.bundle import open_bundle, verify
 from simconsole.recording.bundles.log import SYNC_INTERVAL_S, LogReader
 from simconsole.recording.bundles.replay_bundle import replay_bundle
-from simconsole.recording.framing import Scan, frame_size
+from simconsole.recording.framing import frame_size
+from simconsole.recording.scan import Scan
 from simconsole.session.lifecycle import drive
 from simconsole.values.errors import RecordingError
 from simconsole.values.state_vector import Snapshot

@@ -28,7 +28,7 @@ def test_f05_recording_of_a_newer_version(copy: Path, rewrite_checksums: Callabl
     entry["size_bytes"] = (copy / "drive.log").stat().st_size
     (copy / "manifest.json").write_text(json.dumps(manifest))
     line = complaint(simconsole(command, copy))
-    assert f"{copy / 'drive.log'}: schema: 99 cannot be read, this simconsole reads 1 to 1" in line
+    assert f"{copy / 'drive.log'}: schema: 99 cannot be read, this simconsole reads 1 to 2" in line
 
 
 @pytest.mark.fault("F05")

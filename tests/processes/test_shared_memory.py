@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from simconsole.processes import shared_memory
-from simconsole.processes.shared_memory import EventCounters, Ring, make_run_folder, remove_run_folder, sweep
+from simconsole.processes.shared_memory import EventCounters, Ring, TextQueue, make_run_folder, remove_run_folder, sweep
 from simconsole.values.errors import WorkerError
 from simconsole.values.signals import Event
 
@@ -236,6 +236,36 @@ def test_unknown_bits_are_no_events(tmp_path: Path) -> None:
     reader = EventCounters.create(tmp_path / "events")
     EventCounters.open(tmp_path / "events", writable=True).raise_events(1 << 40)
     assert reader.take() == 0
+
+
+def test_texts_arrive_once_each_in_order(tmp_path: Path) -> None:
+    reader = TextQueue.create(tmp_path / "texts", 64, 4)
+    assert reader.take() == []
+    writer = TextQueue.open(tmp_path / "texts", writable=True)
+    texts = [b"", b"a note", bytes(range(64)), b"\xff" * 64]
+    assert [writer.put(text) for text in texts] == [True] * 4
+    assert reader.take() == texts
+    assert reader.take() == []
+    for turn in range(11):
+        assert writer.put(b"%d" % turn)
+        assert reader.take() == [b"%d" % turn]
+
+
+def test_a_full_queue_takes_none_until_it_is_read(tmp_path: Path) -> None:
+    reader = TextQueue.create(tmp_path / "texts", 64, 4)
+    writer = TextQueue.open(tmp_path / "texts", writable=True)
+    assert [writer.put(b"%d" % turn) for turn in range(6)] == [True] * 4 + [False] * 2
+    assert not writer.put(bytes(65)), "longer than any"
+    assert reader.take() == [b"0", b"1", b"2", b"3"]
+    assert writer.put(b"again")
+    assert reader.take() == [b"again"]
+
+
+def test_a_writer_that_was_started_again_goes_on_behind_the_other(tmp_path: Path) -> None:
+    reader = TextQueue.create(tmp_path / "texts", 64, 4)
+    TextQueue.open(tmp_path / "texts", writable=True).put(b"first")
+    TextQueue.open(tmp_path / "texts", writable=True).put(b"second")
+    assert reader.take() == [b"first", b"second"]
 
 
 def test_the_run_folder_is_this_users_alone(run_base: Path) -> None:

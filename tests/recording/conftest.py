@@ -5,12 +5,14 @@ from collections.abc import Callable
 from pathlib import Path
 from zlib import crc32
 
+import msgspec
 import numpy as np
 import pytest
 
 from simconsole.recording.bundles.bundle import BundleWriter
 from simconsole.recording.bundles.log import LogReader
-from simconsole.recording.framing import MAGIC, START_OF_CHAIN, LogHeader, encode_header, seal
+from simconsole.recording.framing import START_OF_CHAIN, seal, seal_message
+from simconsole.recording.log_header import MAGIC, LogHeader, encode_header, message_stream, vector_stream
 
 TEXTS = {"session.yaml": "schema: 1\n", "vehicle.yaml": "mass_kg: 1500\n"}
 COLUMNS = ("sample.brake_axis", "sample.throttle_axis", "driver.brake", "vehicle.vx_mps")
@@ -19,7 +21,17 @@ COLUMNS = ("sample.brake_axis", "sample.throttle_axis", "driver.brake", "vehicle
 @pytest.fixture
 def header() -> LogHeader:
     return LogHeader(
-        tick_hz=250, columns=COLUMNS, input_columns=2, console_version="0", source_sha256="aa", session_sha256="bb"
+        tick_hz=250,
+        streams=(vector_stream(COLUMNS, 2),),
+        console_version="0",
+        source_sha256="aa",
+        session_sha256="bb",
+    )
+
+
+def with_messages(header: LogHeader) -> LogHeader:
+    return msgspec.structs.replace(
+        header, streams=(*header.streams, message_stream("acts"), message_stream("scans", ""))
     )
 
 
@@ -59,6 +71,31 @@ def log_bytes(header: LogHeader, rows: list[np.ndarray]) -> bytes:
     parts, digest = [encode_header(header)], START_OF_CHAIN
     for tick, row in enumerate(rows, start=1):
         frame, digest = seal(digest, tick, row.tobytes())
+        parts.append(frame)
+    return b"".join(parts)
+
+
+@pytest.fixture
+def acts() -> dict[int, tuple[bytes, ...]]:
+    """What an operator has written, by tick."""
+    return {
+        3: (b'{"note":"first"}',),
+        4: (b"", b"x" * 300),
+        20: (bytes(64),),
+        39: (b"last but one",),
+        40: (b"end", b""),
+    }
+
+
+@pytest.fixture
+def log_with_acts(header: LogHeader, rows: list[np.ndarray], acts: dict[int, tuple[bytes, ...]]) -> bytes:
+    parts, digest, last = [encode_header(with_messages(header))], START_OF_CHAIN, START_OF_CHAIN
+    for tick, row in enumerate(rows, start=1):
+        sealed = b""
+        for content in acts.get(tick, ()):
+            part, last = seal_message(last, tick, 1, content)
+            sealed += part
+        frame, digest = seal(digest, tick, row.tobytes(), sealed)
         parts.append(frame)
     return b"".join(parts)
 

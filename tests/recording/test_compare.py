@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from simconsole.recording.compare import Comparison, compare
-from simconsole.recording.framing import LogHeader, Record
+from simconsole.recording.framing import Record
+from simconsole.recording.log_header import LogHeader, vector_stream
 
 
 def records(rows: Sequence[np.ndarray], first: int = 1) -> list[Record]:
@@ -81,11 +82,11 @@ def test_a_shorter_recording_differs_where_it_ends(header: LogHeader, rows: list
 def test_recordings_of_different_kinds_are_not_compared(header: LogHeader, rows: list[np.ndarray]) -> None:
     slower = msgspec.structs.replace(header, tick_hz=100)
     assert "different tick_hz" in compare([], header, [], slower).window
-    other = msgspec.structs.replace(header, columns=(*header.columns, "more"))
+    other = msgspec.structs.replace(header, streams=(vector_stream((*header.columns, "more"), 2),))
     assert "different columns" in compare([], header, [], other).window
 
 
 def test_many_differing_columns_are_counted_not_listed(header: LogHeader) -> None:
-    wide = msgspec.structs.replace(header, columns=tuple(f"c{index}" for index in range(10)))
+    wide = msgspec.structs.replace(header, streams=(vector_stream(tuple(f"c{index}" for index in range(10)), 2),))
     result = against(wide, records([np.zeros(10)]), records([np.ones(10)]))
     assert result.window.splitlines()[-1] == "and 4 more columns at tick 1"

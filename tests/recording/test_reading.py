@@ -1,14 +1,13 @@
 import numpy as np
 import pytest
 
-from simconsole.recording.framing import LogHeader
+from simconsole.recording.log_header import LogHeader, vector_stream
 from simconsole.recording.reading import Block, gathered, places
 from simconsole.values.errors import RecordingError
 
 HEADER = LogHeader(
     tick_hz=250,
-    columns=("a", "b", "c"),
-    input_columns=1,
+    streams=(vector_stream(("a", "b", "c"), 1),),
     console_version="0",
     source_sha256="",
     session_sha256="",

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from simconsole.recording.bundles.log import LogReader
-from simconsole.recording.framing import LogHeader, Record
+from simconsole.recording.framing import Record
+from simconsole.recording.log_header import LogHeader
 from simconsole.recording.replay import first_unequal, replay
 from simconsole.values.errors import RecordingError
 

@@ -1,5 +1,4 @@
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pytest
@@ -36,7 +35,7 @@ class Server:
     def stand(self, timeout_s: float) -> None:
         """Nothing to serve."""
 
-    def acts(self) -> list[dict[str, Any]]:
+    def take_acts(self) -> list[bytes]:
         return []
 
     def publish(self, snapshot: Snapshot) -> None:

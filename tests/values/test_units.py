@@ -1,10 +1,12 @@
 """Conversions: against their definitions, and their exact agreement with each other."""
 
 import math
+import re
 
 import pytest
 
 from simconsole.values import units
+from tests.paths import ROOT
 
 
 @pytest.mark.parametrize(
@@ -42,3 +44,28 @@ def test_tick_time_never_drifts() -> None:
         assert units.tick_time_ns(ten_years_s * tick_hz, tick_hz) == ten_years_s * 1_000_000_000
     assert units.tick_time_ns(1, 300) == 3_333_333
     assert units.tick_time_ns(300, 300) == 1_000_000_000
+
+
+@pytest.mark.parametrize(
+    ("name", "unit"),
+    [
+        ("vehicle.x_m", "m"),
+        ("vehicle.vx_mps", "m/s"),
+        ("vehicle.ax_mps2", "m/s^2"),
+        ("memory.mode_ticks", "ticks"),
+        ("torque.torque_nm", "N m"),
+        ("platform.engine_impulse_nms", "N m s"),
+        ("command.throttle", "1"),
+        ("sample.hat_x", "1"),
+        ("s", "1"),
+    ],
+)
+def test_the_suffix_of_a_column_is_its_unit(name: str, unit: str) -> None:
+    assert units.unit_of(name) == unit
+
+
+def test_every_unit_of_the_documented_table_is_known() -> None:
+    table = (ROOT / "docs" / "units.md").read_text("utf-8")
+    suffixes = re.findall(r"`_(\w+)` \|", table)
+    assert len(suffixes) == 16
+    assert all(units.unit_of(f"value_{suffix}") != "1" for suffix in suffixes)

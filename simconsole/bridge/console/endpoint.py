@@ -6,7 +6,7 @@ from typing import Any
 from simconsole.bridge.console.command_decoder import CommandDecoder
 from simconsole.bridge.console.counters import bridge_status, total_counts
 from simconsole.bridge.console.input_slots import BridgeInputs, OnCommand, OnEvents
-from simconsole.bridge.console.operator_acts import OPERATE, OPERATE_TYPE, Act, OnAct, Operator
+from simconsole.bridge.console.operator_acts import ACTS_MAX, OPERATE, OPERATE_TYPE, Act, OnAct, Operator
 from simconsole.bridge.console.topics import GLOBAL_TOPICS, ODOMETRY, ONCE, Outputs, PublishedTick, is_due
 from simconsole.bridge.messages import Registry, standard_registry
 from simconsole.bridge.protocol.access import Role
@@ -48,7 +48,7 @@ class ConsoleBridge:
             registry: message types; the standard ones without.
             on_command: sees each change of the command at once (`BridgeInputs`).
             on_events: sees each event at once.
-            on_act: sees each act of an operator at once; without, they are kept in `acts`.
+            on_act: sees each act of an operator at once; without, they are kept until `take_acts`.
 
         Raises:
             ProfileError: the profile renames or rates a topic that does not exist, or gives two topics one name.
@@ -62,8 +62,8 @@ class ConsoleBridge:
             self.inputs.refuse,
         )
         RosApi(self.router)
-        self.acts: list[Act] = []
-        self.operator = Operator(self.inputs.raise_events, on_act or self.acts.append)
+        self._acts: list[Act] = []
+        self.operator = Operator(self.inputs.raise_events, on_act or self._keep_act)
         self.router.calls.add_builtin(profile.namespace + OPERATE, OPERATE_TYPE, self.operator.operate, Role.CONTROL)
         self._command_decoder = CommandDecoder(self.inputs, profile)
         self.router.on_new_commander = self._command_decoder.forget_stamps
@@ -97,6 +97,17 @@ class ConsoleBridge:
             if self.router.has_subscribers(output.name):
                 tick = tick or self._out.published_tick(snapshot)
                 self.router.publish(output.name, output.build(tick), now_ns)
+
+    def take_acts(self) -> list[Act]:
+        """Return the acts since the last call."""
+        acts, self._acts = self._acts, []
+        return acts
+
+    def _keep_act(self, act: Act) -> bool:
+        room = len(self._acts) < ACTS_MAX
+        if room:
+            self._acts.append(act)
+        return room
 
     def counts(self) -> dict[str, int]:
         """Return how many messages went to and from all clients."""

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Final, Self
+from typing import TYPE_CHECKING, Final, Self
 
 import msgspec
 
@@ -122,9 +122,9 @@ class LockstepBridge:
         """How many clients are connected."""
         return len(self.console.router.sessions)
 
-    def acts(self) -> list[dict[str, Any]]:
-        """Return what operators have done, as plain values."""
-        return [msgspec.to_builtins(act) for act in self.console.acts]
+    def take_acts(self) -> list[bytes]:
+        """Return what operators have done since the last call, each as JSON."""
+        return [msgspec.json.encode(act) for act in self.console.take_acts()]
 
     def wait_for_client(self, timeout_s: float) -> bool:
         """Serve until a client has subscribed to odometry; False when none did in time (wall time)."""

@@ -28,7 +28,9 @@ from simconsole.recording.bundles.manifest import (
     size_problem,
     write_manifest,
 )
-from simconsole.recording.framing import START_OF_CHAIN, Break, LogHeader, chain, frame_size
+from simconsole.recording.framing import START_OF_CHAIN, chain, frame_size
+from simconsole.recording.log_header import LogHeader
+from simconsole.recording.scan import Break
 from simconsole.values.errors import RecordingError
 from simconsole.values.host.files import draft_of, give_back, reserve, sync_folder, write_atomically
 from simconsole.values.signals import Event

@@ -17,16 +17,10 @@ from typing import Final
 
 import numpy as np
 
-from simconsole.recording.framing import (
-    START_OF_CHAIN,
-    Break,
-    LogHeader,
-    Record,
-    Scan,
-    encode_header,
-    seal,
-)
+from simconsole.recording.framing import MAX_FRAME_BYTES, START_OF_CHAIN, Message, Record, seal, seal_message
+from simconsole.recording.log_header import LogHeader, encode_header, stream_index
 from simconsole.recording.reading import BLOCK_TICKS, Block, LogTable, gathered, places
+from simconsole.recording.scan import Break, Scan
 from simconsole.values.errors import RecordingError
 from simconsole.values.host.files import replaced
 from simconsole.values.kernels import Row
@@ -48,7 +42,7 @@ class LogWriter:
     Attributes:
         failure: why recording stopped, or None while all is well. Worth an alarm: the session raises it.
         ticks: state vectors that reached the file.
-        digest: chained hash after the last of them.
+        digest: chained hash of the state vectors after the last of them.
         size_bytes: of the file's whole frames.
         sha256: of these, once closed; None if they could not be read.
     """
@@ -64,7 +58,7 @@ class LogWriter:
 
         Args:
             path: the file.
-            header: what its state vectors mean.
+            header: what its streams mean.
             sync_interval_s: longest time whose ticks a power cut may lose.
             free_room: frees the disk space that was reserved for the last ticks; may raise OSError.
 
@@ -85,6 +79,8 @@ class LogWriter:
         self.sha256: str | None = None
         self._hasher, self._hashed_bytes = sha256(), 0
         self._vector_bytes = 8 * len(header.columns)
+        self._streams = {stream.name: at for at, stream in enumerate(header.streams) if stream.kind == "messages"}
+        self._message_digests = dict.fromkeys(self._streams.values(), START_OF_CHAIN)
         self._free_room = free_room
         self._last_ticks = LAST_TICKS
         problem = self._problem(start)
@@ -95,20 +91,26 @@ class LogWriter:
         self._syncer = Thread(target=self._sync, args=(sync_interval_s,), name="log sync", daemon=True)
         self._syncer.start()
 
-    def append(self, tick: int, vector: Row) -> None:
+    def append(self, tick: int, vector: Row, messages: Sequence[tuple[str, bytes]] = ()) -> None:
         """Write one tick. Once recording has failed, only the last ticks.
 
         A failed write is tried once more in the space reserved for it, so that the log's last tick can hold the alarm.
 
+        Args:
+            tick: its number.
+            vector: its state vector.
+            messages: those that arrived in it, each with the name of its stream.
+
         Raises:
-            ValueError: a state vector of another width, which is a bug.
+            ValueError: a state vector of another width, a message of no stream, or too large a tick, which are bugs.
         """
         if self.failure is not None and self._last_ticks <= 0:
             return
         content = vector.tobytes()
         if len(content) != self._vector_bytes:
             raise ValueError(f"a state vector of {len(content)} bytes in a log of {self._vector_bytes}")
-        frame, digest = seal(self.digest, tick, content)
+        sealed, digests = self._sealed(tick, messages) if messages else (b"", {})
+        frame, digest = seal(self.digest, tick, content, sealed)
         problem = self._problem(frame)
         if problem is not None:
             self._fail(tick, problem)
@@ -120,6 +122,22 @@ class LogWriter:
         if problem is None:
             self.ticks += 1
             self.digest = digest
+            self._message_digests.update(digests)
+
+    def _sealed(self, tick: int, messages: Sequence[tuple[str, bytes]]) -> tuple[bytes, dict[int, bytes]]:
+        """Return the messages of a tick as they lie in its frame, and the chained hashes of their streams after it."""
+        digests: dict[int, bytes] = {}
+        parts: list[bytes] = []
+        for name, content in messages:
+            if name not in self._streams:
+                raise ValueError(f"a message for {name!r}, which is no stream of messages of this log")
+            at = self._streams[name]
+            part, digests[at] = seal_message(digests.get(at, self._message_digests[at]), tick, at, content)
+            parts.append(part)
+        sealed = b"".join(parts)
+        if len(sealed) > MAX_FRAME_BYTES - self._vector_bytes - MAX_FRAME_BYTES // 64:
+            raise ValueError(f"messages of {len(sealed)} bytes in one tick")
+        return sealed, digests
 
     def close(self) -> None:
         """Sync and close. May be called again."""
@@ -201,7 +219,8 @@ class LogReader:
     """A recorded log. Iterating passes over the file anew, in constant memory.
 
     Attributes:
-        header: what the state vectors mean.
+        header: what the streams mean.
+        start: the bytes before the first frame, as they were recorded.
         breaks: where the file was not whole, as found by the latest complete pass.
         last: the last whole record, as found by the latest complete pass; None in a log without.
     """
@@ -217,9 +236,10 @@ class LogReader:
         self.last: Record | None = None
         try:
             with path.open("rb") as file:
-                self.header = Scan(file.read, str(path)).header
+                scan = Scan(file.read, str(path))
         except OSError as error:
             raise RecordingError(f"{path}: cannot be read: {error.strerror}") from None
+        self.header, self.start = scan.header, scan.start
 
     def __iter__(self) -> Iterator[Record]:
         """Yield all whole records; never raises on a torn tail."""
@@ -229,6 +249,18 @@ class LogReader:
             for record in scan:
                 yield record
         self.breaks, self.last = tuple(scan.breaks), record
+
+    def messages(self, stream: str) -> Iterator[Message]:
+        """Yield the messages of one stream in the order in which they arrived.
+
+        Raises:
+            RecordingError: no such stream in this recording.
+        """
+        at = stream_index(self.header, stream)
+        for record in self:
+            for message in record.messages:
+                if message.stream == at:
+                    yield Message(record.tick, message.content)
 
     def blocks(self, columns: Sequence[str] | None = None) -> Iterator[Block]:
         """Yield the whole records in blocks of at most BLOCK_TICKS, with only these columns (None: all).

@@ -8,7 +8,7 @@ import pytest
 
 from simconsole.recording.bundles.bundle import LOG, BundleWriter, add_export, open_bundle, verify
 from simconsole.recording.bundles.manifest import read_manifest
-from simconsole.recording.framing import LogHeader
+from simconsole.recording.log_header import LogHeader
 from simconsole.values.errors import RecordingError
 from tests.recording.conftest import TEXTS
 
@@ -93,7 +93,8 @@ def test_verify_names_an_altered_value_and_the_first_tick_it_breaks(
 def test_verify_names_the_tick_whose_hash_does_not_hold(
     bundle: Path, rewrite_checksums: Callable[[Path], None]
 ) -> None:
-    from simconsole.recording.framing import encode_header, seal
+    from simconsole.recording.framing import seal
+    from simconsole.recording.log_header import encode_header
 
     records = list(open_bundle(bundle).log)
     parts = [encode_header(open_bundle(bundle).log.header)]

@@ -9,17 +9,19 @@ import numpy as np
 import pytest
 
 from simconsole.recording.bundles.log import LogReader, LogWriter
-from simconsole.recording.framing import LogHeader, encode_header, frame_size
+from simconsole.recording.framing import Message, frame_size
+from simconsole.recording.log_header import LogHeader, encode_header
 from simconsole.values.errors import RecordingError
 from tests.patience import wait_until
+from tests.recording.conftest import with_messages
 
 FILL_THE_DISK = """
 import json, resource, sys
 import numpy as np
 from pathlib import Path
-from simconsole.recording.framing import LogHeader
+from simconsole.recording.log_header import LogHeader, vector_stream
 from simconsole.recording.bundles.log import LogWriter
-header = LogHeader(tick_hz=250, columns=("a", "b"), input_columns=1,
+header = LogHeader(tick_hz=250, streams=(vector_stream(("a", "b"), 1),),
                    console_version="0", source_sha256="", session_sha256="")
 log = LogWriter(Path(sys.argv[1]), header)
 resource.setrlimit(resource.RLIMIT_FSIZE, (10_000, 10_000))
@@ -50,6 +52,48 @@ def test_each_tick_is_in_the_file_when_append_returns(tmp_path: Path, header: Lo
         for tick in range(1, 5):
             log.append(tick, np.zeros(4))
             assert sum(1 for _ in LogReader(tmp_path / "drive.log")) == tick
+
+
+def test_messages_lie_in_the_tick_in_which_they_were_appended(
+    tmp_path: Path, header: LogHeader, rows: list[np.ndarray], acts: dict[int, tuple[bytes, ...]], log_with_acts: bytes
+) -> None:
+    with LogWriter(tmp_path / "drive.log", with_messages(header)) as log:
+        for tick, row in enumerate(rows, start=1):
+            log.append(tick, row, [("acts", content) for content in acts.get(tick, ())])
+    assert (tmp_path / "drive.log").read_bytes() == log_with_acts
+    reader = LogReader(tmp_path / "drive.log")
+    found = list(reader.messages("acts"))
+    assert found == [Message(tick, content) for tick, parts in acts.items() for content in parts]
+    assert list(reader.messages("scans")) == []
+    with pytest.raises(RecordingError, match="no stream 'notes'"):
+        list(reader.messages("notes"))
+
+
+def test_a_tick_with_messages_is_one_write(tmp_path: Path, header: LogHeader, monkeypatch: pytest.MonkeyPatch) -> None:
+    write, sizes = os.write, []
+
+    def counted(fd: int, frame: bytes) -> int:
+        sizes.append(len(frame))
+        return write(fd, frame)
+
+    with LogWriter(tmp_path / "drive.log", with_messages(header)) as log:
+        monkeypatch.setattr(os, "write", counted)
+        log.append(1, np.zeros(4), [("acts", b"12345"), ("scans", b"")])
+        log.append(2, np.zeros(4))
+    assert sizes == [frame_size(4) + 2 * 14 + 5, frame_size(4)]
+
+
+@pytest.mark.parametrize(
+    ("stream", "size", "words"), [("notes", 1, "'notes'"), ("state", 1, "'state'"), ("acts", 1 << 22, "bytes in one")]
+)
+def test_a_message_that_no_reader_could_take_is_a_bug(
+    tmp_path: Path, header: LogHeader, stream: str, size: int, words: str
+) -> None:
+    with LogWriter(tmp_path / "drive.log", with_messages(header)) as log:
+        with pytest.raises(ValueError, match=words):
+            log.append(1, np.zeros(4), [(stream, bytes(size))])
+        log.append(1, np.zeros(4), [("acts", b"")])
+    assert [message.tick for message in LogReader(tmp_path / "drive.log").messages("acts")] == [1]
 
 
 def test_equal_drives_make_equal_files(tmp_path: Path, header: LogHeader, rows: list[np.ndarray]) -> None:

@@ -13,7 +13,7 @@ from simconsole.recording.bundles.manifest import (
     size_problem,
     write_manifest,
 )
-from simconsole.recording.framing import LogHeader
+from simconsole.recording.log_header import LogHeader
 from simconsole.values.errors import RecordingError
 
 
