@@ -37,7 +37,7 @@ class CarModel(NamedTuple):
 class Comfort(NamedTuple):
     """Limits of the speed profile."""
 
-    lateral_mps2: float = 2.15
+    lateral_mps2: float = 2.0
     accelerate_mps2: float = 1.6
     brake_mps2: float = 2.0
     smoothing_s: float = 1.0  # window of the moving average: jerk is bounded by the change of acceleration over it
