@@ -39,9 +39,8 @@ _SPEEDS_MPS: Final = (1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5, 8.5, 10.0, 11.5, 13.0, 
 _CURVATURE_STEP_M: Final = 0.1
 _PUSHED_OFF_M: Final = 0.3
 _SPEED_GAIN_1PS: Final = 1.2
-_SPEED_LEAD_S: Final = 0.2
+_SPEED_LEAD_S: Final = 0.15
 _JERK_MPS3: Final = 2.8
-_BRAKE_MPS2: Final = -3.5
 _STEERING_RATE_RADPS: Final = 0.8
 _LATERAL_JERK_MPS3: Final = 6.0
 _LATERAL_MPS2: Final = 4.5
@@ -152,7 +151,7 @@ class Tracker:
         target, _ = self.profile.at(s_m)
         _, planned = self.profile.at(s_m + speed * _SPEED_LEAD_S)
         wanted = planned + _SPEED_GAIN_1PS * (target - speed)
-        wanted = clip(wanted, _BRAKE_MPS2, self._comfort.accelerate_mps2)
+        wanted = clip(wanted, -self._comfort.brake_most_mps2, self._comfort.accelerate_mps2)
         return target, approach(self._accel, wanted, _JERK_MPS3 * self._timing.period_s)
 
 

@@ -37,11 +37,12 @@ class CarModel(NamedTuple):
 class Comfort(NamedTuple):
     """Limits of the speed profile."""
 
-    lateral_mps2: float = 2.0
+    lateral_mps2: float = 1.9  # planned; the car itself stays within 2.5
     accelerate_mps2: float = 1.6
-    brake_mps2: float = 2.0
+    brake_mps2: float = 1.6
+    brake_most_mps2: float = 2.0  # where the car is faster than planned
     smoothing_s: float = 1.0  # window of the moving average: jerk is bounded by the change of acceleration over it
-    lateral_jerk_mps3: float = 3.0  # on the curvature ramps; the console's gate lets 7 pass
+    lateral_jerk_mps3: float = 2.5  # on the curvature ramps; the console's gate lets 7 pass
     margin_mps: float = 0.3  # kept below the speed limit, so that overshoot does not exceed it
 
 
