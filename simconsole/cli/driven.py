@@ -6,6 +6,9 @@ from simconsole.cli.outcome import RECORDING_FAILED, Outcome, table
 from simconsole.cli.progress import Progress
 from simconsole.evaluation.report.exports import REPORT, SCENE, write_exports
 from simconsole.processes.lifetimes import INTERRUPTED
+from simconsole.profiles.link import link_label
+from simconsole.recording.bundles.bundle import open_bundle
+from simconsole.recording.bundles.replay_bundle import recorded_session
 from simconsole.session.lifecycle import DriveResult
 from simconsole.values.errors import one_line
 
@@ -35,7 +38,7 @@ def finish(result: DriveResult, report: bool = True, scene: bool = True) -> Outc
         results["exports_failure"] = said = one_line(error)
         rows = [*_driven_rows(result), ("report and scene", f"not written: {said}"), *failed]
         return Outcome(code, results, table(rows))
-    rows = [*_rows(result, metrics), *failed]
+    rows = [*_rows(result, metrics, _link(result)), *failed]
     rows += [("report", str(result.folder / REPORT))] * report + [("scene", str(result.folder / SCENE))] * scene
     return Outcome(code, {**results, **metrics}, table(rows))
 
@@ -48,7 +51,13 @@ def _driven_rows(result: DriveResult) -> list[tuple[str, str]]:
     ]
 
 
-def _rows(result: DriveResult, metrics: dict[str, Any]) -> list[tuple[str, str]]:
+def _link(result: DriveResult) -> str:
+    """Return what the autopilot's odometry and link were like."""
+    bridge = recorded_session(open_bundle(result.folder)).session.outputs.bridge
+    return "" if bridge is None else link_label(bridge.link)
+
+
+def _rows(result: DriveResult, metrics: dict[str, Any], link: str) -> list[tuple[str, str]]:
     interrupted = ", interrupted" if result.interrupted else ""
     rows = [
         ("distance", f"{metrics['distance_m']:.1f} m"),
@@ -62,5 +71,6 @@ def _rows(result: DriveResult, metrics: dict[str, Any]) -> list[tuple[str, str]]
         rows.append(
             ("lateral error", f"RMS {rms:.2f} cm, max {largest:.2f} cm (base_link against the theoretical path)")
         )
+        rows.append(("autopilot's link", link))
     rows += [(f"mode at {c['t_s']:7.2f} s", f"{c['mode']} ({c['reason']})") for c in metrics["mode_changes"]]
     return rows + _driven_rows(result)

@@ -25,6 +25,7 @@ from simconsole.processes.lifetimes import (
 )
 from simconsole.values.errors import SimConsoleError, one_line
 
+_MAX_DELAY_MS = 1000.0
 _AT_ONCE = ("demo", "drive", "bridge", "report", "view")
 """Commands that Ctrl-C ends at once unless a drive handles it itself: they leave nothing half made. In the others it
 raises KeyboardInterrupt, which for some is the normal way to their result."""
@@ -105,8 +106,16 @@ def _command(commands: Any, name: str, does: str, summary: str) -> argparse.Argu
     return command
 
 
+def _delay_ms(text: str) -> float:
+    delay_ms = float(text)
+    if not 0.0 <= delay_ms <= _MAX_DELAY_MS:
+        raise argparse.ArgumentTypeError(f"{text}: 0 to {_MAX_DELAY_MS:g} ms")
+    return delay_ms
+
+
 def _driving(commands: Any) -> None:
     demo = _command(commands, "demo", "demo:demo", "the whole way once, with no hardware: person, autopilot, report")
+    demo.add_argument("--perfect", action="store_true", help="exact odometry and no delay on the autopilot's link")
     demo.add_argument("--realtime", action="store_true", help="pace it, with every worker in its own process")
     demo.add_argument("--out", metavar="DIR", help="where the bundle goes (default: out/demo-TIME)")
 
@@ -163,6 +172,10 @@ def _driving(commands: Any) -> None:
     autopilot = _command(commands, "autopilot", "remote:autopilot", "the path tracker, as a ROS-side program")
     autopilot.add_argument("--url", default="ws://127.0.0.1:9090", metavar="URL")
     autopilot.add_argument("--course", default="urban", metavar="WORLD")
+    autopilot.add_argument("--vehicle", default="hatchback", metavar="VEHICLE", help="the car that it drives")
+    autopilot.add_argument(
+        "--delay-ms", type=_delay_ms, default=10.0, metavar="MS", help="from a state's stamp to its command's effect"
+    )
     autopilot.add_argument("--wait", type=float, default=10.0, metavar="S", help="how long to wait for the server")
     autopilot.add_argument("--namespace", default="", metavar="NS", help="of the console's topics")
     autopilot.add_argument("--rename", action="append", default=[], metavar="/TOPIC=/NAME", help="what one is called")

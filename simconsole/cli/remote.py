@@ -37,6 +37,8 @@ def autopilot(options: Namespace) -> Outcome:
         token=own_token(),
         certificate=options.certificate,
         drive=os.environ.pop(DRIVE_VARIABLE, None),
+        vehicle=options.vehicle,
+        delay_s=options.delay_ms / 1000.0,
     )
     return Outcome(0, results, table([(name, str(value)) for name, value in results.items()]))
 

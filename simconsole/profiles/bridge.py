@@ -4,6 +4,8 @@ from typing import Annotated, Literal
 
 from msgspec import Meta, Struct, field
 
+from simconsole.profiles.link import LinkProfile
+
 TopicName = Annotated[str, Meta(pattern=r"^/[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*$", max_length=256)]
 Namespace = Annotated[str, Meta(pattern=r"^(/[A-Za-z][A-Za-z0-9_]*)*$", max_length=128)]
 Rate = Annotated[float, Meta(ge=0.0, le=1000.0)]
@@ -113,5 +115,7 @@ class BridgeProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """A client is taken for gone when for so long nothing came from it and its machine acknowledged nothing."""
     stall_close_s: Annotated[float, Meta(gt=0.0, le=600.0)] = 10.0
     """A client that is connected but reads nothing for so long is disconnected."""
+    link: LinkProfile = LinkProfile()
+    """Errors, delays and losses on purpose, between the car and whoever commands it here."""
     limits: BridgeLimits = BridgeLimits()
     commands: CommandLimits = CommandLimits()

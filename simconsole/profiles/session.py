@@ -11,13 +11,9 @@ from simconsole.profiles.faults import Faults
 from simconsole.profiles.person import PersonPlan
 from simconsole.profiles.view import HudProfile, SceneProfile
 
-Name = Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$")]
-"""A bare profile name: no path, so that one profile can never reach outside the profile folder."""
-
-
-VEHICLE_FILES: Final = (".yaml", ".yml")
-Vehicle = Annotated[str, Meta(pattern=r"^([A-Za-z0-9][A-Za-z0-9_-]{0,63}|.{1,1000}\.ya?ml)$")]
-"""A shipped vehicle's bare name, or a file in the folder of the session or scenario that names it."""
+PROFILE_FILES: Final = (".yaml", ".yml")
+ProfileName = Annotated[str, Meta(pattern=r"^([A-Za-z0-9][A-Za-z0-9_-]{0,63}|.{1,1000}\.ya?ml)$")]
+"""A shipped profile's bare name, or a file in the folder of the session or scenario that names it."""
 
 
 class Section(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -45,7 +41,7 @@ class FrictionPatch(Section, frozen=True, kw_only=True):
 class Environment(Section, frozen=True, kw_only=True):
     """The world and the ground under the wheels."""
 
-    world: Name | None = None
+    world: ProfileName | None = None
     friction: Annotated[float, Meta(gt=0.0, le=2.0)] = 1.0
     friction_right_share: Annotated[float, Meta(ge=0.0, le=1.0)] = 1.0  # of it, under the right wheels
     friction_patches: Annotated[tuple[FrictionPatch, ...], Meta(max_length=4)] = ()  # where they overlap, the later one
@@ -58,7 +54,7 @@ class Environment(Section, frozen=True, kw_only=True):
 class Scenario(Section, frozen=True, kw_only=True):
     """What is driven: the vehicle, from where, how long, and what goes wrong on the way."""
 
-    vehicle: Vehicle = "hatchback"
+    vehicle: ProfileName = "hatchback"
     start: Start = Start()
     duration_s: Annotated[float, Meta(gt=0.0, le=86_400.0)] | None = None
     faults: Faults = ()
@@ -82,7 +78,7 @@ class Features(Section, frozen=True, kw_only=True):
     """Whose commands drive where both could: the ROS side's or, on `outputs.can`, the ECU's (requests/commander.py)."""
     commands: Annotated[str, Meta(pattern=r"^bag:.{1,1000}$")] | None = None
     """bag:FILE or bag:FILE:/TOPIC plays recorded commands in place of a controller's, where `mode.pacing` is free."""
-    autopilot: Name | None = None
+    autopilot: ProfileName | None = None
     """Start `simconsole autopilot` on this course, as a program of its own that only speaks rosbridge."""
 
 
@@ -99,7 +95,7 @@ class Outputs(Section, frozen=True, kw_only=True):
 class Devices(Section, frozen=True, kw_only=True):
     """The cockpit."""
 
-    cockpit: Name = "t500rs_th8rs"
+    cockpit: ProfileName = "t500rs_th8rs"
     driver: Annotated[str, Meta(pattern=r"^(none|sdl|keyboard|virtual|(trace|script):.+)$")] = "sdl"
     person: PersonPlan | None = None
     """What the simulated person does where `driver` is virtual."""

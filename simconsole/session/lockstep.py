@@ -105,21 +105,35 @@ class LockstepLink:
 
 
 def start_autopilot(
-    url: str, course: str, bridge: BridgeProfile, drive: str, token: str | None = None
+    url: str, course: str, bridge: BridgeProfile, drive: str, token: str | None, vehicle: str
 ) -> "subprocess.Popen[bytes]":
     """Start `simconsole autopilot` as a program of its own, which ends with this process.
 
     Args:
         url: the console's own server.
         course: what to follow.
-        bridge: what its topics are called, and its certificate.
+        bridge: what its topics are called, its certificate, and how late its commands act.
         drive: the drive's nonce, without which the program would take the next drive at this address for this one.
         token: what the server asks for; both go by the environment, for everyone can read a program's arguments.
+        vehicle: the name or file of the car that it drives.
 
     Raises:
         BridgeError: it cannot be started.
     """
-    arguments = ["-m", "simconsole", "autopilot", ATTACHED, "--url", _here(url), "--course", course]
+    arguments = [
+        "-m",
+        "simconsole",
+        "autopilot",
+        ATTACHED,
+        "--url",
+        _here(url),
+        "--course",
+        course,
+        "--vehicle",
+        vehicle,
+    ]
+    if late_ms := bridge.link.delay_ms + 0.5 * bridge.link.jitter_ms:
+        arguments += ["--delay-ms", f"{late_ms:g}"]
     if bridge.namespace:
         arguments += ["--namespace", bridge.namespace]
     for standard, name in bridge.rename.items():

@@ -8,6 +8,7 @@ from pathlib import Path
 from subprocess import Popen
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from simconsole.bridge.link.delay import over_link
 from simconsole.faults.schedule import with_faults
 from simconsole.processes.lifetimes import Interrupt, end, tell_to_end, undone
 from simconsole.processes.shared_memory import make_run_folder, remove_run_folder
@@ -91,7 +92,8 @@ def open_headless(
     take_acts: Callable[[], list[bytes]] = list
     if resolved.session.mode.pacing == "lockstep":
         link = _open_lockstep(resolved, console, bundle, interrupt, stack)
-        commands, outputs, counters, take_acts, standby = link, (link,), link.counters, link.take_acts, (link.stand,)
+        commands, outputs, standby = _over_link(link, resolved, console), (link,), (link.stand,)
+        counters, take_acts = link.counters, link.take_acts
     elif resolved.session.features.commands is not None:
         bag = _open_bag(resolved.session, console, stack)
         commands, outputs, counters = bag, (bag,), bag.summary
@@ -164,7 +166,9 @@ def open_realtime(
     address = _await_workers(
         resolved.session,
         folder,
-        lambda url, course, bridge: programs.append(start_autopilot(url, course, bridge, drive, token)),
+        lambda url, course, bridge: programs.append(
+            start_autopilot(url, course, bridge, drive, token, resolved.session.scenario.vehicle)
+        ),
         supervisor,
         interrupt.check,
     )
@@ -174,7 +178,7 @@ def open_realtime(
     pace = Pacer(console.tick_hz)
     components = Components(
         devices=seating.devices,
-        commands=memory.commands,
+        commands=_over_link(memory.commands, resolved, console),
         recorder=recorder,
         outputs=(*seating.outputs, memory.snapshots, supervisor),
         pace=pace,
@@ -193,6 +197,12 @@ def open_realtime(
         return {**pace.summary(), **workers, "latency_us": latency, "not_granted": missing}
 
     return Opened(components, seating.finished, summary, address, seating.identities)
+
+
+def _over_link(source: CommandSource, resolved: ResolvedSession, console: Console) -> CommandSource:
+    """Return the ROS side's commands as they arrive over the link that the session describes."""
+    bridge = resolved.session.outputs.bridge
+    return source if bridge is None else over_link(source, bridge.link, console.tick_hz)
 
 
 def _await_workers(
@@ -254,7 +264,7 @@ def _open_lockstep(
     course = session.features.autopilot
     program = None
     if course is not None:
-        program = start_autopilot(bridge.url, course, session.outputs.bridge, drive, token)
+        program = start_autopilot(bridge.url, course, session.outputs.bridge, drive, token, session.scenario.vehicle)
         stack.callback(end, [program], PROGRAM_END_S)
     stack.callback(bridge.close)  # closes its clients' connections before the program's end is waited for
     if program is not None:

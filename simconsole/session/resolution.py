@@ -1,6 +1,7 @@
 """From a session's name to a resolved session: every profile it names, read and checked."""
 
 from pathlib import Path
+from typing import Final
 
 import msgspec
 
@@ -8,11 +9,19 @@ from simconsole.profiles.device import CockpitProfile, ScriptProfile
 from simconsole.profiles.files.loader import MAX_DATA_BYTES, find, load
 from simconsole.profiles.files.vehicle_files import load_vehicle
 from simconsole.profiles.scenario import ScenarioProfile
-from simconsole.profiles.session import VEHICLE_FILES, SessionProfile
+from simconsole.profiles.session import PROFILE_FILES, SessionProfile
 from simconsole.profiles.validation import convert
 from simconsole.profiles.world import WorldProfile
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import ProfileError
+
+_NAMED: Final = (
+    ("environment", "world"),
+    ("scenario", "vehicle"),
+    ("features", "autopilot"),
+    ("devices", "cockpit"),
+)
+"""Keys of a session that name another profile."""
 
 
 def resolve(session: SessionProfile, cockpit: str | None = None) -> ResolvedSession:
@@ -31,7 +40,7 @@ def resolve(session: SessionProfile, cockpit: str | None = None) -> ResolvedSess
 
 
 def load_session(name_or_path: str) -> SessionProfile:
-    """Return the session profile of that name or file; a script, trace or vehicle's file that it names lies beside it.
+    """Return the session profile of that name or file; files that it names lie beside it.
 
     Raises:
         ProfileError: missing or wrong, or such a file lies outside its folder.
@@ -40,13 +49,13 @@ def load_session(name_or_path: str) -> SessionProfile:
 
 
 def load_scenario(name_or_path: str) -> tuple[ScenarioProfile, Path]:
-    """Return the scenario and its file, beside which its golden and its own vehicle lie.
+    """Return the scenario and its file, beside which its golden and its own profiles lie.
 
     Raises:
-        ProfileError: missing, wrong, or its vehicle's file lies outside its folder.
+        ProfileError: missing, wrong, or a profile that it names lies outside its folder.
     """
     scenario, path = load("scenarios", name_or_path, ScenarioProfile), find("scenarios", name_or_path)
-    return msgspec.structs.replace(scenario, session=_vehicle_beside(scenario.session, path)), path
+    return msgspec.structs.replace(scenario, session=_profiles_beside(scenario.session, path)), path
 
 
 def load_script(name_or_path: str) -> ScriptProfile:
@@ -85,16 +94,18 @@ def _files_beside(session: SessionProfile, path: Path) -> SessionProfile:
         beside = _beside(path, "outputs.bridge.messages", bridge.messages, bridge.messages)
         changed = {**msgspec.to_builtins(bridge), "messages": str(beside)}
         session = override(session, outputs={"bridge": changed})
-    return _vehicle_beside(session, path)
+    return _profiles_beside(session, path)
 
 
-def _vehicle_beside(session: SessionProfile, path: Path) -> SessionProfile:
-    """Return `session` with the whole path of a vehicle that is not a shipped one."""
-    vehicle = session.scenario.vehicle
-    if not vehicle.endswith(VEHICLE_FILES):
-        return session
-    beside = _beside(path, "scenario.vehicle", vehicle, vehicle)
-    return override(session, scenario={"vehicle": str(beside)})
+def _profiles_beside(session: SessionProfile, path: Path) -> SessionProfile:
+    """Return `session` with the whole paths of the profiles that are not shipped ones."""
+    plain = msgspec.to_builtins(session)
+    for section, key in _NAMED:
+        name = plain[section][key]
+        if name is not None and name.endswith(PROFILE_FILES):
+            changed: dict[str, object] = {key: str(_beside(path, f"{section}.{key}", name, name))}
+            session = override(session, **{section: changed})
+    return session
 
 
 def _beside(path: Path, key: str, value: str, name: str) -> Path:

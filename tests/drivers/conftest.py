@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from simconsole.drivers.path_tracker.tracker import Tracker, VehicleMotion
+from simconsole.drivers.path_tracker.state_estimator import VehicleMotion
+from simconsole.drivers.path_tracker.tracker import Tracker
 from simconsole.drivers.path_tracker.tracker_settings import HATCHBACK, CarModel
 from simconsole.profiles.files.loader import load
 from simconsole.profiles.world import WorldProfile

@@ -10,7 +10,8 @@ import numpy as np
 
 from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
-from simconsole.drivers.path_tracker.tracker import Tracker, VehicleMotion
+from simconsole.drivers.path_tracker.state_estimator import VehicleMotion
+from simconsole.drivers.path_tracker.tracker import Tracker
 from simconsole.evaluation.checks.memory_recorder import MemoryRecorder
 from simconsole.faults.schedule import with_faults
 from simconsole.profiles.faults import Fault

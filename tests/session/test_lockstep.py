@@ -106,14 +106,14 @@ def test_a_missing_answer_does_not_hide_other_events(server: Server) -> None:
 
 
 def test_an_autopilot_whose_console_is_gone_ends_by_itself() -> None:
-    program = start_autopilot("ws://127.0.0.1:9", "urban", BridgeProfile(), "0" * 32)
+    program = start_autopilot("ws://127.0.0.1:9", "urban", BridgeProfile(), "0" * 32, None, "hatchback")
     assert program.poll() is None
     close_pipe(program)
     assert program.wait(PATIENCE_S) == 1, "not by giving up a server that is not there (2)"
 
 
 def test_an_autopilot_with_nobody_to_drive_for_is_ended() -> None:
-    program = start_autopilot("ws://127.0.0.1:9", "urban", BridgeProfile(), "0" * 32)
+    program = start_autopilot("ws://127.0.0.1:9", "urban", BridgeProfile(), "0" * 32, None, "hatchback")
     end([program], 60.0)
     assert program.returncode == 1
 
@@ -129,13 +129,14 @@ def test_a_token_goes_by_the_environment_and_a_server_on_all_addresses_is_reache
     monkeypatch.setattr("simconsole.session.lockstep.spawn", spawn)
     monkeypatch.delenv(TOKEN_VARIABLE, raising=False)
     named = BridgeProfile(certificate="b.pem", namespace="/ego", rename={"/odom": "/here"})
-    start_autopilot("wss://0.0.0.0:9", "urban", named, "nonce", "secret")
-    start_autopilot("ws://[::]:9", "urban", BridgeProfile(), "nonce")
+    start_autopilot("wss://0.0.0.0:9", "urban", named, "nonce", "secret", "hatchback")
+    start_autopilot("ws://[::]:9", "urban", BridgeProfile(), "nonce", None, "hatchback")
     (words, environment), (plain, without) = started
     names = ["--namespace", "/ego", "--rename", "/odom=/here"]
-    assert words[4:] == ["--url", "wss://127.0.0.1:9", "--course", "urban", *names, "--certificate", "b.pem"]
+    drives = ["--course", "urban", "--vehicle", "hatchback"]
+    assert words[4:] == ["--url", "wss://127.0.0.1:9", *drives, *names, "--certificate", "b.pem"]
     assert environment[TOKEN_VARIABLE] == "secret"
     assert {"secret", "nonce"}.isdisjoint(words)
     assert environment[DRIVE_VARIABLE] == without[DRIVE_VARIABLE] == "nonce"
-    assert plain[4:] == ["--url", "ws://[::1]:9", "--course", "urban"]
+    assert plain[4:] == ["--url", "ws://[::1]:9", *drives]
     assert TOKEN_VARIABLE not in without

@@ -107,6 +107,25 @@ def test_a_profile_that_is_named_but_missing_is_one_line(tmp_path: Path) -> None
     assert "\n" not in str(caught.value)
 
 
+def test_world_course_and_cockpit_may_lie_beside_the_session(tmp_path: Path) -> None:
+    shipped = profiles_folder()
+    for kind, name, mine in (("worlds", "urban", "town.yaml"), ("devices", "t500rs_th8rs", "seat.yaml")):
+        (tmp_path / mine).write_text((shipped / kind / f"{name}.yaml").read_text())
+    session = tmp_path / "session.yaml"
+    session.write_text(
+        "schema: 1\nenvironment: {world: town.yaml}\nfeatures: {autopilot: town.yaml}\ndevices: {cockpit: seat.yaml}\n"
+    )
+    loaded = load_session(str(session))
+    assert loaded.features.autopilot == str((tmp_path / "town.yaml").resolve())
+    named = override(loaded, environment={"world": "urban"}, devices={"cockpit": "t500rs_th8rs"})
+    own, shipped_one = resolve(loaded), resolve(named)
+    assert (own.world, own.cockpit) == (shipped_one.world, shipped_one.cockpit)
+    for key in ("environment: {world", "features: {autopilot", "devices: {cockpit"):
+        session.write_text(f"schema: 1\n{key}: ../town.yaml}}\n")
+        with pytest.raises(ProfileError, match=r"value .*: a file inside"):
+            load_session(str(session))
+
+
 def test_a_vehicles_own_file_lies_beside_the_session_or_the_scenario_that_names_it(tmp_path: Path) -> None:
     mine = (profiles_folder() / "vehicles" / "hatchback.yaml").read_text().replace("mass_kg: 1300 ", "mass_kg: 1234 ")
     (tmp_path / "mine.yaml").write_text(mine)

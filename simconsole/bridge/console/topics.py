@@ -7,10 +7,11 @@ not drift, so map and odom coincide.
 from collections.abc import Callable
 from typing import Any, Final, NamedTuple
 
+from simconsole.bridge.link.localisation import Localisation, covariances
 from simconsole.bridge.messages import Registry
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.labels import commander_label, link_label, mode_label, notice_label, reason_label
-from simconsole.values.signals import NEVER_TICKS, Link, Mode, RemoteCommand
+from simconsole.values.signals import NEVER_TICKS, Link, Mode, RemoteCommand, VehicleState
 from simconsole.values.state_vector import Snapshot
 from simconsole.values.trigonometry import cos, sin
 from simconsole.values.units import NS_PER_S
@@ -20,6 +21,7 @@ TF: Final = "/tf"
 TF_STATIC: Final = "/tf_static"
 ODOMETRY: Final = "/odom"
 GROUND_TRUTH: Final = "/ground_truth/odom"
+IMU: Final = "/imu/data"
 JOY: Final = "/console/joy"
 ARBITRATION: Final = "/console/arbitration"
 BRIDGE: Final = "/console/bridge"
@@ -42,7 +44,7 @@ SHIFTER_BUTTONS: Final = 10
 
 _TYPES: Final = """
 builtin_interfaces/Time std_msgs/Header rosgraph_msgs/Clock nav_msgs/Odometry tf2_msgs/TFMessage sensor_msgs/Joy
-geometry_msgs/TransformStamped geometry_msgs/Transform geometry_msgs/Vector3 geometry_msgs/Point
+sensor_msgs/Imu geometry_msgs/TransformStamped geometry_msgs/Transform geometry_msgs/Vector3 geometry_msgs/Point
 geometry_msgs/Quaternion geometry_msgs/Pose geometry_msgs/PoseWithCovariance geometry_msgs/Twist
 geometry_msgs/TwistWithCovariance autoware_vehicle_msgs/VelocityReport autoware_vehicle_msgs/SteeringReport
 autoware_vehicle_msgs/GearReport autoware_vehicle_msgs/TurnIndicatorsReport autoware_vehicle_msgs/HazardLightsReport
@@ -50,6 +52,7 @@ autoware_vehicle_msgs/ControlModeReport simconsole_msgs/Arbitration simconsole_m
 simconsole_msgs/BridgeClient
 """
 _NO_COVARIANCE: Final = [0.0] * 36
+_NO_IMU_COVARIANCE: Final = [0.0] * 9
 # Numbers of autoware_vehicle_msgs/ControlModeReport.
 _AUTONOMOUS, _STEER_ONLY, _VELOCITY_ONLY, _MANUAL, _DISENGAGED, _NOT_READY = 1, 2, 3, 4, 5, 6
 _CONTROL_MODES: Final[dict[float, int]] = {
@@ -80,10 +83,12 @@ class OutputTopic(NamedTuple):
 class PublishedTick:
     """A tick as published: its snapshot, and the stamp, headers and orientation that its messages share."""
 
-    def __init__(self, snapshot: Snapshot, time: Any, header: Any, quaternion: Any) -> None:
+    def __init__(self, snapshot: Snapshot, localisation: Localisation, time: Any, header: Any, quaternion: Any) -> None:
         """Take the generated classes Time, Header and Quaternion."""
         self.snapshot = snapshot
         self.vehicle = snapshot.vehicle
+        self._localisation = localisation
+        self._measured: VehicleState | None = None
         self.stamp = time(*divmod(snapshot.t_ns, NS_PER_S))
         self._header = header
         self._quaternion = quaternion
@@ -94,10 +99,18 @@ class PublishedTick:
         return self._header(self.stamp, frame)
 
     @property
-    def orientation(self) -> Any:
-        """The vehicle's attitude (z-y-x angles yaw, pitch, roll) as a quaternion."""
+    def measured(self) -> VehicleState:
+        """The vehicle as its localisation measures it: what a controller is told."""
+        if self._measured is None:
+            snapshot = self.snapshot
+            self._measured = self._localisation.measure(self.vehicle, snapshot.tick, snapshot.tick_hz)
+        return self._measured
+
+    def orientation(self, vehicle: VehicleState) -> Any:
+        """Return the attitude (z-y-x angles yaw, pitch, roll) of one of the two vehicles as a quaternion."""
+        if vehicle is not self.measured:
+            return self._quaternion(*quaternion(vehicle.roll_rad, vehicle.pitch_rad, vehicle.yaw_rad))
         if self._orientation is None:
-            vehicle = self.vehicle
             self._orientation = self._quaternion(*quaternion(vehicle.roll_rad, vehicle.pitch_rad, vehicle.yaw_rad))
         return self._orientation
 
@@ -109,11 +122,20 @@ class Outputs:
         """Generate the classes of all output topics; `counts` fills /console/bridge (`counters.bridge_status`)."""
         self._counts = counts
         self._odometry_frame = profile.odometry_frame
+        self._localisation = Localisation(profile.link)
+        self._pose_covariance, self._twist_covariance = covariances(profile.link.localisation)
+        self._shows_truth = self._localisation.is_perfect or profile.link.ground_truth
         names = _TYPES.split()
         self._types: dict[str, Any] = {name.partition("/")[2]: registry.struct(name) for name in names}
 
     def topics(self) -> tuple[OutputTopic, ...]:
         """Return the table under the standard names, odometry last: who acts on it has everything else already."""
+        truth = OutputTopic(
+            GROUND_TRUTH,
+            "nav_msgs/Odometry",
+            50.0,
+            lambda tick: self._odometry(tick, tick.vehicle, MAP_FRAME, _NO_COVARIANCE, _NO_COVARIANCE),
+        )
         return (
             OutputTopic(CLOCK, "rosgraph_msgs/Clock", 100.0, self._clock),
             OutputTopic(TF_STATIC, "tf2_msgs/TFMessage", ONCE, self._tf_static),
@@ -129,34 +151,62 @@ class Outputs:
             OutputTopic(CONTROL_MODE, "autoware_vehicle_msgs/ControlModeReport", 30.0, self._control_mode),
             OutputTopic(ARBITRATION, "simconsole_msgs/Arbitration", 50.0, self._arbitration),
             OutputTopic(BRIDGE, "simconsole_msgs/Bridge", 1.0, self._bridge),
-            OutputTopic(GROUND_TRUTH, "nav_msgs/Odometry", 50.0, lambda tick: self._odometry(tick, MAP_FRAME)),
-            OutputTopic(ODOMETRY, "nav_msgs/Odometry", 50.0, lambda tick: self._odometry(tick, self._odometry_frame)),
+            OutputTopic(IMU, "sensor_msgs/Imu", 100.0, self._imu),
+            *((truth,) if self._shows_truth else ()),
+            OutputTopic(
+                ODOMETRY,
+                "nav_msgs/Odometry",
+                50.0,
+                lambda tick: self._odometry(
+                    tick, tick.measured, self._odometry_frame, self._pose_covariance, self._twist_covariance
+                ),
+            ),
         )
 
     def published_tick(self, snapshot: Snapshot) -> PublishedTick:
         """Return the tick of `snapshot` as published."""
         types = self._types
-        return PublishedTick(snapshot, types["Time"], types["Header"], types["Quaternion"])
+        return PublishedTick(snapshot, self._localisation, types["Time"], types["Header"], types["Quaternion"])
 
     def _clock(self, tick: PublishedTick) -> Any:
         return self._types["Clock"](tick.stamp)
 
-    def _odometry(self, tick: PublishedTick, frame: str) -> Any:
-        types, vehicle = self._types, tick.vehicle
-        pose = types["Pose"](types["Point"](vehicle.x_m, vehicle.y_m, vehicle.z_m), tick.orientation)
+    def _odometry(
+        self,
+        tick: PublishedTick,
+        vehicle: VehicleState,
+        frame: str,
+        pose_covariance: list[float],
+        twist_covariance: list[float],
+    ) -> Any:
+        types = self._types
+        pose = types["Pose"](types["Point"](vehicle.x_m, vehicle.y_m, vehicle.z_m), tick.orientation(vehicle))
         vector = types["Vector3"]
         twist = types["Twist"](vector(vehicle.vx_mps, vehicle.vy_mps, 0.0), vector(0.0, 0.0, vehicle.yaw_rate_radps))
         return types["Odometry"](
             tick.header(frame),
             BASE_FRAME,
-            types["PoseWithCovariance"](pose, _NO_COVARIANCE),
-            types["TwistWithCovariance"](twist, _NO_COVARIANCE),
+            types["PoseWithCovariance"](pose, pose_covariance),
+            types["TwistWithCovariance"](twist, twist_covariance),
+        )
+
+    def _imu(self, tick: PublishedTick) -> Any:
+        """Build what a unit at the centre of gravity measures; its axes are the vehicle's, gravity is taken out."""
+        types, measured = self._types, tick.measured
+        return types["Imu"](
+            header=tick.header(BASE_FRAME),
+            orientation=tick.orientation(measured),
+            orientation_covariance=_NO_IMU_COVARIANCE,
+            angular_velocity=types["Vector3"](0.0, 0.0, measured.yaw_rate_radps),
+            angular_velocity_covariance=_NO_IMU_COVARIANCE,
+            linear_acceleration=types["Vector3"](measured.ax_mps2, measured.ay_mps2, 0.0),
+            linear_acceleration_covariance=_NO_IMU_COVARIANCE,
         )
 
     def _tf(self, tick: PublishedTick) -> Any:
-        vehicle = tick.vehicle
+        vehicle = tick.measured
         place = self._types["Vector3"](vehicle.x_m, vehicle.y_m, vehicle.z_m)
-        return self._transform(tick, self._odometry_frame, BASE_FRAME, place, tick.orientation)
+        return self._transform(tick, self._odometry_frame, BASE_FRAME, place, tick.orientation(vehicle))
 
     def _tf_static(self, tick: PublishedTick) -> Any:
         nowhere, unturned = self._types["Vector3"](), self._types["Quaternion"]()
@@ -176,7 +226,7 @@ class Outputs:
         return self._types["Joy"](tick.header(""), axes, buttons)
 
     def _velocity(self, tick: PublishedTick) -> Any:
-        vehicle = tick.vehicle
+        vehicle = tick.measured
         report = self._types["VelocityReport"]
         return report(tick.header(BASE_FRAME), vehicle.vx_mps, vehicle.vy_mps, vehicle.yaw_rate_radps)
 

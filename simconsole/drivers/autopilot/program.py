@@ -10,9 +10,13 @@ from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 from simconsole.bridge.client.bridge_client import BridgeClient
-from simconsole.drivers.path_tracker.tracker import Tracker, TrackerCommand, VehicleMotion
+from simconsole.drivers.path_tracker.car_model import car_model
+from simconsole.drivers.path_tracker.state_estimator import VehicleMotion
+from simconsole.drivers.path_tracker.tracker import Tracker, TrackerCommand
+from simconsole.drivers.path_tracker.tracker_settings import TIMING
 from simconsole.drivers.path_tracker.tracking_statistics import TrackingStatistics
 from simconsole.profiles.files.loader import MAX_DATA_BYTES, load
+from simconsole.profiles.files.vehicle_files import load_vehicle
 from simconsole.profiles.world import WorldProfile
 from simconsole.values.errors import BridgeError, OtherDriveError
 from simconsole.values.signals import Mode
@@ -40,6 +44,8 @@ def run(
     token: str | None = None,
     certificate: str | None = None,
     drive: str | None = None,
+    vehicle: str = "hatchback",
+    delay_s: float = TIMING.delay_s,
 ) -> dict[str, Any]:
     """Drive until the server ends the session, is gone for `patience_s`, or `stop()` is true; return statistics.
 
@@ -53,13 +59,16 @@ def run(
         token: shown to the server.
         certificate: a PEM file that a wss:// server is checked against.
         drive: the nonce of the drive that has started this program, if one has; shown to the server, too.
+        vehicle: the profile of the car, by name or path.
+        delay_s: from an odometry's stamp to the moment at which the command that answers it acts.
 
     Raises:
         ProfileError: the course cannot be read.
         BridgeError: no server answers at `url`.
         OtherDriveError: the server there belongs to another drive.
     """
-    tracker = Tracker(Course(load("worlds", course_name, WorldProfile, max_bytes=MAX_DATA_BYTES)))
+    course = Course(load("worlds", course_name, WorldProfile, max_bytes=MAX_DATA_BYTES))
+    tracker = Tracker(course, car_model(load_vehicle(vehicle)), timing=TIMING._replace(delay_s=delay_s))
     statistics = TrackingStatistics()
     with BridgeClient(url, token=token, certificate=certificate, drive=drive, until_good_bye=True) as client:
         odometry, arbitration, command = (
@@ -115,8 +124,9 @@ def _answer(
         if seen is None:
             statistics.skipped += 1
             continue
-        answer = tracker.step(seen, engaged)
-        fill_command(command, message.header.stamp, answer)
+        stamp = message.header.stamp
+        answer = tracker.step(seen, engaged, stamp.sec + stamp.nanosec * 1e-9)
+        fill_command(command, stamp, answer)
         client.publish(command_topic, command)
         statistics.add(engaged, tracker.s_m or 0.0, tracker.lateral_m, seen.vx_mps)
     return "stopped"

@@ -10,43 +10,59 @@ from simconsole.values.kernels import clip
 
 Array = NDArray[np.float64]
 
-_SHORTEST_M: Final = 8.0
-_TIME_S: Final = 1.0
+_SHORTEST_M: Final = 3.0
+_TIME_S: Final = 0.7
 _LATERAL_MPS2: Final = 1.0
+_LATERAL_JERK_MPS3: Final = 2.0
 _STEEPEST: Final = 0.5
+_STANDING_MPS: Final = 2.0
+"""Slower than this the wheels turn faster than the car moves: the line need not begin with the car's own curvature."""
 
 
 class Approach(NamedTuple):
-    """An offset from the path that decays over distance like a critically damped system: (p + q x) exp(-x / length).
+    """An offset from the path that decays over distance with a triple pole: (p + q x + r x^2) exp(-x / length).
 
-    Offset, slope and curvature are continuous from where the car was and how it was heading.
+    Offset, slope and curvature are continuous from where the car was, how it was heading and how it was turning.
     """
 
     start_m: float  # position along the path
     length_m: float
     offset_m: float  # p
     rate: float  # q, in m per m
+    bend_1pm: float = 0.0  # r
 
     def at(self, s_m: float) -> tuple[float, float]:
         """Return (offset in m, slope against the path) at `s_m`."""
         x = max(s_m - self.start_m, 0.0)
         decay = math.exp(-x / self.length_m)
-        bracket = self.offset_m + self.rate * x
-        return bracket * decay, (self.rate - bracket / self.length_m) * decay
+        bracket = self.offset_m + (self.rate + self.bend_1pm * x) * x
+        return bracket * decay, (self.rate + 2.0 * self.bend_1pm * x - bracket / self.length_m) * decay
 
     def curvature(self, s_m: Array) -> Array:
         """Return the curvature (1/m) that the line adds to the path's at `s_m` [N], small slopes assumed."""
         x = np.maximum(s_m - self.start_m, 0.0)
-        bracket = self.offset_m + self.rate * x
-        return np.asarray((bracket / self.length_m - 2.0 * self.rate) / self.length_m * np.exp(-x / self.length_m))
+        bracket = self.offset_m + (self.rate + self.bend_1pm * x) * x
+        slope = self.rate + 2.0 * self.bend_1pm * x
+        added = 2.0 * self.bend_1pm - 2.0 * slope / self.length_m + bracket / self.length_m**2
+        return np.asarray(added * np.exp(-x / self.length_m))
 
 
 ON_PATH: Final = Approach(0.0, _SHORTEST_M, 0.0, 0.0)
 
 
-def approach_from(s_m: float, offset_m: float, heading_rad: float, speed_mps: float) -> Approach:
-    """Return the line from a pose beside the path; it asks for about 1 m/s2 at most and for at least 8 m."""
-    bend = speed_mps * math.sqrt(abs(offset_m) / _LATERAL_MPS2)
-    length = max(_SHORTEST_M, _TIME_S * speed_mps, bend)
+def approach_from(
+    s_m: float, offset_m: float, heading_rad: float, speed_mps: float, curvature_1pm: float = 0.0
+) -> Approach:
+    """Return the line from a pose beside the path; it asks for about 1 m/s2 and 2 m/s3 at most, and for at least 3 m.
+
+    `curvature_1pm` is what the car drives now, less the path's.
+    """
     slope = math.tan(clip(heading_rad, -_STEEPEST, _STEEPEST))
-    return Approach(s_m, length, offset_m, slope + offset_m / length)
+    bend = speed_mps * math.sqrt(0.25 * abs(offset_m) / _LATERAL_MPS2)  # 0.23 p / length^2: the most of f''
+    twist = speed_mps * math.cbrt(abs(offset_m) / _LATERAL_JERK_MPS3)  # p / length^3: f''' at the start
+    length = max(_SHORTEST_M, _TIME_S * speed_mps, bend, twist)
+    rate = slope + offset_m / length
+    if speed_mps < _STANDING_MPS:
+        return Approach(s_m, length, offset_m, rate)
+    curved = 0.5 * (curvature_1pm + 2.0 * rate / length - offset_m / length**2)
+    return Approach(s_m, length, offset_m, rate, curved)

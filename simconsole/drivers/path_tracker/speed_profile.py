@@ -44,7 +44,9 @@ def plan_speed(course: Course, comfort: Comfort, top_mps: float | None = None) -
     curvature = np.array([course.curvature_at((index + 0.5) * step) for index in range(count)])
     top = (course.speed_limit_mps if top_mps is None else top_mps) - comfort.margin_mps
     bend = np.sqrt(comfort.lateral_mps2 / np.maximum(np.abs(curvature), 1e-9))
-    speed = np.minimum(top, bend)
+    bending = np.abs(np.roll(curvature, -1) - np.roll(curvature, 1)) / (2.0 * step)
+    ramp = np.cbrt(comfort.lateral_jerk_mps3 / np.maximum(bending, 1e-9))
+    speed = np.minimum(top, np.minimum(bend, ramp))
     # The smoothing below averages over a bend's neighbourhood: there, too, no speed may exceed the bend's own.
     reach = max(1, round(0.25 * comfort.smoothing_s * float(speed.min()) / step))
     speed = np.min([np.roll(speed, shift) for shift in range(-reach, reach + 1)], axis=0)

@@ -3,11 +3,14 @@
 Model, in the frame of the path at base_link: offset, heading error, lateral speed and yaw rate of a linear
 single-track car, first-order steering, a command that takes effect `delay_s` late; the input is the change of the
 command per period, so that a constant curve costs nothing. The known curvature ahead enters as the model's
-disturbance. Gains are designed per speed and interpolated. Errors are small by construction: a car that is handed
-over beside the path, or is pushed off it, is led back along a smooth line (approach.py), which is what is tracked.
+disturbance. Gains are designed per speed and interpolated. What they work on is the car as it will be when the command
+takes effect (state_estimator.py), and no command turns the wheels faster or further than the console's gate lets pass:
+what is asked for is what is done, so nothing winds up. Errors are small by construction: a car that is handed over
+beside the path, or is pushed off it, is led back along a smooth line (approach.py), which is what is tracked.
 """
 
 import math
+from copy import copy
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -16,6 +19,7 @@ from numpy.typing import NDArray
 from simconsole.drivers.path_tracker.approach import ON_PATH, approach_from
 from simconsole.drivers.path_tracker.riccati import Gains, design, discretised
 from simconsole.drivers.path_tracker.speed_profile import plan_speed
+from simconsole.drivers.path_tracker.state_estimator import StateEstimator, VehicleMotion
 from simconsole.drivers.path_tracker.tracker_settings import (
     COMFORT,
     HATCHBACK,
@@ -35,21 +39,11 @@ _SPEEDS_MPS: Final = (1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5, 8.5, 10.0, 11.5, 13.0, 
 _CURVATURE_STEP_M: Final = 0.1
 _PUSHED_OFF_M: Final = 0.3
 _SPEED_GAIN_1PS: Final = 1.2
-_SPEED_LEAD_S: Final = 0.2
-_JERK_MPS3: Final = 4.0
-_BRAKE_MPS2: Final = -3.5
+_SPEED_LEAD_S: Final = 0.15
+_JERK_MPS3: Final = 2.8
 _STEERING_RATE_RADPS: Final = 0.8
-
-
-class VehicleMotion(NamedTuple):
-    """What the tracker is told: pose and body velocities of base_link."""
-
-    x_m: float
-    y_m: float
-    yaw_rad: float
-    vx_mps: float
-    vy_mps: float
-    yaw_rate_radps: float
+_LATERAL_JERK_MPS3: Final = 6.0
+_LATERAL_MPS2: Final = 4.5
 
 
 class TrackerCommand(NamedTuple):
@@ -86,31 +80,42 @@ class Tracker:
         self._curvature_step_m = course.length_m / count
         self._curvature = np.array([course.curvature_at((i + 0.5) * self._curvature_step_m) for i in range(count)])
         self._command = 0.0  # the last command, as the tangent of the road-wheel angle
-        self._wheel = 0.0  # where the wheels should be by the model, as a tangent too
+        self._wheel = 0.0  # where the wheels will be when the next command takes effect, by the model; a tangent too
+        self._estimator = StateEstimator(car, timing)
         self._accel = 0.0
         self._line = ON_PATH
 
-    def step(self, seen: VehicleMotion, engaged: bool = True) -> TrackerCommand:
+    def __copy__(self) -> "Tracker":
+        """Return a tracker that goes on from here by itself; course, plan and gains are shared, they never change."""
+        other = Tracker.__new__(Tracker)
+        other.__dict__.update(self.__dict__)
+        other._estimator = copy(self._estimator)
+        return other
+
+    def step(self, seen: VehicleMotion, engaged: bool = True, time_s: float | None = None) -> TrackerCommand:
         """Return the command for the coming period.
 
         While not `engaged` the command is the one to begin with at an engagement: the memory of steering and
-        acceleration follows the car instead of the tracker's own commands.
+        acceleration follows the car instead of the tracker's own commands. `time_s` is the stamp of what was seen; None
+        is one period after the one before.
         """
         found = self.s_m is not None
-        place = self.course.project(seen.x_m, seen.y_m, self.s_m, seen.yaw_rad)
-        self.s_m, self.lateral_m = place.s_m, place.lateral_m
-        speed = max(seen.vx_mps, 0.0)
         if not engaged:
-            self._follow(seen, speed)
+            self._follow(seen, max(seen.vx_mps, 0.0))
+        now, self._wheel = self._estimator.observe(seen, time_s, self._accel if engaged else 0.0)
+        place = self.course.project(now.x_m, now.y_m, self.s_m, now.yaw_rad)
+        self.s_m, self.lateral_m = place.s_m, place.lateral_m
+        speed = now.vx_mps
         offset, slope = self._line.at(place.s_m)
         if not (engaged and found) or abs(place.lateral_m - offset) > _PUSHED_OFF_M:
-            course_rad = place.heading_error_rad + (seen.vy_mps / speed if speed > 1.0 else 0.0)
-            self._line = approach_from(place.s_m, place.lateral_m, course_rad, speed)
+            course_rad = place.heading_error_rad + (now.vy_mps / speed if speed > 1.0 else 0.0)
+            turning = now.yaw_rate_radps / max(speed, 1.0) - self.course.curvature_at(place.s_m)
+            self._line = approach_from(place.s_m, place.lateral_m, course_rad, speed, turning)
             offset, slope = self._line.at(place.s_m)
         heading = place.heading_error_rad - math.atan(slope)
         before = self._command
-        self._command = self._steer(seen, place.s_m, place.lateral_m - offset, heading, speed)
-        self._settle(before)
+        self._command = self._steer(now, place.s_m, place.lateral_m - offset, heading, speed)
+        self._estimator.sent(self._command)
         target, accel = self._accelerate(place.s_m, speed)
         period = self._timing.period_s
         change = (math.atan(self._command) - math.atan(before)) / period
@@ -126,16 +131,10 @@ class Tracker:
         ahead = self._curvature[cells] + self._line.curvature(way)
         state = (lateral_m, heading_rad, seen.vy_mps, seen.yaw_rate_radps, self._wheel, self._command)
         change = -float(feedback @ state) - float(preview @ ahead)
-        step = _STEERING_RATE_RADPS * self._timing.period_s
-        limit = math.tan(self._car.max_road_wheel_rad)
+        tightest = self._car.wheelbase_m / max(speed * speed, 1.0)
+        step = min(_STEERING_RATE_RADPS, _LATERAL_JERK_MPS3 * tightest) * self._timing.period_s
+        limit = min(math.tan(self._car.max_road_wheel_rad), _LATERAL_MPS2 * tightest)
         return clip(self._command + clip(change, -step, step), -limit, limit)
-
-    def _settle(self, before: float) -> None:
-        """Move the modelled wheels through the coming period: the old command until the delay has passed."""
-        lag, delay = self._car.steering_lag_s, self._timing.delay_s
-        self._wheel = before + (self._wheel - before) * math.exp(-delay / lag)
-        rest = self._timing.period_s - delay
-        self._wheel = self._command + (self._wheel - self._command) * math.exp(-rest / lag)
 
     def _follow(self, seen: VehicleMotion, speed: float) -> None:
         """Take steering and acceleration from the car's motion: someone else drives it."""
@@ -145,13 +144,14 @@ class Tracker:
             self._wheel = self._command = clip(seen.yaw_rate_radps / speed * needed, -limit, limit)
         else:
             self._wheel = self._command = 0.0
+        self._estimator.reset(self._command)
         self._accel = 0.0
 
     def _accelerate(self, s_m: float, speed: float) -> tuple[float, float]:
         target, _ = self.profile.at(s_m)
         _, planned = self.profile.at(s_m + speed * _SPEED_LEAD_S)
         wanted = planned + _SPEED_GAIN_1PS * (target - speed)
-        wanted = clip(wanted, _BRAKE_MPS2, self._comfort.accelerate_mps2)
+        wanted = clip(wanted, -self._comfort.brake_most_mps2, self._comfort.accelerate_mps2)
         return target, approach(self._accel, wanted, _JERK_MPS3 * self._timing.period_s)
 
 
@@ -167,20 +167,20 @@ def _design(car: CarModel, timing: Timing, weights: Weights, speed: float) -> Ga
     """Return the gains at one speed; states: offset, heading, lateral speed, yaw rate, wheels, last command."""
     a, b, d = _car(car, speed)
     inputs = np.hstack((b, d))
-    early, early_in = discretised(a, inputs, timing.delay_s)
-    late, late_in = discretised(a, inputs, timing.period_s - timing.delay_s)
+    step, step_in = discretised(a, inputs, timing.period_s)
     n = len(a)
     whole = np.zeros((n + 1, n + 1))
-    whole[:n, :n] = late @ early
-    whole[:n, n:] = late @ early_in[:, :1] + late_in[:, :1]
+    whole[:n, :n] = step
+    whole[:n, n:] = step_in[:, :1]
     whole[n, n] = 1.0
-    command = np.vstack((late_in[:, :1], ((1.0,),)))
-    curvature = np.vstack((late @ early_in[:, 1:] + late_in[:, 1:], ((0.0,),)))
+    command = np.vstack((step_in[:, :1], ((1.0,),)))
+    curvature = np.vstack((step_in[:, 1:], ((0.0,),)))
     drift = np.zeros(n + 1)
     drift[1], drift[2] = speed, 1.0
     cost = weights.drift * np.outer(drift, drift)
     cost[0, 0] += weights.offset
-    return design(whole, command, curvature, cost, weights.change, timing.preview_steps)
+    change = weights.change * max(1.0, (speed / weights.gentle_mps) ** 4)
+    return design(whole, command, curvature, cost, change, timing.preview_steps)
 
 
 def _car(car: CarModel, speed: float) -> tuple[Array, Array, Array]:

@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from simconsole.drivers.path_tracker.tracker import Tracker, VehicleMotion
+from simconsole.drivers.path_tracker.state_estimator import VehicleMotion
+from simconsole.drivers.path_tracker.tracker import Tracker
 from simconsole.profiles.files.loader import load
 from simconsole.profiles.vehicle import VehicleProfile
 from simconsole.values.host.jit import compiled

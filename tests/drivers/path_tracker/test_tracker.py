@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from simconsole.drivers.path_tracker.tracker import Tracker, VehicleMotion
+from simconsole.drivers.path_tracker.state_estimator import VehicleMotion
+from simconsole.drivers.path_tracker.tracker import Tracker
 from simconsole.drivers.path_tracker.tracker_settings import COMFORT, HATCHBACK
 from simconsole.world.course import Course
 
@@ -97,8 +98,9 @@ def test_command_is_limited_however_wrong_the_pose(course: Course) -> None:
         answer = tracker.step(VehicleMotion(30.0, 8.0, 2.0, 14.0, 0.0, 0.0))
         assert abs(answer.road_wheel_rad) <= HATCHBACK.max_road_wheel_rad + 1e-12
         assert abs(math.tan(answer.road_wheel_rad) - math.tan(before)) <= 0.8 * 0.02 + 1e-12
+        assert abs(math.tan(answer.road_wheel_rad)) * 14.0**2 / HATCHBACK.wheelbase_m <= 4.52
         before = answer.road_wheel_rad
-    assert before < -0.5
+    assert math.tan(before) * 14.0**2 / HATCHBACK.wheelbase_m == pytest.approx(-4.5, rel=0.01)
 
 
 def test_standing_car_is_asked_to_drive_off(course: Course) -> None:

@@ -1,0 +1,61 @@
+"""How imperfect the link to a controller is: what it measures of the car, and how late its commands act."""
+
+from typing import Annotated
+
+from msgspec import Meta, Struct
+
+Milliseconds = Annotated[float, Meta(ge=0.0, le=2000.0)]
+Share = Annotated[float, Meta(ge=0.0, le=1.0)]
+
+
+class LocalisationProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Errors of odometry, /tf and velocity report against the true state. Noise is white: drawn anew for each tick."""
+
+    position_noise_m: Annotated[float, Meta(ge=0.0, le=10.0)] = 0.0
+    """Standard deviation along x and along y."""
+    yaw_noise_deg: Annotated[float, Meta(ge=0.0, le=45.0)] = 0.0
+    speed_noise_mps: Annotated[float, Meta(ge=0.0, le=10.0)] = 0.0
+    yaw_rate_noise_degps: Annotated[float, Meta(ge=0.0, le=45.0)] = 0.0
+    accel_noise_mps2: Annotated[float, Meta(ge=0.0, le=10.0)] = 0.0
+    """Of /imu/data."""
+    position_drift_m: Annotated[float, Meta(ge=0.0, le=100.0)] = 0.0
+    """Standard deviation of an error that changes slowly, along x and along y."""
+    yaw_drift_deg: Annotated[float, Meta(ge=0.0, le=45.0)] = 0.0
+    drift_time_s: Annotated[float, Meta(ge=1.0, le=3600.0)] = 20.0
+    """How long a drift takes from one value to an independent one."""
+
+
+class LinkProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The link of a controller on the ROS side; without anything set it is perfect, as far as sockets are."""
+
+    seed: Annotated[int, Meta(ge=0, le=2**53)] = 1
+    """Of all that is drawn: equal seeds give equal errors, delays and losses."""
+    localisation: LocalisationProfile = LocalisationProfile()
+    delay_ms: Milliseconds = 0.0
+    """From the state that a command answers to the tick in which it acts, there and back, added to what the sockets
+    take; in whole ticks."""
+    jitter_ms: Milliseconds = 0.0
+    """Of the delay, evenly between 0 and this much more; a command that is overtaken is dropped as out of order."""
+    loss_share: Share = 0.0
+    """Of the commands that never arrive."""
+    ground_truth: bool = False
+    """Publish /ground_truth/odom although the localisation has errors."""
+
+
+def link_label(link: LinkProfile) -> str:
+    """Return what the link is like, in words for people."""
+    errors, parts = link.localisation, []
+    for value, unit, what in (
+        (errors.position_noise_m * 100.0, "cm", "noise of position"),
+        (errors.yaw_noise_deg, "deg", "noise of yaw"),
+        (errors.position_drift_m * 100.0, "cm", "drift of position"),
+        (errors.yaw_drift_deg, "deg", "drift of yaw"),
+        (errors.speed_noise_mps, "m/s", "noise of speed"),
+        (errors.yaw_rate_noise_degps, "deg/s", "noise of yaw rate"),
+        (link.delay_ms, "ms", "delay"),
+        (link.jitter_ms, "ms", "jitter"),
+        (link.loss_share * 100.0, "%", "loss"),
+    ):
+        if value:
+            parts.append(f"{value:g} {unit} {what}")
+    return ", ".join(parts) or "perfect odometry, no delay"

@@ -1,0 +1,62 @@
+from simconsole.bridge.link.delay import over_link
+from simconsole.profiles.link import LinkProfile
+from simconsole.values.signals import NO_COMMAND, EventInput, RemoteCommand
+
+TICK_HZ = 250
+PERIOD = 5
+
+
+class Controller:
+    """Answers the state of every fifth tick within it, as in lockstep: its answer is seen in the tick after."""
+
+    def __init__(self) -> None:
+        self.refused = 0.0
+
+    def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
+        number, since = divmod(tick - 1, PERIOD)
+        if number < 1:
+            return NO_COMMAND, EventInput(float(tick == 3))
+        command = NO_COMMAND._replace(sequence=float(number), age_ticks=float(since), speed_mps=float(number))
+        return command._replace(refused=self.refused, hazard_lights=1.0), EventInput(float(tick == 3))
+
+
+def taken(link: LinkProfile, ticks: int) -> list[RemoteCommand]:
+    source = over_link(Controller(), link, TICK_HZ)
+    return [source.take(tick)[0] for tick in range(1, ticks)]
+
+
+def test_a_perfect_link_is_no_link() -> None:
+    controller = Controller()
+    assert over_link(controller, LinkProfile(), TICK_HZ) is controller
+
+
+def test_a_command_acts_after_the_delay_and_ages_from_its_arrival() -> None:
+    commands = taken(LinkProfile(delay_ms=40.0), 60)
+    for tick, command in enumerate(commands, start=1):
+        answered = (tick - 10) // PERIOD  # 40 ms are 10 ticks: the newest state that is so old
+        assert command.sequence == max(0.0, float(answered)), tick
+        if answered > 0:
+            assert command.age_ticks == float((tick - 10) % PERIOD)
+
+
+def test_edges_refusals_and_lights_do_not_wait() -> None:
+    controller = Controller()
+    source = over_link(controller, LinkProfile(delay_ms=400.0), TICK_HZ)
+    assert [source.take(tick)[1].events for tick in (1, 2, 3, 4)] == [0.0, 0.0, 1.0, 0.0]
+    controller.refused = 2.0
+    command, _ = source.take(12)
+    assert (command.sequence, command.refused, command.hazard_lights) == (0.0, 2.0, 1.0)
+
+
+def test_a_lost_command_never_acts_and_as_many_are_lost_as_said() -> None:
+    commands = taken(LinkProfile(loss_share=0.3), 5 * 4000)
+    arrived = {command.sequence for command in commands if command.sequence}
+    assert abs(len(arrived) / 3999 - 0.7) < 0.04
+    assert max(command.age_ticks for command in commands if command.sequence) > PERIOD
+
+
+def test_a_command_that_is_overtaken_is_dropped() -> None:
+    commands = taken(LinkProfile(delay_ms=20.0, jitter_ms=100.0), 5 * 1000)
+    sequences = [command.sequence for command in commands]
+    assert sequences == sorted(sequences)
+    assert 100 < len(set(sequences)) < 900
