@@ -27,4 +27,4 @@ def demo(options: Namespace) -> Outcome:
     length_m = 0.0 if resolved.world is None else resolved.world.length_m
     with Progress("driving", length_m) as progress:
         result = drive(resolved, folder, progress.watch)
-    return finish(result)
+    return finish(result, packed=not options.no_pack)

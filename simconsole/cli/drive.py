@@ -26,7 +26,8 @@ def drive(options: Namespace) -> Outcome:
             result = drive_session(resolved, folder, progress.watch, given=given)
         except DeviceNotFound as error:
             raise DeviceNotFound(f"{error}; without it: --driver keyboard, or simconsole demo") from None
-    return finish(result, report=session.outputs.report, scene=session.outputs.scene is not None)
+    outputs = session.outputs
+    return finish(result, report=outputs.report, scene=outputs.scene is not None, packed=not options.no_pack)
 
 
 def _with_options(session: SessionProfile, options: Namespace) -> SessionProfile:

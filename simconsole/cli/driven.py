@@ -1,4 +1,4 @@
-"""The end of `simconsole demo` and `simconsole drive`: report and scene beside the bundle, the table, the exit code."""
+"""The end of `simconsole demo` and `simconsole drive`: report, scene and packing, the table, the exit code."""
 
 from typing import Any
 
@@ -8,13 +8,14 @@ from simconsole.evaluation.report.exports import REPORT, SCENE, write_exports
 from simconsole.processes.lifetimes import INTERRUPTED
 from simconsole.profiles.link import link_label
 from simconsole.recording.bundles.bundle import open_bundle
+from simconsole.recording.bundles.pack import pack
 from simconsole.recording.bundles.replay_bundle import recorded_session
 from simconsole.session.lifecycle import DriveResult
 from simconsole.values.errors import one_line
 
 
-def finish(result: DriveResult, report: bool = True, scene: bool = True) -> Outcome:
-    """Write what is wanted beside the bundle; the drive's own result does not depend on whether that could be written.
+def finish(result: DriveResult, report: bool = True, scene: bool = True, packed: bool = True) -> Outcome:
+    """Write what is wanted beside the bundle, and pack it; the drive's own result does not depend on whether that went.
 
     The code is 1 if the recording failed, and 130 if the drive was interrupted (its bundle is complete all the same).
     """
@@ -25,22 +26,46 @@ def finish(result: DriveResult, report: bool = True, scene: bool = True) -> Outc
         **result.summary,
         "recording_failure": result.recording_failure,
         "exports_failure": None,
+        "packing_failure": None,
     }
     failed = [] if result.recording_failure is None else [(RECORDING_FAILED, result.recording_failure)]
     if failed and (report or scene):  # a disk that takes no log takes no export: rerun would wait for long
         report, scene, results["exports_failure"] = False, False, "not tried, for the recording failed"
     if not result.ticks:
         return Outcome(code, results, table([("bundle", f"{result.folder}: no tick was recorded"), *failed]))
+    rows = _export(result, report, scene, results)
+    if packed and not failed:
+        rows += _pack(result, results)
+    return Outcome(code, results, table(rows + failed))
+
+
+def _export(result: DriveResult, report: bool, scene: bool, results: dict[str, Any]) -> list[tuple[str, str]]:
+    """Write report and scene; return rows for a person, and add to `results` what came of it."""
     try:
-        with Progress("writing report and scene" + (" (Ctrl-C: not now)" if result.interrupted else "")):
+        with Progress("writing report and scene" + _patience(result)):
             metrics = write_exports(result.folder, report=report, scene=scene)
     except Exception as error:  # noqa: BLE001  too little memory shows in many ways, and the drive is in its bundle
         results["exports_failure"] = said = one_line(error)
-        rows = [*_driven_rows(result), ("report and scene", f"not written: {said}"), *failed]
-        return Outcome(code, results, table(rows))
-    rows = [*_rows(result, metrics, _link(result)), *failed]
+        return [*_driven_rows(result), ("report and scene", f"not written: {said}")]
+    results.update(metrics)
+    rows = _rows(result, metrics, _link(result))
     rows += [("report", str(result.folder / REPORT))] * report + [("scene", str(result.folder / SCENE))] * scene
-    return Outcome(code, {**results, **metrics}, table(rows))
+    return rows
+
+
+def _pack(result: DriveResult, results: dict[str, Any]) -> list[tuple[str, str]]:
+    """Pack the bundle; return rows for a person, and add to `results` why it stays as it is, if so."""
+    try:
+        with Progress("packing" + _patience(result)) as progress:
+            sizes = pack(result.folder, progress.part)
+    except Exception as error:  # noqa: BLE001  as above: the log stays
+        results["packing_failure"] = said = one_line(error)
+        return [("packed", f"no: {said}")]
+    return [("packed", f"{sizes.packed_bytes / 1e6:.1f} MB, of a log of {sizes.log_bytes / 1e6:.1f} MB")]
+
+
+def _patience(result: DriveResult) -> str:
+    return " (Ctrl-C: not now)" if result.interrupted else ""
 
 
 def _driven_rows(result: DriveResult) -> list[tuple[str, str]]:

@@ -26,7 +26,7 @@ from simconsole.processes.lifetimes import (
 from simconsole.values.errors import SimConsoleError, one_line
 
 _MAX_DELAY_MS = 1000.0
-_AT_ONCE = ("demo", "drive", "bridge", "report", "view")
+_AT_ONCE = ("demo", "drive", "bridge", "report", "view", "pack", "unpack")
 """Commands that Ctrl-C ends at once unless a drive handles it itself: they leave nothing half made. In the others it
 raises KeyboardInterrupt, which for some is the normal way to their result."""
 
@@ -132,6 +132,8 @@ def _driving(commands: Any) -> None:
     drive.add_argument("--participant", default="", metavar="ID", help="who drives; kept in the bundle from the start")
     drive.add_argument("--trial", default="", metavar="ID", help="which of their drives")
     drive.add_argument("--note", action="append", default=[], metavar="TEXT", help="may be given several times")
+    for command in (demo, drive):
+        command.add_argument("--no-pack", action="store_true", help="leave the log as it was written")
 
     check = _command(commands, "check", "check:check", "drive scripted scenarios headless against their goldens")
     check.add_argument("scenarios", nargs="+", metavar="SCENARIO", help="by name, or a .yaml file")
@@ -198,6 +200,10 @@ def _recordings(commands: Any) -> None:
         command.add_argument("bundle", metavar="BUNDLE", help="the folder that a drive has written")
     verify.add_argument("--signer", metavar="FILE.pub", help="the public key that must have signed it")
     view.add_argument("--no-open", action="store_true", help="only write scene.rrd")
+    pack = _command(commands, "pack", "recordings:pack", "make the logs of bundles small; all commands read both forms")
+    unpack = _command(commands, "unpack", "recordings:unpack", "make the logs of packed bundles again, byte for byte")
+    for command in (pack, unpack):
+        command.add_argument("bundles", nargs="+", metavar="BUNDLE", help="the folder that a drive has written")
     compare = _command(commands, "compare", "recordings:compare", "find the first differing tick and field")
     compare.add_argument("bundle", metavar="A")
     compare.add_argument("other", metavar="B")

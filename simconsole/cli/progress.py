@@ -54,6 +54,10 @@ class Progress:
             self._next_s = time.monotonic() + INTERVAL_S
             self._write(f"{self._what}: {done} ticks" + (f" of {total}" if total else ""))
 
+    def part(self, what: str, share: float) -> None:
+        """Show a part of the work and how far it has come, 0 to 1."""
+        self._write(f"{self._what}: {what}: {share:.0%}")
+
     def _write(self, line: str) -> None:
         if self._shown:
             with suppress(OSError):  # the terminal was closed

@@ -1,12 +1,17 @@
-"""`simconsole replay | verify | sign | compare | report | view`: what can be done with a bundle."""
+"""`simconsole replay | verify | sign | compare | report | view | pack | unpack`: what can be done with a bundle."""
 
 from argparse import Namespace
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from simconsole.cli.outcome import Outcome
+from simconsole.cli.progress import Progress
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.manifest import SIGNATURE, read_manifest, refuse_signed
+from simconsole.recording.bundles.pack import Sizes, Watch
+from simconsole.recording.bundles.pack import pack as pack_bundle
+from simconsole.recording.bundles.pack import unpack as unpack_bundle
 from simconsole.recording.bundles.verification import coverage, examine
 from simconsole.recording.compare import compare as compare_logs
 from simconsole.values.errors import RecordingError
@@ -105,6 +110,34 @@ def view(options: Namespace) -> Outcome:
     if not options.no_open:
         open_viewer(path)
     return _of_whole_drive(options.bundle, {"scene": str(path)}, str(path))
+
+
+def pack(options: Namespace) -> Outcome:
+    """Let drive.parquet stand for the log of each bundle; code 2 with one line for each that cannot be packed."""
+    return _each(options.bundles, pack_bundle, "packing")
+
+
+def unpack(options: Namespace) -> Outcome:
+    """Make the log of each packed bundle again; code 2 with one line for each where it cannot be done."""
+    return _each(options.bundles, unpack_bundle, "unpacking")
+
+
+def _each(folders: list[str], change: Callable[[Path, Watch], Sizes], doing: str) -> Outcome:
+    sizes: dict[str, dict[str, int]] = {}
+    failures: dict[str, str] = {}
+    lines = []
+    for folder in folders:
+        try:
+            with Progress(doing) as progress:
+                found = change(Path(folder), progress.part)
+        except RecordingError as error:
+            failures[folder] = str(error)
+            lines.append(str(error))
+        else:
+            sizes[folder] = found._asdict()
+            lines.append(f"{folder}: log {found.log_bytes} bytes, packed {found.packed_bytes}")
+    code = RecordingError.exit_code if failures else 0
+    return Outcome(code, {"bundles": sizes, "failures": failures}, "\n".join(lines))
 
 
 def _of_whole_drive(name: str, results: dict[str, Any], text: str) -> Outcome:

@@ -1,7 +1,7 @@
 """A bundle: the folder that holds one drive, with a manifest of what belongs to it.
 
-`drive.log` and the resolved profiles are the drive itself; report.html, scene.rrd and other exports are made from
-them and may be missing. The manifest is written at the start, with all that is known of where the drive comes from,
+`drive.log` and the resolved profiles are the drive itself; in a packed bundle `drive.parquet` stands for the log.
+report.html, scene.rrd and other exports are made from them and may be missing. The manifest is written at the start, with all that is known of where the drive comes from,
 again when the devices are open, and at the end with sizes and checksums: a killed drive is a bundle too.
 """
 
@@ -28,6 +28,7 @@ from simconsole.recording.bundles.manifest import (
     size_problem,
     write_manifest,
 )
+from simconsole.recording.bundles.packed_log import PackedLog
 from simconsole.recording.bundles.provenance import UNKNOWN, Provenance
 from simconsole.recording.framing import frame_size
 from simconsole.recording.log_header import LogHeader
@@ -37,10 +38,16 @@ from simconsole.values.host.files import DRAFT, draft_of, give_back, reserve, sy
 from simconsole.values.signals import Event
 
 LOG: Final = "drive.log"
+PACKED_LOG: Final = "drive.parquet"
+"""What stands for the log in a bundle that was packed; the manifest of a finished drive lists one of the two."""
+
 SESSION_FILE: Final = "session.json"
 _EVENTS: Final = "events.events"
 BLOCK_BYTES: Final = 1 << 12
 """Allocation unit of a file system: the last ticks may begin and end inside a block."""
+
+
+Log = LogReader | PackedLog
 
 
 class Bundle:
@@ -49,13 +56,13 @@ class Bundle:
     Attributes:
         folder: where it is.
         manifest: what it says of itself.
-        log: the recorded state vectors.
+        log: the recorded state vectors, in the form in which the bundle has them.
     """
 
     def __init__(self, folder: Path, manifest: Manifest) -> None:
         self.folder = folder
         self.manifest = manifest
-        self.log = LogReader(folder / LOG)
+        self.log = open_log(folder, manifest)
 
     def problems(self) -> list[str]:
         """Return why this is not the whole drive, one line each: the recording failed, the log is damaged.
@@ -239,6 +246,15 @@ def open_bundle(folder: Path) -> Bundle:
     return Bundle(folder, manifest)
 
 
+def open_log(folder: Path, manifest: Manifest) -> Log:
+    """Open the log in the form that the manifest lists; an unfinished drive has it unpacked.
+
+    Raises:
+        RecordingError: it is missing, or cannot be read.
+    """
+    return PackedLog(folder / PACKED_LOG) if PACKED_LOG in manifest.files else LogReader(folder / LOG)
+
+
 def add_export(folder: Path, *names: str, instead_of: str | None = None) -> None:
     """List files made from the drive (report.html, scene.rrd), already in the folder, in its manifest.
 
@@ -275,12 +291,18 @@ def unlisted(folder: Path, manifest: Manifest) -> list[str]:
     return [name for name in found if name not in manifest.files and name not in (MANIFEST, SIGNATURE)]
 
 
+def leftovers(manifest: Manifest) -> set[str]:
+    """Return the names of files that a killed pack or unpack may have left: the other form of the log, drafts."""
+    both = {LOG, PACKED_LOG} if manifest.finished else set()
+    return {name for name in (*both, LOG + DRAFT, PACKED_LOG + DRAFT) if name not in manifest.files}
+
+
 def unfinished(folder: Path) -> str:
     """Return the line that says so of a bundle whose drive did not come to its end."""
     return f"{folder / MANIFEST}: the drive was not finished"
 
 
-def alarm(log: LogReader) -> str | None:
+def alarm(log: Log) -> str | None:
     """Return one line if the last tick holds the alarm: a drive that was killed after its recording had failed."""
     if log.last is None or _EVENTS not in log.header.columns:
         return None

@@ -3,6 +3,7 @@
 It holds its own checksum (sealing.py), so that it vouches for itself too. Manifests of schema 1 had none.
 """
 
+from collections.abc import Iterable
 from hashlib import sha256
 from pathlib import Path
 from typing import Any, Final
@@ -44,6 +45,7 @@ class Manifest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
     ticks: int = 0
     digest: str = ""  # chained hash after the last tick, hexadecimal
     recording_failure: str | None = None
+    packed_log: FileEntry | None = None  # the drive.log that drive.parquet stands for, and gives back
     summary: dict[str, Any] = {}  # figures of the session: lateness percentiles, counters
 
     @property
@@ -114,11 +116,16 @@ def plain_name(name: str, folder: Path) -> str:
 
 def file_entry(path: Path) -> FileEntry:
     """Return size and checksum of a file as it is now. Raises OSError if it cannot be read."""
-    digest, size = sha256(), 0
     with path.open("rb") as file:
-        while part := file.read(1 << 20):
-            digest.update(part)
-            size += len(part)
+        return entry_of(iter(lambda: file.read(1 << 20), b""))
+
+
+def entry_of(parts: Iterable[bytes]) -> FileEntry:
+    """Return size and checksum of a file that holds these parts in a row."""
+    digest, size = sha256(), 0
+    for part in parts:
+        digest.update(part)
+        size += len(part)
     return FileEntry(size_bytes=size, sha256=digest.hexdigest())
 
 

@@ -5,18 +5,29 @@ from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
-from simconsole.recording.bundles.bundle import LOG, SESSION_FILE, alarm, session_problem, unfinished, unlisted
-from simconsole.recording.bundles.log import LogReader
+from simconsole.recording.bundles.bundle import (
+    LOG,
+    SESSION_FILE,
+    Log,
+    alarm,
+    leftovers,
+    open_log,
+    session_problem,
+    unfinished,
+    unlisted,
+)
 from simconsole.recording.bundles.manifest import (
     MANIFEST,
     SIGNATURE,
     Manifest,
     checksum_problem,
+    entry_of,
     parse_manifest,
     read_bounded,
     read_manifest,
     size_problem,
 )
+from simconsole.recording.bundles.packed_log import PackedLog
 from simconsole.recording.bundles.signing import signature_problem, signed_by
 from simconsole.recording.framing import START_OF_CHAIN, chain
 from simconsole.values.errors import RecordingError
@@ -64,9 +75,15 @@ def examine(folder: Path, signer: Path | None = None) -> Examination:
     for name, entry in manifest.files.items():
         if problem := size_problem(folder / name, entry) or checksum_problem(folder / name, entry):
             problems.append(problem)
-    problems += _log_problems(folder / LOG, manifest)
-    strays = [f"{folder / name}: not in {MANIFEST}: nothing vouches for it" for name in unlisted(folder, manifest)]
-    remarks = [] if manifest.finished else strays  # as workers of a drive that was killed leave them
+    try:
+        problems += log_problems(open_log(folder, manifest), manifest)
+    except RecordingError as error:
+        problems.append(str(error))
+    left = leftovers(manifest)
+    names = unlisted(folder, manifest)
+    strays = [f"{folder / name}: not in {MANIFEST}: nothing vouches for it" for name in names if name not in left]
+    remarks = [] if manifest.finished else list(strays)  # as workers of a drive that was killed leave them
+    remarks += [f"{folder / name}: left by a pack or unpack that was killed" for name in names if name in left]
     problems += strays if manifest.finished else []
     signed = (folder / SIGNATURE).exists()
     if signed or signer is not None:
@@ -93,12 +110,8 @@ def coverage(folder: Path) -> Coverage:
     return Coverage(replayed, sorted(path.name for path in folder.iterdir() if path.name not in replayed))
 
 
-def _log_problems(path: Path, manifest: Manifest) -> Iterator[str]:
-    try:
-        log = LogReader(path)
-    except RecordingError as error:
-        yield str(error)
-        return
+def log_problems(log: Log, manifest: Manifest) -> Iterator[str]:
+    """Yield one line for each way in which the log is not the one that `manifest` tells of, after a pass over it."""
     digest, ticks, broken = START_OF_CHAIN, 0, None
     for record in log:
         digest = chain(digest, record.tick, record.vector.tobytes())
@@ -106,16 +119,18 @@ def _log_problems(path: Path, manifest: Manifest) -> Iterator[str]:
             broken = record.tick
         digest = record.digest
         ticks += 1
-    session = path.parent / SESSION_FILE
+    session = log.path.parent / SESSION_FILE
     if SESSION_FILE in manifest.files:
         with suppress(OSError, UnicodeDecodeError):  # named with the other files
             if problem := session_problem(session, session.read_text("utf-8"), log.header):
                 yield problem
     if manifest.recording_failure is None and (said := alarm(log)):
         yield said
-    yield from (f"{path}: {part}" for part in log.breaks)
+    yield from (f"{log.path}: {part}" for part in log.breaks)
     if broken is not None:
-        yield f"{path}: the chained hash does not hold at tick {broken}"
+        yield f"{log.path}: the chained hash does not hold at tick {broken}"
     found, stated = f"{ticks} ticks, hash {digest.hex()}", f"{manifest.ticks} ticks, hash {manifest.digest}"
     if manifest.finished and found != stated:
-        yield f"{path}: {found}, {MANIFEST} says {stated}"
+        yield f"{log.path}: {found}, {MANIFEST} says {stated}"
+    if isinstance(log, PackedLog) and not log.breaks and entry_of(log.log_bytes()) != manifest.packed_log:
+        yield f"{log.path}: does not give back the {LOG} that {MANIFEST} tells of"
