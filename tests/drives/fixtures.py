@@ -32,9 +32,10 @@ def script(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def short(tmp_path_factory: pytest.TempPathFactory, script: Path) -> Path:
-    """The bundle of a scripted drive of three seconds. Read only: copy it to change it."""
+    """The bundle of a scripted drive of three seconds, with its log. Read only: copy it to change it."""
     bundle = tmp_path_factory.mktemp("short") / "bundle"
-    done = simconsole("drive", "--headless", "--driver", f"script:{script}", "--for", 3, "--out", bundle)
+    words = ("--headless", "--driver", f"script:{script}", "--for", 3, "--out", bundle, "--no-pack")
+    done = simconsole("drive", *words)
     assert done.returncode == 0, done.stderr
     return bundle
 
