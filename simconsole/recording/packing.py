@@ -111,21 +111,24 @@ def pack(rules: Rules, vectors: NDArray[np.float64]) -> dict[str, Stored]:
 def unpack(rules: Rules, kept: Mapping[str, Stored], columns: Sequence[str], ticks: int) -> NDArray[np.float64]:
     """Return a block of `ticks` rows of these columns (ticks, columns) from the stored columns that they need."""
     known: dict[str, Bits] = {}
-
-    def bits_of(name: str) -> Bits:
-        if name not in known:
-            match rules[name]:
-                case Constant(bits=bits):
-                    known[name] = np.full(ticks, bits, np.int64)
-                case Copy(of=source):
-                    known[name] = bits_of(source)
-                case Coded(order=order, reference=reference, delay=delay):
-                    known[name] = decode(kept[name], order, None if reference is None else bits_of(reference), delay)
-                case _:
-                    known[name] = kept[name].view(np.int64)
-        return known[name]
-
     found = np.empty((ticks, len(columns)))
     for index, name in enumerate(columns):
-        found[:, index] = bits_of(name).view(np.float64)
+        found[:, index] = _bits(rules, kept, name, ticks, known).view(np.float64)
+    return found
+
+
+def _bits(rules: Rules, kept: Mapping[str, Stored], name: str, ticks: int, known: dict[str, Bits]) -> Bits:
+    """Return the bits of a column, and keep it in `known` beside those that it refers to."""
+    if name in known:
+        return known[name]
+    source = source_of(rules, name)
+    reference = None if source is None else _bits(rules, kept, source, ticks, known)
+    match rules[name]:
+        case Constant(bits=bits):
+            found = np.full(ticks, bits, np.int64)
+        case Coded(order=order, delay=delay):
+            found = decode(kept[name], order, reference, delay)
+        case _:
+            found = kept[name].view(np.int64) if reference is None else reference
+    known[name] = found
     return found

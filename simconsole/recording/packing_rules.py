@@ -13,8 +13,8 @@ from simconsole.recording.packing import READABLE, Coded, Constant, Copy, Plain,
 SAMPLE_TICKS: Final = 512
 """Ticks in a row that are kept of a block to choose the coding by."""
 
-MAX_SAMPLES: Final = 16
-"""Samples that are kept at most, spread evenly over the drive."""
+MAX_SAMPLES: Final = 8
+"""Samples that are measured at least, of a long drive; spread evenly over it, and fewer than twice as many."""
 
 SCREEN_STEP: Final = 8
 """References are screened by every so-many-th tick of the samples; only the best are measured by all of them."""
