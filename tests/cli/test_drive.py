@@ -86,7 +86,7 @@ def test_a_simulated_person_drives_through_sdl_without_a_controller(tmp_path: Pa
     assert table.column("vehicle.distance_m")[-1] > 4.0
     assert abs(table.column("vehicle.vx_mps")[-1]) < 0.01
     assert np.median(table.column("sample.brake_axis")) > 0.9
-    assert sorted(path.name for path in bundle.iterdir()) == ["drive.log", "manifest.json", "session.json"]
+    assert sorted(path.name for path in bundle.iterdir()) == ["drive.parquet", "manifest.json", "session.json"]
 
 
 def test_with_nobody_seated_nothing_is_commanded(plain: Path, tmp_path: Path) -> None:

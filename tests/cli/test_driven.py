@@ -7,7 +7,9 @@ import pytest
 
 from simconsole.cli import driven
 from simconsole.cli.driven import finish
+from simconsole.recording.bundles.pack import Sizes
 from simconsole.session.lifecycle import DriveResult
+from simconsole.values.errors import RecordingError
 
 SUMMARY = {"lateness": "p99 0.1 ms", "real_time_factor": 12.34}
 PART = {"distance_m": 90.0, "mean_speed_kmh": 36.0, "lateral_rms_m": 0.0123, "lateral_max_m": 0.2}
@@ -34,6 +36,7 @@ def wanted(monkeypatch: pytest.MonkeyPatch) -> list[tuple[bool, bool]]:
         return METRICS
 
     monkeypatch.setattr(driven, "write_exports", write_exports)
+    monkeypatch.setattr(driven, "pack", lambda folder, watch: Sizes(122_400_000, 17_400_000))
     return calls
 
 
@@ -47,6 +50,7 @@ def test_a_good_drive_is_told_in_a_table(wanted: list[tuple[bool, bool]]) -> Non
     assert "mode at    1.50 s" in outcome.text
     assert "out/it/report.html" in outcome.text
     assert "scene.rrd" not in outcome.text
+    assert ["packed", "17.4 MB, of a log of 122.4 MB"] in lines
     assert (outcome.results["digest"], outcome.results["distance_m"]) == ("ab", 100.0)
 
 
@@ -65,6 +69,34 @@ def test_where_the_log_failed_nothing_else_is_tried(wanted: list[tuple[bool, boo
     assert "no space" in outcome.text
 
 
+def refuse(folder: Path, watch: object) -> Sizes:
+    raise AssertionError("packed")
+
+
+def test_what_shall_not_be_packed_is_not(wanted: list[tuple[bool, bool]], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(driven, "pack", refuse)
+    for outcome in (
+        finish(result(), packed=False),
+        finish(result(recording_failure="no space")),
+        finish(result(ticks=0)),
+    ):
+        assert "packed" not in outcome.text
+        assert outcome.results["packing_failure"] is None
+
+
+def test_a_drive_that_cannot_be_packed_keeps_its_result(
+    wanted: list[tuple[bool, bool]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(folder: Path, watch: object) -> Sizes:
+        raise RecordingError("no space")
+
+    monkeypatch.setattr(driven, "pack", fail)
+    outcome = finish(result())
+    assert outcome.code == 0
+    assert outcome.results["packing_failure"] == "no space"
+    assert ["packed", "no: no space"] in [line.split(maxsplit=1) for line in outcome.text.splitlines()]
+
+
 def test_a_drive_without_a_tick_says_so(wanted: list[tuple[bool, bool]]) -> None:
     outcome = finish(result(ticks=0))
     assert wanted == []
@@ -76,7 +108,7 @@ def test_a_report_that_cannot_be_written_does_not_spoil_the_drive(monkeypatch: p
         raise MemoryError("too\nlittle")
 
     monkeypatch.setattr(driven, "write_exports", fail)
-    outcome = finish(result())
+    outcome = finish(result(), packed=False)
     assert outcome.code == 0
     assert "not written: " in outcome.text
     assert "\n" not in outcome.results["exports_failure"]

@@ -8,6 +8,13 @@ import pytest
 
 from tests.drives.console import complaint, results, simconsole
 
+FORGED_TICK = 400
+
+
+@pytest.fixture
+def copy(short: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copytree(short, tmp_path / "copy"))
+
 
 def test_verify_says_that_a_bundle_is_whole_or_what_is_wrong(short: Path, tmp_path: Path) -> None:
     done = simconsole("verify", short)
@@ -50,22 +57,42 @@ def test_view_writes_the_scene_without_opening_it(short: Path, tmp_path: Path) -
     assert (short / "scene.rrd").read_bytes()[:4] == b"RRF2"
 
 
-FORGED_TICK = 400
-
-
-@pytest.fixture
-def copy(short: Path, tmp_path: Path) -> Path:
-    return Path(shutil.copytree(short, tmp_path / "copy"))
-
-
 def test_compare_finds_two_drives_of_one_script_equal(short: Path, script: Path, tmp_path: Path) -> None:
     again = tmp_path / "again"
-    done = simconsole("drive", "--headless", "--driver", f"script:{script}", "--for", 3, "--out", again)
+    done = simconsole("drive", "--headless", "--driver", f"script:{script}", "--for", 3, "--out", again, "--json")
     assert done.returncode == 0, done.stderr
+    assert results(done)["packing_failure"] is None
     compared = simconsole("compare", short, again, "--json")
     assert compared.returncode == 0, compared.stdout
     assert results(compared) == {"equal": True, "ticks": 750, "difference": None, "problems": []}
+    assert not (again / "drive.log").exists()
+    assert simconsole("unpack", again).returncode == 0
     assert (short / "drive.log").read_bytes() == (again / "drive.log").read_bytes()
+
+
+def test_a_packed_bundle_serves_every_command(copy: Path) -> None:
+    log = (copy / "drive.log").read_bytes()
+    done = simconsole("pack", copy, "--json")
+    sizes = {"log_bytes": len(log), "packed_bytes": (copy / "drive.parquet").stat().st_size}
+    assert results(done) == {"bundles": {str(copy): sizes}, "failures": {}}
+    assert done.returncode == 0
+    assert done.stderr == ""  # progress is for terminals
+    assert sorted(path.name for path in copy.iterdir()) == [
+        *("drive.parquet", "manifest.json", "report.html", "scene.rrd", "session.json")
+    ]
+    for words in (["verify"], ["replay"], ["report"], ["view", "--no-open"], ["verify"]):
+        done = simconsole(*words, copy)
+        assert done.returncode == 0, (words, done.stdout, done.stderr)
+    assert simconsole("unpack", copy).returncode == 0
+    assert (copy / "drive.log").read_bytes() == log
+
+
+def test_what_cannot_be_packed_is_named_and_the_others_are_packed(copy: Path, tmp_path: Path) -> None:
+    done = simconsole("pack", tmp_path / "nowhere", copy, "--json")
+    assert done.returncode == 2
+    assert list(results(done)["failures"]) == [str(tmp_path / "nowhere")]
+    assert "nowhere/manifest.json: not a bundle" in done.stdout
+    assert (copy / "drive.parquet").exists()
 
 
 def test_compare_names_the_first_difference_with_a_window(

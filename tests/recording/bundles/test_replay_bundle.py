@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from simconsole.profiles.files.loader import profiles_folder
-from simconsole.recording.bundles.bundle import open_bundle
+from simconsole.recording.bundles.bundle import open_bundle, verify
+from simconsole.recording.bundles.pack import pack, unpack
 from simconsole.recording.bundles.replay_bundle import replay_bundle
 from simconsole.recording.bundles.verification import verify
 from simconsole.recording.replay import ReplayResult
@@ -50,6 +51,13 @@ def test_twenty_replays_of_the_demo_are_equal(demo: Demo) -> None:
     with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
         found = list(pool.map(replay_bundle, [demo.bundle] * REPLAYS))
     assert found == [ReplayResult(True, len(demo.table.ticks), None, bytes.fromhex(demo.results["digest"]))] * REPLAYS
+
+
+def test_a_packed_drive_and_its_log_replay_alike(copy: Path) -> None:
+    from_log = replay_bundle(copy)
+    pack(copy)
+    assert replay_bundle(copy) == from_log
+    assert from_log.good
 
 
 def test_the_plain_functions_replay_what_compiled_code_drove(short: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -106,6 +114,7 @@ def test_a_forged_brake_value_in_the_demo_is_found_too(
     demo: Demo, tmp_path: Path, rewrite_log: Callable[..., None], rewrite_checksums: Callable[[Path], None]
 ) -> None:
     forged = Path(shutil.copytree(demo.bundle, tmp_path / "forged"))
+    unpack(forged)
     manual = np.flatnonzero(demo.table.column("driver.brake") > 0.2)
     tick = int(demo.table.ticks[manual[len(manual) // 2]])
     rewrite_log(forged / "drive.log", tick, "sample.brake_axis", 0.0)
