@@ -1,8 +1,9 @@
 """A bundle: the folder that holds one drive, with a manifest of what belongs to it.
 
 `drive.log` and the resolved profiles are the drive itself; in a packed bundle `drive.parquet` stands for the log.
-report.html, scene.rrd and other exports are made from them and may be missing. The manifest is written at the start, with all that is known of where the drive comes from,
-again when the devices are open, and at the end with sizes and checksums: a killed drive is a bundle too.
+report.html, scene.rrd and other exports are made from them and may be missing. The manifest is written at the start,
+with all that is known of where the drive comes from, again when the devices are open, and at the end with sizes and
+checksums: a killed drive is a bundle too.
 """
 
 import contextlib

@@ -51,8 +51,8 @@ def pack(folder: Path, watch: Watch = lambda what, share: None) -> Sizes:
     """Let drive.parquet stand for the log of the finished drive in `folder`. Does nothing to a packed one.
 
     Raises:
-        RecordingError: not a bundle, a signed one; the drive was not finished, its recording failed, its log is not whole; or
-            drive.parquet cannot be written. The bundle is then as it was.
+        RecordingError: not a bundle, or a signed one; the drive was not finished, its recording failed, its log is
+            not whole; or drive.parquet cannot be written. The bundle is then as it was.
     """
     bundle = _finished(folder)
     log = bundle.log
@@ -81,8 +81,8 @@ def unpack(folder: Path, watch: Watch = lambda what, share: None) -> Sizes:
     Does nothing to one that is not packed.
 
     Raises:
-        RecordingError: not a bundle, a signed one; drive.parquet is damaged, or the log cannot be written. The bundle is then as it
-            was.
+        RecordingError: not a bundle, or a signed one; drive.parquet is damaged, or the log cannot be written. The
+            bundle is then as it was.
     """
     bundle = _finished(folder)
     log, entry = bundle.log, bundle.manifest.packed_log

@@ -8,15 +8,17 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+import msgspec
 import numpy as np
 import pytest
 
-from simconsole.recording.bundles import pack as packing
-from simconsole.recording.bundles.bundle import LOG, PACKED_LOG, Bundle, BundleWriter, add_export, open_bundle, verify
+from simconsole.recording.bundles.bundle import LOG, PACKED_LOG, Bundle, BundleWriter, add_export, open_bundle
 from simconsole.recording.bundles.manifest import MANIFEST, read_manifest
 from simconsole.recording.bundles.pack import pack, unpack
 from simconsole.recording.bundles.packed_log import PackedLog
-from simconsole.recording.log_header import LogHeader
+from simconsole.recording.bundles.verification import verify
+from simconsole.recording.log_header import LogHeader, vector_stream
+from simconsole.recording.reading import BLOCK_TICKS
 from simconsole.values.errors import RecordingError
 from simconsole.values.host.files import draft_of
 from tests.recording.conftest import TEXTS, with_messages
@@ -46,6 +48,16 @@ for line in sys.stdin:
         os._exit(0)
     os.wait()
     print("ended", flush=True)
+"""
+
+
+PEAK = """
+import sys
+from pathlib import Path
+from simconsole.recording.bundles.pack import pack, unpack
+pack(Path(sys.argv[1]))
+unpack(Path(sys.argv[1]))
+print(next(line.split()[1] for line in open("/proc/self/status") if line.startswith("VmHWM")))
 """
 
 
@@ -183,7 +195,7 @@ def test_a_full_disk_leaves_the_bundle_as_it_was(
         raise OSError(errno.ENOSPC, "No space left on device")
 
     with monkeypatch.context() as patch:
-        patch.setattr(packing.os, "fsync", full)
+        patch.setattr("simconsole.recording.bundles.pack.os.fsync", full)
         with pytest.raises(RecordingError, match="cannot be written: No space left on device"):
             change(bundle)
     assert {path.name: path.read_bytes() for path in bundle.iterdir()} == before
@@ -205,6 +217,27 @@ def test_what_a_kill_left_is_removed_by_the_next_call(
     change(bundle)
     assert names(bundle) == sorted([wanted, MANIFEST, *TEXTS])
     assert verify(bundle) == []
+
+
+def test_memory_does_not_grow_with_the_drive(
+    tmp_path: Path, header: LogHeader, sample: Sample, record_property: Callable[[str, object], None]
+) -> None:
+    """Of a drive, and of one four times as long: nearly all columns vary, and none is a copy."""
+    columns, blocks = tuple(f"platform.{index}_m" for index in range(40)), sample.of(6, 40)
+    stream = (vector_stream(columns, 2),)
+    peaks = []
+    for times in (1, 4):
+        folder, generator = tmp_path / str(times), np.random.default_rng(sample.seed)
+        row = np.zeros(len(columns))
+        with BundleWriter(folder, msgspec.structs.replace(header, streams=stream), {}) as writer:
+            for tick in range(1, times * blocks * BLOCK_TICKS + 1):
+                row += generator.normal(size=len(columns))
+                writer.log.append(tick, row)
+            writer.finish({})
+        done = subprocess.run([sys.executable, "-c", PEAK, str(folder)], capture_output=True, text=True, check=True)
+        peaks.append(int(done.stdout) / 1e3)
+    record_property("memory", f"packing and unpacking: {peaks[0]:.0f} MB, a drive four times as long {peaks[1]:.0f} MB")
+    assert peaks[1] <= peaks[0] + 10.0
 
 
 def test_kill_9_at_any_moment_leaves_a_whole_bundle(

@@ -1,6 +1,7 @@
 """The packed log reads like the log: the same records, columns and messages, and damage is told in one line."""
 
 import random
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -8,7 +9,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -21,6 +22,7 @@ from simconsole.recording.packing import Coded, Plain, Rule
 from simconsole.recording.packing_rules import RuleFinder
 from simconsole.recording.reading import Recording
 from simconsole.values.errors import RecordingError
+from tests.paths import ROOT
 from tests.recording.conftest import COLUMNS, with_messages
 from tests.samples import Sample
 
@@ -88,6 +90,7 @@ def test_the_log_comes_back_byte_for_byte(pair: tuple[LogReader, PackedLog]) -> 
     assert b"".join(pair[1].log_bytes()) == pair[0].path.read_bytes()
 
 
+@settings(deadline=None)
 @given(
     arrays(np.int64, (50, 4), elements=st.integers(-(1 << 63), (1 << 63) - 1)),
     st.sampled_from([Plain(), Coded(0), Coded(3), Coded(7)]),
@@ -103,6 +106,14 @@ def test_every_bit_pattern_comes_back(tmp_path_factory: pytest.TempPathFactory, 
     rules = {**dict.fromkeys(COLUMNS, rule), COLUMNS[1]: Coded(1, COLUMNS[0], 1)}
     small = packed(LogReader(folder / "drive.log"), folder / "drive.parquet", rules)
     assert b"".join(small.log_bytes()) == (folder / "drive.log").read_bytes()
+
+
+def test_the_lines_of_the_documentation_decode_a_column(log: LogReader, tmp_path: Path) -> None:
+    (lines,) = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "recording.md").read_text("utf-8"), re.DOTALL)
+    path = packed(log, tmp_path / "drive.parquet", dict.fromkeys(COLUMNS, Coded(3))).path
+    known = {"np": np, "order": 3, "numbers": pq.ParquetFile(path).read_row_group(0).column("driver.brake").to_numpy()}
+    exec(lines, known)
+    assert known["values"].tobytes() == log.table(("driver.brake",)).vectors[:GROUP_TICKS, 0].tobytes()
 
 
 def test_a_column_that_is_not_there_is_named(pair: tuple[LogReader, PackedLog]) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from simconsole.profiles.files.loader import profiles_folder
-from simconsole.recording.bundles.bundle import open_bundle, verify
+from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.pack import pack, unpack
 from simconsole.recording.bundles.replay_bundle import replay_bundle
 from simconsole.recording.bundles.verification import verify
