@@ -51,6 +51,19 @@ for line in sys.stdin:
 """
 
 
+INTERRUPTED = """
+import os, signal, sys
+from simconsole.cli.main import main
+from simconsole.cli.progress import Progress
+moment = sys.argv.pop()
+def part(self, what, share):
+    if what == moment:
+        os.kill(os.getpid(), signal.SIGINT)
+Progress.part = part
+sys.exit(main())
+"""
+
+
 PEAK = """
 import sys
 from pathlib import Path
@@ -217,6 +230,15 @@ def test_what_a_kill_left_is_removed_by_the_next_call(
     change(bundle)
     assert names(bundle) == sorted([wanted, MANIFEST, *TEXTS])
     assert verify(bundle) == []
+
+
+@pytest.mark.parametrize("moment", ["looking at the columns", "packing", "unpacking"])
+def test_ctrl_c_leaves_the_log_and_nothing_half_made(bundle: Path, moment: str) -> None:
+    before = {path.name: path.read_bytes() for path in bundle.iterdir()}
+    words = [sys.executable, "-c", INTERRUPTED, "pack", str(bundle), moment]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (130, "")
+    assert {path.name: path.read_bytes() for path in bundle.iterdir()} == before
 
 
 def test_memory_does_not_grow_with_the_drive(
