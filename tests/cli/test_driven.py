@@ -36,6 +36,7 @@ def wanted(monkeypatch: pytest.MonkeyPatch) -> list[tuple[bool, bool]]:
         return METRICS
 
     monkeypatch.setattr(driven, "write_exports", write_exports)
+    monkeypatch.setattr(driven, "_link", lambda result: "perfect")
     monkeypatch.setattr(driven, "pack", lambda folder, watch: Sizes(122_400_000, 17_400_000))
     return calls
 
