@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 from simconsole.recording.coding import MAX_DELAY, MAX_ORDER, Bits, decode, encode
 
 READABLE: Final = (
-    *("sample.", "ros.", "ecu.", "events.", "driver.", "arbitration.", "command."),
-    *("vehicle.x_m", "vehicle.y_m", "vehicle.yaw_rad", "vehicle.vx_mps", "vehicle.yaw_rate_radps"),
-    *("vehicle.ax_mps2", "vehicle.ay_mps2", "vehicle.road_wheel_rad", "vehicle.gear"),
+    *("sample.", "ros.", "ecu.", "events.", "driver.", "command."),
+    *("vehicle.x_m", "vehicle.y_m", "vehicle.yaw_rad", "vehicle.vx_mps", "vehicle.gear"),
 )
 """How columns begin that people plot: stored plain, so that every program that opens the file can read them. The other
-columns of the vehicle, and the platform's inner state, take a third less room coded."""
+columns of the vehicle, and the platform's inner state, take a third less room coded; what costs nothing plain, as modes
+and reasons, is plain as well."""
 
 
 class Constant(msgspec.Struct, frozen=True, tag="constant", tag_field="rule", forbid_unknown_fields=True):
