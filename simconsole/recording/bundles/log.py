@@ -271,8 +271,8 @@ class LogReader:
         wanted = None if columns is None else places(self.header, columns)
         records = iter(self)
         while part := list(islice(records, BLOCK_TICKS)):
-            vectors = np.array([record.vector if wanted is None else record.vector[wanted] for record in part])
-            yield Block(np.array([record.tick for record in part]), vectors)
+            rows = np.concatenate([record.vector for record in part]).reshape(len(part), -1)
+            yield Block(np.array([record.tick for record in part]), rows if wanted is None else rows[:, wanted])
 
     def table(self, columns: Sequence[str] | None = None) -> LogTable:
         """Return all whole records as arrays, with only these columns (None: all).
