@@ -10,21 +10,31 @@ from tests.patience import pause
 LOOK_S = 0.005
 
 
+class Private(NamedTuple):
+    """What processes have for themselves, in bytes."""
+
+    all: int
+    written: int
+    """Without what is only read from files: that of a library counts while no other process has it loaded."""
+
+
 class Watched(NamedTuple):
-    """A command that has ended, and the most that any process of it had for itself, in bytes."""
+    """A command that has ended, and the most that it and the largest of its children had for themselves."""
 
     done: "subprocess.CompletedProcess[str]"
-    own: int
-    children: int  # the largest of them; 0 without
+    own: Private
+    child: Private
 
 
-def private_bytes(pid: int) -> int:
-    """Return what belongs to a process alone (Private_Clean and Private_Dirty), 0 of one that has ended."""
+def private(pid: int) -> Private:
+    """Return what belongs to a process alone; nothing of one that has ended."""
     try:
-        lines = Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines()
+        lines = [line.split() for line in Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines()[1:]]
     except OSError:
-        return 0
-    return sum(1024 * int(line.split()[1]) for line in lines if line.startswith(("Private_Clean", "Private_Dirty")))
+        return Private(0, 0)
+    sizes = {line[0]: 1024 * int(line[1]) for line in lines}
+    written = sizes.get("Private_Dirty:", 0)
+    return Private(sizes.get("Private_Clean:", 0) + written, written)
 
 
 def children(pid: int) -> list[int]:
@@ -40,10 +50,15 @@ def children(pid: int) -> list[int]:
 
 def watched(folder: Path, *arguments: object) -> Watched:
     """Run `simconsole` to its end, however long it takes."""
-    own = largest = 0
+    own = child = Private(0, 0)
     with Running(folder, *arguments) as running:
         while running.process.poll() is None:
-            own = max(own, private_bytes(running.process.pid))
-            largest = max([largest, *map(private_bytes, children(running.process.pid))])
+            own = _larger(own, private(running.process.pid))
+            for pid in children(running.process.pid):
+                child = _larger(child, private(pid))
             pause(LOOK_S)
-        return Watched(running.end(), own, largest)
+        return Watched(running.end(), own, child)
+
+
+def _larger(one: Private, other: Private) -> Private:
+    return Private(max(one.all, other.all), max(one.written, other.written))

@@ -9,7 +9,7 @@ from simconsole.evaluation.report.scene_export import SCENE, main, scene_process
 from simconsole.values.errors import WorkerError
 from tests.drives.console import Running
 from tests.drives.fixtures import Demo
-from tests.drives.private_memory import children, private_bytes
+from tests.drives.private_memory import children, private
 from tests.patience import wait_until
 
 DRAFT = f"{SCENE}.new"
@@ -57,7 +57,7 @@ def test_an_interrupt_ends_it_at_once_and_leaves_nothing_half_made(demo: Demo, t
         (scene,) = children(running.process.pid)
         running.interrupt_group()
         assert running.end().returncode == 130
-    wait_until(lambda: not private_bytes(scene), "the scene's process is gone")
+    wait_until(lambda: not private(scene).all, "the scene's process is gone")
     assert {path.name: path.read_bytes() for path in bundle.iterdir()} == before
 
 
