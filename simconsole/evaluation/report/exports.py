@@ -56,8 +56,10 @@ def _write_exports(folder: Path, report: bool, scene: bool, told: Told) -> dict[
     bundle = open_bundle(folder)
     try:
         with scene_process(folder, partial(told, "scene")) if scene else nullcontext(lambda: None) as wait:
-            metrics = _report(bundle, report, partial(told, "report"))
-            wait()
+            try:
+                metrics = _report(bundle, report, partial(told, "report"))
+            finally:
+                wait()
     finally:  # where one could not be made, the other is listed all the same
         made = [name for name, wanted in ((REPORT, report), (SCENE, scene)) if wanted and (folder / name).exists()]
         add_export(folder, *made, instead_of=LIVE_SCENE if SCENE in made else None)

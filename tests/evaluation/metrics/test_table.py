@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from simconsole.evaluation.metrics.table import drive_of, recorded_drive, runs
-from simconsole.recording.framing import LogHeader
+from simconsole.recording.log_header import LogHeader, vector_stream
 from simconsole.recording.reading import Block, places
 from simconsole.values.errors import RecordingError
 
@@ -39,9 +39,8 @@ class Reader:
     """A recording of which only blocks are read; what it holds may change."""
 
     def __init__(self, count: int, size: int) -> None:
-        self.header = LogHeader(
-            tick_hz=50, columns=("a", "b"), input_columns=0, console_version="", source_sha256="", session_sha256=""
-        )
+        streams = (vector_stream(("a", "b"), 0),)
+        self.header = LogHeader(tick_hz=50, streams=streams, console_version="", source_sha256="", session_sha256="")
         self.rows = np.arange(2.0 * count).reshape(count, 2)
         self.passes: list[Sequence[str]] = []
         self._size = size
