@@ -1,16 +1,15 @@
 """Long drives in little memory: no command holds a whole one."""
 
-import os
 import shutil
 from collections.abc import Callable
+from itertools import islice
 from pathlib import Path
 
-import msgspec
 import pytest
 
+from simconsole.recording.bundles.bundle import BundleWriter
 from simconsole.recording.bundles.log import LogReader
-from simconsole.recording.bundles.manifest import file_entry, read_manifest, write_manifest
-from simconsole.recording.framing import frame_size
+from simconsole.recording.bundles.manifest import read_manifest
 from tests.drives.fixtures import Demo
 from tests.drives.private_memory import watched
 from tests.samples import Sample
@@ -38,19 +37,12 @@ mode: {tick_hz: 250, pacing: lockstep}
 
 def begun(bundle: Path, folder: Path, ticks: int) -> Path:
     """Return a bundle of the first ticks of a drive."""
-    folder.mkdir()
-    shutil.copy(bundle / "session.json", folder)
     log = LogReader(bundle / "drive.log")
-    head = (bundle / "drive.log").stat().st_size - read_manifest(bundle).ticks * frame_size(len(log.header.columns))
-    shutil.copy(bundle / "drive.log", folder)
-    os.truncate(folder / "drive.log", head + ticks * frame_size(len(log.header.columns)))
-    files = {name: file_entry(folder / name) for name in ("session.json", "drive.log")}
-    for _ in (short := LogReader(folder / "drive.log")):
-        pass
-    assert short.last is not None
-    digest = short.last.digest.hex()
-    manifest = msgspec.structs.replace(read_manifest(bundle), ticks=ticks, digest=digest, files=files)
-    write_manifest(folder, manifest)
+    texts = {"session.json": (bundle / "session.json").read_text("utf-8")}
+    with BundleWriter(folder, log.header, texts) as writer:
+        for record in islice(log, ticks):
+            writer.log.append(record.tick, record.vector)
+        writer.finish({})
     return folder
 
 
