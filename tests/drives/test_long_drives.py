@@ -7,8 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from simconsole.recording.bundles.bundle import BundleWriter
-from simconsole.recording.bundles.log import LogReader
+from simconsole.recording.bundles.bundle import BundleWriter, open_bundle
 from simconsole.recording.bundles.manifest import read_manifest
 from tests.drives.fixtures import Demo
 from tests.drives.private_memory import watched
@@ -37,7 +36,7 @@ mode: {tick_hz: 250, pacing: lockstep}
 
 def begun(bundle: Path, folder: Path, ticks: int) -> Path:
     """Return a bundle of the first ticks of a drive."""
-    log = LogReader(bundle / "drive.log")
+    log = open_bundle(bundle).log
     texts = {"session.json": (bundle / "session.json").read_text("utf-8")}
     with BundleWriter(folder, log.header, texts) as writer:
         for record in islice(log, ticks):
