@@ -14,8 +14,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
 
-from simconsole.evaluation.metrics.drive_metrics import mode_changes, track
+from simconsole.evaluation.metrics.drive_metrics import mode_changes
 from simconsole.evaluation.metrics.table import drive_of
+from simconsole.evaluation.metrics.track import track
 from simconsole.evaluation.report.figure_map import draw_map
 from simconsole.evaluation.report.figures import STYLE
 from simconsole.hud.window.raster import snapshot_png

@@ -4,7 +4,8 @@ from typing import Any
 
 from simconsole.cli.outcome import RECORDING_FAILED, Outcome, table
 from simconsole.cli.progress import Progress
-from simconsole.evaluation.report.exports import REPORT, SCENE, write_exports
+from simconsole.evaluation.report.exports import REPORT, write_exports
+from simconsole.evaluation.report.scene_export import SCENE
 from simconsole.processes.lifetimes import INTERRUPTED
 from simconsole.profiles.link import link_label
 from simconsole.recording.bundles.bundle import open_bundle
@@ -42,8 +43,8 @@ def finish(result: DriveResult, report: bool = True, scene: bool = True, packed:
 def _export(result: DriveResult, report: bool, scene: bool, results: dict[str, Any]) -> list[tuple[str, str]]:
     """Write report and scene; return rows for a person, and add to `results` what came of it."""
     try:
-        with Progress("writing report and scene" + _patience(result)):
-            metrics = write_exports(result.folder, report=report, scene=scene)
+        with Progress("writing report and scene" + _patience(result)) as progress:
+            metrics = write_exports(result.folder, report=report, scene=scene, told=progress.done)
     except Exception as error:  # noqa: BLE001  too little memory shows in many ways, and the drive is in its bundle
         results["exports_failure"] = said = one_line(error)
         return [*_driven_rows(result), ("report and scene", f"not written: {said}")]

@@ -25,6 +25,7 @@ class Progress:
         self._length_m = length_m
         self._shown = sys.stderr.isatty()
         self._next_s = 0.0
+        self._shares: dict[str, float] = {}
 
     def __enter__(self) -> Self:
         """Say what begins."""
@@ -57,6 +58,14 @@ class Progress:
     def part(self, what: str, share: float) -> None:
         """Show a part of the work and how far it has come, 0 to 1."""
         self._write(f"{self._what}: {what}: {share:.0%}")
+
+    def done(self, what: str, share: float) -> None:
+        """Show how much of something is done, from 0 to 1, beside the other things; at most every INTERVAL_S."""
+        self._shares[what] = share
+        if self._shown and time.monotonic() >= self._next_s:
+            self._next_s = time.monotonic() + INTERVAL_S
+            shares = ", ".join(f"{name} {share:.0%}" for name, share in sorted(self._shares.items()))
+            self._write(f"{self._what}: {shares}")
 
     def _write(self, line: str) -> None:
         if self._shown:

@@ -96,17 +96,20 @@ def report(options: Namespace) -> Outcome:
     """Write report.html into the bundle."""
     from simconsole.evaluation.report.exports import write_report
 
-    metrics = write_report(Path(options.bundle))
+    with Progress("writing the report") as progress:
+        metrics = write_report(Path(options.bundle), progress.done)
     return _of_whole_drive(options.bundle, metrics, str(Path(options.bundle) / "report.html"))
 
 
 def view(options: Namespace) -> Outcome:
     """Write scene.rrd into the bundle and open it in rerun, unless told not to. That of a signed bundle stays."""
-    from simconsole.evaluation.report.exports import SCENE, open_viewer, write_scene
+    from simconsole.evaluation.report.exports import open_viewer, write_scene
+    from simconsole.evaluation.report.scene_export import SCENE
 
     folder = Path(options.bundle)
     signed = (folder / SIGNATURE).exists() and SCENE in read_manifest(folder).files
-    path = folder / SCENE if signed else write_scene(folder)
+    with Progress("writing the scene") as progress:
+        path = folder / SCENE if signed else write_scene(folder, progress.done)
     if not options.no_open:
         open_viewer(path)
     return _of_whole_drive(options.bundle, {"scene": str(path)}, str(path))

@@ -48,6 +48,7 @@ def spawn(
     *,
     told: bytes = b"",
     environment: Mapping[str, str] | None = None,
+    stdout: int | None = None,
     stderr: int | None = None,
 ) -> "subprocess.Popen[bytes]":
     """Start a Python program that ends with this process; it calls `follow_parent`.
@@ -56,6 +57,7 @@ def spawn(
         arguments: what follows the interpreter's name.
         told: written to its standard input at once.
         environment: in place of this process's own.
+        stdout: where it may write, as subprocess takes it; None: nowhere.
         stderr: where it may complain, as subprocess takes it.
 
     Raises:
@@ -68,7 +70,7 @@ def spawn(
     process = subprocess.Popen(
         [sys.executable, "-P", *arguments],
         stdin=subprocess.PIPE,
-        stdout=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL if stdout is None else stdout,
         stderr=stderr,
         env={**(os.environ if environment is None else environment), "PYTHONPATH": path},
         process_group=0,  # a terminal's Ctrl-C reaches the core only, which then ends what it started in order

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import msgspec
-import numpy as np
 
 from simconsole.bridge.console.operator_acts import ACT_BYTES, ACTS_MAX
 from simconsole.processes.shared_memory import EventCounters, Ring, TextQueue
@@ -180,8 +179,7 @@ def worker_specs(
     if outputs.scene is not None:
         from simconsole.scene.viewer.job import save_job
 
-        vectors, ticks = np.empty((0, console.width)), np.empty(0, np.int64)
-        save_job(folder / SCENE_JOB, scene_job(resolved, vectors, ticks, console.columns, tick_hz))
+        save_job(folder / SCENE_JOB, scene_job(resolved, console.columns, tick_hz))
         path = str((bundle / LIVE_SCENE).absolute())
         workers["scene"] = SceneWorker(path=path, tick_hz=tick_hz, has_bridge=has_bridge)
     return [WorkerSpec.of(name, worker) for name, worker in workers.items()]

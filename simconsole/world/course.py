@@ -24,6 +24,7 @@ _NEWTON_STEPS: Final = 8
 _CLOSE_M: Final = 1e-6
 _STRETCH: Final = 0.3  # bound of the Newton step for points near the centre of a curve
 _STRIDE: Final = 20
+_AT_ONCE: Final = 8192  # places: some twenty arrays of this length are in memory at once
 _LOST_M: Final = 30.0  # further than this from the hinted place, look at the whole course
 
 
@@ -120,7 +121,7 @@ class Course:
         """Return (s_m, lateral_m), float64 [N] each, of the places that a vehicle passed one after the other.
 
         As `project` from each place to the next, laps included, but fast: every 20th place is followed along the
-        course, the others start from between those.
+        course, the others start from between those. Takes little more memory than what it returns.
         """
         if len(x_m) == 0:
             return np.zeros(0), np.zeros(0)
@@ -129,7 +130,14 @@ class Course:
         for x, y in zip(x_m[marks].tolist(), y_m[marks].tolist(), strict=True):
             s = self.project(x, y, s).s_m
             stations.append(s)
-        places = np.interp(np.arange(len(x_m)), marks, stations)
+        places, lateral = np.empty(len(x_m)), np.empty(len(x_m))
+        for start in range(0, len(x_m), _AT_ONCE):
+            part = slice(start, min(start + _AT_ONCE, len(x_m)))
+            near = np.interp(np.arange(part.start, part.stop), marks, stations)
+            places[part], lateral[part] = self._project_from(x_m[part], y_m[part], near)
+        return places, lateral
+
+    def _project_from(self, x_m: Array, y_m: Array, places: Array) -> tuple[Array, Array]:
         lateral = along = np.zeros(len(x_m))
         for _ in range(_NEWTON_STEPS):
             x, y, yaw, curvature = self._at_all(places)

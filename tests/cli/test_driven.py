@@ -7,6 +7,7 @@ import pytest
 
 from simconsole.cli import driven
 from simconsole.cli.driven import finish
+from simconsole.evaluation.report.exports import Told
 from simconsole.recording.bundles.pack import Sizes
 from simconsole.session.lifecycle import DriveResult
 from simconsole.values.errors import RecordingError
@@ -31,7 +32,7 @@ def wanted(monkeypatch: pytest.MonkeyPatch) -> list[tuple[bool, bool]]:
     """What was to be written, each time."""
     calls: list[tuple[bool, bool]] = []
 
-    def write_exports(folder: Path, report: bool, scene: bool) -> dict[str, Any]:
+    def write_exports(folder: Path, report: bool, scene: bool, told: Told) -> dict[str, Any]:
         calls.append((report, scene))
         return METRICS
 
@@ -105,7 +106,7 @@ def test_a_drive_without_a_tick_says_so(wanted: list[tuple[bool, bool]]) -> None
 
 
 def test_a_report_that_cannot_be_written_does_not_spoil_the_drive(monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail(folder: Path, report: bool, scene: bool) -> dict[str, Any]:
+    def fail(folder: Path, report: bool, scene: bool, told: Told) -> dict[str, Any]:
         raise MemoryError("too\nlittle")
 
     monkeypatch.setattr(driven, "write_exports", fail)

@@ -64,6 +64,16 @@ def test_a_line_tells_way_speed_and_mode_and_never_ends_the_drive(monkeypatch: p
     assert shown[-1] == ""
 
 
+def test_a_line_tells_how_much_of_each_thing_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = Terminal()
+    monkeypatch.setattr("sys.stderr", terminal)
+    monkeypatch.setattr("simconsole.cli.progress.INTERVAL_S", 0.0)
+    with Progress("writing") as progress:
+        progress.done("scene", 0.25)
+        progress.done("report", 0.5)
+    assert terminal.getvalue().split("\r\x1b[K")[2:] == ["writing: scene 25%", "writing: report 50%, scene 25%", ""]
+
+
 def test_on_a_pipe_there_is_nothing_and_a_closed_terminal_ends_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     pipe = io.StringIO()
     monkeypatch.setattr("sys.stderr", pipe)

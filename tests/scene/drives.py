@@ -61,9 +61,12 @@ def drawing() -> Drawing:
     return Drawing((square,), (), (inside, outside), (path,), (square + 3.0,), (), (Light(5.0, -3.0, 0.0),), path)
 
 
-def job(count: int = 3000, with_course: bool = True) -> Job:
-    """Return the drive as a scene job."""
+def job(with_course: bool = True) -> Job:
+    """Return the drive's scene job."""
     return Job(
-        rows(count), np.arange(1, count + 1), COLUMNS, TICK_HZ, Dimensions(4.2, 1.8, 1.5, 0.8),
-        drawing() if with_course else None, SceneProfile(),
-    )  # fmt: skip
+        columns=COLUMNS,
+        tick_hz=TICK_HZ,
+        dimensions=Dimensions(4.2, 1.8, 1.5, 0.8),
+        drawing=drawing() if with_course else None,
+        profile=SceneProfile(),
+    )

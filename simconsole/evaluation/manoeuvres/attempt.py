@@ -1,6 +1,6 @@
 """One drive of a manoeuvre, and what a manoeuvre yields: the records that drivers, evaluation and report share."""
 
-from collections.abc import Generator
+from collections.abc import Generator, Iterator, Sequence
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -63,4 +63,8 @@ def traces(title: str, y_label: str, drives: dict[str, tuple[Drive, Array]], eve
 
 def part(drive: Drive, first: int, last: int | None = None) -> Drive:
     """Return the ticks of a drive from one index to another."""
-    return drive._replace(vectors=drive.vectors[first:last], first_tick=drive.first_tick + first)
+
+    def read(names: Sequence[str]) -> Iterator[Array]:
+        yield np.column_stack(drive.columns(*names))[first:last]
+
+    return Drive(read, len(range(drive.ticks)[first:last]), drive.tick_hz, drive.first_tick + first)

@@ -55,7 +55,7 @@ def _stop(drive: Drive, speed_kmh: float) -> dict[str, float]:
     developed = (speed[at_80] ** 2 - speed[at_10] ** 2) / (2.0 * (way[at_10] - way[at_80]))
     return {
         "stopping_distance_m": float(way[-1] * (nominal / speed[0]) ** 2),
-        "stopping_time_s": len(drive.vectors) / drive.tick_hz,
+        "stopping_time_s": drive.ticks / drive.tick_hz,
         "mean_fully_developed_deceleration_mps2": float(developed),
         "lowest_wheel_speed_share": _wheel_share(drive),
         "largest_offset_m": float(np.abs(drive.column("vehicle.y_m")).max()),

@@ -1,6 +1,7 @@
 """Double lane change (ISO 3888): the fastest clean entry, and its values."""
 
 import math
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -37,9 +38,12 @@ def lane_change(spec: DoubleLaneChange, car: Platform) -> Driving:
 
 def _from_cone(drive: Drive, first_cone_m: float) -> Drive:
     """Return the drive with x counted from the first cone."""
-    vectors = drive.vectors.copy()
-    vectors[:, drive.places["vehicle.x_m"]] -= first_cone_m
-    return drive._replace(vectors=vectors)
+
+    def read(names: Sequence[str]) -> Iterator[Array]:
+        moved = np.array([first_cone_m if name == "vehicle.x_m" else 0.0 for name in names])
+        return (block - moved for block in drive.read(names))
+
+    return drive._replace(read=read)
 
 
 def least_room_m(drive: Drive, course: ConeCourse, car: Platform) -> float:

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from simconsole.evaluation.metrics.table import Drive
+from simconsole.evaluation.metrics.table import Drive, runs
 
 
 class FaultSpan(NamedTuple):
@@ -23,12 +23,14 @@ def fault_spans(drive: Drive, names: Sequence[str]) -> list[FaultSpan]:
         drive: The drive.
         names: What the faults of its scenario are called, in their order; a bit without a name is called by its place.
     """
-    masks = drive.column("events.faults").astype(np.int64)
+    masks = runs(block[:, 0] for block in drive.read(("events.faults",)))
+    edges = np.append(masks.starts, drive.ticks)
+    bits = masks.values.astype(np.int64)
     found = []
-    for place in range(int(masks.max()).bit_length()):
-        on = np.diff((masks >> place & 1).astype(np.int8), prepend=0, append=0)
+    for place in range(int(bits.max()).bit_length()):
+        on = np.diff((bits >> place & 1).astype(np.int8), prepend=0, append=0)
         name = names[place] if place < len(names) else f"fault {place}"
-        for first, after in zip(np.flatnonzero(on > 0).tolist(), np.flatnonzero(on < 0).tolist(), strict=True):
+        for first, after in zip(edges[on > 0].tolist(), edges[on < 0].tolist(), strict=True):
             found.append(FaultSpan(name, drive.first_tick + first, drive.first_tick + after - 1))
     return sorted(found, key=lambda span: (span.first_tick, span.last_tick))
 

@@ -16,10 +16,13 @@ def thinned(values: Array, most: int) -> NDArray[np.int64]:
         return np.arange(count)
     bins = max(1, most // 2)
     size = -(-count // bins)
-    padded = np.pad(values, (0, bins * size - count), mode="edge").reshape(bins, size)
-    starts = np.arange(bins) * size
-    kept = np.concatenate(((0, count - 1), starts + padded.argmin(axis=1), starts + padded.argmax(axis=1)))
-    return np.unique(np.minimum(kept, count - 1))
+    starts = np.arange(0, count, size)
+    whole = values[: count // size * size].reshape(-1, size)
+    lowest, highest = whole.argmin(axis=1), whole.argmax(axis=1)
+    if len(whole) < len(starts):  # the last bin is shorter; no copy is made to fill it up
+        rest = values[starts[-1] :]
+        lowest, highest = np.append(lowest, rest.argmin()), np.append(highest, rest.argmax())
+    return np.unique(np.concatenate(((0, count - 1), starts + lowest, starts + highest)))
 
 
 def path_thinned(x: Array, y: Array, step: float) -> NDArray[np.int64]:

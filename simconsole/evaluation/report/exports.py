@@ -2,29 +2,45 @@
 
 import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable
+from contextlib import nullcontext
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
+from simconsole.evaluation.report.scene_export import SCENE, scene_process
 from simconsole.processes.lifetimes import remove_half_made, undone
 from simconsole.profiles.faults import fault_label
-from simconsole.recording.bundles.bundle import add_export, open_bundle
+from simconsole.recording.bundles.bundle import Bundle, add_export, open_bundle
 from simconsole.recording.bundles.manifest import Manifest, refuse_signed
 from simconsole.recording.bundles.provenance import facts as provenance_facts
 from simconsole.recording.bundles.replay_bundle import recorded_session
-from simconsole.recording.reading import LogTable
-from simconsole.session.scene_job import LIVE_SCENE, scene_job
+from simconsole.session.scene_job import LIVE_SCENE
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.world.course import Course
 
 REPORT: Final = "report.html"
-SCENE: Final = "scene.rrd"
+PASSES: Final = 8
+"""How often a report passes over its drive: to count the ticks, for the track, the mode changes, the acceleration, the
+faults, the take-overs (where there are any), the map and the traces."""
+Told = Callable[[str, float], object]
+"""Told what is being made, and the share of it that is done, from 0 to 1."""
 
 
-def write_exports(folder: Path, report: bool = True, scene: bool = True) -> dict[str, Any]:
+def _untold(what: str, share: float) -> None:
+    """Let nobody know."""
+
+
+def write_exports(folder: Path, report: bool = True, scene: bool = True, told: Told = _untold) -> dict[str, Any]:
     """Write report and scene of the bundle in `folder`, each where wanted; return the report's metrics.
 
-    The scene is made by a process of its own meanwhile (rerun is never called in this one).
+    The scene is made by a process of its own meanwhile (rerun is never called in this one). Neither has a deadline.
+
+    Args:
+        folder: the bundle.
+        report: whether to write report.html.
+        scene: whether to write scene.rrd.
+        told: how far each of them is; called in two threads.
 
     Raises:
         RecordingError: not a bundle, or a signed one.
@@ -33,34 +49,33 @@ def write_exports(folder: Path, report: bool = True, scene: bool = True) -> dict
     if report or scene:
         refuse_signed(folder)
     with undone(lambda: remove_half_made(folder)):
-        return _write_exports(folder, report, scene)
+        return _write_exports(folder, report, scene, told)
 
 
-def _write_exports(folder: Path, report: bool, scene: bool) -> dict[str, Any]:
+def _write_exports(folder: Path, report: bool, scene: bool, told: Told) -> dict[str, Any]:
     bundle = open_bundle(folder)
-    resolved, table = recorded_session(bundle), bundle.log.table()
     try:
-        with ThreadPoolExecutor(1) as beside:
-            pending = beside.submit(_scene, folder, resolved, table) if scene else None
-            metrics = _report(folder, resolved, table, bundle.manifest, report)
-            if pending is not None:
-                pending.result()
+        with scene_process(folder, partial(told, "scene")) if scene else nullcontext(lambda: None) as wait:
+            try:
+                metrics = _report(bundle, report, partial(told, "report"))
+            finally:
+                wait()
     finally:  # where one could not be made, the other is listed all the same
         made = [name for name, wanted in ((REPORT, report), (SCENE, scene)) if wanted and (folder / name).exists()]
         add_export(folder, *made, instead_of=LIVE_SCENE if SCENE in made else None)
     return metrics
 
 
-def write_report(folder: Path) -> dict[str, Any]:
+def write_report(folder: Path, told: Told = _untold) -> dict[str, Any]:
     """Write report.html into the bundle and return its metrics.
 
     Raises:
         RecordingError: not a bundle, or a signed one.
     """
-    return write_exports(folder, scene=False)
+    return write_exports(folder, scene=False, told=told)
 
 
-def write_scene(folder: Path) -> Path:
+def write_scene(folder: Path, told: Told = _untold) -> Path:
     """Write scene.rrd into the bundle and return its path.
 
     Raises:
@@ -68,8 +83,9 @@ def write_scene(folder: Path) -> Path:
         WorkerError: the process that writes it failed.
     """
     refuse_signed(folder)
-    bundle = open_bundle(folder)
-    _scene(folder, recorded_session(bundle), bundle.log.table())
+    open_bundle(folder)
+    with undone(lambda: remove_half_made(folder)), scene_process(folder, partial(told, "scene")) as wait:
+        wait()
     add_export(folder, SCENE, instead_of=LIVE_SCENE)
     return folder / SCENE
 
@@ -83,28 +99,26 @@ def _course(resolved: ResolvedSession) -> Course | None:
     return None if resolved.world is None else Course(resolved.world)
 
 
-def _report(folder: Path, resolved: ResolvedSession, table: LogTable, manifest: Manifest, page: bool) -> dict[str, Any]:
+def _report(bundle: Bundle, page: bool, told: Callable[[float], object]) -> dict[str, Any]:
     from simconsole.evaluation.metrics.drive_metrics import metrics
-    from simconsole.evaluation.metrics.table import drive_of
+    from simconsole.evaluation.metrics.table import recorded_drive
     from simconsole.evaluation.report.page import write_report as write_page
 
-    course, title = _course(resolved), resolved.session.title or folder.name
-    first_tick = int(table.ticks[0]) if len(table.ticks) else 1
+    resolved, manifest = recorded_session(bundle), bundle.manifest
+    course, title = _course(resolved), resolved.session.title or bundle.folder.name
     faults = [fault_label(fault) for fault in resolved.session.scenario.faults]
+    drive = recorded_drive(bundle.log, lambda passes: told(min(passes / PASSES, 1.0)))
     if page:
         return write_page(
-            folder / REPORT,
-            table.vectors,
-            table.columns,
-            table.tick_hz,
+            bundle.folder / REPORT,
+            drive,
             course,
             title,
             _facts(resolved, manifest),
-            first_tick=first_tick,
             faults=faults,
             latency_us=manifest.summary.get("latency_us"),
         )
-    return metrics(drive_of(table.vectors, table.columns, table.tick_hz, first_tick), course, None, faults)
+    return metrics(drive, course, None, faults)
 
 
 def _facts(resolved: ResolvedSession, manifest: Manifest) -> dict[str, object]:
@@ -121,9 +135,3 @@ def _facts(resolved: ResolvedSession, manifest: Manifest) -> dict[str, object]:
             if not isinstance(value, dict | list)
         },
     }
-
-
-def _scene(folder: Path, resolved: ResolvedSession, table: LogTable) -> None:
-    from simconsole.scene.viewer.export import export_apart
-
-    export_apart(scene_job(resolved, table.vectors, table.ticks, table.columns, table.tick_hz), folder / SCENE)

@@ -5,9 +5,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from simconsole.evaluation.metrics.drive_metrics import JUMP_M, ModeChange, Track
-from simconsole.evaluation.metrics.table import Drive
+from simconsole.evaluation.metrics.drive_metrics import ModeChange
+from simconsole.evaluation.metrics.table import Array, Drive
 from simconsole.evaluation.metrics.thinning import path_thinned
+from simconsole.evaluation.metrics.track import JUMP_M, Track
 from simconsole.evaluation.report.colours import END, LIMIT, MODES, NOTE, PERSON, REMOTE, START, THEORY
 from simconsole.values.labels import mode_label
 from simconsole.values.signals import Mode
@@ -29,8 +30,8 @@ def draw_map(figure: Any, drive: Drive, way: Track, changes: list[ModeChange], c
         path = course.offset(0.0, 0.0, course.length_m, _STEP_M)
         axes.plot(*path.T, color=THEORY, linewidth=6.0, solid_capstyle="round", label="theoretical path")
         _label_features(axes, course)
-    _draw_driven(axes, drive, way)
-    x, y = drive.column("vehicle.x_m"), drive.column("vehicle.y_m")
+    x, y = drive.columns("vehicle.x_m", "vehicle.y_m")
+    _draw_driven(axes, x, y, way)
     _draw_changes(axes, changes)
     edge = {"markeredgecolor": "white", "markeredgewidth": 1.2, "linestyle": "none", "zorder": 6}
     axes.plot(x[0], y[0], "o", color=START, markersize=10, label="start", **edge)
@@ -39,13 +40,13 @@ def draw_map(figure: Any, drive: Drive, way: Track, changes: list[ModeChange], c
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=6)
 
 
-def _draw_driven(axes: Any, drive: Drive, way: Track) -> None:
-    x, y = drive.column("vehicle.x_m"), drive.column("vehicle.y_m")
+def _draw_driven(axes: Any, x: Array, y: Array, way: Track) -> None:
+    autonomous = way.autonomous
     jumps = np.hypot(np.diff(x), np.diff(y)) > JUMP_M
-    cuts = np.flatnonzero((np.diff(way.autonomous) != 0.0) | jumps) + 1
+    cuts = np.flatnonzero((autonomous[1:] != autonomous[:-1]) | jumps) + 1
     named: set[str] = set()
     for start, end in pairwise((0, *cuts.tolist(), len(x))):
-        remote = way.autonomous[start] > 0.0
+        remote = autonomous[start]
         # One point of overlap closes the gap between two parts, unless the vehicle was put elsewhere.
         last = end + 1 if end < len(x) and not jumps[end - 1] else end
         kept = start + path_thinned(x[start:last], y[start:last], _STEP_M)

@@ -1,13 +1,13 @@
 """A drive over its distance: lateral deviation, speed, steering, mode."""
 
-from itertools import pairwise
 from typing import Any, Final
 
 import numpy as np
 
-from simconsole.evaluation.metrics.drive_metrics import ModeChange, Track, metrics
-from simconsole.evaluation.metrics.table import Array, Drive
+from simconsole.evaluation.metrics.drive_metrics import ModeChange, lateral_errors
+from simconsole.evaluation.metrics.table import Array, Drive, runs
 from simconsole.evaluation.metrics.thinning import thinned
+from simconsole.evaluation.metrics.track import Track
 from simconsole.evaluation.report.colours import BAND, END, LIMIT, MODES, NOTE, PERSON, REMOTE
 from simconsole.values.labels import mode_label
 from simconsole.values.signals import Mode
@@ -25,38 +25,33 @@ def draw_traces(figure: Any, drive: Drive, way: Track, changes: list[ModeChange]
     lateral, speed, wheel, modes = figure.subplots(
         4, 1, sharex=True, gridspec_kw={"height_ratios": (3.0, 2.6, 2.2, 0.55), "hspace": 0.04}
     )
-    _draw_lateral(lateral, drive, way, course)
+    _draw_lateral(lateral, way, course)
     _draw_speed(speed, way, course)
     _draw_steering(wheel, drive, way)
-    _draw_modes(modes, drive, way)
+    _draw_modes(modes, way)
     for axes in (lateral, speed, wheel):
         _draw_changes(axes, changes)
     modes.set_xlabel("distance driven / m")
     modes.set_xlim(0.0, max(float(way.distance_m[-1]), 1.0))
 
 
-def _draw_lateral(axes: Any, drive: Drive, way: Track, course: Course | None) -> None:
+def _draw_lateral(axes: Any, way: Track, course: Course | None) -> None:
     axes.set_title("Lateral deviation of base_link from the theoretical path, left positive")
     axes.set_ylabel("deviation / cm")
     if course is None:
         axes.text(0.5, 0.5, "no course in this world", transform=axes.transAxes, ha="center", color=NOTE)
         return
-    driven = way.autonomous > 0.0
-    if not driven.any():
+    errors = lateral_errors(way)
+    if errors is None:
         _line(axes, way.distance_m, way.lateral_m * _CM_PER_M, PERSON, "person")
         axes.legend(loc="upper right")
         return
-    part = metrics(drive, course, way)["autonomous"]
-    rms, worst = part["lateral_rms_m"] * _CM_PER_M, part["lateral_max_m"] * _CM_PER_M
+    driven, deviation = way.autonomous, way.lateral_m * _CM_PER_M
+    rms, worst, at = errors.rms_m * _CM_PER_M, errors.max_m * _CM_PER_M, errors.max_at
     axes.axhspan(-rms, rms, color=BAND, zorder=0, label=f"RMS {rms:.2f} cm")
-    masked = np.where(driven, way.lateral_m * _CM_PER_M, np.nan)
-    person = np.where(driven, np.nan, way.lateral_m * _CM_PER_M)
-    _line(axes, way.distance_m, person, PERSON, "person", linewidth=0.9)
-    _line(axes, way.distance_m, masked, REMOTE, "autopilot")
-    at = int(np.flatnonzero(driven)[np.abs(way.lateral_m[driven]).argmax()])
-    axes.plot(
-        way.distance_m[at], way.lateral_m[at] * _CM_PER_M, "o", color=END, markersize=5, label=f"max {worst:.2f} cm"
-    )
+    _line(axes, way.distance_m, np.where(driven, np.nan, deviation), PERSON, "person", linewidth=0.9)
+    _line(axes, way.distance_m, np.where(driven, deviation, np.nan), REMOTE, "autopilot")
+    axes.plot(way.distance_m[at], deviation[at], "o", color=END, markersize=5, label=f"max {worst:.2f} cm")
     axes.set_ylim(-_ROOM * max(worst, 0.1), _ROOM * max(worst, 0.1))
     axes.legend(loc="upper center", ncols=4)
 
@@ -78,17 +73,15 @@ def _draw_steering(axes: Any, drive: Drive, way: Track) -> None:
     _line(axes, way.distance_m, drive.column("vehicle.road_wheel_rad") * DEG_PER_RAD, REMOTE, None)
 
 
-def _draw_modes(axes: Any, drive: Drive, way: Track) -> None:
+def _draw_modes(axes: Any, way: Track) -> None:
     axes.set_yticks([])
     axes.set_ylabel("mode", rotation=0, ha="right", va="center")
     axes.grid(visible=False)
     axes.spines["left"].set_visible(False)
-    mode = drive.column("arbitration.mode")
-    cuts = np.flatnonzero(np.diff(mode) != 0.0) + 1
     whole = max(float(way.distance_m[-1]), 1.0)
-    for start, end in pairwise((0, *cuts.tolist(), len(mode))):
-        left, right = float(way.distance_m[start]), float(way.distance_m[min(end, len(mode) - 1)])
-        kind = int(mode[start])
+    for start, end, value in zip(*runs([way.mode]), strict=True):
+        left, right = float(way.distance_m[start]), float(way.distance_m[min(end, len(way.mode) - 1)])
+        kind = int(value)
         axes.barh(0.5, right - left, left=left, height=1.0, color=MODES.get(kind, NOTE), linewidth=0.0)
         if right - left > _NARROW * whole:
             text = mode_label(kind)

@@ -4,8 +4,9 @@ import io
 from typing import Any, Final
 
 from simconsole.evaluation.manoeuvres.attempt import Panel
-from simconsole.evaluation.metrics.drive_metrics import ModeChange, Track
+from simconsole.evaluation.metrics.drive_metrics import ModeChange
 from simconsole.evaluation.metrics.table import Drive
+from simconsole.evaluation.metrics.track import Track
 from simconsole.evaluation.report.figure_map import draw_map
 from simconsole.evaluation.report.figure_panels import draw_panels
 from simconsole.evaluation.report.figure_traces import draw_traces

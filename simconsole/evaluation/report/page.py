@@ -5,10 +5,9 @@ from html import escape
 from pathlib import Path
 from typing import Any, Final
 
-from numpy.typing import ArrayLike
-
-from simconsole.evaluation.metrics.drive_metrics import metrics, mode_changes, track
-from simconsole.evaluation.metrics.table import drive_of
+from simconsole.evaluation.metrics.drive_metrics import metrics, mode_changes
+from simconsole.evaluation.metrics.table import Drive
+from simconsole.evaluation.metrics.track import track
 from simconsole.evaluation.report.figures import map_svg, traces_svg
 from simconsole.values.errors import RecordingError
 from simconsole.values.host.files import write_atomically
@@ -55,14 +54,11 @@ _LABELS: Final[tuple[tuple[str, str, str], ...]] = (
 
 def write_report(
     path: Path,
-    vectors: ArrayLike,
-    columns: Sequence[str],
-    tick_hz: int,
+    drive: Drive,
     course: Course | None,
     title: str,
     extra: Mapping[str, object] | None = None,
     *,
-    first_tick: int = 1,
     faults: Sequence[str] = (),
     latency_us: Mapping[str, Mapping[str, float]] | None = None,
 ) -> dict[str, Any]:
@@ -70,25 +66,21 @@ def write_report(
 
     Args:
         path: the HTML file.
-        vectors: float64 [ticks, columns], one state vector per tick from `first_tick`.
-        columns: their names, as of `state_vector.columns`.
-        tick_hz: ticks per second.
+        drive: the drive.
         course: the theoretical path, None in a world without one.
         title: heading of the page.
         extra: further facts for the page, in order. Nothing that differs between equal drives belongs here, if two
             reports of one drive are to be equal.
-        first_tick: number of the first tick.
         faults: names of the scenario's faults, in their order.
         latency_us: p50, p99, max and count of each hop (LatencyStatistics.summary_us). They differ between equal
             drives, so they are not among the metrics.
 
     Raises:
-        RecordingError: an empty drive, state vectors that do not fit the columns, or a file that cannot be written.
+        RecordingError: a column is missing, or the file cannot be written.
     """
-    drive = drive_of(vectors, columns, tick_hz, first_tick)
     way = track(drive, course)
-    found = metrics(drive, course, way, faults)
     changes = mode_changes(drive, way)
+    found = metrics(drive, course, way, faults, changes)
     svgs = map_svg(drive, way, changes, course), traces_svg(drive, way, changes, course)
     try:
         write_atomically(path, page(title, found, svgs, extra or {}, latency_us or {}))

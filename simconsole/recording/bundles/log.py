@@ -32,6 +32,7 @@ LAST_TICKS: Final = 2
 """Ticks still tried once recording has failed: the one that failed, and the next, which holds the alarm."""
 
 _READ_BYTES: Final = 1 << 20
+_AT_ONCE: Final = 256  # ticks; BLOCK_TICKS is a multiple of it
 
 _synchronise = getattr(os, "fdatasync", os.fsync)
 
@@ -268,11 +269,19 @@ class LogReader:
         Raises:
             RecordingError: no such column in this recording.
         """
-        wanted = None if columns is None else places(self.header, columns)
+        wanted = places(self.header, columns)
         records = iter(self)
-        while part := list(islice(records, BLOCK_TICKS)):
-            vectors = np.array([record.vector if wanted is None else record.vector[wanted] for record in part])
-            yield Block(np.array([record.tick for record in part]), vectors)
+        while True:
+            ticks, vectors, count = np.empty(BLOCK_TICKS, np.int64), np.empty((BLOCK_TICKS, len(wanted))), 0
+            # Whole state vectors are in memory a few at a time: a block of them is larger than what is wanted of it.
+            while count < BLOCK_TICKS and (some := list(islice(records, _AT_ONCE))):
+                part = slice(count, count := count + len(some))
+                ticks[part] = [record.tick for record in some]
+                vectors[part] = np.concatenate([record.vector for record in some]).reshape(len(some), -1)[:, wanted]
+            if count:
+                yield Block(ticks[:count], vectors[:count])
+            if count < BLOCK_TICKS:
+                return
 
     def table(self, columns: Sequence[str] | None = None) -> LogTable:
         """Return all whole records as arrays, with only these columns (None: all).

@@ -43,13 +43,14 @@ def state_at(folder: Path, tick: int) -> tuple[Console, ConsoleState]:
     """
     bundle = open_bundle(folder)
     console, start = assemble(recorded_session(bundle), compiled)
-    table = bundle.log.table()
     if tick == 0:
         return console, start
-    if not 1 <= tick <= len(table.vectors) or table.columns != console.columns:
-        last = len(table.vectors)
-        raise RecordingError(f"{folder}: tick: value {tick}: 0 to {last}, of a drive with the same columns")
-    return console, ConsoleState(tick, np.array(table.vectors[tick - 1]))
+    last = 0
+    for record in bundle.log if bundle.log.header.columns == console.columns else ():
+        if record.tick == tick:
+            return console, ConsoleState(tick, np.array(record.vector))
+        last = record.tick
+    raise RecordingError(f"{folder}: tick: value {tick}: 0 to {last}, of a drive with the same columns")
 
 
 def replay_bundle(folder: Path) -> ReplayResult:

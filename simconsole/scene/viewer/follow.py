@@ -35,7 +35,7 @@ def follow(ports: Ports, job: Job, path: Path) -> None:
 
     Args:
         ports: the ring and the end.
-        job: course, car and columns; its state vectors are not used.
+        job: course, car and columns.
         path: the file to write.
 
     Raises:

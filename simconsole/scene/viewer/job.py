@@ -1,4 +1,4 @@
-"""The input of a scene process, as one .npz file: state vectors (none for a live drive), the course, the car."""
+"""What a scene needs before the first state vector: course, car and columns; as one .npz file for a live drive."""
 
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -8,8 +8,7 @@ import msgspec
 import numpy as np
 
 from simconsole.profiles.view import SceneProfile
-from simconsole.scene.entities import Array, Dimensions
-from simconsole.scene.timeline import NEEDED, Ticks
+from simconsole.scene.entities import Dimensions
 from simconsole.values.errors import WorkerError
 from simconsole.world.drawing import Drawing
 from simconsole.world.drawing_layers import Light
@@ -18,11 +17,9 @@ _LINES: Final = ("surfaces", "islands", "edges", "centre_lines", "zebras", "stop
 
 
 class Job(NamedTuple):
-    """A drive to show. A live job has no state vectors: they come through the ring."""
+    """A drive to show; its state vectors come block by block."""
 
-    vectors: Array  # [N, columns]
-    ticks: Ticks  # [N]
-    columns: tuple[str, ...]
+    columns: tuple[str, ...]  # of the state vectors
     tick_hz: int
     dimensions: Dimensions
     drawing: Drawing | None
@@ -30,17 +27,13 @@ class Job(NamedTuple):
 
 
 def save_job(path: Path, job: Job) -> None:
-    """Write a job; of its state vectors only the columns that the scene reads.
+    """Write a job.
 
     Raises:
         WorkerError: the file cannot be written.
     """
-    columns = tuple(name for name in job.columns if name in NEEDED)
-    vectors = job.vectors[:, [job.columns.index(name) for name in columns]]
     content: dict[str, Any] = {
-        "vectors": vectors,
-        "ticks": job.ticks,
-        "columns": np.array(columns),
+        "columns": np.array(job.columns),
         "tick_hz": job.tick_hz,
         "dimensions": np.array(job.dimensions),
         "profile": np.frombuffer(msgspec.json.encode(job.profile), dtype=np.uint8),
@@ -63,8 +56,6 @@ def load_job(path: Path) -> Job:
     try:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as content:
             return Job(
-                vectors=content["vectors"],
-                ticks=content["ticks"],
                 columns=tuple(content["columns"].tolist()),
                 tick_hz=int(content["tick_hz"]),
                 dimensions=Dimensions(*content["dimensions"].tolist()),

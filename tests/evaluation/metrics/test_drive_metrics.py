@@ -1,11 +1,11 @@
 import math
 from typing import Any
 
-import numpy as np
 import pytest
 
-from simconsole.evaluation.metrics.drive_metrics import metrics, mode_changes, track
+from simconsole.evaluation.metrics.drive_metrics import lateral_errors, metrics, mode_changes
 from simconsole.evaluation.metrics.table import drive_of
+from simconsole.evaluation.metrics.track import track
 from simconsole.world.course import Course
 
 
@@ -51,12 +51,6 @@ def test_mode_changes_and_refusals_in_order(known: Any, course: Course) -> None:
     assert mode_changes(drive, track(drive, course))[2].x_m == pytest.approx(course.at(2640.0).x_m, abs=1e-6)
 
 
-def test_distance_runs_on_over_the_start_line(known: Any, course: Course) -> None:
-    way = track(drive_of(*known), course)
-    assert way.s_m[-1] - way.s_m[0] == pytest.approx(10.0 * 1499 / 50, abs=1e-6)
-    assert (np.diff(way.s_m) > 0.0).all()
-
-
 def test_a_vehicle_that_is_put_elsewhere_did_not_drive_there(known: Any, course: Course) -> None:
     rows = known.vectors.copy()
     rows[750:, known.columns.index("vehicle.y_m")] += 40.0
@@ -76,3 +70,15 @@ def test_speeding_is_counted(known: Any, course: Course) -> None:
     rows = known.vectors.copy()
     rows[100:125, known.columns.index("vehicle.vx_mps")] = 14.0
     assert metrics(drive_of(rows, known.columns, 50), course)["above_limit_s"] == 0.5
+
+
+def test_the_largest_lateral_error_is_at_its_tick(known: Any, course: Course) -> None:
+    rows = known.vectors.copy()
+    rows[600, known.columns.index("vehicle.y_m")] += 0.5
+    rows[600, known.columns.index("vehicle.x_m")] += 0.5
+    way = track(drive_of(rows, known.columns, 50), course)
+    errors = lateral_errors(way)
+    assert errors is not None
+    assert (errors.max_at, errors.max_m) == (600, abs(way.lateral_m[600]))
+    assert lateral_errors(track(drive_of(*known), None)) is None
+    assert lateral_errors(track(drive_of(known.vectors[:200], known.columns, 50), course)) is None

@@ -33,7 +33,7 @@ def test_every_span_of_every_fault_in_order(faulty: Known) -> None:
 
 
 def test_metrics_and_page_name_them(faulty: Known, tmp_path: Path) -> None:
-    found = write_report(tmp_path / "r.html", *faulty, None, "title", faults=["unplug <wheel>"])
+    found = write_report(tmp_path / "r.html", drive_of(*faulty), None, "title", faults=["unplug <wheel>"])
     assert found["faults"][0] == {
         "fault": "unplug <wheel>",
         "first_tick": 11,
@@ -48,5 +48,5 @@ def test_metrics_and_page_name_them(faulty: Known, tmp_path: Path) -> None:
 
 def test_a_drive_without_faults_has_none_and_says_nothing(known: Known, tmp_path: Path) -> None:
     assert metrics(drive_of(*known), None)["faults"] == []
-    write_report(tmp_path / "r.html", *known, None, "title")
+    write_report(tmp_path / "r.html", drive_of(*known), None, "title")
     assert "Faults" not in (tmp_path / "r.html").read_text("utf-8")

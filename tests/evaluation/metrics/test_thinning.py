@@ -1,4 +1,5 @@
 import numpy as np
+import pytest
 
 from simconsole.evaluation.metrics.thinning import path_thinned, thinned
 
@@ -25,3 +26,15 @@ def test_path_is_thinned_by_length() -> None:
     assert kept[-1] == len(x) - 1
     assert np.diff(x[kept]).max() <= 1.1
     assert path_thinned(np.zeros(4), np.zeros(4), 1.0).tolist() == [0, 3]
+
+
+@pytest.mark.parametrize("count", [11, 29, 30, 31, 99, 100, 101])
+def test_no_extreme_of_a_bin_is_lost_whatever_the_length(count: int) -> None:
+    values = np.sin(np.arange(count) * 1.7) * np.arange(count)
+    kept = thinned(values, 10)
+    size = -(-count // 5)
+    wanted = {0, count - 1}
+    for start in range(0, count, size):
+        part = values[start : start + size]
+        wanted |= {start + int(part.argmin()), start + int(part.argmax())}
+    assert kept.tolist() == sorted(wanted)

@@ -8,13 +8,14 @@ import msgspec
 import pytest
 
 from simconsole.evaluation.report import exports
-from simconsole.evaluation.report.exports import REPORT, SCENE, write_exports, write_report, write_scene
+from simconsole.evaluation.report.exports import PASSES, REPORT, write_exports, write_report, write_scene
+from simconsole.evaluation.report.scene_export import SCENE
 from simconsole.recording.bundles.bundle import add_export, open_bundle
 from simconsole.recording.bundles.manifest import MANIFEST, read_manifest, write_manifest
 from simconsole.recording.bundles.signing import make_key, sign
 from simconsole.recording.bundles.verification import verify
 from simconsole.session.scene_job import LIVE_SCENE
-from simconsole.values.errors import RecordingError
+from simconsole.values.errors import RecordingError, WorkerError
 
 
 @pytest.fixture
@@ -97,6 +98,23 @@ def test_a_scene_is_made_by_a_process_of_its_own(bare: Path, monkeypatch: pytest
     monkeypatch.setitem(sys.modules, "rerun", None)  # who imports it in this process gets an ImportError
     assert write_scene(bare) == bare / SCENE
     assert (bare / SCENE).stat().st_size > 1000
+
+
+def test_it_is_told_how_much_is_done_and_all_of_it_at_the_end(bare: Path) -> None:
+    told: dict[str, list[float]] = {"report": [], "scene": []}
+    write_exports(bare, told=lambda what, share: told[what].append(share))
+    for shares in told.values():
+        assert shares == sorted(shares)
+        assert 0.0 < shares[0] <= shares[-1] <= 1.0
+    assert told["report"][-1] >= (PASSES - 1) / PASSES, "only the pass over the take-overs may be left out"
+    assert told["scene"][-1] == 1.0
+
+
+def test_a_scene_that_fails_leaves_no_file_and_no_lasting_process(bare: Path) -> None:
+    (bare / "scene.rrd.new").mkdir()  # where its draft belongs
+    with pytest.raises(WorkerError, match=r"scene\.rrd: the scene was not written"):
+        write_scene(bare)
+    assert not (bare / SCENE).exists()
 
 
 def test_a_folder_that_is_no_bundle_gets_nothing(tmp_path: Path) -> None:

@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from simconsole.evaluation.metrics.drive_metrics import JUMP_M, mode_changes, track
+from simconsole.evaluation.metrics.drive_metrics import mode_changes
 from simconsole.evaluation.metrics.table import drive_of
+from simconsole.evaluation.metrics.track import JUMP_M, track
 from simconsole.evaluation.report.colours import PERSON, REMOTE
 from simconsole.evaluation.report.figure_map import draw_map
 from simconsole.world.course import Course

@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from simconsole.evaluation.metrics.drive_metrics import mode_changes, track
+from simconsole.evaluation.metrics.drive_metrics import mode_changes
 from simconsole.evaluation.metrics.table import drive_of
+from simconsole.evaluation.metrics.track import track
 from simconsole.evaluation.report.figure_traces import draw_traces
 from simconsole.values.labels import mode_label
 from simconsole.values.signals import Mode

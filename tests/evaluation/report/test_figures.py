@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from simconsole.evaluation.metrics.drive_metrics import mode_changes, track
+from simconsole.evaluation.metrics.drive_metrics import mode_changes
 from simconsole.evaluation.metrics.table import drive_of
+from simconsole.evaluation.metrics.track import track
 from simconsole.evaluation.report.colours import END, PERSON, REMOTE, START, THEORY
 from simconsole.evaluation.report.figures import map_svg, traces_svg
 from simconsole.world.course import Course

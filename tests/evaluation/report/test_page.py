@@ -29,7 +29,7 @@ class Outside(HTMLParser):
 
 
 def written(path: Path, known: Any, course: Course | None, title: str, *more: Any, **options: Any) -> dict[str, Any]:
-    return write_report(path, known.vectors, known.columns, known.tick_hz, course, title, *more, **options)
+    return write_report(path, drive_of(*known), course, title, *more, **options)
 
 
 def test_latency_of_each_hop_stands_in_the_page_only(tmp_path: Path, known: Any) -> None:
