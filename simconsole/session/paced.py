@@ -9,8 +9,10 @@ import msgspec
 import numpy as np
 
 from simconsole.bridge.console.operator_acts import ACT_BYTES, ACTS_MAX
+from simconsole.hud.view import HudSettings, settings_of
 from simconsole.processes.shared_memory import EventCounters, Ring, TextQueue
 from simconsole.processes.worker import Worker, WorkerSpec
+from simconsole.profiles.view import HudProfile
 from simconsole.session.scene_job import LIVE_SCENE, scene_job
 from simconsole.session.worker_programs import (
     ACTS,
@@ -173,9 +175,12 @@ def worker_specs(
             profile=outputs.can, tick_hz=tick_hz, wheels=wheel_columns(console.columns), bundle=str(bundle.absolute())
         )
     if outputs.hud is not None:
-        control = resolved.session.features.control
         workers["hud"] = HudWorker(
-            profile=outputs.hud, control=control, tick_hz=tick_hz, has_can=has_can, has_bridge=has_bridge
+            profile=outputs.hud,
+            settings=_hud_settings(resolved, outputs.hud),
+            tick_hz=tick_hz,
+            has_can=has_can,
+            has_bridge=has_bridge,
         )
     if outputs.scene is not None:
         from simconsole.scene.viewer.job import save_job
@@ -185,6 +190,11 @@ def worker_specs(
         path = str((bundle / LIVE_SCENE).absolute())
         workers["scene"] = SceneWorker(path=path, tick_hz=tick_hz, has_bridge=has_bridge)
     return [WorkerSpec.of(name, worker) for name, worker in workers.items()]
+
+
+def _hud_settings(resolved: ResolvedSession, profile: HudProfile) -> HudSettings:
+    control, by_keyboard = resolved.session.features.control, resolved.session.devices.driver == "keyboard"
+    return settings_of(profile, control, resolved.cockpit, resolved.vehicle, by_keyboard=by_keyboard)
 
 
 def bridge_address(folder: Path, alive: Callable[[], bool], patience_s: float = START_PATIENCE_S) -> str:

@@ -208,7 +208,7 @@ def test_a_bridge_killed_in_autonomy_ends_in_a_recorded_safe_stop(disturbed: Dis
     assert received[at] == received[-2] > 0.0, "no command has come since"
     assert mode[at - 1] == Mode.AUTONOMOUS
     assert mode[-1] == Mode.STOPPED
-    assert tuple(change["mode"] for change in disturbed.results["mode_changes"][-2:]) == ("MINIMAL RISK", "STOPPED")
+    assert tuple(change["mode"] for change in disturbed.results["mode_changes"][-2:]) == ("SAFE STOP", "STOPPED")
     age = disturbed.table.column("ros.age_ticks")
     assert age[at] >= 0.2 * TICK_HZ > age[at - 1], "200 ms after the last command, not sooner and not later"
     assert disturbed.table.column("vehicle.vx_mps")[at] > 1.0

@@ -7,46 +7,17 @@ import os
 import sys
 import time
 from collections.abc import Callable
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 from simconsole.hud.draw import DrawItem
+from simconsole.hud.key_names import KEY_CODES
 from simconsole.hud.layout import check_screen, layout, sample_views
 from simconsole.hud.screen import Screen, screen_of
 from simconsole.hud.view import HudMemory, HudSettings, HudView, view
 from simconsole.hud.window.raster import Painter
 from simconsole.profiles.view import HudProfile
 from simconsole.values.errors import WorkerError
-from simconsole.values.key_codes import Key
 from simconsole.values.state_vector import Snapshot
-
-KEY_CODES: Final[dict[str, Key]] = {
-    "K_LEFT": Key.STEER_LEFT,
-    "K_a": Key.STEER_LEFT,
-    "K_RIGHT": Key.STEER_RIGHT,
-    "K_d": Key.STEER_RIGHT,
-    "K_UP": Key.THROTTLE,
-    "K_w": Key.THROTTLE,
-    "K_DOWN": Key.BRAKE,
-    "K_s": Key.BRAKE,
-    "K_LSHIFT": Key.CLUTCH,
-    "K_SPACE": Key.HANDBRAKE,
-    "K_e": Key.GEAR_UP,
-    "K_q": Key.GEAR_DOWN,
-    "K_RETURN": Key.AUTONOMOUS,
-    "K_BACKSPACE": Key.MANUAL,
-    "K_ESCAPE": Key.EMERGENCY_STOP,
-    "K_r": Key.RESET,
-    "K_COMMA": Key.INDICATOR_LEFT,
-    "K_PERIOD": Key.INDICATOR_RIGHT,
-    "K_m": Key.MARK,
-    "K_h": Key.HAZARD,
-    "K_p": Key.PAUSE,
-    "K_HOME": Key.RESTART,
-    "K_t": Key.TAKEOVER,
-    "K_y": Key.SHARED,
-    "K_f": Key.FAULT,
-}
-"""Names of pygame's key constants: the library itself is loaded when a window opens."""
 
 
 class Ports(NamedTuple):

@@ -8,9 +8,10 @@ import numpy as np
 import pygame
 import pytest
 
+from simconsole.hud.key_names import KEY_CODES
 from simconsole.hud.view import HudSettings
 from simconsole.hud.window import pygame_window as window
-from simconsole.hud.window.pygame_window import KEY_CODES, Freshness, Ports, Window, choose_display, run
+from simconsole.hud.window.pygame_window import Freshness, Ports, Window, choose_display, run
 from simconsole.profiles.view import HudProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.key_codes import Key
