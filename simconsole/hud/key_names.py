@@ -30,6 +30,7 @@ KEY_CODES: Final[dict[str, Key]] = {
     "K_t": Key.TAKEOVER,
     "K_y": Key.SHARED,
     "K_f": Key.FAULT,
+    "K_END": Key.END,
 }
 """Names of pygame's key constants: the library itself is loaded when a window opens."""
 

@@ -38,6 +38,7 @@ from simconsole.session.worker_programs import (
 from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import BridgeError, CanError
+from simconsole.values.key_codes import Key
 from simconsole.values.latency import Hop
 from simconsole.values.protocols import CommandSource, NobodyCommands
 from simconsole.values.signals import NEVER_TICKS, NO_COMMAND, EventInput, RemoteCommand
@@ -105,6 +106,17 @@ class KeyPort:
     def __init__(self, slot: Ring, tick_hz: int) -> None:
         self._slot = slot
         self._tick_hz = tick_hz
+        self._seen = 0
+        self._ended = False
+
+    def ended(self) -> bool:
+        """Return whether the window was closed, or its key pressed that ends the drive."""
+        if self._slot.newest != self._seen:
+            record = self._slot.latest()
+            if record is not None:
+                self._seen = record.number
+                self._ended |= bool(int(record.values[0]) & Key.END)
+        return self._ended
 
     def __call__(self) -> tuple[int, int]:
         """Return the keys held now and how long ago the window said so."""

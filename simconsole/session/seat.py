@@ -31,6 +31,18 @@ class Seating(NamedTuple):
     """Of the devices that a person or a simulated one works; none of a trace, a script or the keyboard."""
 
 
+def look_for_devices(resolved: ResolvedSession) -> None:
+    """Open and close the devices that the session names: a missing one is told before anything is compiled.
+
+    Raises:
+        DeviceError: a device is missing or in a mode that cannot drive.
+    """
+    if resolved.session.devices.driver == "sdl":
+        from simconsole.devices.sources.sdl_source import SdlSource
+
+        SdlSource(resolved.cockpit).close()
+
+
 def open_seating(
     resolved: ResolvedSession, console: Console, stack: ExitStack, keys: Callable[[], tuple[int, int]] | None = None
 ) -> Seating:

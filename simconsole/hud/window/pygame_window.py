@@ -7,7 +7,7 @@ import os
 import sys
 import time
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from simconsole.hud.draw import DrawItem
 from simconsole.hud.key_names import KEY_CODES
@@ -17,6 +17,7 @@ from simconsole.hud.view import HudMemory, HudSettings, HudView, view
 from simconsole.hud.window.raster import Painter
 from simconsole.profiles.view import HudProfile
 from simconsole.values.errors import WorkerError
+from simconsole.values.key_codes import Key
 from simconsole.values.state_vector import Snapshot
 
 
@@ -129,17 +130,30 @@ def held_keys() -> int:
     return mask
 
 
+def _asks_for_end(event: Any) -> bool:
+    import pygame
+
+    if event.type == pygame.KEYDOWN:
+        return bool(event.key == pygame.K_END)
+    return bool(event.type == pygame.QUIT)
+
+
 def run(ports: Ports, profile: HudProfile, settings: HudSettings) -> None:
-    """Show the cluster until `ports.stop` says so or the window is closed."""
+    """Show the cluster until `ports.stop` says so.
+
+    Closing the window, or its key for that, asks for the end of the drive as a key held from then on: whoever drives
+    ends it and stops this window with everything else. A window that ended by itself would be opened again.
+    """
     window = Window(profile, settings)
     import pygame
 
     clock = pygame.time.Clock()
+    end = Key(0)
     try:
         while not ports.stop():
-            if any(event.type == pygame.QUIT for event in pygame.event.get()):
-                break
-            ports.report_keys(held_keys())
+            if any(_asks_for_end(event) for event in pygame.event.get()):
+                end = Key.END
+            ports.report_keys(held_keys() | end)
             window.frame(ports.latest(), time.monotonic(), ports.can_up(), ports.link())
             ports.drawn()
             clock.tick(profile.rate_hz)
