@@ -32,8 +32,17 @@ def devices(options: Namespace) -> Outcome:
         return Outcome(0, calibrate_devices(cockpit, path, say=_say, virtual=cockpit if options.virtual else None))
     if options.action == "feel":
         from simconsole.devices.setup.force_feedback_check import check_force_feedback
+        from simconsole.devices.setup.key_watch import KeyWatch
 
-        results = check_force_feedback(cockpit, say=_say, strength=options.strength / 100.0, virtual=options.virtual)
+        with KeyWatch() as keys:
+            results = check_force_feedback(
+                cockpit,
+                say=_say,
+                ask=keys.ask,
+                pressed=keys.pressed,
+                strength=options.strength / 100.0,
+                virtual=options.virtual,
+            )
         return Outcome(0 if results["ok"] else 1, results)
     results = record_devices(
         cockpit,
