@@ -352,7 +352,7 @@ def settle(o: Row, present: Row, r: Rules) -> None:
         o[WAIT] = o[WAIT] if present[DEVICE_LOST] != 0.0 else 0.0
         effect = TAKEOVER_ASKED
     o[MODE], o[EFFECT] = mode, float(effect)
-    note_loss(o, before)
+    note_loss(o)
 
 
 @kernel

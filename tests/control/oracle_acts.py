@@ -71,7 +71,7 @@ def hands_count(o: Row, trusted: bool, r: Rules) -> bool:
 
 
 @kernel
-def note_loss(o: Row, before: float) -> None:
+def note_loss(o: Row) -> None:
     """Remember, where a safe stop begins, whether it began because wheel or pedals were lost."""
-    if o[MODE] == MINIMAL and before != MINIMAL:
+    if o[MODE] == MINIMAL and o[EFFECT] >= 0.0:
         o[BY_LOSS] = 1.0 if o[EFFECT] == DEVICE_LOST else 0.0

@@ -85,10 +85,10 @@ def decide(now: TickContext, person: Person, controllers: Controllers, steering:
         )
     reason = now.before.reason
     wait_begins = 1.0 if lost and person.trusted == 0.0 else 0.0  # until the cockpit is back for good
-    if mode == Mode.TAKEOVER_REQUESTED and asked.takeover > 0.0:
+    if mode == Mode.TAKEOVER_REQUESTED and asked.takeover > 0.0 and reason == Reason.DEVICE_LOST:
         # A take-over was requested again: then the request does not end with its first cause. Where that was a lost
         # cockpit that is back by now, the first wait has ended, and the new request begins a wait of its own.
-        wait_begins = 1.0 if reason == Reason.DEVICE_LOST and person.trusted > 0.0 else 0.0
+        wait_begins = 1.0 if person.trusted > 0.0 else 0.0
         reason = asked.takeover_reason
     driven = mode in (Mode.SHARED, Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED)
     if refusal == GRANTED and link.implausible_ticks > 0.0 and driven:
