@@ -29,25 +29,32 @@ class KeyWatch:
         finally:
             self._key_mode()
 
+    @property
+    def is_terminal(self) -> bool:
+        """Whether somebody can press a key at all."""
+        return self._terminal
+
     def pressed(self) -> bool:
         """Return whether a key was pressed since the last call or question."""
+        return bool(self.typed())
+
+    def typed(self) -> str:
+        """Return the keys typed since the last call or question."""
         if not self._terminal:
-            return False
+            return ""
         if sys.platform == "win32":
             import msvcrt
 
-            pressed = False
+            typed = ""
             while msvcrt.kbhit():
-                msvcrt.getwch()
-                pressed = True
-            return pressed
+                typed += msvcrt.getwch()
+            return typed
+        import os
         import select
-        import termios
 
         if not select.select([sys.stdin], [], [], 0.0)[0]:
-            return False
-        termios.tcflush(sys.stdin, termios.TCIFLUSH)
-        return True
+            return ""
+        return os.read(sys.stdin.fileno(), 64).decode("utf-8", "replace")
 
     def _key_mode(self) -> None:
         if not self._terminal or sys.platform == "win32":
