@@ -198,7 +198,14 @@ def open_realtime(
         latency = {**latencies.summary_us(), **worker_latencies(folder)}
         return {**pace.summary(), **workers, "latency_us": latency, "not_granted": missing}
 
-    return Opened(components, seating.finished, summary, address, seating.identities, keys.ended)
+    return Opened(
+        components=components,
+        finished=seating.finished,
+        summary=summary,
+        bridge_url=address,
+        identities=seating.identities,
+        left=memory.keys.ended,
+    )
 
 
 def _over_link(source: CommandSource, resolved: ResolvedSession, console: Console) -> CommandSource:

@@ -3,29 +3,18 @@
 import os
 from pathlib import Path
 
-<<<<<<< HEAD
-=======
 import msgspec
-import numpy as np
->>>>>>> 0cb7e66 (Find the wheel before compiling; end the drive from its window; let keys outlast slow frames)
 import pytest
 
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load
 from simconsole.recording.bundles.bundle import open_bundle
-<<<<<<< HEAD
 from simconsole.recording.bundles.verification import verify
+from simconsole.session import lifecycle
 from simconsole.session.lifecycle import DriveResult, drive
 from simconsole.session.resolution import load_session, override, resolve
 from simconsole.tick.assembly import ResolvedSession
-=======
-from simconsole.session import lifecycle
-from simconsole.session.lifecycle import DriveResult, LogRecorder, drive
-from simconsole.session.resolution import load_session, override, resolve
-from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import DeviceNotFound
-from simconsole.values.signals import Event
->>>>>>> 0cb7e66 (Find the wheel before compiling; end the drive from its window; let keys outlast slow frames)
 from simconsole.values.state_vector import Snapshot
 
 
@@ -68,7 +57,6 @@ def test_who_watches_may_end_it_and_equal_ticks_are_equal(resolved: ResolvedSess
     assert not first.interrupted
 
 
-<<<<<<< HEAD
 def test_what_workers_wrote_beside_the_log_is_listed_once_they_have_ended(
     resolved: ResolvedSession, tmp_path: Path
 ) -> None:
@@ -80,7 +68,8 @@ def test_what_workers_wrote_beside_the_log_is_listed_once_they_have_ended(
     drive(resolved, tmp_path / "b", watch)
     assert open_bundle(tmp_path / "b").manifest.files["topics.mcap"].export
     assert verify(tmp_path / "b") == []
-=======
+
+
 def test_a_missing_wheel_is_told_before_anything_is_compiled(
     resolved: ResolvedSession, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -94,4 +83,3 @@ def test_a_missing_wheel_is_told_before_anything_is_compiled(
         drive(seated, tmp_path / "bundle")
     assert not (tmp_path / "bundle").exists()
     assert "SDL_VIDEODRIVER" not in os.environ, "the window that is opened later must be seen"
->>>>>>> 0cb7e66 (Find the wheel before compiling; end the drive from its window; let keys outlast slow frames)
