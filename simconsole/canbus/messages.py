@@ -79,6 +79,18 @@ def actuation(context: MessageContext) -> Mapping[str, float]:
     }
 
 
+def torque(context: MessageContext) -> Mapping[str, float]:
+    """Return SC_TORQUE."""
+    rim = context.snapshot.torque
+    return {
+        "HANDS_ON": rim.hands_on,
+        "MOTOR_ENABLED": rim.enabled,
+        "MOTOR_TORQUE": rim.torque_nm,
+        "DRIVER_TORQUE": rim.human_nm,
+        "CAR_TORQUE": rim.car_nm,
+    }
+
+
 def motion(context: MessageContext) -> Mapping[str, float]:
     """Return SC_MOTION."""
     vehicle = context.vehicle
@@ -129,6 +141,7 @@ BUILDERS: Final[dict[str, Builder]] = {
     "SC_STEERING": steering,
     "SC_PEDALS": pedals,
     "SC_ACTUATION": actuation,
+    "SC_TORQUE": torque,
     "SC_MOTION": motion,
     "SC_WHEELS": wheels,
     "SC_POWERTRAIN": powertrain,

@@ -7,7 +7,7 @@ from pathlib import Path
 from simconsole.cli.outcome import Outcome
 from simconsole.devices.setup.device_commands import check_devices, list_devices, record_devices
 from simconsole.profiles.device import CockpitProfile
-from simconsole.profiles.files.loader import load
+from simconsole.profiles.files.loader import load, names
 
 
 def devices(options: Namespace) -> Outcome:
@@ -27,13 +27,34 @@ def devices(options: Namespace) -> Outcome:
         return Outcome(0 if results["ok"] else 1, results)
     if options.action == "calibrate":
         from simconsole.devices.setup.calibration_dialogue import calibrate_devices
+        from simconsole.devices.setup.key_watch import KeyWatch
 
         path = Path(options.out or "cockpit.yaml")
-        return Outcome(0, calibrate_devices(cockpit, path, say=_say, virtual=cockpit if options.virtual else None))
+        with KeyWatch() as keys:
+            hands_free = keys.is_terminal and not options.virtual
+            results = calibrate_devices(
+                cockpit,
+                path,
+                say=_say,
+                ask=keys.ask,
+                virtual=cockpit if options.virtual else None,
+                known=[load("devices", name, CockpitProfile) for name in names("devices")],
+                typed=keys.typed if hands_free else None,
+            )
+        return Outcome(0, results)
     if options.action == "feel":
         from simconsole.devices.setup.force_feedback_check import check_force_feedback
+        from simconsole.devices.setup.key_watch import KeyWatch
 
-        results = check_force_feedback(cockpit, say=_say, strength=options.strength / 100.0, virtual=options.virtual)
+        with KeyWatch() as keys:
+            results = check_force_feedback(
+                cockpit,
+                say=_say,
+                ask=keys.ask,
+                pressed=keys.pressed,
+                strength=options.strength / 100.0,
+                virtual=options.virtual,
+            )
         return Outcome(0 if results["ok"] else 1, results)
     results = record_devices(
         cockpit,

@@ -38,22 +38,24 @@ class Alert(IntEnum):
     NOTICE = 1
     REFUSED = 2
     RECORDING_FAILED = 3
-    TAKE_OVER = 4
-    MINIMAL_RISK = 5
-    TAKE_OVER_NOW = 6
-    EMERGENCY = 7
-    NO_DATA = 8
+    STOPPED = 4
+    TAKE_OVER = 5
+    MINIMAL_RISK = 6
+    TAKE_OVER_NOW = 7
+    EMERGENCY = 8
+    NO_DATA = 9
 
 
 ALERT_LABELS: Final[dict[Alert, tuple[str, str]]] = {
     Alert.RECORDING_FAILED: ("RECORDING FAILED", "drive is not kept"),
-    Alert.TAKE_OVER: ("TAKE OVER", "take the wheel"),
-    Alert.MINIMAL_RISK: ("CAR IS STOPPING", "steer or brake"),
-    Alert.TAKE_OVER_NOW: ("TAKE OVER NOW", "steer or brake"),
-    Alert.EMERGENCY: ("EMERGENCY STOP", "stand still, then reset"),
+    Alert.STOPPED: ("STOPPED", ""),
+    Alert.TAKE_OVER: ("TAKE OVER", ""),
+    Alert.MINIMAL_RISK: ("CAR IS STOPPING", ""),
+    Alert.TAKE_OVER_NOW: ("TAKE OVER NOW", ""),
+    Alert.EMERGENCY: ("EMERGENCY STOP", ""),
     Alert.NO_DATA: ("NO DATA", "display is blind"),
 }
-"""A headline and what to do, at most seven words together (rule 14)."""
+"""A headline and what to do, at most seven words together (rule 14); where it is empty the view says what to do."""
 
 
 def alert_of(view: HudView) -> Alert:
@@ -63,6 +65,8 @@ def alert_of(view: HudView) -> Alert:
         found = Alert.REFUSED
     if view.recording_failed:
         found = Alert.RECORDING_FAILED
+    if view.mode == Mode.STOPPED:
+        found = Alert.STOPPED
     if view.mode == Mode.TAKEOVER_REQUESTED:
         found = Alert.TAKE_OVER_NOW if view.takeover_stage >= 2 else Alert.TAKE_OVER
     if view.mode == Mode.MINIMAL_RISK:
@@ -200,7 +204,8 @@ def _trip(view: HudView, box: Box) -> list[DrawItem]:
 
 def _headline(view: HudView, alert: Alert, box: Box, ink: Colour, ground: Colour) -> list[DrawItem]:
     head, todo = ALERT_LABELS[alert]
-    if alert is Alert.RECORDING_FAILED:  # shown to the end of the drive; answers must stay visible
+    todo = todo or view.todo_label
+    if alert in (Alert.RECORDING_FAILED, Alert.STOPPED, Alert.EMERGENCY):  # these last: answers must stay visible
         todo = view.refusal_label or view.notice_label or todo
     side = 0.62 * box.h
     items = exclamation(Box(box.x + 0.3 * box.h, box.y + 0.12 * box.h, side, side), ink, ground, "alert.shape")
@@ -220,19 +225,19 @@ def _headline(view: HudView, alert: Alert, box: Box, ink: Colour, ground: Colour
             arcmin=DRIVING_ARCMIN,
         )
     )
-    below = fit_cap_px(todo, 0.17 * box.h, room)
-    items.append(
-        Text(
-            left,
-            box.y + 0.67 * box.h,
-            todo,
-            cap_px=below,
-            colour=ink,
-            role="alert.todo",
-            anchor="l",
-            arcmin=DRIVING_ARCMIN,
+    if todo:
+        items.append(
+            Text(
+                left,
+                box.y + 0.67 * box.h,
+                todo,
+                cap_px=fit_cap_px(todo, 0.17 * box.h, room),
+                colour=ink,
+                role="alert.todo",
+                anchor="l",
+                arcmin=DRIVING_ARCMIN,
+            )
         )
-    )
     return items + (_countdown(view, box, ink) if counted else [])
 
 

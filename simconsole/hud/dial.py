@@ -219,9 +219,14 @@ def _gear(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]:
                 arcmin=SECONDARY_ARCMIN,
             )
         )
-    elif view.rpm >= view.settings.rpm_red and not view.stale:
+    elif view.rpm >= view.settings.rpm_red and _has_higher(view) and not view.stale:
         items += _shift_up(Box(box.right + 0.07 * radius, box.cy - 0.06 * radius, 0.12 * radius, 0.12 * radius))
     return items
+
+
+def _has_higher(view: HudView) -> bool:
+    """Return whether there is a gear above the one that is in: not from neutral, reverse or the highest."""
+    return view.gear.isdigit() and int(view.gear) < view.settings.top_gear
 
 
 def _shift_up(box: Box) -> list[DrawItem]:

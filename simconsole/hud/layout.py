@@ -12,6 +12,7 @@ from simconsole.hud.draw import BACKGROUND, Box, DrawItem, Rect, Text, bounds
 from simconsole.hud.panels import pedals, status, steering
 from simconsole.hud.screen import Screen
 from simconsole.hud.view import HudView
+from simconsole.hud.words import AUTOPILOT, CONSOLE, LONGEST_PRESS, MENDING, NOBODY
 from simconsole.values.errors import ProfileError
 from simconsole.values.labels import (
     LINK_COMMANDER,
@@ -109,6 +110,12 @@ def sample_views() -> list[HudView]:
     for reason in Reason:
         text = reason_label(reason)
         views.append(wide._replace(reason_label=text, refusal_label=text))
+    for mode in (Mode.STOPPED, Mode.EMERGENCY_STOP, Mode.MINIMAL_RISK):
+        told = wide._replace(
+            mode=float(mode), mode_label=mode_label(mode), reason_label=reason_label(Reason.NO_REACTION)
+        )
+        views += [told._replace(todo_label=label) for label in (*MENDING, LONGEST_PRESS)]
+    views += [wide._replace(other_side=side, driver_hand_wheel_deg=-900.0) for side in (AUTOPILOT, CONSOLE, NOBODY)]
     views += [wide._replace(notice_label=notice_label(notice)) for notice in Notice]
     asked = wide._replace(mode=float(Mode.TAKEOVER_REQUESTED), mode_label=mode_label(Mode.TAKEOVER_REQUESTED))
     views += [asked._replace(takeover_stage=stage, remaining_s=10.0) for stage in (1, 2)]
@@ -120,5 +127,5 @@ def sample_views() -> list[HudView]:
     views += [wide._replace(force=force, can_up=up) for force, up in (("limit", False), ("lost", True), ("on", None))]
     views += [wide._replace(turn_indicators=1.0), wide._replace(turn_indicators=-1.0), wide._replace(hazard_lights=1.0)]
     views += [wide._replace(lever_label=text) for text in ("two gears", "not now")]
-    views += [wide._replace(link_age_s=None, handbrake=1.0, engine_running=False, road_wheel_rad=-0.6)]
+    views += [wide._replace(link_age_s=None, handbrake=1.0, engine_running=False, hand_wheel_deg=-540.0)]
     return [*views, wide._replace(stale=True)]

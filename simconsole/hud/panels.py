@@ -1,6 +1,6 @@
 """The panels beside and below the dial: pedals, steering and link, lamps."""
 
-from typing import Final
+from typing import Final, Literal
 
 from simconsole.hud.draw import (
     ACTIVE,
@@ -22,13 +22,12 @@ from simconsole.hud.draw import (
 from simconsole.hud.screen import DRIVING_ARCMIN, SECONDARY_ARCMIN
 from simconsole.hud.shapes import exclamation
 from simconsole.hud.view import HudView
+from simconsole.hud.words import CONSOLE, NOBODY
 from simconsole.values.labels import LINK_CONNECTING, LINK_DOWN, LINK_LOST, LINK_NOBODY, LINK_RETRYING, validity_label
 from simconsole.values.signals import Validity
-from simconsole.values.units import DEG_PER_RAD
 from simconsole.values.validity import is_trusted
 
-FULL_STEERING_DEG: Final = 40.0
-"""Road-wheel angle at the end of the steering scale."""
+Anchor = Literal["l", "c", "r"]
 
 _LINK_LEVELS: Final = {
     LINK_NOBODY: "plain", LINK_LOST: "warn", LINK_CONNECTING: "warn", LINK_RETRYING: "warn", LINK_DOWN: "warn",
@@ -119,10 +118,11 @@ def steering(view: HudView, box: Box) -> list[DrawItem]:
 
 
 def _angle(view: HudView, box: Box) -> list[DrawItem]:
-    degrees = view.road_wheel_rad * DEG_PER_RAD
-    side = "" if abs(degrees) < 0.05 else (" L" if degrees > 0.0 else " R")
-    text = "--" if view.stale else f"{abs(degrees):.1f} deg{side}"
-    cap = fit_cap_px("00.0 deg R", 0.24 * box.h, 0.88 * box.w)
+    """Return the angle at the hand wheel: number and bar are what the car does, the mark is what the hands do."""
+    degrees, lock_deg = view.hand_wheel_deg, view.settings.hand_wheel_lock_deg
+    side = "" if abs(degrees) < 0.5 else (" L" if degrees > 0.0 else " R")
+    text = "--" if view.stale else f"{abs(degrees):.0f} deg{side}"
+    cap = fit_cap_px("000 deg R", 0.24 * box.h, 0.88 * box.w)
     bar = Box(box.x, box.y + 0.62 * box.h, box.w, 0.16 * box.h)
     items: list[DrawItem] = [
         Text(
@@ -138,55 +138,56 @@ def _angle(view: HudView, box: Box) -> list[DrawItem]:
         Rect(bar, LINE, "steering.slot", 0.5 * bar.h),
     ]
     if not view.stale:
-        part = min(1.0, max(-1.0, degrees / FULL_STEERING_DEG))
-        x = bar.cx - part * 0.5 * bar.w
+        x = _along(bar, degrees / lock_deg)
         left, right = min(x, bar.cx), max(x, bar.cx)
         if right - left >= 1.0:
             items.append(Rect(Box(left, bar.y, right - left, bar.h), TEXT, "steering.bar"))
     middle = Box(bar.cx - 0.08 * bar.h, bar.y - 0.4 * bar.h, max(2.0, 0.16 * bar.h), 1.8 * bar.h)
-    return [*items, Rect(middle, MUTED, "steering.middle")]
+    items.append(Rect(middle, MUTED, "steering.middle"))
+    if view.driver_hand_wheel_deg is not None and not view.stale:
+        x, reach = _along(bar, view.driver_hand_wheel_deg / lock_deg), 0.8 * bar.h
+        below = ((x, bar.bottom), (x - 0.6 * reach, bar.bottom + reach), (x + 0.6 * reach, bar.bottom + reach))
+        items.append(Polygon(below, MUTED, "steering.hands"))
+    return items
+
+
+def _along(bar: Box, share: float) -> float:
+    """Return where a share of the lock lies on a bar: 1 is its left end, -1 its right one."""
+    return bar.cx - min(1.0, max(-1.0, share)) * 0.5 * bar.w
 
 
 def _share(view: HudView, box: Box) -> list[DrawItem]:
+    """Return who steers: the person's part from the left, from the right that of whoever has the rest."""
     remote = min(1.0, max(0.0, view.remote_lateral))
+    nobody = view.other_side == NOBODY
     bar = Box(box.x, box.y + 0.58 * box.h, box.w, 0.2 * box.h)
-    you = "--" if view.stale else f"{100.0 * (1.0 - remote):.0f} %"
-    pilot = "--" if view.stale else f"{100.0 * remote:.0f} %"
+    you = "--" if view.stale or nobody else f"{100.0 * (1.0 - remote):.0f} %"
+    other = "--" if view.stale or nobody else f"{100.0 * remote:.0f} %"
     cap = fit_cap_px("AUTOPILOT", 0.12 * box.h, 0.58 * box.w)
     top, below = box.y + 0.14 * box.h, box.y + 0.38 * box.h
-    items: list[DrawItem] = [
-        Text(box.x, top, "YOU", cap_px=cap, colour=MUTED, role="share.label", anchor="l", arcmin=SECONDARY_ARCMIN),
-        Text(
-            box.right,
-            top,
-            "AUTOPILOT",
-            cap_px=cap,
-            colour=MUTED,
-            role="share.label",
-            anchor="r",
-            arcmin=SECONDARY_ARCMIN,
-        ),
-        Text(box.x, below, you, cap_px=1.15 * cap, colour=TEXT, role="share.you", anchor="l", arcmin=DRIVING_ARCMIN),
-        Text(
-            box.right,
-            below,
-            pilot,
-            cap_px=1.15 * cap,
-            colour=TEXT,
-            role="share.autopilot",
-            anchor="r",
-            arcmin=DRIVING_ARCMIN,
-        ),
-        Rect(bar, LINE, "share.slot", 0.3 * bar.h),
+    items = [
+        _share_text(box.x, top, "YOU", "share.label", "l", cap),
+        _share_text(box.x, below, you, "share.you", "l", cap),
     ]
-    if view.stale:
+    if view.other_side and not view.stale:
+        items.append(_share_text(box.right, top, view.other_side, "share.label", "r", cap))
+        items.append(_share_text(box.right, below, other, "share.other", "r", cap))
+    items.append(Rect(bar, LINE, "share.slot", 0.3 * bar.h))
+    if view.stale or nobody:
         return items
     cut = bar.x + (1.0 - remote) * bar.w
     if cut - bar.x >= 1.0:
         items.append(Rect(Box(bar.x, bar.y, cut - bar.x, bar.h), TEXT, "share.person", 0.3 * bar.h))
     if bar.right - cut >= 1.0:
-        items.append(Rect(Box(cut, bar.y, bar.right - cut, bar.h), ACTIVE, "share.remote", 0.3 * bar.h))
+        colour = CAUTION if view.other_side == CONSOLE else ACTIVE
+        items.append(Rect(Box(cut, bar.y, bar.right - cut, bar.h), colour, "share.remote", 0.3 * bar.h))
     return items
+
+
+def _share_text(x: float, y: float, text: str, role: str, anchor: Anchor, cap: float) -> DrawItem:
+    if role == "share.label":
+        return Text(x, y, text, cap_px=cap, colour=MUTED, role=role, anchor=anchor, arcmin=SECONDARY_ARCMIN)
+    return Text(x, y, text, cap_px=1.15 * cap, colour=TEXT, role=role, anchor=anchor, arcmin=DRIVING_ARCMIN)
 
 
 def _link(view: HudView, box: Box) -> list[DrawItem]:

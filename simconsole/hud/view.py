@@ -2,13 +2,19 @@
 
 from typing import Final, NamedTuple
 
+from simconsole.hud.key_names import key_label
+from simconsole.hud.words import next_step, other_side
 from simconsole.profiles.control import ControlProfile
+from simconsole.profiles.device import CockpitProfile
+from simconsole.profiles.vehicle import CarProfile, VehicleProfile
 from simconsole.profiles.view import HudProfile
+from simconsole.values.key_codes import Key
 from simconsole.values.labels import commander_label, gear_label, mode_label, notice_label, reason_label
 from simconsole.values.layout import read
 from simconsole.values.signals import NEVER_TICKS, Event, GateLimit, Mode
 from simconsole.values.state_vector import LAYOUT, Snapshot
-from simconsole.values.units import KMH_PER_MPS, RPM_PER_RADPS
+from simconsole.values.units import DEG_PER_RAD, KMH_PER_MPS, RPM_PER_RADPS
+from simconsole.values.validity import is_trusted
 
 STALE_S: Final = 0.5
 """Older snapshots are not shown: NO DATA."""
@@ -27,6 +33,12 @@ class HudSettings(NamedTuple):
     rpm_red: float = 6000.0
     takeover_window_s: float = 10.0
     link_stale_s: float = 0.2
+    standstill_mps: float = 0.1
+    hand_wheel_per_road_wheel: float = 15.0
+    hand_wheel_lock_deg: float = 510.0  # to one side, of the car
+    top_gear: int = 6
+    manual_button: str = ""  # label of the button that asks for manual control; empty: there is none
+    reset_button: str = ""
 
 
 class HudMemory(NamedTuple):
@@ -36,6 +48,7 @@ class HudMemory(NamedTuple):
     shown_s: float = -1e9
     motor_seen: bool = False  # the wheel has had a motor in this drive
     clipped_s: float = -1e9  # when force was last cut off
+    stop_reason: float | None = None  # why the car has come to its stop: STOPPED itself only says that it stands
 
 
 class HudView(NamedTuple):
@@ -52,6 +65,7 @@ class HudView(NamedTuple):
     mode: float = float(Mode.PARKED)
     mode_label: str = "PARKED"
     reason_label: str = ""
+    todo_label: str = ""  # what the driver does next
     refusal_label: str = ""
     notice_label: str = ""
     recording_failed: bool = False
@@ -66,8 +80,10 @@ class HudView(NamedTuple):
     driver_throttle: float = 0.0
     driver_brake: float = 0.0
     driver_clutch: float = 0.0
-    road_wheel_rad: float = 0.0
+    hand_wheel_deg: float = 0.0  # left-positive, where the hand wheel stands that steers as the car does
+    driver_hand_wheel_deg: float | None = None  # where the person's stands; None: not known
     remote_lateral: float = 0.0
+    other_side: str = ""  # who has the part of the steering that the person does not have
     commander: str = "none"
     link_age_s: float | None = None
     wheel_validity: float = 0.0
@@ -91,9 +107,32 @@ def shown_speed(speed_mps: float, t_s: float, memory: HudMemory) -> tuple[int, f
     return int(kmh + 0.5), t_s
 
 
-def settings_of(hud: HudProfile, control: ControlProfile) -> HudSettings:
-    """Return the cluster's settings; the times are the arbitration's own, so the countdown ends when it acts."""
-    return HudSettings(hud.rpm_max, hud.rpm_red, control.minimal_risk_after_s, control.command_stale_s)
+def settings_of(
+    hud: HudProfile, control: ControlProfile, cockpit: CockpitProfile, vehicle: VehicleProfile, *, by_keyboard: bool
+) -> HudSettings:
+    """Return the cluster's settings; the times are the arbitration's own, so the countdown ends when it acts.
+
+    Args:
+        hud: The screen and the dial.
+        control: The rules of the drive.
+        cockpit: What the buttons are called.
+        vehicle: Its steering and its gears.
+        by_keyboard: Whether the window's keys drive.
+    """
+    ratio = vehicle.steering.ratio if isinstance(vehicle, CarProfile) else vehicle.steering_ratio
+    lock_deg = vehicle.steering.max_road_wheel_deg if isinstance(vehicle, CarProfile) else vehicle.max_road_wheel_deg
+    return HudSettings(
+        rpm_max=hud.rpm_max,
+        rpm_red=hud.rpm_red,
+        takeover_window_s=control.minimal_risk_after_s,
+        link_stale_s=control.command_stale_s,
+        standstill_mps=control.standstill_speed_mps,
+        hand_wheel_per_road_wheel=ratio,
+        hand_wheel_lock_deg=ratio * lock_deg,
+        top_gear=len(vehicle.gearbox.forward) if isinstance(vehicle, CarProfile) else 0,
+        manual_button=key_label(Key.MANUAL) if by_keyboard else cockpit.button_label("manual"),
+        reset_button=key_label(Key.RESET) if by_keyboard else cockpit.button_label("reset"),
+    )
 
 
 def force_label(snapshot: Snapshot, memory: HudMemory) -> tuple[str, bool, float]:
@@ -126,6 +165,7 @@ def view(
     arbitration = snapshot.arbitration
     kmh, shown_s = shown_speed(vehicle.vx_mps, snapshot.t_s, memory)
     force, motor_seen, clipped_s = force_label(snapshot, memory)
+    stop_reason = _stop_reason(arbitration.mode, arbitration.reason, memory)
     paused = bool(int(snapshot.events.events) & Event.PAUSE)
     shown = HudView(
         settings=settings,
@@ -138,7 +178,8 @@ def view(
         automatic=command.automatic != 0.0,
         mode=arbitration.mode,
         mode_label="PAUSED" if paused else mode_label(arbitration.mode),
-        reason_label=reason_label(arbitration.reason),
+        reason_label=reason_label(arbitration.reason if stop_reason is None else stop_reason),
+        todo_label=next_step(snapshot, settings.standstill_mps, settings.manual_button, settings.reset_button),
         refusal_label=reason_label(arbitration.refusal) if arbitration.refusal else "",
         notice_label=notice_label(arbitration.notice),
         recording_failed=snapshot.recording_failed,
@@ -153,8 +194,10 @@ def view(
         driver_throttle=driver.throttle,
         driver_brake=driver.brake,
         driver_clutch=driver.clutch,
-        road_wheel_rad=vehicle.road_wheel_rad,
+        hand_wheel_deg=vehicle.road_wheel_rad * settings.hand_wheel_per_road_wheel * DEG_PER_RAD,
+        driver_hand_wheel_deg=driver.hand_wheel_rad * DEG_PER_RAD if is_trusted(driver.wheel_validity) else None,
         remote_lateral=arbitration.remote_lateral,
+        other_side=other_side(snapshot),
         commander=commander_label(arbitration.commander),
         link_age_s=_link_age_s(snapshot),
         wheel_validity=driver.wheel_validity,
@@ -167,7 +210,14 @@ def view(
         can_up=can_up,
         link=link,
     )
-    return shown, HudMemory(kmh, shown_s, motor_seen, clipped_s)
+    return shown, HudMemory(kmh, shown_s, motor_seen, clipped_s, stop_reason)
+
+
+def _stop_reason(mode: float, reason: float, memory: HudMemory) -> float | None:
+    """Return why the console has stopped the car, None in a mode in which it has not."""
+    if mode == Mode.MINIMAL_RISK:
+        return reason
+    return memory.stop_reason if mode == Mode.STOPPED else None
 
 
 def _remaining_s(snapshot: Snapshot, settings: HudSettings) -> float:

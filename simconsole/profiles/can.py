@@ -24,8 +24,8 @@ class CanProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """UDP port of udp_multicast; other back ends have none."""
     bitrate_bps: Annotated[int, Meta(ge=10_000, le=1_000_000)] | None = None
     """Asked of back ends that set it themselves; socketcan's is set by `ip link`."""
-    log: tuple[Literal["blf", "candump"], ...] = ("blf",)
-    """Which logs of the bus lie in the bundle: can.blf, can.log."""
+    log: tuple[Literal["blf", "candump", "asc"], ...] = ("blf",)
+    """Which logs of the bus lie in the bundle: can.blf, can.log, can.asc."""
     command_timeout_ms: Annotated[float, Meta(ge=20.0, le=10_000.0)] = 200.0
     """After so long without a good command the reception starts anew (commands are stale after 200 ms)."""
     counter_step_max: Annotated[int, Meta(ge=1, le=7)] = 2

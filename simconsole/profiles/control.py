@@ -34,6 +34,9 @@ class ControlProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_f
     clutch_pressed: Annotated[float, msgspec.Meta(ge=0.1, le=1.0)] = (
         0.8  # after autonomy, the person's clutch takes the gears back
     )
+    device_back_s: Annotated[float, msgspec.Meta(ge=0.0, le=5.0)] = (
+        0.5  # lost wheel and pedals take a stopping car over by hand so long after they are back: plugs bounce; chosen
+    )
     fade_s: Annotated[float, msgspec.Meta(ge=0.02, le=5.0)] = 0.6  # hand-over of authority
 
     # Faults of the command and take-over requests.

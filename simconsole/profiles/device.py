@@ -16,6 +16,9 @@ Curve: TypeAlias = Annotated[float, Meta(ge=0.2, le=5.0)]
 """1: linear. Above 1: gentle at first, the slope at rest is 1 / curve of the linear one; below 1: steep at first."""
 Title: TypeAlias = Annotated[str, Meta(max_length=200)]
 
+ButtonLabel: TypeAlias = Annotated[str, Meta(min_length=1, max_length=16)]
+"""What is printed on a button, or what it is called."""
+
 MIN_TRAVEL_RAW = 0.2
 """A pedal whose ends lie closer together than this cannot be distinguished from its noise."""
 
@@ -40,6 +43,7 @@ class RoleBinding(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     axes: Annotated[int, Meta(ge=0, le=32)]
     buttons: Annotated[int, Meta(ge=0, le=24)]
     hats: Annotated[int, Meta(ge=0, le=4)] = 0
+    button_labels: Annotated[list[ButtonLabel], Meta(max_length=24)] = []  # of button 0, 1, ...
     others: Annotated[list[OtherDevice], Meta(max_length=8)] = []  # of a shifter only
 
     def __post_init__(self) -> None:
@@ -202,6 +206,20 @@ class CockpitProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
             raise ValueError("shifter.gears must name at least one button where shifter.pattern is h")
         for binding in self.roles:
             _check_indices(binding, self)
+
+    def button_label(self, action: str) -> str:
+        """Return what the button with this meaning is called, empty where no button has it.
+
+        Args:
+            action: A name of `Buttons`.
+        """
+        bound: ButtonBinding | None = getattr(self.buttons, action)
+        if bound is None:
+            return ""
+        if bound.button is None:
+            return f"hat {bound.hat}"
+        labels = next((role.button_labels for role in self.roles if role.role == bound.on), [])
+        return labels[bound.button] if bound.button < len(labels) else f"button {bound.button}"
 
     def played_by(self, pedal: str) -> RoleName:
         """Return the role on whose device this pedal is: a handbrake may have one of its own."""

@@ -18,6 +18,7 @@ from simconsole.recording.bundles.replay_bundle import sources_sha256
 from simconsole.recording.log_header import ACTS, LogHeader, message_stream, vector_stream
 from simconsole.session.opening import Opened, open_headless, open_realtime
 from simconsole.session.provenance import package_versions, provenance_at_start, with_devices
+from simconsole.session.seat import look_for_devices
 from simconsole.tick.advance import Console, ConsoleState, advance
 from simconsole.tick.assembly import ResolvedSession, assemble
 from simconsole.tick.loop import come_to_rest, run
@@ -52,13 +53,15 @@ def drive(
     `on_bridge` is told where the bridge of a paced drive listens, once it does. `given` is what whoever starts the
     drive says of it; it is kept with the rest of its provenance before the first tick.
 
-    SIGINT, SIGTERM and SIGHUP end it in order: the vehicle comes to rest in the log, torque goes off, the bundle is
-    finished, then everything is closed. A second one ends the process at once; before the first tick nothing is left.
+    SIGINT, SIGTERM, SIGHUP and the driver who closes the window end it in order: the vehicle comes to rest in the log,
+    torque goes off, the bundle is finished, then everything is closed. A second signal ends the process at once; before
+    the first tick nothing is left.
 
     Raises:
         SimConsoleError: a device, port or file cannot be opened; what was opened before is closed again.
     """
     sweep()
+    look_for_devices(resolved)
     console, state = assemble(resolved, compiled)
     warm_up(console, state)
     duration_s = resolved.session.scenario.duration_s
@@ -77,10 +80,10 @@ def drive(
             state,
             opened.components,
             ticks,
-            lambda snapshot: interrupt.raised or watch(snapshot) or opened.finished(snapshot),
+            lambda snapshot: interrupt.raised or opened.left() or watch(snapshot) or opened.finished(snapshot),
             resolved.session.mode.start == "on_request",
         )
-        if interrupt.raised:
+        if interrupt.raised or opened.left():
             state = come_to_rest(console, state, opened.components.recorder)
         wall_s = time.monotonic() - began_s
         summary = {

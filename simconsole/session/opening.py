@@ -63,6 +63,8 @@ class Opened(NamedTuple):
     """Where the bridge listens, of a paced drive."""
     identities: tuple[DeviceIdentity, ...] = ()
     """Of the cockpit's devices."""
+    left: Callable[[], bool] = lambda: False
+    """Whether the driver has closed the window: the drive ends in order, as by a signal."""
 
 
 def open_headless(
@@ -196,7 +198,14 @@ def open_realtime(
         latency = {**latencies.summary_us(), **worker_latencies(folder)}
         return {**pace.summary(), **workers, "latency_us": latency, "not_granted": missing}
 
-    return Opened(components, seating.finished, summary, address, seating.identities)
+    return Opened(
+        components=components,
+        finished=seating.finished,
+        summary=summary,
+        bridge_url=address,
+        identities=seating.identities,
+        left=memory.keys.ended,
+    )
 
 
 def _over_link(source: CommandSource, resolved: ResolvedSession, console: Console) -> CommandSource:

@@ -8,8 +8,10 @@ from typing import Any, NamedTuple
 import msgspec
 
 from simconsole.bridge.console.operator_acts import ACT_BYTES, ACTS_MAX
+from simconsole.hud.view import HudSettings, settings_of
 from simconsole.processes.shared_memory import EventCounters, Ring, TextQueue
 from simconsole.processes.worker import Worker, WorkerSpec
+from simconsole.profiles.view import HudProfile
 from simconsole.session.scene_job import LIVE_SCENE, scene_job
 from simconsole.session.worker_programs import (
     ACTS,
@@ -35,6 +37,7 @@ from simconsole.session.worker_programs import (
 from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import BridgeError, CanError
+from simconsole.values.key_codes import Key
 from simconsole.values.latency import Hop
 from simconsole.values.protocols import CommandSource, NobodyCommands
 from simconsole.values.signals import NEVER_TICKS, NO_COMMAND, EventInput, RemoteCommand
@@ -102,6 +105,17 @@ class KeyPort:
     def __init__(self, slot: Ring, tick_hz: int) -> None:
         self._slot = slot
         self._tick_hz = tick_hz
+        self._seen = 0
+        self._ended = False
+
+    def ended(self) -> bool:
+        """Return whether the window was closed, or its key pressed that ends the drive."""
+        if self._slot.newest != self._seen:
+            record = self._slot.latest()
+            if record is not None:
+                self._seen = record.number
+                self._ended |= bool(int(record.values[0]) & Key.END)
+        return self._ended
 
     def __call__(self) -> tuple[int, int]:
         """Return the keys held now and how long ago the window said so."""
@@ -172,9 +186,12 @@ def worker_specs(
             profile=outputs.can, tick_hz=tick_hz, wheels=wheel_columns(console.columns), bundle=str(bundle.absolute())
         )
     if outputs.hud is not None:
-        control = resolved.session.features.control
         workers["hud"] = HudWorker(
-            profile=outputs.hud, control=control, tick_hz=tick_hz, has_can=has_can, has_bridge=has_bridge
+            profile=outputs.hud,
+            settings=_hud_settings(resolved, outputs.hud),
+            tick_hz=tick_hz,
+            has_can=has_can,
+            has_bridge=has_bridge,
         )
     if outputs.scene is not None:
         from simconsole.scene.viewer.job import save_job
@@ -183,6 +200,11 @@ def worker_specs(
         path = str((bundle / LIVE_SCENE).absolute())
         workers["scene"] = SceneWorker(path=path, tick_hz=tick_hz, has_bridge=has_bridge)
     return [WorkerSpec.of(name, worker) for name, worker in workers.items()]
+
+
+def _hud_settings(resolved: ResolvedSession, profile: HudProfile) -> HudSettings:
+    control, by_keyboard = resolved.session.features.control, resolved.session.devices.driver == "keyboard"
+    return settings_of(profile, control, resolved.cockpit, resolved.vehicle, by_keyboard=by_keyboard)
 
 
 def bridge_address(folder: Path, alive: Callable[[], bool], patience_s: float = START_PATIENCE_S) -> str:

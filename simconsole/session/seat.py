@@ -10,7 +10,7 @@ from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession
-from simconsole.values.errors import ProfileError
+from simconsole.values.errors import DeviceError, ProfileError
 from simconsole.values.host.jit import compiled
 from simconsole.values.protocols import DeviceIdentity, DeviceSource, NobodySeated, Output, Seat
 from simconsole.values.state_vector import Snapshot
@@ -29,6 +29,22 @@ class Seating(NamedTuple):
     finished: Callable[[Snapshot], bool] = lambda snapshot: False
     identities: tuple[DeviceIdentity, ...] = ()
     """Of the devices that a person or a simulated one works; none of a trace, a script or the keyboard."""
+
+
+def look_for_devices(resolved: ResolvedSession) -> None:
+    """Open and close the devices that the session names: a missing one is told before anything is compiled.
+
+    Raises:
+        DeviceError: a device is missing, in a mode that cannot drive, or would steer the car wrong.
+    """
+    if resolved.session.devices.driver == "sdl":
+        from simconsole.devices.sources.kernel_limits import problems, wheel_limits
+        from simconsole.devices.sources.sdl_source import SdlSource
+
+        SdlSource(resolved.cockpit).close()
+        wrong = problems(wheel_limits(resolved.cockpit), resolved.cockpit)
+        if wrong:
+            raise DeviceError(f"{resolved.cockpit.title}: {wrong[0]}")
 
 
 def open_seating(
@@ -77,12 +93,11 @@ def _with_motor(devices: "SdlSource", cockpit: CockpitProfile, force: ForceFeedb
     from simconsole.devices.force_feedback.motor import MotorisedSource, NoHaptics, WheelMotor
     from simconsole.devices.haptics.back_ends import open_motor
     from simconsole.devices.haptics.watchdog_client import open_watchdog, with_watchdog
-    from simconsole.devices.sources.kernel_limits import notes, problems, wheel_limits
+    from simconsole.devices.sources.kernel_limits import notes, wheel_limits
 
     wheel = {"id": devices.instance_id("wheel")}
     identity = next((role.vendor_id, role.product_id) for role in cockpit.roles if role.role == "wheel")
-    limits = wheel_limits(cockpit)
-    for line in (*problems(limits, cockpit), *notes(limits)):
+    for line in notes(wheel_limits(cockpit)):
         _say(line)
     watchdog = open_watchdog(identity, _say)
     if watchdog is not None:

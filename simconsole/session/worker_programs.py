@@ -12,11 +12,11 @@ from typing import Any, Final
 import msgspec
 import numpy as np
 
+from simconsole.hud.view import HudSettings
 from simconsole.processes.shared_memory import EventCounters, Record, Ring, TextQueue
 from simconsole.processes.worker import Worker
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.can import CanProfile
-from simconsole.profiles.control import ControlProfile
 from simconsole.profiles.view import HudProfile
 from simconsole.values.host.files import write_atomically
 from simconsole.values.kernels import Row
@@ -120,14 +120,13 @@ class HudWorker(Worker, frozen=True, kw_only=True):
     """Shows the cluster in a window and reports the keys held there."""
 
     profile: HudProfile
-    control: ControlProfile
+    settings: HudSettings
     tick_hz: int
     has_can: bool
     has_bridge: bool
 
     def run(self, folder: Path, stop: Callable[[], bool]) -> None:
         """Draw until `stop`."""
-        from simconsole.hud.view import settings_of
         from simconsole.hud.window.pygame_window import Ports, run
 
         ring = Ring.open(folder / SNAPSHOTS)
@@ -147,7 +146,7 @@ class HudWorker(Worker, frozen=True, kw_only=True):
         can = CanWatch(folder / CAN_STATUS, time.time, time.monotonic) if self.has_can else lambda: None
         link = LinkWatch(folder / LINK_STATUS, time.time, time.monotonic) if self.has_bridge else lambda: None
         ports = Ports(latest, report_keys, stop, can_up=can, drawn=receipts.drawn, link=link)
-        run(ports, self.profile, settings_of(self.profile, self.control))
+        run(ports, self.profile, self.settings)
 
 
 class SceneWorker(Worker, frozen=True, kw_only=True):

@@ -30,3 +30,4 @@ class Key(IntFlag):
     TAKEOVER = 262144
     SHARED = 524288
     FAULT = 1048576
+    END = 2097152  # ends the drive, as closing the window does

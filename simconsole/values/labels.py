@@ -13,7 +13,7 @@ _MODES: Final[dict[float, str]] = {
     Mode.SHARED: "SHARED",
     Mode.AUTONOMOUS: "AUTONOMOUS",
     Mode.TAKEOVER_REQUESTED: "TAKE OVER",
-    Mode.MINIMAL_RISK: "MINIMAL RISK",
+    Mode.MINIMAL_RISK: "SAFE STOP",
     Mode.STOPPED: "STOPPED",
     Mode.EMERGENCY_STOP: "EMERGENCY STOP",
 }
@@ -32,7 +32,9 @@ _REASONS: Final[dict[float, str]] = {
     Reason.NO_REACTION: "no reaction from the driver",
     Reason.STANDSTILL: "standing still",
     Reason.EMERGENCY: "emergency stop pressed",
+    Reason.OPERATOR_EMERGENCY: "operator pressed emergency stop",
     Reason.RESET: "reset",
+    Reason.OPERATOR_RESET: "operator reset the stop",
     Reason.ARMED: "controls ready",
     Reason.LOOP_STALL: "console was held up",
     Reason.COMMANDER_LOST: "autopilot left",

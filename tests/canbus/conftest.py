@@ -46,6 +46,7 @@ def snapshot() -> Callable[[int], Snapshot]:
     put(LAYOUT.arbitration, remote_lateral=0.6, remote_longitudinal=1.0, takeover_stage=1.0, commander=2.0)
     put(LAYOUT.command, road_wheel_rad=0.3, throttle=0.75, brake=0.1, automatic=1.0, gate_active=5.0)
     put(LAYOUT.command, turn_indicators=-1.0, hazard_lights=1.0)
+    put(LAYOUT.torque, torque_nm=-1.5, car_nm=-2.0, human_nm=2.25, enabled=1.0, hands_on=1.0)
     put(LAYOUT.vehicle, vx_mps=15.0, yaw_rate_radps=-0.4, ax_mps2=1.25, ay_mps2=-6.0, road_wheel_rad=0.29)
     put(LAYOUT.vehicle, gear=3.0, engine_radps=300.0, engine_running=1.0, clutch=0.4)
     row[PLATFORM_AT:] = (48.0, 50.0)

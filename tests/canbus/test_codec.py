@@ -32,7 +32,7 @@ def database() -> cantools.database.Database:
 
 def test_who_sends_what(codec: Codec) -> None:
     assert [info.name for info in codec.sent_by(ECU)] == [COMMAND]
-    assert codec.ids(CONSOLE) == {0x100, 0x101, 0x102, 0x110, 0x111, 0x112, 0x120}
+    assert codec.ids(CONSOLE) == {0x100, 0x101, 0x102, 0x103, 0x110, 0x111, 0x112, 0x120}
     assert not codec.ids(CONSOLE) & codec.ids(ECU)
 
 
@@ -45,7 +45,7 @@ def test_rates(codec: Codec) -> None:
 
 def test_every_message_and_every_unit_is_documented(codec: Codec) -> None:
     units = {signal.unit for info in codec.messages.values() for signal in info.signals.values()}
-    assert units == {"", "rad", "rad/s", "m/s", "m/s^2", "rpm", "ms"}
+    assert units == {"", "rad", "rad/s", "m/s", "m/s^2", "rpm", "ms", "Nm"}
     assert all(info.comment for info in codec.messages.values())
 
 

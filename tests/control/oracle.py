@@ -6,8 +6,9 @@ waits, and says which mode each tick must end in. What is present is a row of fl
 
 import math
 
-from simconsole.values.kernels import Row, is_finite, kernel
+from simconsole.values.kernels import Row, kernel
 from simconsole.values.signals import NEVER_TICKS, Arbitration, DriverInput, RemoteCommand, VehicleState
+from tests.control.oracle_acts import all_finite, hands_count, note_loss, note_whose
 from tests.control.oracle_rules import (
     AGE,
     ARMED,
@@ -99,15 +100,6 @@ def is_wild(command: RemoteCommand, speed_mps: float, r: Rules) -> bool:
     if command.kind == TWIST_KIND:
         return abs(speed_mps * command.yaw_rate_radps) > r.wild_mps2
     return abs(speed_mps * speed_mps * math.tan(command.road_wheel_rad) / r.wheelbase_m) > r.wild_mps2
-
-
-@kernel
-def all_finite(command: RemoteCommand) -> bool:
-    """Return whether every number of a command is one."""
-    for value in command:  # noqa: SIM110 - a kernel has no generators
-        if not is_finite(value):
-            return False
-    return True
 
 
 @kernel
@@ -280,8 +272,10 @@ def gather(
         present[trigger] = 0.0
     stop = has(driver.pressed, B_STOP) or has(edges, B_STOP) or has(mask, E_STOP)
     present[EMERGENCY] = 1.0 if stop else 0.0
-    present[BRAKE] = 1.0 if trusted and driver.brake >= r.brake else 0.0
-    present[STEERING] = 1.0 if turned(o, driver, trusted, explained, r) else 0.0
+    hands = hands_count(o, trusted, r)
+    note_whose(o, mask, edges, driver.pressed)
+    present[BRAKE] = 1.0 if trusted and driver.brake >= r.brake and hands else 0.0
+    present[STEERING] = 1.0 if turned(o, driver, trusted, explained, r) and hands else 0.0
     rests = mode in (PARKED, STOPPED)
     wants_manual = has(mask, E_MANUAL) or has(edges, B_MANUAL)
     present[MANUAL_ASKED] = 1.0 if wants_manual and trusted and (released or not rests) else 0.0
@@ -358,6 +352,7 @@ def settle(o: Row, present: Row, r: Rules) -> None:
         o[WAIT] = o[WAIT] if present[DEVICE_LOST] != 0.0 else 0.0
         effect = TAKEOVER_ASKED
     o[MODE], o[EFFECT] = mode, float(effect)
+    note_loss(o)
 
 
 @kernel

@@ -51,7 +51,8 @@ ROS_AT, ECU_AT = 0, BLOCK
 MODE, SINCE, WAIT, BY_REQUEST, REFERENCE, REFERRED, TURNED, STANDING, WHO, EFFECT, ASKED = range(
     2 * BLOCK, 2 * BLOCK + 11
 )
-WIDTH: Final = 2 * BLOCK + 11
+BACK, BY_LOSS, TOLD_STOP, TOLD_RESET, TOLD_TAKEOVER = range(2 * BLOCK + 11, 2 * BLOCK + 16)
+WIDTH: Final = 2 * BLOCK + 16
 
 
 class Rules(NamedTuple):
@@ -81,6 +82,7 @@ class Rules(NamedTuple):
     apart_rad: float
     apart_above_mps: float
     leaves_ticks: float
+    back_ticks: float
 
 
 def rules(profile: ControlProfile, tick_hz: int, preferred: Commander, wheelbase_m: float) -> Rules:
@@ -118,6 +120,7 @@ def rules(profile: ControlProfile, tick_hz: int, preferred: Commander, wheelbase
         apart_rad=p.engage_road_wheel_deviation_rad,
         apart_above_mps=p.engage_deviation_speed_mps,
         leaves_ticks=p.command_stale_s * tick_hz + 0.01 * tick_hz + 1.0,
+        back_ticks=max(1.0, lasting(p.device_back_s)),
     )
 
 

@@ -337,6 +337,34 @@ def test_an_operator_is_named_as_such(make_rig: Callable[..., Any]) -> None:
     assert rig.reason is Reason.OPERATOR_ASKED
 
 
+@pytest.mark.parametrize(
+    ("button", "event", "mode", "persons", "operators", "others"),
+    [
+        (Button.EMERGENCY_STOP, Event.EMERGENCY_STOP, Mode.AUTONOMOUS, "EMERGENCY", "OPERATOR_EMERGENCY", "EMERGENCY"),
+        (Button.RESET, Event.RESET, Mode.STOPPED, "RESET", "OPERATOR_RESET", "RESET"),
+        (Button.TAKEOVER, Event.REQUEST_TAKEOVER, Mode.AUTONOMOUS, "PERSON_ASKED", "OPERATOR_ASKED", "REMOTE_ASKED"),
+        (Button.TAKEOVER, Event.REQUEST_TAKEOVER, Mode.SHARED, "PERSON_ASKED", "OPERATOR_ASKED", "REMOTE_ASKED"),
+    ],
+)
+def test_each_act_is_told_as_the_act_of_whoever_did_it(
+    button: Button,
+    event: Event,
+    mode: Mode,
+    persons: str,
+    operators: str,
+    others: str,
+    make_rig: Callable[..., Any],
+) -> None:
+    told = []
+    operator = event | Event.OPERATOR
+    for edge, events in ((button, Event(0)), (Button(0), operator), (Button(0), event), (button, operator)):
+        rig = make_rig().drive(mode)
+        rig.tick(events, edge)
+        assert rig.mode is not mode
+        told.append(rig.reason.name)
+    assert told == [persons, operators, others, persons]
+
+
 def test_a_held_emergency_button_is_enough(make_rig: Callable[..., Any]) -> None:
     rig = make_rig().drive(Mode.AUTONOMOUS)
     rig.driver = rig.driver._replace(pressed=float(Button.EMERGENCY_STOP))

@@ -46,6 +46,7 @@ from tests.control.nasty import (
     person,
 )
 from tests.control.oracle import foresee, has
+from tests.control.oracle_acts import told_reason
 from tests.control.oracle_rules import (
     ASKED,
     AUTONOMOUS,
@@ -62,7 +63,6 @@ from tests.control.oracle_rules import (
     MANUAL_ASKED,
     MODE,
     PARKED,
-    REASONS,
     RECEIVED,
     RESET,
     RUN,
@@ -81,7 +81,6 @@ MODE_AT: Final = ARBITRATION.at("mode")
 STEERED_AT, THROTTLE_AT, BRAKE_AT = (COMMAND.at(name) for name in ("road_wheel_rad", "throttle", "brake"))
 LIVE: Final = float(Validity.LIVE)
 PERSON_ASKED, OPERATOR_ASKED = float(Reason.PERSON_ASKED), float(Reason.OPERATOR_ASKED)
-REASON_OF: Final = np.array([float(reason) for reason in REASONS])
 MODES: Final = 8
 COLUMNS: Final = (
     *("tick", "mode before", "events", "ecu_events", "explained_rad", "speed_mps", "ay_mps2"),
@@ -147,7 +146,7 @@ def judge(
         return COMMANDER_BREACH
     effect = int(o[EFFECT])
     if effect >= 0:
-        expected = REASON_OF[effect]
+        expected = told_reason(o)
         if arbitration.reason != expected and not (expected == PERSON_ASKED and arbitration.reason == OPERATOR_ASKED):
             return REASON_BREACH
     elif arbitration.reason != was.reason:

@@ -22,7 +22,7 @@ def test_the_needle_follows_the_engine_over_the_whole_dial() -> None:
 
 
 def test_the_red_zone_asks_for_a_shift_in_words_and_shape() -> None:
-    items = layout(in_mode(Mode.MANUAL, rpm=6200.0), SCREEN)
+    items = layout(in_mode(Mode.MANUAL, rpm=6200.0, gear="2"), SCREEN)
     assert by_role(items, "shift")
     assert by_role(items, "shift.arrow")
     assert colours(items, "dial.needle") == {WARNING_LINE}

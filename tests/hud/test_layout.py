@@ -74,7 +74,7 @@ def test_nothing_else_flashes(mode: Mode) -> None:
 def test_stale_data_shows_no_data_and_no_number_of_the_drive() -> None:
     shown = HudView(
         shown_kmh=37, rpm=3210.0, gear="2", throttle=0.42, distance_m=1234.0, t_s=65.0, link_age_s=0.02,
-        road_wheel_rad=0.1, mode=float(Mode.MANUAL), mode_label="MANUAL", wheel_validity=2.0, engine_running=True,
+        hand_wheel_deg=90.0, mode=float(Mode.MANUAL), mode_label="MANUAL", wheel_validity=2.0, engine_running=True,
     )  # fmt: skip
     items = layout(shown._replace(stale=True), SCREEN)
     words = [item.text for item in texts(items) if item.role != "dial.number"]
@@ -86,9 +86,10 @@ def test_stale_data_shows_no_data_and_no_number_of_the_drive() -> None:
     assert "37" in [item.text for item in texts(layout(shown, SCREEN))]
 
 
-def test_no_text_is_pure_blue_or_red() -> None:
-    for view in sample_views():
+def test_no_text_is_empty_or_pure_blue_or_red() -> None:
+    for view in (HudView(), *sample_views()):
         for item in texts(layout(view, SCREEN)):
+            assert item.text, item.role
             r, g, b = item.colour
             assert not (b > 128 and r < 64 and g < 64)
             assert item.colour is not WARNING_LINE

@@ -81,11 +81,11 @@ def test_nobody_is_told_to_let_go_where_nobody_sits() -> None:
 
 
 def test_steering_left_is_drawn_to_the_left() -> None:
-    left = bounds(by_role(layout(HudView(road_wheel_rad=0.2), SCREEN), "steering.bar")[0])
-    right = bounds(by_role(layout(HudView(road_wheel_rad=-0.2), SCREEN), "steering.bar")[0])
+    left = bounds(by_role(layout(HudView(hand_wheel_deg=90.0), SCREEN), "steering.bar")[0])
+    right = bounds(by_role(layout(HudView(hand_wheel_deg=-90.0), SCREEN), "steering.bar")[0])
     assert left.right == pytest.approx(right.x)
-    assert said(HudView(road_wheel_rad=0.2), "steering") == ["11.5 deg L"]
-    assert said(HudView(road_wheel_rad=-0.2), "steering") == ["11.5 deg R"]
+    assert said(HudView(hand_wheel_deg=90.0), "steering") == ["90 deg L"]
+    assert said(HudView(hand_wheel_deg=-90.0), "steering") == ["90 deg R"]
 
 
 def test_authority_is_shared_out_along_one_bar() -> None:

@@ -1,3 +1,4 @@
+import math
 from itertools import pairwise
 from typing import Any
 
@@ -6,6 +7,9 @@ import pytest
 
 from simconsole.hud.view import HudMemory, HudSettings, settings_of, shown_speed, view
 from simconsole.profiles.control import ControlProfile
+from simconsole.profiles.device import CockpitProfile
+from simconsole.profiles.files.loader import load
+from simconsole.profiles.files.vehicle_files import load_vehicle
 from simconsole.profiles.view import HudProfile
 from simconsole.values.platform import Pose
 from simconsole.values.signals import NEVER_TICKS, GateLimit, Mode, Reason
@@ -21,6 +25,14 @@ def snapshot(tick: int = 250, **fields: float) -> Snapshot:
     for name, value in fields.items():
         row[COLUMNS.index(name.replace("__", "."))] = value
     return Snapshot(tick, TICK_HZ, row)
+
+
+def settings_for(
+    hud: HudProfile, control: ControlProfile, vehicle: str = "hatchback", by_keyboard: bool = False
+) -> HudSettings:
+    car = load_vehicle(vehicle)
+    cockpit = load("devices", "t500rs_th8rs", CockpitProfile)
+    return settings_of(hud, control, cockpit, car, by_keyboard=by_keyboard)
 
 
 def speeds(kmh: list[float], step_s: float = 0.25) -> list[int]:
@@ -94,7 +106,9 @@ def test_the_content_comes_from_the_state_vector() -> None:
     assert shown.rpm == pytest.approx(3000.0)
     assert (shown.mode_label, shown.reason_label, shown.refusal_label) == ("SHARED", "driver asked", "")
     assert (shown.throttle, shown.brake, shown.clutch, shown.handbrake) == (0.5, 0.125, 0.25, 1.0)
-    assert (shown.driver_throttle, shown.remote_lateral, shown.road_wheel_rad) == (0.75, 0.5, -0.1)
+    assert (shown.driver_throttle, shown.remote_lateral, shown.hand_wheel_deg) == pytest.approx(
+        (0.75, 0.5, -1.5 * 180.0 / math.pi)
+    )
     assert shown.link_age_s == pytest.approx(0.02)
     assert shown.distance_m == 321.0
     assert memory == HudMemory(36, 2.0)
@@ -120,7 +134,7 @@ def test_a_refusal_is_shown_beside_the_reason_of_the_mode() -> None:
 
 
 def test_the_countdown_ends_when_the_arbitration_acts() -> None:
-    settings = settings_of(HudProfile(), ControlProfile(minimal_risk_after_s=8.0))
+    settings = settings_for(HudProfile(), ControlProfile(minimal_risk_after_s=8.0))
     row = snapshot(arbitration__mode=Mode.TAKEOVER_REQUESTED, arbitration__takeover_stage=1.0, memory__mode_ticks=500.0)
     shown, _ = view(row, 0.0, HudMemory(), settings)
     assert shown.remaining_s == pytest.approx(6.0)
@@ -132,7 +146,13 @@ def test_the_countdown_ends_when_the_arbitration_acts() -> None:
 
 def test_settings_come_from_their_profiles() -> None:
     control = ControlProfile(minimal_risk_after_s=12.0, command_stale_s=0.4)
-    assert settings_of(HudProfile(rpm_max=8000.0, rpm_red=6800.0), control) == HudSettings(8000.0, 6800.0, 12.0, 0.4)
+    found = settings_for(HudProfile(rpm_max=8000.0, rpm_red=6800.0), control)
+    assert found[:4] == (8000.0, 6800.0, 12.0, 0.4)
+    assert (found.manual_button, found.reset_button) == ("cross", "R2")
+    assert found.hand_wheel_lock_deg == pytest.approx(found.hand_wheel_per_road_wheel * 34.0, abs=60.0)
+    assert found.top_gear == 6
+    assert settings_for(HudProfile(), control, by_keyboard=True).manual_button == "Backspace"
+    assert settings_for(HudProfile(), control, vehicle="ball").top_gear == 0
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ from tests.profiles.refused import refusal
         ("channel: '-x'", "channel: "),
         ("port: 1023", "port: value 1023: "),
         ("bitrate_bps: 1000001", "bitrate_bps: value 1000001: "),
-        ("log: [asc]", 'log[0]: value "asc": one of blf, candump'),
+        ("log: [mf4]", 'log[0]: value "mf4": one of asc, blf, candump'),
         ("command_timeout_ms: 19", "command_timeout_ms: value 19: "),
         ("counter_step_max: 8", "counter_step_max: value 8: "),
         ("invalid_max: 0", "invalid_max: value 0: "),

@@ -70,9 +70,21 @@ def test_what_nobody_has_measured_is_marked_unverified() -> None:
     assert provenance["pedals.brake.rest_raw"].status == "unverified"
 
 
+def test_a_button_is_called_by_its_label(t500: CockpitProfile) -> None:
+    assert (t500.button_label("manual"), t500.button_label("reset"), t500.button_label("hazard")) == (
+        "cross",
+        "R2",
+        "hat up",
+    )
+    assert t500.button_label("handbrake_button") == ""
+    assert load("devices", "g29", CockpitProfile).button_label("manual") == "button 2"
+    assert load("devices", "keyboard", CockpitProfile).button_label("manual") == "button 1"
+
+
 @pytest.mark.parametrize(
     ("path", "value", "message"),
     [
+        ("roles.0.button_labels", ["x" * 17], "16"),
         ("pedals.throttle.full_raw", 1.0, "at least 0.2 apart"),
         ("pedals.brake.rest_raw", -1.5, "-1 to 1"),
         ("pedals.clutch.axis", 4, "pedals.clutch.axis 4 must be below 4"),

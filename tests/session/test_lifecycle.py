@@ -1,14 +1,20 @@
 """One session, from opening to its bundle: how long it lasts, and who may end it."""
 
+import os
 from pathlib import Path
 
+import msgspec
 import pytest
 
+from simconsole.profiles.device import CockpitProfile
+from simconsole.profiles.files.loader import load
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.verification import verify
+from simconsole.session import lifecycle
 from simconsole.session.lifecycle import DriveResult, drive
 from simconsole.session.resolution import load_session, override, resolve
 from simconsole.tick.assembly import ResolvedSession
+from simconsole.values.errors import DeviceNotFound
 from simconsole.values.state_vector import Snapshot
 
 
@@ -62,3 +68,18 @@ def test_what_workers_wrote_beside_the_log_is_listed_once_they_have_ended(
     drive(resolved, tmp_path / "b", watch)
     assert open_bundle(tmp_path / "b").manifest.files["topics.mcap"].export
     assert verify(tmp_path / "b") == []
+
+
+def test_a_missing_wheel_is_told_before_anything_is_compiled(
+    resolved: ResolvedSession, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("SDL_VIDEODRIVER", raising=False)
+    monkeypatch.setattr(lifecycle, "assemble", lambda *_: pytest.fail("compiled"))
+    cockpit = load("devices", "t500rs_th8rs", CockpitProfile)
+    seated = msgspec.structs.replace(
+        resolved, cockpit=cockpit, session=override(resolved.session, devices={"driver": "sdl"})
+    )
+    with pytest.raises(DeviceNotFound, match="role wheel"):
+        drive(seated, tmp_path / "bundle")
+    assert not (tmp_path / "bundle").exists()
+    assert "SDL_VIDEODRIVER" not in os.environ, "the window that is opened later must be seen"

@@ -18,7 +18,8 @@ from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.replay_bundle import replay_bundle
 from simconsole.recording.bundles.verification import verify
 from simconsole.recording.reading import LogTable
-from simconsole.session.worker_programs import SNAPSHOTS, snapshot_of
+from simconsole.session.worker_programs import KEY_CODES, SNAPSHOTS, snapshot_of
+from simconsole.values.key_codes import Key
 from simconsole.values.signals import Event, Mode, Reason
 from simconsole.values.state_vector import Snapshot
 from tests.drives.console import Running, results
@@ -208,7 +209,7 @@ def test_a_bridge_killed_in_autonomy_ends_in_a_recorded_safe_stop(disturbed: Dis
     assert received[at] == received[-2] > 0.0, "no command has come since"
     assert mode[at - 1] == Mode.AUTONOMOUS
     assert mode[-1] == Mode.STOPPED
-    assert tuple(change["mode"] for change in disturbed.results["mode_changes"][-2:]) == ("MINIMAL RISK", "STOPPED")
+    assert tuple(change["mode"] for change in disturbed.results["mode_changes"][-2:]) == ("SAFE STOP", "STOPPED")
     age = disturbed.table.column("ros.age_ticks")
     assert age[at] >= 0.2 * TICK_HZ > age[at - 1], "200 ms after the last command, not sooner and not later"
     assert disturbed.table.column("vehicle.vx_mps")[at] > 1.0
@@ -276,3 +277,16 @@ def test_a_signal_ends_the_drive_in_order(tmp_path: Path, number: signal.Signals
         assert not family & set(processes())
         assert not driven.folder.exists()
         assert json.loads((driven.bundle / "manifest.json").read_text())["finished"] is True
+
+
+def test_closing_the_window_ends_the_drive_in_order(tmp_path: Path) -> None:
+    with drive(tmp_path, PLAIN) as driven:
+        wait_until(lambda: set(driven.workers()) == {"bridge"} and driven.tick() > 10, "driving")
+        keys = Ring.open(driven.folder / KEY_CODES, writable=True)  # this drive has no window that writes there
+        keys.write(np.array([float(Key.END)]), 0)
+        done = driven.running.end()
+        assert done.returncode == 0, done.stderr
+        assert results(done)["interrupted"] is False
+        assert verify(driven.bundle) == []
+        events = open_bundle(driven.bundle).log.table().column("events.events")
+        assert int(events[-1]) & Event.END, "at rest, and the log says that somebody has ended it"

@@ -11,6 +11,7 @@ from msgspec import Struct
 
 from simconsole.bridge.console.command_decoder import REQUESTS
 from simconsole.values.errors import BridgeError
+from simconsole.values.signals import Event
 
 OPERATE: Final = "/console/operate"
 OPERATE_TYPE: Final = "simconsole_msgs/Operate"
@@ -66,7 +67,7 @@ class Operator:
             trial=_text(args, "trial", ID_CHARS),
         )
         kept = self._on_act(act)  # before its edge: the words of an act are never in a later tick than the act
-        self._raise_events(int(event))
+        self._raise_events(int(event | Event.OPERATOR))
         if not kept and (act.note or act.participant or act.trial):
             raise BridgeError(f"act: {name} is done, but what came with it cannot be recorded: too many at once")
         return {"accepted": True, "tick": self.tick}

@@ -34,7 +34,7 @@ def monitor(
         codec: the messages.
         say: shows a line about each message once a second.
         duration_s: how long; None: until interrupted.
-        logs: files to keep what was seen (.blf, .log).
+        logs: files to keep what was seen (.blf, .asc, .log).
         stop: ends it once it returns True and no frame is left.
 
     Returns:

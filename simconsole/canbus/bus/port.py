@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import can
     from can.io.generic import MessageWriter
 
-LOG_FILES: Final = {"blf": "can.blf", "candump": "can.log"}
+LOG_FILES: Final = {"blf": "can.blf", "candump": "can.log", "asc": "can.asc"}
 _TOLD_S: Final = 10.0
 """Error frames come in floods: they are counted, and logged at most once in this time."""
 _FULL: Final = (11, 105)  # EAGAIN, ENOBUFS: the send queue is full, which is no fault of the bus
@@ -65,7 +65,7 @@ class CanPort:
         clock_s: Callable[[], float] = time.monotonic,
         opener: "Opener | None" = None,
     ) -> None:
-        """Open the bus. `logs` are files to make, their kind by suffix (.blf, .log).
+        """Open the bus. `logs` are files to make, their kind by suffix (.blf, .asc, .log).
 
         Raises:
             CanError: the back end is missing or the bus cannot be opened.
@@ -242,7 +242,7 @@ def open_bus(profile: CanProfile, receive_ids: frozenset[int]) -> "can.BusABC":
 
 
 def open_logs(paths: "Sequence[Path]") -> "list[MessageWriter]":
-    """Make logs, BLF (.blf) or candump (.log), which become whole when they are closed.
+    """Make logs, by suffix: BLF (.blf), Vector ASCII (.asc), candump (.log); they become whole when they are closed.
 
     Raises:
         CanError: one cannot be made.
@@ -251,10 +251,11 @@ def open_logs(paths: "Sequence[Path]") -> "list[MessageWriter]":
         return []
     import can
 
+    kinds: dict[str, Any] = {".blf": can.BLFWriter, ".asc": can.ASCWriter}
     writers: list[Any] = []
     for path in paths:
         try:
-            writers.append(can.BLFWriter(path) if path.suffix == ".blf" else can.CanutilsLogWriter(path))
+            writers.append(kinds.get(path.suffix, can.CanutilsLogWriter)(path))
         except OSError as error:
             raise CanError(f"{path}: cannot be written: {error.strerror}") from None
     return writers

@@ -1,9 +1,10 @@
 """The mode of this tick, and why: guards, the mode table, refusals shown for a while."""
 
+import math
 from typing import NamedTuple
 
 from simconsole.control.modes.engage import GRANTED, engage_refusal
-from simconsole.control.modes.mode_table import outcome, reason_of
+from simconsole.control.modes.mode_table import Trigger, outcome, reason_of
 from simconsole.control.modes.triggers import (
     Asked,
     asked_of,
@@ -30,7 +31,7 @@ class Decision(NamedTuple):
     changed: float  # 1: entered in this tick
     refusal: float
     refusal_ticks: float
-    wait_begins: float  # 1: the wait for the person's reaction to a take-over request begins in this tick
+    wait_begins: float  # 1: the wait for the person's reaction, or for a lost cockpit to be back, begins in this tick
 
 
 @kernel
@@ -64,7 +65,9 @@ def decide(now: TickContext, person: Person, controllers: Controllers, steering:
     waited = mode == Mode.TAKEOVER_REQUESTED and now.memory.mode_ticks + 1.0 >= settings.minimal_risk_ticks
     # A lost cockpit that is back ends the wait, not the request: autonomy needs an act of a person or an operator.
     no_reaction = waited and not (now.before.reason == Reason.DEVICE_LOST and person.trusted > 0.0)
-    present = person_triggers(mode, person, steering, settings)
+    lost = mode == Mode.MINIMAL_RISK and now.before.reason == Reason.DEVICE_LOST
+    back_ticks = now.memory.mode_ticks + 1.0 if lost else math.inf
+    present = person_triggers(mode, person, steering, back_ticks, settings)
     present |= fault_triggers(link, controllers.events, no_reaction, standing)
     present |= asked_triggers(asked, manual, reset, engage, shared)
     after, trigger = outcome(mode, present)
@@ -81,12 +84,12 @@ def decide(now: TickContext, person: Person, controllers: Controllers, steering:
             wait_begins=1.0,
         )
     reason = now.before.reason
-    wait_begins = 0.0
-    if mode == Mode.TAKEOVER_REQUESTED and asked.takeover > 0.0:
+    wait_begins = 1.0 if lost and person.trusted == 0.0 else 0.0  # until the cockpit is back for good
+    if mode == Mode.TAKEOVER_REQUESTED and asked.takeover > 0.0 and reason == Reason.DEVICE_LOST:
         # A take-over was requested again: then the request does not end with its first cause. Where that was a lost
         # cockpit that is back by now, the first wait has ended, and the new request begins a wait of its own.
-        wait_begins = 1.0 if reason == Reason.DEVICE_LOST and person.trusted > 0.0 else 0.0
-        reason = Reason.REMOTE_ASKED
+        wait_begins = 1.0 if person.trusted > 0.0 else 0.0
+        reason = asked.takeover_reason
     driven = mode in (Mode.SHARED, Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED)
     if refusal == GRANTED and link.implausible_ticks > 0.0 and driven:
         refusal = Reason.REFUSED_IMPLAUSIBLE
@@ -109,8 +112,13 @@ def decide(now: TickContext, person: Person, controllers: Controllers, steering:
 
 @kernel
 def _reason(after: float, trigger: int, asked: Asked) -> float:
-    if after == Mode.TAKEOVER_REQUESTED and asked.takeover > 0.0:
-        return Reason.REMOTE_ASKED  # not a loss in the same tick: the request stays when that is over
+    requested = after == Mode.TAKEOVER_REQUESTED and asked.takeover > 0.0
+    if requested or trigger == Trigger.TAKEOVER_ASKED:
+        return asked.takeover_reason  # not a loss in the same tick: the request stays when that is over
+    if trigger == Trigger.EMERGENCY:
+        return asked.emergency_reason
+    if trigger == Trigger.RESET:
+        return asked.reset_reason
     reason = reason_of(trigger)
     return Reason.OPERATOR_ASKED if reason == Reason.PERSON_ASKED and asked.by_person == 0.0 else reason
 

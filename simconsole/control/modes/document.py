@@ -38,6 +38,9 @@ Whatever has to last does so for at least its time, rounded up to whole ticks; a
 - COMMANDER_LOST and NO_ANSWER on the console's own side concern the ROS side: they do nothing while the ECU commands.
 - A take-over request during a wait for lost devices joins that wait while they are lost, and begins its own once they
   are back; either way its reason is given from then on.
+- A safe stop that began because wheel or pedals were lost: BRAKE and STEERING count once all of them have been trusted
+  again for 0.5 s (`device_back_s`), so that a plug that bounces does not hand the car to and fro. MANUAL_ASKED counts
+  at once, and the brake brakes in full all the while.
 - STANDSTILL: at most 0.1 m/s for 0.3 s. RESET needs the same.
 
 ## When autonomy and shared control are granted
@@ -149,7 +152,11 @@ def _table() -> str:
 def _triggers() -> str:
     lines = ["## The triggers", "", "| trigger | when | reason given |", "|---|---|---|"]
     lines += [f"| {trigger.name} | {MEANING[trigger]} | {REASONS[trigger].name} |" for trigger in Trigger]
-    note = "`PERSON_ASKED` becomes `OPERATOR_ASKED` where no button of the wheel was pressed."
+    note = (
+        "`PERSON_ASKED` becomes `OPERATOR_ASKED` where no button of the wheel was pressed. What an operator asks for\n"
+        "through `/console/operate` is told as the operator's: `OPERATOR_EMERGENCY`, `OPERATOR_RESET`, and\n"
+        "`OPERATOR_ASKED` for a take-over request, which is `PERSON_ASKED` where the wheel's button made it."
+    )
     return "\n".join([*lines, "", note, ""])
 
 

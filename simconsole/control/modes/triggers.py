@@ -21,16 +21,26 @@ class Asked(NamedTuple):
     takeover: float
     shared: float
     by_person: float  # manual or autonomy was asked by the wheel's button
+    emergency_reason: float  # `Reason`: whose act it is
+    reset_reason: float
+    takeover_reason: float
 
 
 @kernel
 def asked_of(driver: DriverInput, events: int) -> Asked:
     """Return what is asked for, by the wheel's buttons and by events alike."""
     edges = mask(driver.edges)
-    emergency = (events & Event.EMERGENCY_STOP) | ((edges | mask(driver.pressed)) & Button.EMERGENCY_STOP)
+    stop_button = (edges | mask(driver.pressed)) & Button.EMERGENCY_STOP
+    emergency = (events & Event.EMERGENCY_STOP) | stop_button
     reset = (events & Event.RESET) | (edges & Button.RESET)
     manual = (events & Event.REQUEST_MANUAL) | (edges & Button.MANUAL)
     autonomous = (events & Event.REQUEST_AUTONOMOUS) | (edges & Button.AUTONOMOUS)
+    operator = events & Event.OPERATOR != 0
+    emergency_reason = Reason.OPERATOR_EMERGENCY if operator and stop_button == 0 else Reason.EMERGENCY
+    reset_reason = Reason.OPERATOR_RESET if operator and edges & Button.RESET == 0 else Reason.RESET
+    takeover_reason = Reason.OPERATOR_ASKED if operator else Reason.REMOTE_ASKED
+    if edges & Button.TAKEOVER != 0:
+        takeover_reason = Reason.PERSON_ASKED
     return Asked(
         emergency=_flag(emergency),
         emergency_held=_flag(mask(driver.pressed) & Button.EMERGENCY_STOP),
@@ -40,6 +50,9 @@ def asked_of(driver: DriverInput, events: int) -> Asked:
         takeover=_flag((events & Event.REQUEST_TAKEOVER) | (edges & Button.TAKEOVER)),
         shared=_flag((events & Event.REQUEST_SHARED) | (edges & Button.SHARED)),
         by_person=_flag(edges & (Button.MANUAL | Button.AUTONOMOUS | Button.SHARED)),
+        emergency_reason=emergency_reason,
+        reset_reason=reset_reason,
+        takeover_reason=takeover_reason,
     )
 
 
@@ -75,14 +88,25 @@ def reset_refusal(asked: Asked, standing: bool) -> float:
 
 
 @kernel
-def person_triggers(mode: float, person: Person, steering: bool, settings: ControlSettings) -> int:
-    """Return the triggers that come from the cockpit alone."""
+def person_triggers(mode: float, person: Person, steering: bool, back_ticks: float, settings: ControlSettings) -> int:
+    """Return the triggers that come from the cockpit alone.
+
+    Args:
+        mode: Before this tick.
+        person: The person's side of it.
+        steering: Whether they have taken the wheel.
+        back_ticks: For how long a cockpit whose loss began this stop has been back, else infinite: one that comes and
+            goes must not hand the car to and fro, so hands and feet take over only when it has been back for a while.
+        settings: Thresholds.
+    """
     if person.trusted == 0.0:
         needed = settings.person_required > 0.0 or mode in (Mode.MANUAL, Mode.SHARED)
         return bit(Trigger.DEVICE_LOST) if needed else 0
-    present = bit(Trigger.BRAKE) if person.brake >= settings.brake_override else 0
-    if person.accelerator < settings.throttle_override:
-        present |= bit(Trigger.PERSON_READY)
+    present = bit(Trigger.PERSON_READY) if person.accelerator < settings.throttle_override else 0
+    if back_ticks < settings.device_back_ticks:
+        return present
+    if person.brake >= settings.brake_override:
+        present |= bit(Trigger.BRAKE)
     if steering:
         present |= bit(Trigger.STEERING)
     return present

@@ -23,6 +23,7 @@ class ControlSettings(NamedTuple):
     steering_release_rad: float
     steering_override_radps: float
     steering_override_ticks: float
+    device_back_ticks: float
     brake_override: float
     throttle_override: float
     throttle_release: float
@@ -127,6 +128,7 @@ def settings(
         steering_release_rad=release_deg * RAD_PER_DEG,
         steering_override_radps=profile.steering_override_rate_degps * RAD_PER_DEG,
         steering_override_ticks=_at_least(profile.steering_override_hold_s, tick_hz),
+        device_back_ticks=_at_least(profile.device_back_s, tick_hz),
         throttle_release=max(0.0, profile.throttle_override - profile.throttle_override_hysteresis),
         throttle_held_ticks=_at_least(profile.throttle_held_s, tick_hz),
         fade_per_tick=1.0 / _at_least(profile.fade_s, tick_hz),

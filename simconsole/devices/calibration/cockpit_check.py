@@ -63,11 +63,6 @@ class CockpitCheck:
                 )
         if not is_trusted(driver.wheel_validity):
             found.append("wheel: value no reading: a wheel that answers")
-        elif abs(driver.hand_wheel_rad) * DEG_PER_RAD > STRAIGHT_DEG:
-            found.append(
-                f"wheel: value {driver.hand_wheel_rad * DEG_PER_RAD:.0f} deg at the end: within {STRAIGHT_DEG:g} deg "
-                "of straight ahead; centre_raw is wrong, or the wheel was not let go"
-            )
         if not is_trusted(driver.shifter_validity):
             found.append("shifter: value no neutral seen: the lever in neutral")
         return found
@@ -81,6 +76,9 @@ class CockpitCheck:
         ]
         if self._wheel_deg[1] - self._wheel_deg[0] < 10.0:
             found.append("the wheel was not turned")
+        angle_deg = self.driver.hand_wheel_rad * DEG_PER_RAD
+        if abs(angle_deg) > STRAIGHT_DEG:
+            found.append(f"the wheel stands at {angle_deg:.0f} deg: centre_raw is wrong, or it was not let go")
         missing = set(range(1, len(self._profile.shifter.gears) + 1)) - self._gears
         if missing:
             found.append(f"gears not tried: {', '.join(map(str, sorted(missing)))}")

@@ -3,7 +3,8 @@
 It reaches the outside through three functions: ask a question, print a line, read the devices while they are held.
 """
 
-from collections.abc import Callable
+import itertools
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final, Literal, TypeVar
 
 import msgspec
@@ -64,7 +65,16 @@ class Wizard:
     """Asks for one input after the other until a profile is complete."""
 
     def __init__(
-        self, base: CockpitProfile, entries: dict[DeviceKey, Entry], *, ask: Ask, say: Say, look: Look
+        self,
+        base: CockpitProfile,
+        entries: dict[DeviceKey, Entry],
+        *,
+        ask: Ask,
+        say: Say,
+        look: Look,
+        known: Sequence[CockpitProfile] = (),
+        learnt: Mapping[str, Any] | None = None,
+        save: Callable[[dict[str, Any]], None] = lambda learnt: None,
     ) -> None:
         """Begin.
 
@@ -74,6 +84,9 @@ class Wizard:
             ask: Puts a question.
             say: Prints a line.
             look: Reads all devices for a moment while they are held still.
+            known: Other profiles; the first whose wheel is the one at hand takes the place of `base`.
+            learnt: Steps that are done already, as `save` got them; they are not asked again.
+            save: Takes all steps done so far, as plain values, after each of them.
         """
         self._base = base
         self._entries = entries
@@ -82,12 +95,18 @@ class Wizard:
         self._look = look
         self._axes: list[tuple[DeviceKey, int]] = []
         self._pressed: list[ButtonAt] = []
+        self._known = known
+        self._learnt = dict(learnt or {})
+        self._save = save
+        self._unanswered: DeviceError | None = None
 
     def run(self, origin: str) -> CockpitProfile:
         """Ask everything and return the profile; `origin` says in it where the values come from.
 
+        A step that fails is asked again until it succeeds or the person gives up.
+
         Raises:
-            DeviceError: a step did not succeed, or the devices cannot make one cockpit.
+            DeviceError: nobody answers.
             KeyboardInterrupt: the person gave up.
         """
         self._question("rest", "Hands and feet off everything, lever in neutral.")
@@ -120,22 +139,32 @@ class Wizard:
             right = self._moved("right", "Turn the wheel fully to the RIGHT and hold it.")
             self._question("centre", "Turn the wheel straight ahead and hold it.")
             centre = self._look()
+            self._base = self._profile_of(left.device)
             return left.device, wheel_axis_of(left, right, centre, self._degrees())
 
-        key, wheel = self._tried(learn)
+        key, wheel = self._tried("wheel", tuple[DeviceKey, WheelAxis], learn)
+        self._base = self._profile_of(key)
         self._axes.append((key, wheel.axis))
         return key, wheel
 
+    def _profile_of(self, key: DeviceKey) -> CockpitProfile:
+        """Return the profile that knows this wheel, the base itself where none does."""
+        for profile in (self._base, *self._known):
+            if any(role.role == "wheel" and (role.vendor_id, role.product_id) == key for role in profile.roles):
+                return profile
+        return self._base
+
     def _degrees(self) -> float:
         offered = self._base.wheel.lock_to_lock_deg
-        typed = self._question("degrees", f"How many degrees does it turn from lock to lock? [{offered:g}]")
-        try:
-            degrees = float(typed) if typed else offered
-        except ValueError:
-            degrees = 0.0
-        if not 40.0 <= degrees <= 2520.0:
-            raise DeviceError(f"degrees: value {typed}: 40 to 2520")
-        return degrees
+        while True:
+            typed = self._question("degrees", f"How many degrees does it turn from lock to lock? [{offered:g}]")
+            try:
+                degrees = float(typed) if typed else offered
+            except ValueError:
+                degrees = 0.0
+            if 40.0 <= degrees <= 2520.0:
+                return degrees
+            self._say(f"  again, please: degrees: value {typed}: 40 to 2520")
 
     def _learn_pedals(self) -> tuple[DeviceKey, Pedals, DeviceKey | None]:
         """Learn the pedals, all on one device; the handbrake may be on another, which comes last."""
@@ -151,7 +180,7 @@ class Wizard:
                 return at, pedal_axis_of(self._rest, at)
 
             try:
-                at, found[name] = self._tried(learn)
+                at, found[name] = self._tried(name, tuple[AxisAt, PedalAxis], learn)
             except Skipped:
                 continue
             keys[name] = at.device
@@ -159,8 +188,10 @@ class Wizard:
         return keys["throttle"], Pedals(**found), keys.get("handbrake")
 
     def _learn_lever(self, wheel_key: DeviceKey) -> tuple[DeviceKey, Shifter]:
-        kind = self._question("lever", f"H pattern: go on. Sequential lever or paddles: {SKIP}.")
-        if kind == SKIP:
+        def learn() -> bool:
+            return self._question("lever", f"H pattern: go on. Sequential lever or paddles: {SKIP}.") == SKIP
+
+        if self._tried("lever", bool, learn):
             return wheel_key, Shifter(pattern="sequential", on="wheel")
         gears: list[ButtonAt] = []
         for gear in range(1, _GEARS + 1):
@@ -182,13 +213,14 @@ class Wizard:
             at = self._button(f"gear {gear}", f"Lever into {name.upper()}{skip}.", optional)
             if others and at.device != others[0].device:
                 raise DeviceError(f"{name}: value on another device: all gears on one device")
-            self._pressed.append(at)
             return at
 
         try:
-            return self._tried(learn)
+            found = self._tried(f"gear {gear}", ButtonAt, learn)
         except Skipped:
             return None
+        self._pressed.append(found)
+        return found
 
     def _learn_buttons(
         self, wheel_key: DeviceKey, shifter_key: DeviceKey, shifter: Shifter
@@ -200,25 +232,28 @@ class Wizard:
         for name in Buttons.__struct_fields__:
             needed = shifter.pattern == "sequential" and name.startswith("shift_")
 
-            def learn(name: str = name, needed: bool = needed) -> ButtonBinding:
+            def learn(name: str = name, needed: bool = needed) -> ButtonAt:
                 skip = "" if needed else f" ({SKIP}: none)"
                 at = self._button(name, f"Hold the button for {name.replace('_', ' ').upper()}{skip}.", not needed)
-                if needed and at.device != wheel_key and shifters == [wheel_key]:
-                    shifters[0] = at.device
-                if at.device not in (wheel_key, shifters[0]):
+                becomes_shifter = needed and shifters == [wheel_key]
+                if at.device not in (wheel_key, shifters[0]) and not becomes_shifter:
                     raise DeviceError(f"{name}: value on another device: a button of the wheel or the shifter")
-                on: Literal["wheel", "shifter"] = "wheel" if at.device == wheel_key else "shifter"
-                if at.button >= BUTTONS and on != "wheel":
+                if at.button >= BUTTONS and at.device != wheel_key:
                     raise DeviceError(f"{name}: value the hat of the shifter: one of its buttons, or the wheel's hat")
-                self._pressed.append(at)
-                if at.button < BUTTONS:
-                    return ButtonBinding(on=on, button=at.button)
-                return ButtonBinding(on=on, hat=HATS[at.button - BUTTONS])
+                return at
 
             try:
-                found[name] = self._tried(learn)
+                at = self._tried(name, ButtonAt, learn)
             except Skipped:
                 continue
+            if at.device != wheel_key:
+                shifters[0] = at.device
+            self._pressed.append(at)
+            on: Literal["wheel", "shifter"] = "wheel" if at.device == wheel_key else "shifter"
+            if at.button < BUTTONS:
+                found[name] = ButtonBinding(on=on, button=at.button)
+            else:
+                found[name] = ButtonBinding(on=on, hat=HATS[at.button - BUTTONS])
         return shifters[0], Buttons(**found)
 
     def _moved(self, step: str, text: str, optional: bool = False) -> AxisAt:
@@ -230,24 +265,51 @@ class Wizard:
         return pressed_button(self._rest, self._look(), self._pressed)
 
     def _question(self, step: str, text: str, optional: bool = False) -> str:
-        typed = self._ask(step, text).strip().lower()
+        try:
+            typed = self._ask(step, text).strip().lower()
+        except DeviceError as error:
+            self._unanswered = error
+            raise
         if typed == QUIT:
             raise KeyboardInterrupt
         if typed == SKIP and optional:
             raise Skipped
         return typed
 
-    def _tried(self, learn: Callable[[], Learnt]) -> Learnt:
-        """A step that fails is explained and asked again, a few times."""
-        for _ in range(TRIES - 1):
+    def _tried(self, step: str, kind: type[Learnt], learn: Callable[[], Learnt]) -> Learnt:
+        """Return what a step learns, or has learnt before; one that fails is explained and asked again.
+
+        Raises:
+            Skipped: the person has no such part.
+        """
+        if step in self._learnt:
+            if self._learnt[step] is None:
+                raise Skipped
+            return msgspec.convert(self._learnt[step], kind)
+        for tries in itertools.count(1):
             try:
-                return learn()
+                found = learn()
+            except Skipped:
+                self._keep(step, None)
+                raise
             except DeviceError as error:
+                if error is self._unanswered:
+                    raise
                 self._say(f"  again, please: {error}")
-        return learn()
+                if tries % TRIES == 0:
+                    self._say(f"  {QUIT} gives up for now: what was learnt so far is kept")
+            else:
+                self._keep(step, msgspec.to_builtins(found))
+                return found
+        raise AssertionError("unreachable")  # the count has no end
+
+    def _keep(self, step: str, plain: Any) -> None:
+        self._learnt[step] = plain
+        self._save(self._learnt)
 
     def _role(self, role: Any, key: DeviceKey) -> RoleBinding:
         entry = self._entries[key]
+        same = [known for known in self._base.roles if (known.vendor_id, known.product_id) == key]
         return RoleBinding(
             role=role,
             vendor_id=key[0],
@@ -256,6 +318,7 @@ class Wizard:
             axes=min(entry.axes, 32),
             buttons=min(entry.buttons, 24),
             hats=min(entry.hats, 4),
+            button_labels=next((known.button_labels for known in same if known.role == role), []),
         )
 
     def _provenance(self, origin: str, force: bool) -> dict[str, Provenance]:
@@ -263,6 +326,6 @@ class Wizard:
         found = dict.fromkeys(("roles", "wheel", "pedals", "shifter", "buttons"), captured)
         found["wheel.lock_to_lock_deg"] = Provenance(status="documented", source=f"the person's word, {origin}")
         if force:
-            kept = ("boot_modes", "force_feedback")
+            kept = ("boot_modes", "force_feedback", "roles.0.button_labels")
             found |= {key: of for key, of in self._base.provenance.items() if key.startswith(kept)}
         return found

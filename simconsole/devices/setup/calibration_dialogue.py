@@ -1,26 +1,33 @@
 """`simconsole devices calibrate`: the wizard on real devices, or on virtual ones that do what each step asks for."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, Final
 
+import msgspec
+
 from simconsole.devices.calibration.cockpit_settings import cockpit_settings
-from simconsole.devices.calibration.input_detection import SteadyReadings, steady_readings
+from simconsole.devices.calibration.hands_free import HeldStill, Readings
+from simconsole.devices.calibration.input_detection import DeviceKey, SteadyReadings, steady_readings
 from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
-from simconsole.devices.calibration.wizard import Entry, Wizard
+from simconsole.devices.calibration.wizard import QUIT, SKIP, Entry, Wizard
 from simconsole.devices.setup.device_commands import Pace, Say, answer, realtime
 from simconsole.devices.sources.raw_joysticks import RawJoysticks
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.strict_yaml import to_yaml
 from simconsole.values.errors import DeviceError
+from simconsole.values.host.files import write_atomically
 from simconsole.values.signals import Button
 from simconsole.values.units import RAD_PER_DEG
 
 LOOK_S: Final = 0.3
 LOOK_HZ: Final = 200
+TYPED: Final = ("degrees", "lever")
+"""Steps that are answered by a line, not by holding something."""
+AT_REST: Final = ("rest", "centre", "neutral")
 
 
 def calibrate_devices(
@@ -31,6 +38,8 @@ def calibrate_devices(
     ask: Callable[[str], str] = input,
     virtual: CockpitProfile | None = None,
     pace: Callable[[int], Pace] = realtime,
+    known: Sequence[CockpitProfile] = (),
+    typed: Callable[[], str] | None = None,
 ) -> dict[str, Any]:
     """Learn a cockpit step by step and write its profile.
 
@@ -41,10 +50,13 @@ def calibrate_devices(
         ask: Puts a question and returns the answer.
         virtual: A cockpit to attach as virtual devices, which do at each step what is asked for.
         pace: Makes a pace for a rate.
+        known: Other profiles, one of which may know the wheel at hand.
+        typed: Returns a key that was typed since the last call, or nothing. With it what a step asks for is taken
+            when it is held still for a second: nobody has to reach for Enter with a foot down.
 
     Raises:
-        DeviceError: there are no devices, a step did not succeed, or the file cannot be written.
-        KeyboardInterrupt: the person gave up; nothing is written.
+        DeviceError: there are no devices, nobody answers, or the file cannot be written.
+        KeyboardInterrupt: the person gave up; what was learnt is kept beside `path` and the next call goes on from it.
     """
     if path.exists():
         raise DeviceError(f"{path}: file: value exists: a file that does not")
@@ -59,12 +71,20 @@ def calibrate_devices(
         }
         for key, entry in entries.items():
             say(f"{key[0]:04x}:{key[1]:04x}  {entry.name}: {entry.axes} axes, {entry.buttons} buttons")
-        say("Do what each line says, hold it, and press Enter. q gives up.")
+        how = "press Enter" if typed is None else "keep still for a second"
+        say(f"Do what each line says, hold it, and {how}. q gives up for now.")
+        holds = HeldStill(LOOK_HZ)
+        progress = _Progress(path, list(entries))
+        if progress.learnt:
+            say(f"{progress.path}: goes on after {list(progress.learnt)[-1]}; delete it to begin anew")
 
         def put(step: str, text: str) -> str:
             if hands is not None:
                 hands.do(step)
-            return answer(ask, f"{text} ")
+            if typed is None or step in TYPED:
+                return answer(ask, f"{text} ")
+            say(text)
+            return _wait_for_hold(devices.read, holds, step, typed, pace(LOOK_HZ))
 
         def look() -> SteadyReadings:
             wait = pace(LOOK_HZ)
@@ -74,12 +94,55 @@ def calibrate_devices(
                 readings.append(devices.read())
             return steady_readings(readings)
 
-        profile = Wizard(base, entries, ask=put, say=say, look=look).run(
-            f"simconsole devices calibrate, {time.strftime('%Y-%m-%d')}"
-        )
+        profile = Wizard(
+            base, entries, ask=put, say=say, look=look, known=known, learnt=progress.learnt, save=progress.save
+        ).run(f"simconsole devices calibrate, {time.strftime('%Y-%m-%d')}")
     write_profile(path, profile)
+    progress.path.unlink(missing_ok=True)
     say(f"{path}: written. Try it: simconsole devices check --cockpit {path}")
     return {"profile": str(path), "title": profile.title, "roles": [role.name for role in profile.roles]}
+
+
+def _wait_for_hold(
+    read: Callable[[], Readings], holds: HeldStill, step: str, typed: Callable[[], str], wait: Pace
+) -> str:
+    """Wait until what the step asks for is held still, or a key is typed: return that key, nothing for Enter."""
+    holds.begin()
+    tick = 0
+    while True:
+        tick += 1
+        wait(tick)
+        key = typed().strip().lower()[:1]
+        if key in (SKIP, QUIT):
+            return key
+        if holds.add(read(), at_rest=step in AT_REST):
+            return ""
+
+
+class _Progress:
+    """The steps that are done, in a file beside the profile: of the same devices only."""
+
+    def __init__(self, path: Path, devices: list[DeviceKey]) -> None:
+        self.path = path.with_name(f"{path.name}.part")
+        self._devices = [list(key) for key in devices]
+        self.learnt: dict[str, Any] = {}
+        try:
+            saved = msgspec.json.decode(self.path.read_bytes(), type=dict[str, Any])
+        except (OSError, msgspec.DecodeError):
+            return
+        if saved.get("devices") == self._devices:
+            self.learnt = dict(saved.get("steps", {}))
+
+    def save(self, learnt: dict[str, Any]) -> None:
+        """Write all steps.
+
+        Raises:
+            DeviceError: the file cannot be written.
+        """
+        try:
+            write_atomically(self.path, msgspec.json.encode({"devices": self._devices, "steps": learnt}), durable=False)
+        except OSError as error:
+            raise DeviceError(f"{self.path}: file: {error.strerror}: a file that can be written") from error
 
 
 def write_profile(path: Path, profile: CockpitProfile) -> None:

@@ -18,18 +18,21 @@ class _Runtime:
 
     users = 0
     started_display = False
+    set_here: tuple[str, ...] = ()
 
 
 def acquire() -> Any:
     """Start SDL's joysticks and return the pygame module. Every call needs one `release`.
 
-    Missing environment variables are set, existing ones kept, before pygame is imported: SDL reads them then.
+    Missing environment variables are set, existing ones kept, before SDL starts: it reads them then. The last `release`
+    takes them back: a window in another process, started later, must not inherit them.
 
     Raises:
         DeviceError: pygame is missing or SDL refuses.
     """
-    for name, value in _ENVIRONMENT.items():
-        os.environ.setdefault(name, value)
+    _Runtime.set_here += tuple(name for name in _ENVIRONMENT if name not in os.environ)
+    for name in _Runtime.set_here:
+        os.environ[name] = _ENVIRONMENT[name]
     try:
         import pygame
     except ImportError as error:
@@ -54,6 +57,9 @@ def release() -> None:
     _Runtime.users -= 1
     if _Runtime.users:
         return
+    for name in _Runtime.set_here:
+        os.environ.pop(name, None)
+    _Runtime.set_here = ()
     import pygame
 
     pygame.event.set_allowed((pygame.JOYAXISMOTION, pygame.JOYHATMOTION, pygame.JOYBUTTONUP))

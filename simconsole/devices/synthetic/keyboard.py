@@ -45,8 +45,10 @@ _BUTTONS: Final = (
 )
 
 
-FRESH_S: Final = 0.05
-"""Longest age of keys that count: the window reports them once per frame, and the hands move between frames, too."""
+FRESH_S: Final = 0.2
+"""Longest age of keys that count: the window reports them once per frame, and the hands move between frames, too.
+
+A slow frame, of a computer without a graphics card or under load, takes 0.1 s and more."""
 
 
 class KeyboardSource:

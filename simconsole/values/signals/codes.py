@@ -62,6 +62,8 @@ class Reason(IntEnum):
     REFUSED_PEDAL_PRESSED = 33
     REFUSED_IMPLAUSIBLE = 34
     REFUSED_OVERRULED = 35
+    OPERATOR_EMERGENCY = 36
+    OPERATOR_RESET = 37
 
 
 class Notice(IntEnum):
@@ -120,6 +122,7 @@ class Event(IntFlag):
     TOGGLE_STABILITY = 65536
     RECORDING_FAILED = 131072  # in every tick from the one after the failure: nothing more is kept
     END = 262144  # somebody has ended the drive by a signal; from here on the console brings the vehicle to rest
+    OPERATOR = 524288  # beside the acts that an operator asked for: they are told as the operator's
 
 
 class Button(IntFlag):

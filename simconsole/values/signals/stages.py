@@ -43,7 +43,7 @@ class Request(NamedTuple):
 class ArbiterMemory(NamedTuple):
     """What arbitration must remember from one tick to the next."""
 
-    mode_ticks: float  # since the mode was entered
+    mode_ticks: float  # since the mode was entered, or since the wait that belongs to it began anew
     engage_hand_wheel_rad: float  # where the hand wheel was when autonomy was engaged
     steering_ticks: float  # samples in a row past the take-over threshold; -1: no reference yet
     throttle_override: float  # 1 while the person's accelerator overrides the remote side

@@ -201,7 +201,7 @@ def test_only_the_port_imports_python_can() -> None:
     assert len(sends) == 1
 
 
-@pytest.mark.parametrize(("suffix", "reads"), [("blf", 5), ("log", 5)])
+@pytest.mark.parametrize(("suffix", "reads"), [("blf", 5), ("log", 5), ("asc", 5)])
 def test_logs_hold_what_passed_both_ways(yard: Yard, tmp_path: Path, suffix: str, reads: int) -> None:
     path = tmp_path / f"can.{suffix}"
     port = yard.port(logs=(path,))

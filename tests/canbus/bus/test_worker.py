@@ -36,8 +36,8 @@ def ecu_port(profile: CanProfile, codec: Codec) -> Iterator[CanPort]:
 
 
 def test_logs_lie_in_the_bundle_once_each(tmp_path: Path) -> None:
-    profile = CanProfile(log=("blf", "candump", "blf"))
-    assert log_paths(profile, tmp_path) == [tmp_path / "can.blf", tmp_path / "can.log"]
+    profile = CanProfile(log=("blf", "candump", "asc", "blf"))
+    assert log_paths(profile, tmp_path) == [tmp_path / "can.blf", tmp_path / "can.log", tmp_path / "can.asc"]
 
 
 def test_headless_command_ages_in_ticks(on_bus: OnBus, ecu_port: CanPort, codec: Codec, snapshot: Snapshots) -> None:

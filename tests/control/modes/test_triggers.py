@@ -59,8 +59,9 @@ def names(mask: int) -> set[str]:
 )
 def test_what_is_asked(events: int, edges: int, pressed: int, expected: set[str]) -> None:
     asked = asked_of(NOBODY._replace(edges=float(edges), pressed=float(pressed)), int(events))
-    assert set(asked) <= {0.0, 1.0}
-    assert {name for name, value in asked._asdict().items() if value} == expected
+    acts = {name: value for name, value in asked._asdict().items() if not name.endswith("_reason")}
+    assert set(acts.values()) <= {0.0, 1.0}
+    assert {name for name, value in acts.items() if value} == expected
 
 
 @pytest.mark.parametrize("mode", Mode)
@@ -85,7 +86,7 @@ def test_a_reset_needs_a_released_button_and_standstill() -> None:
 @pytest.mark.parametrize("mode", Mode)
 def test_triggers_of_the_cockpit(mode: Mode, control: ControlSettings) -> None:
     def present(person: Person, steering: bool = False, settings: ControlSettings = control) -> set[str]:
-        return names(person_triggers(float(mode), person, steering, settings))
+        return names(person_triggers(float(mode), person, steering, math.inf, settings))
 
     assert present(THERE) == {"PERSON_READY"}
     assert present(THERE, steering=True) == {"PERSON_READY", "STEERING"}
@@ -190,4 +191,23 @@ def test_a_link_is_lost_when_the_commander_left_or_did_not_answer() -> None:
 
 def test_a_mask_that_is_no_number_asks_for_nothing() -> None:
     for nonsense in (math.nan, math.inf, -1.0, 1e300):
-        assert asked_of(NOBODY._replace(edges=nonsense, pressed=nonsense), 0) == NOTHING
+        assert asked_of(NOBODY._replace(edges=nonsense, pressed=nonsense), 0) == asked_of(NOBODY, 0)
+
+
+@pytest.mark.parametrize("operator", [0, Event.OPERATOR])
+def test_an_act_is_told_as_the_person_s_where_their_button_made_it(operator: int) -> None:
+    buttons = Button.EMERGENCY_STOP | Button.RESET | Button.TAKEOVER
+    by_hand = asked_of(NOBODY._replace(edges=float(buttons)), int(operator))
+    assert by_hand[-3:] == (Reason.EMERGENCY, Reason.RESET, Reason.PERSON_ASKED)
+    others = asked_of(NOBODY, int(Event.EMERGENCY_STOP | Event.RESET | Event.REQUEST_TAKEOVER | operator))
+    if operator:
+        assert others[-3:] == (Reason.OPERATOR_EMERGENCY, Reason.OPERATOR_RESET, Reason.OPERATOR_ASKED)
+    else:
+        assert others[-3:] == (Reason.EMERGENCY, Reason.RESET, Reason.REMOTE_ASKED)
+
+
+def test_hands_and_feet_wait_until_a_lost_cockpit_is_back_for_good(control: ControlSettings) -> None:
+    person = THERE._replace(brake=1.0)
+    for back_ticks, present in ((control.device_back_ticks - 1.0, {"PERSON_READY"}), (control.device_back_ticks, None)):
+        found = names(person_triggers(float(Mode.MINIMAL_RISK), person, True, back_ticks, control))
+        assert found == (present or {"PERSON_READY", "BRAKE", "STEERING"})

@@ -159,5 +159,5 @@ def test_a_wheel_that_is_back_takes_over_by_the_brake(make_rig: MakeRig) -> None
     rig.run(0.5)
     assert rig.mode is Mode.MINIMAL_RISK
     rig.driver = rig.driver._replace(wheel_validity=float(Validity.LIVE), brake=0.2)
-    rig.tick()
-    assert (rig.mode, rig.reason) == (Mode.MANUAL, Reason.BRAKE_OVERRIDE)
+    assert rig.until(Mode.MANUAL) == rig.settings.device_back_ticks
+    assert rig.reason is Reason.BRAKE_OVERRIDE

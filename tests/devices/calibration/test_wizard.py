@@ -1,10 +1,15 @@
 """Calibration step by step, with readings by hand: the order of the questions, and what ends or repeats a step."""
 
+from collections.abc import Sequence
+from typing import Any
+
+import msgspec
 import pytest
 
 from simconsole.devices.calibration.input_detection import DeviceKey, SteadyReading, SteadyReadings
 from simconsole.devices.calibration.wizard import QUIT, SKIP, TRIES, Entry, Wizard
 from simconsole.profiles.device import CockpitProfile
+from simconsole.profiles.files.loader import load
 from simconsole.values.errors import DeviceError
 
 PAD: DeviceKey = (0x045E, 0x028E)
@@ -24,7 +29,15 @@ HELD = {  # by step: axes and buttons of the pad
 class Person:
     """Does what is asked on a pad with paddles, skips what it lacks, and keeps the steps."""
 
-    def __init__(self, base: CockpitProfile, **typed: str) -> None:
+    def __init__(
+        self,
+        base: CockpitProfile,
+        known: Sequence[CockpitProfile] = (),
+        learnt: dict[str, Any] | None = None,
+        **typed: str,
+    ) -> None:
+        self.saved: dict[str, Any] = {}
+        self.gives_up_after = ("", 0)
         self.steps: list[str] = []
         self.said: list[str] = []
         self.typed = {"degrees": "", "lever": SKIP, **typed}
@@ -32,10 +45,17 @@ class Person:
         self.elsewhere: dict[str, int] = {}
         self.after_a_refusal: dict[str, int] = {}
         entries = {PAD: Entry("Pad", 3, 11, 1), LEVER: Entry("Lever", 0, 4, 0)}
-        self.wizard = Wizard(base, entries, ask=self.ask, say=self.say, look=self.look)
+        self.wizard = Wizard(
+            base, entries, ask=self.ask, say=self.say, look=self.look, known=known, learnt=learnt, save=self.save
+        )
+
+    def save(self, learnt: dict[str, Any]) -> None:
+        self.saved = msgspec.json.decode(msgspec.json.encode(learnt))
 
     def ask(self, step: str, text: str) -> str:
         self.steps.append(step)
+        if (step, self.steps.count(step)) == self.gives_up_after:
+            return QUIT
         needed = {"rest", "neutral", "centre", *self.held, *self.elsewhere}
         return self.typed.get(step, "" if step in needed else SKIP.upper() + " ")
 
@@ -92,10 +112,35 @@ def test_paddles_on_another_device_make_it_the_shifter(person: Person) -> None:
 def test_button_of_a_third_place_is_asked_for_again_and_then_ends(person: Person) -> None:
     person.elsewhere = {"mark": 1}
     del person.held["mark"]
-    with pytest.raises(DeviceError, match="mark: value on another device: a button of the wheel or the shifter"):
+    person.gives_up_after = ("mark", TRIES + 2)
+    with pytest.raises(KeyboardInterrupt):
         person.wizard.run("by hand")
-    assert person.steps.count("mark") == TRIES
-    assert len(person.said) == TRIES - 1
+    refusal = "  again, please: mark: value on another device: a button of the wheel or the shifter"
+    assert person.said.count(refusal) == TRIES + 1
+    assert person.said[TRIES] == "  q gives up for now: what was learnt so far is kept"
+    assert list(person.saved)[:4] == ["wheel", "throttle", "brake", "clutch"]
+    assert "mark" not in person.saved
+
+
+def test_what_was_learnt_is_not_asked_again(person: Person, t500: CockpitProfile) -> None:
+    whole = person.wizard.run("by hand")
+    half = {step: person.saved[step] for step in list(person.saved)[:7]}
+    again = Person(t500, learnt=half)
+    assert again.wizard.run("by hand") == whole
+    assert not {"left", "right", "centre", "degrees", "throttle", "brake"} & set(again.steps)
+    assert again.saved == person.saved
+
+
+def test_a_wheel_that_another_profile_knows_keeps_its_motor(person: Person, t500: CockpitProfile) -> None:
+    replace = msgspec.structs.replace
+    own = [replace(role, vendor_id=PAD[0], product_id=PAD[1]) if role.role == "wheel" else role for role in t500.roles]
+    known = replace(t500, roles=own, wheel=replace(t500.wheel, lock_to_lock_deg=900.0))
+    learnt = Person(load("devices", "gamepad", CockpitProfile), known=[known]).wizard.run("by hand")
+    assert learnt.force_feedback is None, "the gamepad's own profile knows it, and it has no motor"
+    learnt = Person(load("devices", "keyboard", CockpitProfile), known=[t500, known]).wizard.run("by hand")
+    assert learnt.force_feedback == t500.force_feedback
+    assert learnt.wheel.lock_to_lock_deg == pytest.approx(1000.0)
+    assert learnt.roles[0].button_labels == t500.roles[0].button_labels
 
 
 def test_button_that_was_refused_for_one_meaning_is_free_for_another(person: Person) -> None:

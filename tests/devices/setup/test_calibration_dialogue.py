@@ -103,12 +103,48 @@ def test_gamepad_with_paddles_and_no_lever(sdl: None, tmp_path: Path) -> None:
     assert learnt.force_feedback is None
 
 
-def test_step_that_fails_is_asked_again_and_then_ends(sdl: None, tmp_path: Path, t500: CockpitProfile) -> None:
+def test_step_that_fails_is_asked_again_until_the_person_gives_up(
+    sdl: None, tmp_path: Path, t500: CockpitProfile
+) -> None:
     said: list[str] = []
-    with pytest.raises(DeviceError, match="axes: value none moved"):
-        calibrate_devices(t500, tmp_path / "x.yaml", say=said.append, ask=answers(), virtual=t500, pace=at_once)
-    assert len([line for line in said if "again, please" in line]) == 4
+
+    def ask(text: str) -> str:
+        refused = len([line for line in said if "again, please: axes: value none moved" in line])
+        return "q" if refused == 7 else ""
+
+    with pytest.raises(KeyboardInterrupt):
+        calibrate_devices(t500, tmp_path / "x.yaml", say=said.append, ask=ask, virtual=t500, pace=at_once)
     assert not (tmp_path / "x.yaml").exists()
+
+
+def test_the_next_call_goes_on_where_the_last_one_was_left(sdl: None, tmp_path: Path, t500: CockpitProfile) -> None:
+    path, asked = tmp_path / "mine.yaml", []
+    with pytest.raises(KeyboardInterrupt):
+        calibrate_devices(
+            t500, path, say=quiet, ask=answers(t500, HANDBRAKE="s", REVERSE="q"), virtual=t500, pace=at_once
+        )
+    answered = answers(t500, HANDBRAKE="s")
+
+    def ask(text: str) -> str:
+        asked.append(text)
+        return answered(text)
+
+    said: list[str] = []
+    calibrate_devices(t500, path, say=said.append, ask=ask, virtual=t500, pace=at_once)
+    assert any("goes on after gear 7" in line for line in said)
+    assert not any(word in text for text in asked for word in ("to the LEFT", "THROTTLE", "GEAR 7"))
+    assert any("REVERSE" in text for text in asked)
+    assert load("devices", str(path), CockpitProfile).buttons == t500.buttons
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_shipped_wheel_keeps_its_motor(sdl: None, tmp_path: Path, t500: CockpitProfile) -> None:
+    g29 = load("devices", "g29", CockpitProfile)
+    ask = answers(g29, **{"HANDBRAKE": "s", "GEAR 7": "s"})
+    path = tmp_path / "mine.yaml"
+    calibrate_devices(t500, path, say=quiet, ask=ask, virtual=g29, pace=at_once, known=[g29])
+    learnt = load("devices", str(path), CockpitProfile)
+    assert (learnt.force_feedback, learnt.wheel.lock_to_lock_deg) == (g29.force_feedback, 900.0)
 
 
 def test_giving_up_writes_nothing_and_an_old_profile_is_spared(sdl: None, tmp_path: Path, t500: CockpitProfile) -> None:

@@ -21,8 +21,12 @@ class Person:
     def __init__(self, answer: str = "y") -> None:
         self.answer = answer
         self.asked: list[str] = []
+        self.announced: list[str] = []
 
     def __call__(self, question: str) -> str:
+        if "Enter starts it" in question:
+            self.announced.append(question.partition(":")[0])
+            return ""
         self.asked.append(question.partition(":")[0])
         return self.answer
 
@@ -35,10 +39,11 @@ def test_good_wheel_passes_and_pushes_are_measured_not_asked(t500: CockpitProfil
     person = Person()
     found = check_force_feedback(t500, say=quiet, ask=person, virtual=True, pace=at_once)
     assert found["ok"]
-    assert set(found["forces"]) == {*(force.name for force in FORCES), "let go"}
+    assert list(found["forces"]) == ["sign", "right", "let go", *(force.name for force in FORCES)]
+    assert person.announced == list(found["forces"]), "Enter comes before each of them"
     assert person.asked == ["texture", "damping", "friction", "centre"]
-    assert found["forces"]["left"]["turned_deg"] > 3.0
-    assert found["forces"]["right"]["turned_deg"] < -3.0
+    assert 0.5 <= found["forces"]["sign"]["turned_deg"] <= 12.0
+    assert -12.0 <= found["forces"]["right"]["turned_deg"] <= -0.5
 
 
 def test_force_that_is_not_felt_fails(t500: CockpitProfile) -> None:
@@ -56,7 +61,7 @@ def test_wrong_sign_is_found_first_named_and_nothing_else_is_tried(
     said: list[str] = []
     found = check_force_feedback(t500, say=said.append, ask=Person(), virtual=True, pace=at_once)
     assert not found["ok"]
-    assert list(found["forces"]) == ["sign", "let go"]
+    assert list(found["forces"]) == ["sign"]
     assert "force_feedback.level_pushes: value left: right; this motor pushes the other way" in said
 
 
@@ -87,3 +92,32 @@ def test_nobody_there_to_answer_is_one_line_and_leaves_no_force(t500: CockpitPro
 
     with pytest.raises(DeviceError, match="an answer to every question"):
         check_force_feedback(t500, say=quiet, ask=nobody, virtual=True, pace=at_once)
+
+
+def test_each_force_is_counted_down(t500: CockpitProfile) -> None:
+    said: list[str] = []
+    check_force_feedback(t500, say=said.append, ask=Person(), virtual=True, pace=at_once)
+    starts = [index for index, line in enumerate(said) if line == "3"]
+    assert len(starts) == 7
+    assert all(said[index : index + 3] == ["3", "2", "1"] for index in starts)
+
+
+def test_any_key_ends_it_at_once_without_a_force(t500: CockpitProfile, monkeypatch: pytest.MonkeyPatch) -> None:
+    levels: list[float] = []
+    write = SimulatedWheelPort.write
+
+    def noted(port: SimulatedWheelPort, level: float) -> None:
+        levels.append(level)
+        write(port, level)
+
+    monkeypatch.setattr(SimulatedWheelPort, "write", noted)
+    with pytest.raises(KeyboardInterrupt):
+        check_force_feedback(t500, say=quiet, ask=Person(), virtual=True, pace=at_once, pressed=lambda: any(levels))
+    assert levels[-2] != 0.0 == levels[-1]
+
+
+def test_a_wheel_that_runs_away_is_let_go(t500: CockpitProfile, monkeypatch: pytest.MonkeyPatch) -> None:
+    write = SimulatedWheelPort.write
+    monkeypatch.setattr(SimulatedWheelPort, "write", lambda port, level: write(port, 1.0 if level else 0.0))
+    with pytest.raises(DeviceError, match="beyond 12 deg by itself"):
+        check_force_feedback(t500, say=quiet, ask=Person(), virtual=True, pace=at_once)

@@ -1,5 +1,9 @@
 """SDL is shared within the process: who starts and who stops it."""
 
+import os
+
+import pytest
+
 from simconsole.devices.sources import sdl_runtime
 from simconsole.devices.sources.virtual_joystick import VirtualDevice, VirtualSpec
 
@@ -25,3 +29,16 @@ def test_display_of_someone_else_is_left_alone(sdl: None) -> None:
     sdl_runtime.release()
     assert pygame.display.get_init()
     pygame.display.quit()
+
+
+def test_its_environment_is_not_left_to_programs_started_later(sdl: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("SDL_VIDEODRIVER", raising=False)
+    monkeypatch.setenv("SDL_NO_SIGNAL_HANDLERS", "0")
+    sdl_runtime.acquire()
+    sdl_runtime.acquire()
+    assert os.environ["SDL_VIDEODRIVER"] == "dummy"
+    sdl_runtime.release()
+    assert os.environ["SDL_VIDEODRIVER"] == "dummy"
+    sdl_runtime.release()
+    assert "SDL_VIDEODRIVER" not in os.environ
+    assert os.environ["SDL_NO_SIGNAL_HANDLERS"] == "0"

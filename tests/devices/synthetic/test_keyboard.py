@@ -8,7 +8,7 @@ from simconsole.devices.calibration.cockpit_settings import CockpitSettings
 from simconsole.devices.synthetic.keyboard import STEER_MAX_RAD, KeyboardSource
 from simconsole.values.key_codes import Key
 from simconsole.values.signals import Button, DriverInput
-from simconsole.values.validity import STALE
+from simconsole.values.validity import LIVE, STALE
 from tests.devices.calibration_run import CalibrationRun
 
 
@@ -67,11 +67,23 @@ def test_every_key_of_a_button_presses_it(button: Button, board: Board) -> None:
 
 def test_silent_window_holds_and_then_goes_stale(board: Board) -> None:
     pressed = board.hold(Key.THROTTLE, 0.2).throttle
-    board.age = 20
+    board.age = 60
     assert board.hold(Key.THROTTLE, 0.2).throttle == pressed
-    board.age = 26
+    board.age = 101
     driver = board.hold(Key.THROTTLE, 0.01)
     assert (driver.throttle, driver.throttle_validity) == (0.0, STALE)
+
+
+def test_a_slow_frame_loses_no_key(board: Board) -> None:
+    """Frames of 180 ms, as under load: the keyboard stays live, and the foot goes on pressing in between."""
+    pressed = [0.0]
+    for _ in range(8):
+        for board.age in range(45):
+            driver = board.hold(Key.THROTTLE, 0.004)
+            assert driver.throttle_validity == LIVE
+        pressed.append(driver.throttle)
+    assert pressed[:3] == pytest.approx([0.0, 0.36, 0.72], abs=0.02)
+    assert pressed[-1] == 1.0
 
 
 def test_a_window_slower_than_the_tick_does_not_slow_the_hands(keyboard_settings: CockpitSettings) -> None:

@@ -8,9 +8,10 @@ import numpy as np
 import pygame
 import pytest
 
+from simconsole.hud.key_names import KEY_CODES
 from simconsole.hud.view import HudSettings
 from simconsole.hud.window import pygame_window as window
-from simconsole.hud.window.pygame_window import KEY_CODES, Freshness, Ports, Window, choose_display, run
+from simconsole.hud.window.pygame_window import Freshness, Ports, Window, choose_display, run
 from simconsole.profiles.view import HudProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.key_codes import Key
@@ -57,13 +58,26 @@ def test_an_open_window_has_its_fonts() -> None:
     assert set(opened._painter._fonts) == loaded != set()
 
 
-def test_closing_the_window_ends_it() -> None:
-    def latest() -> None:
-        pygame.event.post(pygame.event.Event(pygame.QUIT))
+@pytest.mark.parametrize(
+    ("event", "asks"),
+    [
+        (pygame.event.Event(pygame.QUIT), True),
+        (pygame.event.Event(pygame.KEYDOWN, key=pygame.K_END), True),
+        (pygame.event.Event(pygame.KEYDOWN, key=pygame.K_HOME), False),
+    ],
+)
+def test_closing_the_window_asks_for_the_end_until_it_comes(event: pygame.event.Event, asks: bool) -> None:
+    """A window that ended by itself was opened again by the supervisor."""
+    posted = iter([True])
 
-    ends = stop_after(1000)
-    run(Ports(latest, lambda mask: None, lambda: next(ends)), PROFILE, HudSettings())
-    assert not next(ends)
+    def latest() -> None:
+        if next(posted, False):
+            pygame.event.post(event)
+
+    keys: list[int] = []
+    ends = stop_after(5)
+    run(Ports(latest, keys.append, lambda: next(ends)), PROFILE, HudSettings())
+    assert keys == [0, *[int(Key.END) if asks else 0] * 4, 0]
 
 
 def test_keys_are_released_when_the_ring_breaks() -> None:
