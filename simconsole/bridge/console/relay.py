@@ -53,6 +53,9 @@ class GraphPublisher(NamedTuple):
     type: str
     latched: bool
     depth: int
+    best_effort: bool = False
+    deadline_ns: int | None = None
+    lifespan_ns: int | None = None
 
 
 class GraphEntities(NamedTuple):
@@ -197,7 +200,14 @@ class Relay:
                     subscriptions[name] = topic.type
             elif topic.owned or topic.publishers - {own}:
                 depth = OUTPUT_DEPTH if topic.owned else topic.depth
-                publishers[name] = GraphPublisher(topic.type, topic.latch, 1 if topic.latch else depth)
+                publishers[name] = GraphPublisher(
+                    type=topic.type,
+                    latched=topic.latch,
+                    depth=1 if topic.latch else depth,
+                    best_effort=topic.is_best_effort,
+                    deadline_ns=topic.deadline_ns,
+                    lifespan_ns=topic.lifespan_ns,
+                )
             if not topic.owned and topic.subscribers.keys() - {own} and self._role >= Role.PUBLISH:
                 subscriptions[name] = topic.type
         calls = router.calls

@@ -272,12 +272,17 @@ class Calls:
         )  # fmt: skip
 
     def _cancel(self, session: ClientSession, name: str, operation: CancelActionGoal) -> None:
-        for identifier, call in self._calls.items():
-            is_meant = (call.name, call.caller.id) == (name, operation.id)
-            if call.is_goal and call.caller.session is session and is_meant:
-                _send(call.provider, op="cancel_action_goal", action=name, id=identifier)
-                return
-        raise RemoteProtocolError("no such goal is pursued")
+        goals = {
+            identifier: call
+            for identifier, call in self._calls.items()
+            if call.is_goal and call.caller.session is session and call.name == name
+        }
+        if operation.id is not None:
+            goals = {identifier: call for identifier, call in goals.items() if call.caller.id == operation.id}
+            if not goals:
+                raise RemoteProtocolError("no such goal is pursued")
+        for identifier, call in goals.items():
+            _send(call.provider, op="cancel_action_goal", action=name, id=identifier)
 
     def _feedback(self, session: ClientSession, name: str, operation: ActionFeedback) -> None:
         _, call = self._find_call(session, name, operation.id)

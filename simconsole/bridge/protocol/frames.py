@@ -1,5 +1,6 @@
 """WebSocket frames and messages, independent of the library (RFC 6455): reassembly, limits, frame headers."""
 
+import codecs
 from collections.abc import Iterable
 from typing import Final
 
@@ -23,12 +24,16 @@ TOO_BIG: Final = 1009
 
 ASSEMBLY_NS: Final = 2 * NS_PER_S
 """The longest that one message may be on its way once its first frame is here."""
+_Utf8: Final = codecs.getincrementaldecoder("utf-8")
 _REGISTERED: Final = {1000, 1001, 1002, 1003, *range(1007, 1015)}
 _PRIVATE: Final = range(3000, 5000)
 
 
 class MessageAssembler:
-    """Joins the frames of messages, and refuses one in too many of them, too long, or too long on its way (N08, N13).
+    """Joins the frames of messages; refuses one in too many of them, too long, too long on its way, or no UTF-8.
+
+    The first three are N08 and N13; text is checked frame by frame (8.1), so that wrong text is refused with the first
+    frame that has it.
 
     Time is given, in ns.
     """
@@ -40,6 +45,7 @@ class MessageAssembler:
         self._parts: list[bytes] = []
         self._bytes = 0
         self._binary = False
+        self._utf8 = _Utf8()
         self._since_ns = 0
 
     def add(self, opcode: int, data: bytes, fin: bool, now_ns: int) -> bytes | None:
@@ -53,6 +59,8 @@ class MessageAssembler:
         if opcode != CONTINUATION:
             self._binary = opcode == BINARY
             if fin and len(data) <= self._max_bytes:
+                if not self._binary and not data.isascii():
+                    self._check_text(data, True)
                 return Binary(data) if self._binary else data
             self._bytes, self._since_ns = 0, now_ns
         self._parts.append(data)
@@ -62,6 +70,8 @@ class MessageAssembler:
         late = self.overdue(now_ns)
         if late is not None:
             raise FrameError(POLICY_VIOLATION, late)
+        if not self._binary:
+            self._check_text(data, fin)
         if not fin:
             if self._max_fragments is not None and len(self._parts) >= self._max_fragments:
                 raise FrameError(POLICY_VIOLATION, f"message is in more than {self._max_fragments} fragments")
@@ -69,6 +79,12 @@ class MessageAssembler:
         whole = b"".join(self._parts)
         self._parts = []
         return Binary(whole) if self._binary else whole
+
+    def _check_text(self, data: bytes, fin: bool) -> None:
+        try:
+            self._utf8.decode(data, fin)
+        except UnicodeDecodeError:
+            raise FrameError(INVALID_DATA, "a text is no UTF-8") from None
 
     def overdue(self, now_ns: int) -> str | None:
         """Return why a message that is not complete is no longer waited for, None while it is or there is none."""

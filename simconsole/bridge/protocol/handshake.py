@@ -11,6 +11,9 @@ from http import HTTPStatus
 from typing import Final, NamedTuple
 from urllib.parse import parse_qs, urlsplit
 
+import orjson
+
+from simconsole import __version__
 from simconsole.bridge.protocol.access import Access, Role
 from simconsole.bridge.protocol.message_encoding import Dialect
 from simconsole.profiles.bridge import BridgeProfile
@@ -20,6 +23,9 @@ _LOCAL: Final = ("localhost", "127.0.0.1", "[::1]")
 _LOCAL_PAGE: Final = re.compile(r"https?://(?:localhost|127\.0\.0\.1|\[::1\])(?::\d{1,5})?")
 _PORT: Final = re.compile(r":\d{1,5}$")
 
+WEBSOCKET_VERSION: Final = "13"
+VERSION_PATH: Final = "/version"
+"""Answered to plain HTTP: what serves here, in JSON."""
 DRIVE_HEADER: Final = "X-Simconsole-Drive"
 """Header with the drive's nonce, sent only by programs that the drive has started."""
 
@@ -32,6 +38,7 @@ class HandshakeRequest(NamedTuple):
     origins: Sequence[str]
     authorizations: Sequence[str]
     drives: Sequence[str] = ()
+    upgrades: Sequence[str] = ("websocket",)
 
 
 class Admission(NamedTuple):
@@ -46,11 +53,19 @@ class Refusal(NamedTuple):
 
     status: HTTPStatus
     reason: str
+    content_type: str = "text/plain; charset=utf-8"
 
     @property
     def body(self) -> str:
         """The text that the client gets."""
         return f"{self.reason}\n"
+
+    @property
+    def headers(self) -> dict[str, str]:
+        """The headers that the client gets beside those of every answer."""
+        protocol = {"Upgrade": "websocket", "Sec-WebSocket-Version": WEBSOCKET_VERSION}
+        upgrade = protocol if self.status == HTTPStatus.UPGRADE_REQUIRED else {}
+        return {"Content-Type": self.content_type, **upgrade}
 
 
 def handshake_request(path: str, values_of: Callable[[str], Sequence[str]]) -> HandshakeRequest:
@@ -61,6 +76,7 @@ def handshake_request(path: str, values_of: Callable[[str], Sequence[str]]) -> H
         origins=values_of("Origin"),
         authorizations=values_of("Authorization"),
         drives=values_of(DRIVE_HEADER),
+        upgrades=values_of("Upgrade"),
     )
 
 
@@ -74,6 +90,8 @@ def admit(
         return Refusal(HTTPStatus.FORBIDDEN, "this server does not answer to pages of that Origin")
     if not is_of_drive(request.drives, drive):
         return Refusal(HTTPStatus.FORBIDDEN, "this server belongs to another drive than the one that started you")
+    if not any("websocket" in value.lower() for value in request.upgrades):
+        return _plain_answer(request.path)
     try:
         role = role_at(request.path, request.authorizations[0] if request.authorizations else None, access)
     except RemoteProtocolError:
@@ -81,6 +99,17 @@ def admit(
     if is_full:
         return Refusal(HTTPStatus.SERVICE_UNAVAILABLE, "too many clients")
     return Admission(role, dialect_of(request.path, profile))
+
+
+def _plain_answer(path: str) -> Refusal:
+    """Return the answer to a browser or another program that asks in plain HTTP."""
+    if path.partition("?")[0] == VERSION_PATH:
+        versions = {"name": "simconsole", "version": __version__, "protocol": "rosbridge v2.0"}
+        return Refusal(HTTPStatus.OK, orjson.dumps(versions).decode(), "application/json")
+    return Refusal(
+        HTTPStatus.UPGRADE_REQUIRED,
+        "this is a rosbridge server: connect a rosbridge client (roslibpy, roslib, Foxglove) by WebSocket",
+    )
 
 
 def is_origin_allowed(origins: Sequence[str], profile: BridgeProfile) -> bool:

@@ -12,7 +12,8 @@ from msgspec import Meta, Struct
 from simconsole.values.errors import RemoteProtocolError
 from simconsole.values.units import NS_PER_S
 
-Id = str | int | None
+MAX_ID: Final = 1024
+Id = Annotated[str, Meta(max_length=MAX_ID)] | int | None
 Level = Literal["none", "error", "warning", "info"]
 SEVERITY: Final[dict[str, int]] = {"none": 0, "error": 1, "warning": 2, "info": 3}
 DEFAULT_LEVEL: Final = "error"
@@ -26,32 +27,55 @@ FragmentSize = Annotated[int, Meta(ge=16)] | None
 """The most characters of a message in one piece; smaller ones would cost more in frames than in content."""
 
 
-class Span(Struct):
-    """A builtin_interfaces/Duration."""
+_Seconds = Annotated[int, Meta(ge=0, le=1_000_000_000)]
+_Nanoseconds = Annotated[int, Meta(ge=0, le=999_999_999)]
 
-    sec: Annotated[int, Meta(ge=0, le=1_000_000_000)] = 0
-    nanosec: Annotated[int, Meta(ge=0, le=999_999_999)] = 0
+
+class Span(Struct, forbid_unknown_fields=True):
+    """A duration, in ROS 1's names of its parts, which rosbridge_suite takes, or in ROS 2's."""
+
+    secs: _Seconds = 0
+    nsecs: _Nanoseconds = 0
+    sec: _Seconds = 0
+    nanosec: _Nanoseconds = 0
+
+
+Duration = Annotated[float, Meta(ge=0.0, le=1e9)] | Span | Literal["infinite", "best_available"]
+"""In s."""
 
 
 class Qos(Struct):
-    """ROS 2's quality of service, as in rosbridge_suite since its pull request 1150; absent fields get our defaults.
+    """ROS 2's quality of service in the form of rosbridge_suite, upper or lower case; absent fields get our defaults.
 
-    Applied: `depth` and `history` as the queue's length, `durability` as the latch, `lifespan` (s, or a Duration) as
-    the latch's end. Every queue here is reliable until it is full: `reliability` means nothing more.
+    Applied here: `depth` and `history` as the queue's length, `durability` as the latch, `lifespan` as the latch's
+    end. Every queue here is reliable until it is full; `reliability` and `deadline` are applied in a ROS 2 graph.
     """
 
     depth: Annotated[int, Meta(ge=0, le=1_000_000)] | None = None
     reliability: Literal["system_default", "best_available", "reliable", "best_effort"] | None = None
     durability: Literal["system_default", "best_available", "volatile", "transient_local"] | None = None
     history: Literal["system_default", "keep_last", "keep_all"] | None = None
-    lifespan: Annotated[float, Meta(ge=0.0, le=1e9)] | Span | None = None
+    lifespan: Duration | None = None
+    deadline: Duration | None = None
 
     @property
     def lifespan_ns(self) -> int | None:
         """How long a latched message lasts, None for ever."""
-        if isinstance(self.lifespan, Span):
-            return self.lifespan.sec * NS_PER_S + self.lifespan.nanosec
-        return None if self.lifespan is None else int(self.lifespan * NS_PER_S)
+        return _duration_ns(self.lifespan)
+
+    @property
+    def deadline_ns(self) -> int | None:
+        """The longest time promised between two messages, None without one."""
+        return _duration_ns(self.deadline)
+
+
+def _duration_ns(duration: Duration | None) -> int | None:
+    """Return a duration in ns; None where it has no end, which ROS writes as 0 too."""
+    if duration is None or isinstance(duration, str):
+        return None
+    if isinstance(duration, Span):
+        return (duration.secs + duration.sec) * NS_PER_S + duration.nsecs + duration.nanosec or None
+    return int(duration * NS_PER_S) or None
 
 
 NO_QOS: Final = Qos()
@@ -82,6 +106,7 @@ class Publish(Struct):
     id: Id = None
     latch: bool = False
     qos: Qos | None = None
+    type: str | None = None
 
 
 class Subscribe(Struct):
@@ -183,10 +208,10 @@ class SendActionGoal(Struct):
 
 
 class CancelActionGoal(Struct):
-    """A goal is cancelled, either way."""
+    """A goal is cancelled, either way; without id, all of the client's goals for that action."""
 
     action: str
-    id: Id
+    id: Id = None
 
 
 class ActionFeedback(Struct):
@@ -278,9 +303,15 @@ def read_operation(fields: dict[str, Any]) -> Operation:
     name = fields.get("op")
     if not isinstance(name, str):
         raise RemoteProtocolError("message has no op")
-    if name == "publish" and "msg" in fields and "qos" not in fields and type(fields.get("topic")) is str:
+    qos = fields.get("qos")
+    if name == "publish" and qos is None and "msg" in fields and type(fields.get("topic")) is str:
         # The one that comes a hundred times a second is spared the conversion of its untyped payload.
-        return Publish(fields["topic"], fields["msg"], id_of(fields), fields.get("latch") is True)
+        kind = fields.get("type")
+        if kind is None or type(kind) is str:
+            return Publish(fields["topic"], fields["msg"], id_of(fields), fields.get("latch") is True, None, kind)
+    if isinstance(qos, dict):
+        lower = {key: value.lower() if isinstance(value, str) else value for key, value in qos.items()}
+        fields = {**fields, "qos": lower}
     operation = OPERATIONS.get(name)
     if operation is None:
         raise RemoteProtocolError(f"op {name[:40]!r} is not supported here, only {', '.join(OPERATIONS)}")
@@ -291,10 +322,10 @@ def read_operation(fields: dict[str, Any]) -> Operation:
 
 
 def id_of(fields: dict[str, Any]) -> Id:
-    """Return the id of a message if it has a usable one: a refusal carries it back."""
+    """Return the id of a message if it has a usable one: a refusal carries it back as it came."""
     value = fields.get("id")
     if isinstance(value, str):
-        return value[:256]
+        return value if len(value) <= MAX_ID else None
     return value if type(value) is int else None
 
 

@@ -251,6 +251,8 @@ class Router:
         self._require(session, Role.PUBLISH)
         # A name that is registered as given needs no resolving.
         topic = self.topic_registry.find(operation.topic) or self.topic_registry.find(resolve_topic(operation.topic))
+        if operation.type is not None:
+            topic = self._advertised(session, topic, operation, operation.type)
         if topic is None:
             raise RemoteProtocolError("advertise the topic first: nobody has said its type")
         if not isinstance(operation.msg, dict):
@@ -265,6 +267,16 @@ class Router:
             self.topic_registry.apply_qos(topic, operation)
         self.topic_registry.distribute(topic, message, now_ns)
         return Outcome("done", topic.name, "")
+
+    def _advertised(self, session: ClientSession, topic: Topic | None, operation: Publish, type_name: str) -> Topic:
+        """Return the topic of a message that says its type: whoever has not advertised it does so by this."""
+        if topic is None:
+            return self.topic_registry.advertise(
+                session, resolve_topic(operation.topic), Advertise(operation.topic, type_name)
+            )
+        if self.registry.resolve(type_name) != topic.type:
+            raise RemoteProtocolError(f"the topic is {topic.type}, not {self.registry.resolve(type_name)}")
+        return topic
 
     def _command(
         self,

@@ -50,6 +50,10 @@ class Topic:
         self.latched: Encoder | None = None
         self.latched_ns = 0
         self.lifespan_ns: int | None = None
+        self.deadline_ns: int | None = None
+        """Promised to the nodes of a graph."""
+        self.is_best_effort = False
+        """Whether the nodes of a graph may lose messages of it."""
         self.sequence = 0
         self.head = publish_head(name)
         self.publishers: set[int] = set()
@@ -142,19 +146,21 @@ class TopicRegistry:
             del topic.subscribers[session.number]
             self._remove_unused(topic)
 
-    def advertise(self, session: ClientSession, name: str, operation: Advertise) -> None:
-        """Register a client as a publisher. Raises RemoteProtocolError with the reason why it must not."""
+    def advertise(self, session: ClientSession, name: str, operation: Advertise) -> Topic:
+        """Register a client as a publisher; return the topic. Raises RemoteProtocolError with the reason why not."""
         topic = self._topic(name, operation.type)
         if topic.owned and topic.command is None:
             raise RemoteProtocolError("only the console publishes this topic")
+        identifiers = session.advertised.get(name, set())
+        if operation.id not in identifiers and len(identifiers) >= self._limits.topics:
+            raise RemoteProtocolError(f"{self._limits.topics} ids for one topic are the most allowed")
         topic.publishers.add(session.number)
         self.apply_qos(topic, operation)
-        identifiers = session.advertised.setdefault(name, set())
-        if len(identifiers) < self._limits.topics:
-            identifiers.add(operation.id)
+        session.advertised.setdefault(name, set()).add(operation.id)
+        return topic
 
     def apply_qos(self, topic: Topic, operation: Advertise | Publish) -> None:
-        """Apply a publisher's quality of service to its topic: latching, queue depth, lifespan."""
+        """Apply a publisher's quality of service to its topic."""
         if topic.owned:
             return
         qos = operation.qos or NO_QOS
@@ -162,6 +168,10 @@ class TopicRegistry:
         topic.depth = min(self._depth(qos) or topic.depth, self._limits.queue_length)
         if qos.lifespan is not None:
             topic.lifespan_ns = qos.lifespan_ns
+        if qos.deadline is not None:
+            topic.deadline_ns = qos.deadline_ns
+        if qos.reliability is not None:
+            topic.is_best_effort = qos.reliability == "best_effort"
 
     def unadvertise(self, session: ClientSession, name: str, identifier: Any) -> None:
         """Withdraw a publisher, all of a client's for None. Raises RemoteProtocolError: there is none."""

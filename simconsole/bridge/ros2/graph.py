@@ -191,10 +191,16 @@ class Graph:
         _synchronise(self._actions, entities.actions, self._calls.make_action, lambda server: server.destroy())
 
     def _make_publisher(self, name: str, offer: GraphPublisher) -> Any:
-        from rclpy.qos import DurabilityPolicy, QoSProfile
+        from rclpy.duration import Duration
+        from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
-        durability = DurabilityPolicy.TRANSIENT_LOCAL if offer.latched else DurabilityPolicy.VOLATILE
-        qos = QoSProfile(depth=offer.depth, durability=durability)
+        spans = {"deadline": offer.deadline_ns, "lifespan": offer.lifespan_ns}
+        qos = QoSProfile(
+            depth=offer.depth,
+            durability=DurabilityPolicy.TRANSIENT_LOCAL if offer.latched else DurabilityPolicy.VOLATILE,
+            reliability=ReliabilityPolicy.BEST_EFFORT if offer.best_effort else ReliabilityPolicy.RELIABLE,
+            **{name: Duration(nanoseconds=span_ns) for name, span_ns in spans.items() if span_ns is not None},
+        )
         publisher = self._node.create_publisher(load(offer.type), name, qos)
         early = self._early.pop(name, None)
         if early is not None:

@@ -147,7 +147,11 @@ class LockstepConnection:
         asked = handshake_request(request.path, request.headers.get_all)
         decision = admit(asked, self._profile, self._owner.access, self._is_full, self._owner.drive)
         if isinstance(decision, Refusal):
-            self._web.send_response(self._web.reject(decision.status, decision.body))
+            response = self._web.reject(decision.status, decision.body)
+            for name, value in decision.headers.items():
+                response.headers.pop(name, None)
+                response.headers[name] = value
+            self._web.send_response(response)
             return
         self._web.send_response(self._web.accept(request))
         if self._web.state is State.OPEN:

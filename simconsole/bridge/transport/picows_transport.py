@@ -9,7 +9,7 @@ import socket
 import ssl
 from collections.abc import Callable, Sequence
 from http import HTTPStatus
-from typing import Any, Final
+from typing import Any
 
 from picows import (
     WSCloseCode,
@@ -30,14 +30,12 @@ from simconsole.bridge.protocol.frames import (
     check_close,
     framed,
 )
-from simconsole.bridge.protocol.handshake import Admission, Refusal, handshake_request
+from simconsole.bridge.protocol.handshake import WEBSOCKET_VERSION, Admission, Refusal, handshake_request
 from simconsole.bridge.transport import sockets
 from simconsole.bridge.transport.connection_checks import ConnectionChecks
 from simconsole.bridge.transport.interface import Acceptor, ConnectionHandler
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import FrameError
-
-_VERSION: Final = "13"
 
 # The library logs each connection's errors; the bridge logs them itself, and a client's mistake is no error of ours.
 _library_logger = logging.getLogger("simconsole.bridge.picows")
@@ -215,17 +213,17 @@ class PicowsListener:
         connection = ",".join(headers.getall("Connection", ()))
         if "upgrade" in (word.strip().lower() for word in connection.split(",")):
             headers["Connection"] = "upgrade"
-        if headers.get("Sec-WebSocket-Version") != _VERSION:
-            return _refused(Refusal(HTTPStatus.UPGRADE_REQUIRED, f"this server speaks WebSocket version {_VERSION}"))
+        if headers.get("Sec-WebSocket-Version") != WEBSOCKET_VERSION:
+            reason = f"this server speaks WebSocket version {WEBSOCKET_VERSION}"
+            return _refused(Refusal(HTTPStatus.UPGRADE_REQUIRED, reason))
         return WSUpgradeResponseWithListener(WSUpgradeResponse.create_101_response(), PicowsConnection(self, decision))
 
 
 def _refused(refusal: Refusal) -> WSUpgradeResponseWithListener:
-    is_version = refusal.status == HTTPStatus.UPGRADE_REQUIRED
-    more = {"Upgrade": "websocket", "Sec-WebSocket-Version": _VERSION} if is_version else {}
-    return WSUpgradeResponseWithListener(
-        WSUpgradeResponse.create_error_response(refusal.status, refusal.body.encode(), more), None
-    )
+    error = max(refusal.status, HTTPStatus.BAD_REQUEST)  # the library makes no other answer than an error
+    response = WSUpgradeResponse.create_error_response(error, refusal.body.encode(), refusal.headers)
+    response.status = refusal.status
+    return WSUpgradeResponseWithListener(response, None)
 
 
 async def start_listener(

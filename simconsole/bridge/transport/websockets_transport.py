@@ -130,7 +130,11 @@ async def start_listener(
         assert isinstance(connection, WebsocketsConnection)
         decision = acceptor.admit(handshake_request(request.path, request.headers.get_all))
         if isinstance(decision, Refusal):
-            return connection.respond(decision.status, decision.body)
+            response = connection.respond(decision.status, decision.body)
+            for name, value in decision.headers.items():
+                response.headers.pop(name, None)  # else a second line: the library has given a type itself
+                response.headers[name] = value
+            return response
         connection.admission = decision
         return None
 

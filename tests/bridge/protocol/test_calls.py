@@ -248,6 +248,21 @@ def test_cancelled_goal(pair: tuple[Any, Any]) -> None:
     assert (got["status"], got["result"]) == (5, False)
 
 
+def test_cancelling_without_an_id_cancels_every_goal_of_that_client(
+    bridge: ConsoleBridge, pair: tuple[Any, Any], join: Callable[..., Any]
+) -> None:
+    provider, caller = pair
+    other = join(bridge)
+    for client, goal in ((caller, "a"), (caller, "b"), (other, "c")):
+        client.send(op="send_action_goal", id=goal, action="/fibonacci", args={})
+    goals = [asked["id"] for asked in provider.heard()]
+    assert caller.send(op="cancel_action_goal", action="/fibonacci").kind == "done"
+    assert [(message["op"], message["id"]) for message in provider.heard()] == [
+        ("cancel_action_goal", goals[0]),
+        ("cancel_action_goal", goals[1]),
+    ]
+
+
 def test_goal_that_cannot_be_pursued(pair: tuple[Any, Any]) -> None:
     provider, caller = pair
     for action, args in (("/nothing", {}), ("/fibonacci", {"order": "x"})):

@@ -6,6 +6,7 @@ from simconsole.bridge.protocol.frames import (
     BINARY,
     CLOSE,
     CONTINUATION,
+    INVALID_DATA,
     PING,
     TEXT,
     MessageAssembler,
@@ -133,3 +134,31 @@ def test_frames_are_the_library_s_own(length: int, kind: type[bytes]) -> None:
     frame = Frame(opcode, message).serialize(mask=False)
     assert framed([message]) == frame
     assert framed([message, b"{}"]) == frame + b"\x81\x02{}"
+
+
+def assemble(parts: list[bytes]) -> bytes | None:
+    """What becomes of a text in as many frames."""
+    messages, whole = MessageAssembler(100, 100), None
+    for number, part in enumerate(parts):
+        whole = messages.add(CONTINUATION if number else TEXT, part, number == len(parts) - 1, 0)
+    return whole
+
+
+@pytest.mark.parametrize("text", [b"\xff", b"\xc3", b"\xed\xa0\x80", b"\xf4\x90\x80\x80", b"\xc0\xaf"])
+def test_text_that_is_no_utf8_is_refused_whole_or_in_frames(text: bytes) -> None:
+    for parts in ([text], [b"{", text], [bytes([byte]) for byte in b'{"\xc3\xa4":"' + text]):
+        with pytest.raises(FrameError) as refusal:
+            assemble(parts)
+        assert refusal.value.code == INVALID_DATA
+    assert MessageAssembler(100, 100).add(BINARY, text, True, 0) == text
+
+
+def test_wrong_text_is_refused_with_the_first_frame_that_has_it() -> None:
+    messages = MessageAssembler(100, 100)
+    with pytest.raises(FrameError):
+        messages.add(TEXT, b"\xff", False, 0)
+
+
+def test_characters_may_be_divided_between_frames() -> None:
+    text = "\U0001f697 fährt".encode()
+    assert assemble([bytes([byte]) for byte in text]) == text

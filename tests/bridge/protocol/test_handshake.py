@@ -1,7 +1,9 @@
+import json
 from typing import Any
 
 import pytest
 
+from simconsole import __version__
 from simconsole.bridge.protocol.access import Access, Role
 from simconsole.bridge.protocol.handshake import (
     DRIVE_HEADER,
@@ -94,9 +96,9 @@ def test_wrong_token_is_refused_at_the_handshake(path: str, header: str | None) 
 
 
 def test_request_is_read_from_headers_of_any_library() -> None:
-    headers = {"Host": ["a", "b"], "Origin": ["c"], "Authorization": ["d"], DRIVE_HEADER: ["e"]}
+    headers = {"Host": ["a", "b"], "Origin": ["c"], "Authorization": ["d"], DRIVE_HEADER: ["e"], "Upgrade": ["f"]}
     request = handshake_request("/ros2", headers.__getitem__)
-    assert request == HandshakeRequest("/ros2", ["a", "b"], ["c"], ["d"], ["e"])
+    assert request == HandshakeRequest("/ros2", ["a", "b"], ["c"], ["d"], ["e"], ["f"])
 
 
 REQUEST = HandshakeRequest("/ros1?token=" + "c" * 16, ["localhost:9090"], [], [])
@@ -196,3 +198,26 @@ def test_the_nonce_grants_nothing() -> None:
     found = admit(request, BridgeProfile(), ACCESS, False, NONCE)
     assert isinstance(found, Admission)
     assert found.role is ACCESS.anonymous
+
+
+@pytest.mark.parametrize("upgrades", [[], ["h2c"]])
+def test_plain_http_is_answered_plainly(upgrades: list[str]) -> None:
+    asked = HandshakeRequest("/", ["localhost"], [], [], upgrades=upgrades)
+    answer = admit(asked, BridgeProfile(), ACCESS, False)
+    assert isinstance(answer, Refusal)
+    assert answer.status == 426
+    assert "rosbridge" in answer.body
+    assert answer.headers["Upgrade"] == "websocket"
+
+
+def test_version_is_told_in_plain_http() -> None:
+    asked = HandshakeRequest("/version?x=1", ["localhost"], [], [], upgrades=[])
+    answer = admit(asked, BridgeProfile(), ACCESS, False)
+    assert isinstance(answer, Refusal)
+    assert (answer.status, answer.content_type) == (200, "application/json")
+    assert json.loads(answer.body) == {"name": "simconsole", "version": __version__, "protocol": "rosbridge v2.0"}
+
+
+def test_plain_http_under_another_name_is_not_answered() -> None:
+    asked = HandshakeRequest("/version", ["evil.example"], [], [], upgrades=[])
+    assert admit(asked, BridgeProfile(), ACCESS, False).status == 403  # type: ignore[union-attr]

@@ -54,7 +54,7 @@ def test_volatile_subscriber_of_a_latched_topic_gets_what_comes_only(pair: tuple
     assert words(late) == ["new"]
 
 
-@pytest.mark.parametrize("lifespan", [2.0, {"sec": 1, "nanosec": 10**9 - 1}])
+@pytest.mark.parametrize("lifespan", [2.0, {"sec": 1, "nanosec": 10**9 - 1}, {"secs": 1, "nsecs": 10**9 - 1}])
 def test_lifespan_ends_a_latch(pair: tuple[Any, Any], lifespan: Any) -> None:
     talker, late = pair
     talker.send(op="advertise", **CHATTER, qos={"durability": "transient_local", "lifespan": lifespan})
@@ -64,6 +64,69 @@ def test_lifespan_ends_a_latch(pair: tuple[Any, Any], lifespan: Any) -> None:
         late.send(op="subscribe", **CHATTER)
         assert words(late) == expected
         late.send(op="unsubscribe", topic="/chatter")
+
+
+@pytest.mark.parametrize("lifespan", ["infinite", "INFINITE", 0, {"secs": 0, "nsecs": 0}])
+def test_lifespan_without_an_end_is_none(pair: tuple[Any, Any], lifespan: Any) -> None:
+    talker, late = pair
+    talker.send(op="advertise", **CHATTER, qos={"durability": "TRANSIENT_LOCAL", "lifespan": lifespan})
+    say(talker, "old")
+    late.now_ns = 10**9 * S
+    late.send(op="subscribe", **CHATTER)
+    assert words(late) == ["old"]
+
+
+@pytest.mark.parametrize(
+    ("deadline", "expected_ns"),
+    [(0.5, S // 2), ({"secs": 1, "nsecs": 1}, S + 1), ("infinite", None), ("BEST_AVAILABLE", None)],
+)
+def test_what_only_a_graph_applies_is_kept_for_it(
+    pair: tuple[Any, Any], deadline: Any, expected_ns: int | None
+) -> None:
+    talker, _ = pair
+    talker.send(op="advertise", **CHATTER, qos={"reliability": "BEST_EFFORT", "deadline": deadline})
+    topic = talker.bridge.router.topics["/chatter"]
+    assert (topic.is_best_effort, topic.deadline_ns) == (True, expected_ns)
+
+
+@pytest.mark.parametrize("qos", [{"deadline": -1}, {"lifespan": "for ever"}, {"lifespan": {"days": 1}}])
+def test_quality_of_service_that_nobody_can_read_is_refused(pair: tuple[Any, Any], qos: dict[str, Any]) -> None:
+    assert pair[0].send(op="advertise", **CHATTER, qos=qos).kind == "refused"
+
+
+def test_publishing_with_a_type_advertises(pair: tuple[Any, Any]) -> None:
+    talker, listener = pair
+    say(talker, "first", type="std_msgs/String")
+    listener.send(op="subscribe", topic="/chatter")
+    say(talker, "second", type="std_msgs/msg/String")
+    say(talker, "third")
+    assert words(listener) == ["second", "third"]
+    assert talker.bridge.router.topics["/chatter"].publishers == {talker.session.number}
+    assert talker.publish("/chatter", {"data": 1}, type="std_msgs/Int32").kind == "refused"
+    assert talker.publish("/other", {"data": 1}, type="std_msgs/NoSuch").kind == "refused"
+    assert "/other" not in talker.bridge.router.topics
+
+
+def test_publishing_with_a_type_cannot_take_a_topic_of_the_console(pair: tuple[Any, Any]) -> None:
+    talker, _ = pair
+    assert talker.publish("/odom", {}, type="nav_msgs/Odometry").kind == "refused"
+
+
+@pytest.mark.parametrize("identifier", ["advertise:/chatter:2", "x" * 1000, 7])
+def test_refused_second_advertisement_is_named_by_its_exact_id(pair: tuple[Any, Any], identifier: Any) -> None:
+    talker, _ = pair
+    talker.send(op="advertise", **CHATTER, id="advertise:/chatter:1")
+    talker.send(op="advertise", topic="/chatter", type="std_msgs/Int32", id=identifier)
+    assert [message["id"] for message in talker.heard()] == [identifier]
+
+
+def test_ids_of_a_topic_are_bounded_and_all_that_are_taken_count(pair: tuple[Any, Any]) -> None:
+    talker, _ = pair
+    most = talker.bridge.profile.limits.topics
+    kinds = [talker.send(op="advertise", **CHATTER, id=number).kind for number in range(most + 1)]
+    assert kinds == ["done"] * most + ["refused"]
+    assert all(talker.send(op="unadvertise", topic="/chatter", id=number).kind == "done" for number in range(most))
+    assert talker.send(op="advertise", **CHATTER, id="y" * 1025).kind == "refused"
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,5 @@
 import asyncio
+import http.client
 import json
 import logging
 import math
@@ -138,6 +139,31 @@ def test_server_does_not_answer_to_other_names(serving: Callable[..., Any]) -> N
                 "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Version: 13\r\n\r\n".encode()
             )
             assert raw.recv(100).split()[1] == code
+
+
+def test_plain_http_is_answered(serving: Callable[..., Any]) -> None:
+    port = serving().port
+    found = {}
+    for path in ("/", "/version"):
+        connection = http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE_S)
+        connection.request("GET", path)
+        response = connection.getresponse()
+        found[path] = (response.status, response.getheader("Content-Type"), response.read().decode())
+    assert found["/"][:2] == (426, "text/plain; charset=utf-8")
+    assert "rosbridge" in found["/"][2]
+    assert found["/version"][:2] == (200, "application/json")
+    assert json.loads(found["/version"][2])["name"] == "simconsole"
+
+
+def test_text_that_is_no_utf8_ends_its_connection_only(serving: Callable[..., Any]) -> None:
+    server = serving()
+    with connect(server.url) as other, connect(server.url) as peer:
+        peer.send(b'{"op": "\xff"}', text=True)
+        with pytest.raises(ConnectionClosed) as closed:
+            peer.recv(timeout=PATIENCE_S)
+        assert closed.value.rcvd is not None
+        assert closed.value.rcvd.code == 1007
+        settle(other)
 
 
 def test_only_so_many_clients_are_let_in(serving: Callable[..., Any]) -> None:
