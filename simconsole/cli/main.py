@@ -293,6 +293,20 @@ def _tools(commands: Any) -> None:
         metavar="LIBRARY",
         help="what carries clients: websockets, or picows (extra `picows`)",
     )
+    bridge.add_argument(
+        "--origin",
+        action="append",
+        default=[],
+        metavar="ORIGIN",
+        help="`serve` pages from there too: https://lab.example, file://, null, app://-",
+    )
+    bridge.add_argument(
+        "--limit",
+        action="append",
+        default=[],
+        metavar="NAME=NUMBER",
+        help="`serve` with another limit of the profile's outputs.bridge.limits: message_bytes=20000000",
+    )
     bridge.add_argument("--trust-network", action="store_true", help="other machines need no token and no TLS")
     bridge.add_argument("--out", metavar="DIR", default=".", help="where `cert` writes")
 

@@ -8,6 +8,7 @@ from simconsole.cli.outcome import Outcome, table
 from simconsole.cli.remote import own_token
 from simconsole.processes.lifetimes import INTERRUPTED
 from simconsole.processes.shared_memory import temporary_folder
+from simconsole.values.errors import ProfileError
 
 
 def bridge(options: Namespace) -> Outcome:
@@ -35,6 +36,8 @@ def serve(options: Namespace) -> Outcome:
         "transport": options.transport,
         "ros2": {} if options.ros2 else None,
         "messages": options.messages,
+        "allowed_origins": options.origin,
+        "limits": _limits(options.limit),
     }
     session = override(load_session("bridge"), outputs={"bridge": section})
     if options.duration_s is not None:
@@ -50,6 +53,22 @@ def serve(options: Namespace) -> Outcome:
         result = drive(resolve(session), folder, on_bridge=lambda url: print(f"rosbridge at {url}", flush=True))
     code = INTERRUPTED if result.interrupted else 0
     return Outcome(code, result.summary, f"served {result.ticks} ticks, lateness {result.summary['lateness']}")
+
+
+def _limits(words: list[str]) -> dict[str, float]:
+    """Return the limits given as NAME=NUMBER; whether there is such a limit, and its bounds, the profile says.
+
+    Raises:
+        ProfileError: a word is not of that form.
+    """
+    limits: dict[str, float] = {}
+    for word in words:
+        name, _, number = word.partition("=")
+        try:
+            limits[name] = int(number) if number.isdecimal() else float(number)
+        except ValueError:
+            raise ProfileError(f"command line: --limit: {word!r} is not NAME=NUMBER") from None
+    return limits
 
 
 def check(options: Namespace) -> Outcome:

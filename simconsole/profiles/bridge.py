@@ -29,7 +29,10 @@ class BridgeLimits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     """Resources that one client, or all together, may use."""
 
     clients: Annotated[int, Meta(ge=1, le=1024)] = 64
-    message_bytes: Annotated[int, Meta(ge=1024, le=16_777_216)] = 262_144
+    message_bytes: Annotated[int, Meta(ge=1024, le=67_108_864)] = 10_000_000
+    """The longest message of a client of role publish or control."""
+    viewer_message_bytes: Annotated[int, Meta(ge=1024, le=16_777_216)] = 262_144
+    """The longest message of any other client, where `message_bytes` is not less."""
     message_fragments: Annotated[int, Meta(ge=1, le=65_536)] = 256
     subscriptions: Annotated[int, Meta(ge=1, le=4096)] = 256
     topics: Annotated[int, Meta(ge=16, le=4096)] = 256
@@ -39,6 +42,9 @@ class BridgeLimits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     """Of one client, averaged over a second; commands beyond this rate are dropped, not queued."""
     queue_length: Annotated[int, Meta(ge=1, le=100_000)] = 1000
     queued_bytes: Annotated[int, Meta(ge=65_536, le=67_108_864)] = 1_048_576
+    """What may wait for one client; the newest message of each topic is kept whatever its length."""
+    all_queued_bytes: Annotated[int, Meta(ge=1_048_576, le=1_073_741_824)] = 67_108_864
+    """What may wait for all clients together."""
 
 
 class Ros2Profile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -82,8 +88,9 @@ class BridgeProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     rename: dict[TopicName, TopicName] = field(default_factory=dict)
     rates_hz: dict[TopicName, Rate] = field(default_factory=dict)
     odometry_frame: Annotated[str, Meta(min_length=1, max_length=64)] = "odom"
-    allowed_origins: tuple[Annotated[str, Meta(pattern=r"^https?://[^/\s]+$")], ...] = ()
-    """Web pages that may connect beside those of this machine; programs send no origin and always may."""
+    allowed_origins: tuple[Annotated[str, Meta(pattern=r"^(https?://[^/\s]+|null|file://|app://[^/\s]*)$")], ...] = ()
+    """Web pages that may connect beside those of this machine; programs send no origin and always may. `null` and
+    `file://` are pages opened from a file, `app://...` those of a desktop program."""
     allowed_hosts: tuple[Annotated[str, Meta(pattern=r"^[A-Za-z0-9.:\[\]-]+$")], ...] = ()
     """Host names, without port, by which this server may be addressed beside `host` and localhost."""
     dialect: Literal["ros2", "ros1"] = "ros2"

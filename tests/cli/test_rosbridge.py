@@ -4,6 +4,8 @@ import json
 import signal
 from pathlib import Path
 
+import pytest
+
 from tests.drives.console import Running, complaint, results, simconsole
 from tests.drives.controllers import Controller, command, free_port
 from tests.patience import PATIENCE_S, wait_until
@@ -53,6 +55,20 @@ def test_port_of_the_system_s_choice_is_said(tmp_path: Path) -> None:
 
 def test_a_port_that_is_none_is_one_line() -> None:
     assert "outputs.bridge.port: value 70000" in complaint(simconsole("bridge", "serve", "--port", 70000))
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "told"),
+    [
+        ("--limit", "message_bytes", "--limit: 'message_bytes' is not NAME=NUMBER"),
+        ("--limit", "message_bytes=many", "--limit: 'message_bytes=many' is not NAME=NUMBER"),
+        ("--limit", "message_bytes=7", "outputs.bridge.limits.message_bytes: value 7"),
+        ("--limit", "mesage_bytes=7000", "did you mean message_bytes?"),
+        ("--origin", "ftp://x", "outputs.bridge.allowed_origins[0]: "),
+    ],
+)
+def test_limits_and_origins_are_options_that_are_checked(option: str, value: str, told: str) -> None:
+    assert told in complaint(simconsole("bridge", "serve", option, value))
 
 
 def test_it_is_not_open_to_other_machines_by_accident() -> None:

@@ -67,6 +67,8 @@ def _elements(registry: "Registry", kind: FieldType, values: Any, body: bytearra
             text = value.encode() + b"\0"
             _numbers("I", (len(text),), body)
             body += text
+    elif kind.is_octets and kind.array:
+        body += values
     else:
         _numbers(_LETTERS[kind.base], values, body)
 

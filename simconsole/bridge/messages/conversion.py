@@ -53,9 +53,12 @@ def _normalise_field(definitions: Definitions, field: Field, value: Any, gaps: b
 
 
 def _normalise_octets(value: Any) -> Any:
-    if isinstance(value, list) and all(type(item) is int and 0 <= item <= 255 for item in value):
+    if not isinstance(value, list) or bool in set(map(type, value)):
+        return value
+    try:
         return bytes(value)
-    return value
+    except (TypeError, ValueError):
+        return value
 
 
 def _normalise_time(value: Any, now_ns: int) -> Any:

@@ -10,6 +10,7 @@ from enum import IntEnum
 from typing import Final
 
 from simconsole.bridge.protocol.operations import Auth
+from simconsole.profiles.bridge import BridgeLimits
 from simconsole.values.errors import ProfileError, RemoteProtocolError
 
 MIN_TOKEN: Final = 16
@@ -22,6 +23,13 @@ class Role(IntEnum):
     VIEW = 1
     PUBLISH = 2
     CONTROL = 3
+
+
+def message_limit(role: Role, limits: BridgeLimits) -> int:
+    """Return the bytes that a message of a client may have."""
+    if role >= Role.PUBLISH:
+        return limits.message_bytes
+    return min(limits.message_bytes, limits.viewer_message_bytes)
 
 
 class Access:

@@ -9,7 +9,7 @@ from simconsole.bridge.protocol.fragments import FragmentAssembler
 from simconsole.bridge.protocol.message_encoding import Dialect
 from simconsole.bridge.protocol.operations import DEFAULT_LEVEL, SEVERITY, Id, write_status
 from simconsole.bridge.protocol.rate_limiter import RateLimiter
-from simconsole.bridge.protocol.subscription_queue import SendQueue, SubscriptionQueue
+from simconsole.bridge.protocol.subscription_queue import SendBudget, SendQueue, SubscriptionQueue
 from simconsole.values.errors import RemoteProtocolError
 from simconsole.values.units import NS_PER_S
 
@@ -44,6 +44,7 @@ class ClientSession:
         assembler: FragmentAssembler | None = None,
         role: Role = Role.CONTROL,
         rate_limiter: RateLimiter | None = None,
+        budget: SendBudget | None = None,
     ) -> None:
         """Start with nothing; `wake` is called whenever there may be something to send."""
         self.dialect: Dialect = dialect
@@ -52,7 +53,7 @@ class ClientSession:
         self.rate_limiter = rate_limiter or RateLimiter(None)
         self.number = number
         self.peer = peer
-        self.send_queue = SendQueue(max_bytes)
+        self.send_queue = SendQueue(max_bytes, budget, self._tell_dropped)
         self.queues: dict[str, SubscriptionQueue] = {}
         self.advertised: dict[str, set[Id]] = {}
         self.received = 0
@@ -87,7 +88,9 @@ class ClientSession:
     def throttle(self, text: str, now_ns: int) -> None:
         """Count a message dropped by the rate limit; tell the client at most once a second."""
         self.throttled += 1
-        self._send_status_once("error", text, now_ns)
+        if self._warned_ns is None or now_ns - self._warned_ns >= NS_PER_S:
+            self._warned_ns = now_ns
+            self.send_status("error", text)
 
     def counts(self) -> MessageCounts:
         """Return what went to and from this client."""
@@ -99,17 +102,15 @@ class ClientSession:
         self._wake()
 
     def deliver(self, queue: SubscriptionQueue, text: bytes, now_ns: int) -> None:
-        """Queue a message of a subscribed topic; tell the client, at most once a second, when some were dropped."""
-        dropped = self.send_queue.put(queue, text)
+        """Queue a message of a subscribed topic."""
+        self.send_queue.put(queue, text, now_ns)
         self._wake()
-        if dropped:
-            self._send_status_once("warning", f"too slow: {self.send_queue.dropped} messages dropped so far", now_ns)
 
-    def _send_status_once(self, level: str, text: str, now_ns: int) -> None:
-        """Send at most one such status a second."""
-        if self._warned_ns is None or now_ns - self._warned_ns >= NS_PER_S:
-            self._warned_ns = now_ns
-            self.send_status(level, text)
+    def _tell_dropped(self, queue: SubscriptionQueue, now_ns: int) -> None:
+        """Tell the client that messages of a topic are lost, at most once a second for each topic."""
+        if queue.told_ns is None or now_ns - queue.told_ns >= NS_PER_S:
+            queue.told_ns = now_ns
+            self.send_status("error", f"{queue.topic}: too slow: {queue.dropped} messages dropped so far")
 
 
 def resolve_topic(name: str) -> str:

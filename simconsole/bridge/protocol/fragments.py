@@ -36,7 +36,7 @@ class FragmentAssembler:
 
     def __init__(self, max_bytes: int, max_pieces: int) -> None:
         """Allow messages of `max_bytes`, all unfinished ones together, in at most `max_pieces` each."""
-        self._max_bytes = max_bytes
+        self.max_bytes = max_bytes
         self._max_pieces = max_pieces
         self._messages: dict[Id, _Message] = {}
         self._held = 0
@@ -64,8 +64,8 @@ class FragmentAssembler:
                 raise RemoteProtocolError(f"num is {fragment.num:g}, expected a whole number below {total}")
             if number in message.pieces:
                 raise RemoteProtocolError(f"piece {number} is given twice")
-            if self._held + len(fragment.data) > self._max_bytes:
-                raise RemoteProtocolError(f"unfinished messages are longer than {self._max_bytes} bytes")
+            if self._held + len(fragment.data) > self.max_bytes:
+                raise RemoteProtocolError(f"unfinished messages are longer than {self.max_bytes} bytes")
         except RemoteProtocolError:
             self._forget(fragment.id)
             raise

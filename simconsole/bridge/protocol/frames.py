@@ -1,7 +1,7 @@
 """WebSocket frames and messages, independent of the library (RFC 6455): reassembly, limits, frame headers."""
 
 import codecs
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 from typing import Final
 
 from simconsole.bridge.protocol.message_decoding import Binary
@@ -24,6 +24,8 @@ TOO_BIG: Final = 1009
 
 ASSEMBLY_NS: Final = 2 * NS_PER_S
 """The longest that one message may be on its way once its first frame is here."""
+FRAME_BYTES: Final = 262_144
+"""A longer message is sent in several frames, so that no more than one of them waits outside of the bounded queues."""
 _Utf8: Final = codecs.getincrementaldecoder("utf-8")
 _REGISTERED: Final = {1000, 1001, 1002, 1003, *range(1007, 1015)}
 _PRIVATE: Final = range(3000, 5000)
@@ -40,7 +42,7 @@ class MessageAssembler:
 
     def __init__(self, max_bytes: int, max_fragments: int | None = None) -> None:
         """Allow messages of `max_bytes` in `max_fragments` frames within ASSEMBLY_NS; None: in any number and time."""
-        self._max_bytes = max_bytes
+        self.max_bytes = max_bytes
         self._max_fragments = max_fragments
         self._parts: list[bytes] = []
         self._bytes = 0
@@ -58,15 +60,15 @@ class MessageAssembler:
             raise FrameError(PROTOCOL_ERROR, "a message begins inside of another, or goes on where there is none")
         if opcode != CONTINUATION:
             self._binary = opcode == BINARY
-            if fin and len(data) <= self._max_bytes:
+            if fin and len(data) <= self.max_bytes:
                 if not self._binary and not data.isascii():
                     self._check_text(data, True)
                 return Binary(data) if self._binary else data
             self._bytes, self._since_ns = 0, now_ns
         self._parts.append(data)
         self._bytes += len(data)
-        if self._bytes > self._max_bytes:
-            raise FrameError(TOO_BIG, f"message is longer than {self._max_bytes} bytes")
+        if self._bytes > self.max_bytes:
+            raise FrameError(TOO_BIG, f"message is longer than {self.max_bytes} bytes")
         late = self.overdue(now_ns)
         if late is not None:
             raise FrameError(POLICY_VIOLATION, late)
@@ -110,15 +112,52 @@ def check_close(data: bytes) -> None:
         raise FrameError(INVALID_DATA, "a close frame's reason is no UTF-8") from None
 
 
+class FrameWriter:
+    """What one connection sends: messages, text or `Binary`, as a server's frames, some at a time."""
+
+    def __init__(self) -> None:
+        """Start between two messages."""
+        self._rest: Iterator[bytes] = iter(())
+
+    def batch(self, take: Callable[[], bytes | None], enough_bytes: int) -> bytes:
+        """Return frames of the messages that `take` gives until it gives None or they are `enough_bytes`."""
+        parts: list[bytes] = []
+        size = 0
+        while size < enough_bytes:
+            part = next(self._rest, None)
+            if part is None:
+                message = take()
+                if message is None:
+                    break
+                if len(message) > FRAME_BYTES:
+                    self._rest = _in_frames(message)
+                    continue
+                parts.append(_header(message))
+                part = message
+            parts.append(part)
+            size += len(part)
+        return b"".join(parts)
+
+
 def framed(messages: Iterable[bytes]) -> bytes:
-    """Return messages, text or `Binary`, as a server's frames, one after another."""
+    """Return whole messages, text or `Binary`, as a server's frames, one after another."""
     return b"".join(part for message in messages for part in (_header(message), message))
+
+
+def _in_frames(message: bytes) -> Iterator[bytes]:
+    opcode = BINARY if isinstance(message, Binary) else TEXT
+    for start in range(0, len(message), FRAME_BYTES):
+        data = message[start : start + FRAME_BYTES]
+        last = start + FRAME_BYTES >= len(message)
+        yield _head((0x80 if last else 0) | (CONTINUATION if start else opcode), len(data)) + data
 
 
 def _header(message: bytes) -> bytes:
     """Return the header of a server's frame for a whole message: final, unmasked, binary or text (5.2)."""
-    opcode = 0x80 | (BINARY if isinstance(message, Binary) else TEXT)
-    length = len(message)
+    return _head(0x80 | (BINARY if isinstance(message, Binary) else TEXT), len(message))
+
+
+def _head(opcode: int, length: int) -> bytes:
     if length < 126:
         return bytes((opcode, length))
     if length < 65_536:

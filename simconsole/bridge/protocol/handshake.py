@@ -87,7 +87,9 @@ def admit(
     if len(request.hosts) != 1 or not is_host_allowed(request.hosts[0], profile):
         return Refusal(HTTPStatus.FORBIDDEN, "this server does not answer to that Host")
     if not is_origin_allowed(request.origins, profile):
-        return Refusal(HTTPStatus.FORBIDDEN, "this server does not answer to pages of that Origin")
+        named = ", ".join(origin[:80] for origin in request.origins)
+        reason = f"this server does not answer to pages of Origin {named!r}, which allowed_origins does not name"
+        return Refusal(HTTPStatus.FORBIDDEN, reason)
     if not is_of_drive(request.drives, drive):
         return Refusal(HTTPStatus.FORBIDDEN, "this server belongs to another drive than the one that started you")
     if not any("websocket" in value.lower() for value in request.upgrades):

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import Any, Literal, NamedTuple
 
 from simconsole.bridge.messages import Registry, is_stamped
-from simconsole.bridge.protocol.access import OPEN, Role
+from simconsole.bridge.protocol.access import OPEN, Role, message_limit
 from simconsole.bridge.protocol.calls import Calls
 from simconsole.bridge.protocol.client_session import ClientSession, MessageCounts, resolve_topic
 from simconsole.bridge.protocol.fragments import FragmentAssembler
@@ -32,6 +32,7 @@ from simconsole.bridge.protocol.operations import (
     read_operation,
 )
 from simconsole.bridge.protocol.rate_limiter import RateLimiter
+from simconsole.bridge.protocol.subscription_queue import SendBudget
 from simconsole.bridge.protocol.topic_registry import RELAY_DEPTH, Accept, Command, Topic, TopicRegistry
 from simconsole.profiles.bridge import BridgeLimits
 from simconsole.values.errors import BridgeError, RemoteProtocolError
@@ -64,6 +65,7 @@ class Router:
         self._sessions: dict[int, ClientSession] = {}
         self._numbers = 0
         self._past_counts = MessageCounts()
+        self._budget = SendBudget(limits.all_queued_bytes)
         self.upstream: Literal["", "connecting", "connected", "lost"] = ""
         """State of the connection to the server that the console is a client of: empty without one; lost while it
         reconnects."""
@@ -131,9 +133,10 @@ class Router:
             limits.queued_bytes,
             wake,
             dialect=dialect,
-            assembler=FragmentAssembler(limits.message_bytes, limits.message_fragments),
+            assembler=FragmentAssembler(message_limit(role, limits), limits.message_fragments),
             role=role,
             rate_limiter=RateLimiter(limits.commands_hz),
+            budget=self._budget,
         )
         self._sessions[session.number] = session
         return session
@@ -145,6 +148,7 @@ class Router:
         self._past_counts = self._past_counts.plus(session.counts())
         self.topic_registry.remove_client(session)
         self.calls.disconnect(session)
+        session.send_queue.close()
         return self.lease.release(session.number, now_ns)
 
     def has_subscribers(self, name: str) -> bool:
@@ -217,6 +221,7 @@ class Router:
             return Outcome("done", "", "")
         if isinstance(operation, Auth):
             session.role = self.access.admit(operation)
+            session.assembler.max_bytes = message_limit(session.role, self._limits)
             return Outcome("done", "", "")
         needed = Role.VIEW if isinstance(operation, Subscribe | Unsubscribe | CallService) else Role.PUBLISH
         try:

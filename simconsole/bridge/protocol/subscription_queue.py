@@ -1,10 +1,11 @@
 """What waits to be sent to one client: a bounded queue for each topic, the oldest dropped first and counted.
 
-No client can make this grow: a topic keeps at most its depth of messages, and all topics together a number of bytes.
+No client can make this grow: a topic keeps at most its depth of messages, all topics together a number of bytes (or
+the newest message of each), and all clients together another number of bytes.
 """
 
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Final, NamedTuple
 
 from simconsole.bridge.protocol.fragments import split
@@ -42,6 +43,7 @@ class SubscriptionQueue:
         "subscriptions",
         "texts",
         "throttle_ns",
+        "told_ns",
         "topic",
     )  # fmt: skip
 
@@ -56,6 +58,8 @@ class SubscriptionQueue:
         self.throttle_ns = 0
         self.next_ns = 0
         self.dropped = 0
+        self.told_ns: int | None = None
+        """When the client was last told that messages of this topic are dropped."""
         self.texts: deque[bytes] = deque()
         self.subscriptions: dict[Id, _Subscription] = {}
 
@@ -99,14 +103,52 @@ class SubscriptionQueue:
             )
 
 
-class SendQueue:
-    """Everything that waits to be sent to one client: replies first, then topics in turn."""
+class SendBudget:
+    """The bytes that may wait for all clients of a server together; the longest queue pays for more."""
 
     def __init__(self, max_bytes: int) -> None:
-        """Hold at most `max_bytes` of messages."""
+        """Start with nobody."""
+        self._max_bytes = max_bytes
+        self._queues: set[SendQueue] = set()
+        self.bytes = 0
+
+    def join(self, queue: "SendQueue") -> None:
+        """Count a client's queue, which is empty."""
+        self._queues.add(queue)
+
+    def leave(self, queue: "SendQueue") -> None:
+        """Count a client's queue no more."""
+        self._queues.discard(queue)
+        self.bytes -= queue.waiting_bytes
+
+    def make_room(self, size: int, now_ns: int) -> None:
+        """Drop the oldest of the longest queue until `size` bytes more fit, or nothing waits."""
+        while self.bytes + size > self._max_bytes and self.bytes:
+            max(self._queues, key=lambda queue: queue.waiting_bytes).drop_oldest(now_ns)
+
+
+Dropped = Callable[[SubscriptionQueue, int], None]
+"""Told of each message of a topic that is lost to its client, with the time in ns."""
+
+
+class SendQueue:
+    """Everything that waits to be sent to one client: replies first, then topics in turn.
+
+    All messages together have a bound, but the newest of each topic is kept whatever its length.
+    """
+
+    def __init__(
+        self, max_bytes: int, budget: SendBudget | None = None, on_dropped: Dropped = lambda queue, now_ns: None
+    ) -> None:
+        """Hold at most `max_bytes`, or the newest message of each topic, and no more than `budget` has."""
         self.max_bytes = max_bytes
         self.bytes = 0
         self.dropped = 0
+        self._budget = budget or SendBudget(2**63)
+        self._budget.join(self)
+        self._on_dropped = on_dropped
+        self._backlog = 0
+        """Bytes of messages that are not the newest of their topic."""
         self._replies: deque[tuple[bytes, int | None]] = deque()
         self._reply_bytes = 0
         self._pieces: Iterator[bytes] = iter(())
@@ -114,29 +156,38 @@ class SendQueue:
         self._messages = 0
         self._waiting: dict[SubscriptionQueue, None] = {}
 
+    @property
+    def waiting_bytes(self) -> int:
+        """What waits, replies too."""
+        return self.bytes + self._reply_bytes
+
+    def close(self) -> None:
+        """Give back what the budget has counted."""
+        self._budget.leave(self)
+
     def reply(self, text: bytes, fragment_size: int | None = None) -> None:
         """Queue an answer to the client itself; of too many, or too long ones, the oldest is dropped."""
         self._replies.append((text, fragment_size))
         self._reply_bytes += len(text)
+        self._budget.bytes += len(text)
         while len(self._replies) > MAX_REPLIES or (self._reply_bytes > self.max_bytes and len(self._replies) > 1):
-            self._reply_bytes -= len(self._replies.popleft()[0])
+            self._take_reply()
             self.dropped += 1
 
-    def put(self, queue: SubscriptionQueue, text: bytes) -> int:
-        """Queue a message of a topic; return how many were dropped for it."""
-        before = self.dropped
-        while len(queue.texts) >= queue.depth:
-            self._drop_oldest(queue)
-        while self.bytes + len(text) > self.max_bytes and self._waiting:
-            self._drop_oldest(queue if queue.texts else next(iter(self._waiting)))
-        if self.bytes + len(text) > self.max_bytes:
-            queue.dropped += 1
-            self.dropped += 1
-        else:
-            queue.texts.append(text)
-            self.bytes += len(text)
-            self._waiting[queue] = None
-        return self.dropped - before
+    def put(self, queue: SubscriptionQueue, text: bytes, now_ns: int = 0) -> None:
+        """Queue a message of a topic; what must make room for it is dropped."""
+        if len(queue.texts) >= queue.depth:
+            self._shorten(queue, now_ns)
+        self._budget.make_room(len(text), now_ns)
+        if queue.texts:
+            self._backlog += len(queue.texts[-1])
+        queue.texts.append(text)
+        self.bytes += len(text)
+        self._budget.bytes += len(text)
+        self._waiting[queue] = None
+        while self.bytes > self.max_bytes and self._backlog:
+            longer = queue if len(queue.texts) > 1 else next(each for each in self._waiting if len(each.texts) > 1)
+            self._drop(longer, now_ns)
 
     def take(self, now_ns: int) -> bytes | None:
         """Return the next text that may be sent at `now_ns`, or None."""
@@ -144,19 +195,16 @@ class SendQueue:
             piece, self._piece = self._piece, next(self._pieces, None)
             return piece
         if self._replies:
-            text, size = self._replies.popleft()
-            self._reply_bytes -= len(text)
-            return self._in_pieces(text, size)
+            return self._in_pieces(*self._take_reply())
         for queue in self._waiting:
             if queue.next_ns <= now_ns:
                 break
         else:
             return None
-        text = queue.texts.popleft()
-        self.bytes -= len(text)
+        text = self._pop(queue)
         queue.next_ns = now_ns + queue.throttle_ns
-        del self._waiting[queue]
-        if queue.texts:
+        if queue.texts:  # behind the others
+            del self._waiting[queue]
             self._waiting[queue] = None
         return self._in_pieces(text, queue.fragment_size)
 
@@ -177,13 +225,45 @@ class SendQueue:
 
     def forget(self, queue: SubscriptionQueue) -> None:
         """Discard what waits of a topic that the client has unsubscribed from."""
-        self.bytes -= sum(map(len, queue.texts))
-        queue.texts.clear()
-        self._waiting.pop(queue, None)
+        while queue.texts:
+            self._pop(queue)
 
-    def _drop_oldest(self, queue: SubscriptionQueue) -> None:
-        self.bytes -= len(queue.texts.popleft())
+    def drop_oldest(self, now_ns: int) -> None:
+        """Drop one message to make room for other clients: of a topic if there is one."""
+        if self._waiting:
+            self._drop(max(self._waiting, key=lambda queue: len(queue.texts[0])), now_ns)
+        else:
+            self._take_reply()
+            self.dropped += 1
+
+    def _shorten(self, queue: SubscriptionQueue, now_ns: int) -> None:
+        """Make room for one more message in a topic's queue that is full."""
+        while len(queue.texts) >= queue.depth:
+            if queue.depth == 1 or queue.throttle_ns:
+                self._pop(queue)  # the client asked for the newest now and then: it is not told
+                queue.dropped += 1
+                self.dropped += 1
+            else:
+                self._drop(queue, now_ns)
+
+    def _drop(self, queue: SubscriptionQueue, now_ns: int) -> None:
+        self._pop(queue)
         queue.dropped += 1
         self.dropped += 1
-        if not queue.texts:
+        self._on_dropped(queue, now_ns)
+
+    def _pop(self, queue: SubscriptionQueue) -> bytes:
+        text = queue.texts.popleft()
+        self.bytes -= len(text)
+        self._budget.bytes -= len(text)
+        if queue.texts:
+            self._backlog -= len(text)
+        else:
             del self._waiting[queue]
+        return text
+
+    def _take_reply(self) -> tuple[bytes, int | None]:
+        text, size = self._replies.popleft()
+        self._reply_bytes -= len(text)
+        self._budget.bytes -= len(text)
+        return text, size

@@ -1,13 +1,21 @@
 """The log of a server's clients: what was refused, and who has gone."""
 
 import logging
+from http import HTTPStatus
 from typing import Final
 
 from simconsole.bridge.protocol.client_session import ClientSession
+from simconsole.bridge.protocol.handshake import Refusal
 from simconsole.bridge.protocol.server_protocol import Outcome
 
 _LOGGED_REFUSALS: Final = 10
 _LOGGED_EVERY: Final = 1000
+
+
+def log_refusal(logger: logging.Logger, count: int, refusal: Refusal) -> None:
+    """Log why a connection was turned away, the first and later ones now and then; `count` is how many were so far."""
+    if refusal.status >= HTTPStatus.BAD_REQUEST and (count <= _LOGGED_REFUSALS or count % _LOGGED_EVERY == 0):
+        logger.warning("connection refused (%d): %s", count, refusal.reason)
 
 
 def log_outcome(logger: logging.Logger, session: ClientSession, outcome: Outcome) -> None:

@@ -3,6 +3,7 @@
 import socket
 from collections.abc import Callable
 
+from simconsole.bridge.protocol.access import Role, message_limit
 from simconsole.bridge.protocol.backoff import Liveness
 from simconsole.bridge.protocol.frames import MessageAssembler
 from simconsole.bridge.transport import sockets
@@ -16,7 +17,7 @@ class ConnectionChecks:
     def __init__(self, profile: BridgeProfile, now_ns: int) -> None:
         """Begin with a connection that was heard at `now_ns`."""
         limits = profile.limits
-        self.assembler = MessageAssembler(limits.message_bytes, limits.message_fragments)
+        self.assembler = MessageAssembler(message_limit(Role.NONE, limits), limits.message_fragments)
         """Joins the frames of the connection's messages."""
         self._dead_after_s = profile.dead_after_s
         self._liveness = Liveness(profile.ping_interval_s, profile.dead_after_s)

@@ -1,6 +1,6 @@
 """The interface between the bridge in an event loop and the WebSocket library that carries its clients."""
 
-from collections.abc import Awaitable, Callable, Sequence
+from collections.abc import Awaitable, Callable
 from typing import Protocol
 
 from simconsole.bridge.protocol.handshake import Admission, HandshakeRequest, Refusal
@@ -17,8 +17,11 @@ class Connection(Protocol):
     def takes_more(self) -> bool:
         """Whether messages may be given; false while the system takes nothing, so that what waits here is bounded."""
 
-    def write(self, messages: Sequence[bytes]) -> None:
-        """Send messages in order, text or `message_decoding.Binary`."""
+    def write(self, frames: bytes) -> None:
+        """Send whole frames, made by `frames.FrameWriter`."""
+
+    def limit_messages(self, max_bytes: int) -> None:
+        """Refuse longer messages of the client from now on."""
 
     def abort(self) -> None:
         """End the connection at once, without waiting for the other side."""

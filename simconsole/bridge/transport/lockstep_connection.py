@@ -11,9 +11,9 @@ from websockets.http11 import Request
 from websockets.protocol import SEND_EOF, State
 from websockets.server import ServerProtocol
 
-from simconsole.bridge.protocol.access import Access
+from simconsole.bridge.protocol.access import Access, Role, message_limit
 from simconsole.bridge.protocol.client_session import ClientSession
-from simconsole.bridge.protocol.frames import CLOSE, framed
+from simconsole.bridge.protocol.frames import CLOSE, FrameWriter
 from simconsole.bridge.protocol.handshake import Admission, Refusal, admit, handshake_request
 from simconsole.bridge.transport.connection_checks import ConnectionChecks
 from simconsole.bridge.transport.sockets import RECEIVE_BYTES
@@ -61,7 +61,8 @@ class LockstepConnection:
         self._owner = owner
         self._profile = profile
         self._is_full = is_full
-        self._web = ServerProtocol(max_size=profile.limits.message_bytes, logger=_logger)
+        self._web = ServerProtocol(max_size=message_limit(Role.NONE, profile.limits), logger=_logger)
+        self._writer = FrameWriter()
         self._checks = ConnectionChecks(profile, time.monotonic_ns())
         self._unsent = bytearray()
         self._ending = False
@@ -111,8 +112,7 @@ class LockstepConnection:
         session = self.session
         if session is not None and self._web.state is State.OPEN:
             self._collect()
-            while len(self._unsent) < UNSENT_BYTES and (message := session.next_text(now_ns)) is not None:
-                self._unsent += framed((message,))
+            self._unsent += self._writer.batch(lambda: session.next_text(now_ns), UNSENT_BYTES - len(self._unsent))
         self._collect()
         self._send()
 
@@ -156,6 +156,7 @@ class LockstepConnection:
         self._web.send_response(self._web.accept(request))
         if self._web.state is State.OPEN:
             self.session = self._owner.connected(self.peer, decision)
+            self._limit_messages(self.session)
 
     def _take(self, frame: Frame, session: ClientSession) -> None:
         try:
@@ -164,7 +165,14 @@ class LockstepConnection:
             self._web.fail(error.code, str(error))
             return
         if message is not None:
+            role = session.role
             self._owner.received(session, message)
+            if session.role is not role:
+                self._limit_messages(session)
+
+    def _limit_messages(self, session: ClientSession) -> None:
+        max_bytes = message_limit(session.role, self._profile.limits)
+        self._checks.assembler.max_bytes = self._web.max_message_size = max_bytes
 
     def _collect(self) -> None:
         for data in self._web.data_to_send():

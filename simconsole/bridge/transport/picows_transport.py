@@ -7,9 +7,9 @@ import asyncio
 import logging
 import socket
 import ssl
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from http import HTTPStatus
-from typing import Any
+from typing import Any, Final
 
 from picows import (
     WSCloseCode,
@@ -28,7 +28,6 @@ from simconsole.bridge.protocol.frames import (
     PING,
     PROTOCOL_ERROR,
     check_close,
-    framed,
 )
 from simconsole.bridge.protocol.handshake import WEBSOCKET_VERSION, Admission, Refusal, handshake_request
 from simconsole.bridge.transport import sockets
@@ -36,6 +35,8 @@ from simconsole.bridge.transport.connection_checks import ConnectionChecks
 from simconsole.bridge.transport.interface import Acceptor, ConnectionHandler
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import FrameError
+
+RECEIVE_BUFFER_BYTES: Final = 262_144
 
 # The library logs each connection's errors; the bridge logs them itself, and a client's mistake is no error of ours.
 _library_logger = logging.getLogger("simconsole.bridge.picows")
@@ -67,9 +68,13 @@ class PicowsConnection(WSListener):
         """Whether messages may be given."""
         return not self._paused
 
-    def write(self, messages: Sequence[bytes]) -> None:
-        """Send messages, all that are given in one system call."""
-        self._transport.underlying_transport.write(framed(messages))
+    def write(self, frames: bytes) -> None:
+        """Send frames, all that are given in one system call."""
+        self._transport.underlying_transport.write(frames)
+
+    def limit_messages(self, max_bytes: int) -> None:
+        """Refuse longer messages of the client from now on; the library has one limit for the frames of all clients."""
+        self._checks.assembler.max_bytes = max_bytes
 
     def abort(self) -> None:
         """End the connection at once."""
@@ -173,7 +178,7 @@ class PicowsListener:
         """Listen on `sock`."""
         # The library reads all that waits in one piece, and its buffer grows to that; left to itself the system lets
         # megabytes wait. Connections inherit it.
-        sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, self.profile.limits.message_bytes)
+        sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, RECEIVE_BUFFER_BYTES)
         self._server = await ws_create_server(
             self._open,
             sock=sock,

@@ -16,8 +16,10 @@ from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.input_slots import OnCommand, OnEvents
 from simconsole.bridge.console.operator_acts import OnAct
 from simconsole.bridge.messages import Registry
+from simconsole.bridge.protocol.access import message_limit
+from simconsole.bridge.protocol.frames import FrameWriter
 from simconsole.bridge.protocol.handshake import Admission, HandshakeRequest, Refusal, admit
-from simconsole.bridge.transport.client_log import log_departure, log_outcome
+from simconsole.bridge.transport.client_log import log_departure, log_outcome, log_refusal
 from simconsole.bridge.transport.credentials import load_access, load_tls
 from simconsole.bridge.transport.interface import Connection, ConnectionHandler, Listener
 from simconsole.bridge.transport.message_files import load_registry
@@ -62,13 +64,19 @@ class _ClientHandler:
         self._is_woken = False
         self._queued = 0
         self._timer: asyncio.TimerHandle | None = None
+        self._writer = FrameWriter()
         self.session = self._console.router.connect(peer, self._wake, admission.dialect, admission.role)
+        self._role = admission.role
+        connection.limit_messages(message_limit(self._role, server.limits))
 
     def receive(self, message: bytes) -> None:
         """Apply a message."""
         outcome = self._console.receive(self.session, message, self._clock_ns())
         if outcome.kind not in _NOT_LOGGED:
             log_outcome(_logger, self.session, outcome)
+        if self.session.role is not self._role:
+            self._role = self.session.role
+            self.connection.limit_messages(message_limit(self._role, self._server.limits))
 
     def resume(self) -> None:
         """Continue sending."""
@@ -98,11 +106,11 @@ class _ClientHandler:
         self._queued = 0
         connection, now_ns = self.connection, self._clock_ns()
         while connection.is_open and connection.takes_more:
-            messages = self._due(now_ns)
-            if not messages:
+            frames = self._writer.batch(lambda: self.session.next_text(now_ns), _WRITE_BYTES)
+            if not frames:
                 self._set_timer(now_ns)
                 return
-            connection.write(messages)
+            connection.write(frames)
             if not connection.takes_more:
                 self.stalled_since_ns = now_ns
 
@@ -113,15 +121,6 @@ class _ClientHandler:
             if self._timer is not None:
                 self._timer.cancel()
             self._timer = self._loop.call_later(max(0, due_ns - now_ns) / NS_PER_S, self._wake)
-
-    def _due(self, now_ns: int) -> list[bytes]:
-        """Return the messages that may be sent now, at most a system call's worth of them."""
-        messages: list[bytes] = []
-        size = 0
-        while size < _WRITE_BYTES and (message := self.session.next_text(now_ns)) is not None:
-            messages.append(message)
-            size += len(message)
-        return messages
 
 
 class BridgeServer:
@@ -150,6 +149,7 @@ class BridgeServer:
         self._drive = drive
         self._recorder: TopicRecorder | None = None
         self._profile = profile
+        self.limits = profile.limits
         self._access = self.console.router.access = load_access(profile)
         self._tls = load_tls(profile)
         self.clock_ns = clock_ns
@@ -158,6 +158,7 @@ class BridgeServer:
         self._checker: asyncio.Task[None] | None = None
         self._upstream_client: asyncio.Task[None] | None = None
         self._port = 0
+        self._turned_away = 0
         self._ros2: Ros2Link | None = None
         self._ros2_woken = False
 
@@ -235,7 +236,11 @@ class BridgeServer:
     def admit(self, request: HandshakeRequest) -> Admission | Refusal:
         """Decide on a client's opening handshake (`Acceptor`)."""
         is_full = len(self._clients) >= self._profile.limits.clients
-        return admit(request, self._profile, self._access, is_full, self._drive)
+        decision = admit(request, self._profile, self._access, is_full, self._drive)
+        if isinstance(decision, Refusal):
+            self._turned_away += 1
+            log_refusal(_logger, self._turned_away, decision)
+        return decision
 
     def accept(self, connection: Connection, peer: str, admission: Admission) -> ConnectionHandler:
         """Add a client (`Acceptor`)."""

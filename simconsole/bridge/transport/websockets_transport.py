@@ -3,7 +3,7 @@
 import logging
 import socket
 import ssl
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -13,7 +13,8 @@ from websockets.frames import Frame
 from websockets.http11 import Request, Response
 from websockets.protocol import State
 
-from simconsole.bridge.protocol.frames import CLOSE, framed
+from simconsole.bridge.protocol.access import Role, message_limit
+from simconsole.bridge.protocol.frames import CLOSE, FRAME_BYTES
 from simconsole.bridge.protocol.handshake import Admission, Refusal, handshake_request
 from simconsole.bridge.transport import sockets
 from simconsole.bridge.transport.connection_checks import ConnectionChecks
@@ -36,7 +37,7 @@ class WebsocketsConnection(ServerConnection):
         self._checks = ConnectionChecks(profile, clock_ns())
         self._clock_ns = clock_ns
         # More than the sender, which waits for the socket between two messages, can have put there.
-        self._max_unsent_bytes = 2 * profile.limits.queued_bytes
+        self._max_unsent_bytes = 2 * (profile.limits.queued_bytes + FRAME_BYTES)
 
     @property
     def is_open(self) -> bool:
@@ -48,13 +49,17 @@ class WebsocketsConnection(ServerConnection):
         """Whether messages may be given."""
         return not self.paused
 
-    def write(self, messages: Sequence[bytes]) -> None:
-        """Send messages.
+    def write(self, frames: bytes) -> None:
+        """Send frames.
 
-        Whole frames are written past the library, whose sending costs more than all the rest (decision 8); it still
+        They are written past the library, whose sending costs more than all the rest (decision 8); it still
         writes pings, pongs and close frames, between them.
         """
-        self.transport.write(framed(messages))
+        self.transport.write(frames)
+
+    def limit_messages(self, max_bytes: int) -> None:
+        """Refuse longer messages of the client from now on."""
+        self._checks.assembler.max_bytes = self.protocol.max_message_size = max_bytes
 
     def abort(self) -> None:
         """End the connection at once."""
@@ -156,7 +161,7 @@ async def start_listener(
         process_request=admit,
         create_connection=make,
         compression=None,
-        max_size=profile.limits.message_bytes,
+        max_size=message_limit(Role.NONE, profile.limits),
         ping_interval=None,  # `check` pings, and does not abort clients that are merely slow
         open_timeout=sockets.HANDSHAKE_S,
         close_timeout=sockets.CLOSE_S,

@@ -335,7 +335,7 @@ def test_stalled_client_costs_bounded_memory_and_no_one_a_message(
         heard += len(healthy.heard())
     assert heard == 1000
     assert stalled.session.send_queue.bytes <= 1_048_576
-    kept = len(stalled.heard())
+    kept = sum(message["op"] == "publish" for message in stalled.heard())
     assert kept > 0
     assert kept + stalled.session.send_queue.dropped == 1000
 

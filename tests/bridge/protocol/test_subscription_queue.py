@@ -3,7 +3,7 @@ import random
 import pytest
 
 from simconsole.bridge.protocol.message_encoding import Encoding
-from simconsole.bridge.protocol.subscription_queue import MAX_REPLIES, SendQueue, SubscriptionQueue
+from simconsole.bridge.protocol.subscription_queue import MAX_REPLIES, SendBudget, SendQueue, SubscriptionQueue
 
 
 def queue(depth: int, throttle_ms: float = 0.0) -> SubscriptionQueue:
@@ -21,7 +21,8 @@ def drain(send_queue: SendQueue, now_ns: int = 0) -> list[bytes]:
 
 def test_latest_keeps_only_the_newest() -> None:
     send_queue, latest = SendQueue(1000), queue(1)
-    assert [send_queue.put(latest, bytes([65 + number])) for number in range(4)] == [0, 1, 1, 1]
+    for number in range(4):
+        send_queue.put(latest, bytes([65 + number]))
     assert drain(send_queue) == [b"D"]
     assert latest.dropped == send_queue.dropped == 3
 
@@ -85,17 +86,64 @@ def test_byte_limit_drops_the_oldest_of_the_topic_first() -> None:
 
 def test_byte_limit_reaches_other_topics_when_it_must() -> None:
     send_queue, a, b = SendQueue(10), queue(100), queue(100)
-    send_queue.put(b, b"bbbbbbbb")
+    for text in (b"bbbb1", b"bbbb2"):
+        send_queue.put(b, text)
     send_queue.put(a, b"aaaa")
-    assert drain(send_queue) == [b"aaaa"]
-    assert b.dropped == 1
+    assert drain(send_queue) == [b"bbbb2", b"aaaa"]
+    assert (a.dropped, b.dropped) == (0, 1)
 
 
-def test_text_beyond_the_limit_is_dropped_itself() -> None:
-    send_queue, a = SendQueue(10), queue(100)
-    assert send_queue.put(a, b"x" * 11) == 1
-    assert drain(send_queue) == []
+def test_newest_message_of_a_topic_is_kept_whatever_its_length() -> None:
+    send_queue, large, small = SendQueue(10), queue(100), queue(100)
+    send_queue.put(small, b"s1")
+    send_queue.put(small, b"s2")
+    for number in range(3):
+        send_queue.put(large, b"x" * 1000 + b"%d" % number)
+    assert drain(send_queue) == [b"s2", b"x" * 1000 + b"2"]
+    assert (large.dropped, small.dropped) == (2, 1)
     assert send_queue.bytes == 0
+
+
+def test_all_clients_together_have_a_bound_that_the_longest_queue_pays_for() -> None:
+    budget = SendBudget(1000)
+    told: list[tuple[SubscriptionQueue, int]] = []
+    stalled = SendQueue(10_000, budget, lambda lost, now_ns: told.append((lost, now_ns)))
+    healthy = SendQueue(10_000, budget)
+    many, one = queue(100), queue(100)
+    for _ in range(9):
+        stalled.put(many, b"x" * 100)
+    healthy.put(one, b"y" * 100, 6)
+    assert budget.bytes == 1000
+    healthy.put(one, b"y" * 100, 7)
+    assert told == [(many, 7)]
+    assert budget.bytes == 1000
+    assert drain(healthy) == [b"y" * 100] * 2
+    healthy.put(one, b"z" * 5000, 8)
+    assert drain(healthy) == [b"z" * 5000]
+    assert (stalled.waiting_bytes, budget.bytes) == (0, 0)
+
+
+def test_answers_count_towards_the_bound_and_who_leaves_gives_back() -> None:
+    budget = SendBudget(1000)
+    gone, stays = SendQueue(10_000, budget), SendQueue(10_000, budget)
+    gone.reply(b"r" * 600)
+    gone.put(queue(5), b"t" * 300)
+    assert budget.bytes == 900
+    stays.put(queue(5), b"s" * 700)
+    assert (budget.bytes, gone.waiting_bytes, gone.dropped) == (700, 0, 2)
+    gone.reply(b"r" * 100)
+    gone.close()
+    assert budget.bytes == 700
+
+
+@pytest.mark.parametrize(("depth", "throttle_ms", "count"), [(1, 0.0, 0), (5, 10.0, 0), (5, 0.0, 3)])
+def test_who_asked_for_the_newest_only_is_not_told(depth: int, throttle_ms: float, count: int) -> None:
+    told: list[int] = []
+    send_queue, some = SendQueue(1000, None, lambda lost, now_ns: told.append(now_ns)), queue(depth, throttle_ms)
+    for number in range(depth + 3):
+        send_queue.put(some, b"x", number)
+    assert len(told) == count
+    assert some.dropped == 3
 
 
 def test_several_wishes_of_one_client_merge_to_the_most_demanding() -> None:
@@ -130,7 +178,8 @@ def test_bounds_hold_under_random_use(seed: int) -> None:
             put += 1
         elif send_queue.take(now_ns) is not None:
             taken += 1
-        assert send_queue.bytes == sum(len(text) for each in subscriptions for text in each.texts) <= 500
+        assert send_queue.bytes == sum(len(text) for each in subscriptions for text in each.texts)
+        assert send_queue.bytes <= 500 or all(len(each.texts) <= 1 for each in subscriptions)
         assert all(len(each.texts) <= each.depth for each in subscriptions)
     assert put == taken + send_queue.dropped + sum(len(each.texts) for each in subscriptions)
 

@@ -1,10 +1,12 @@
 import logging
+from http import HTTPStatus
 
 import pytest
 
 from simconsole.bridge.protocol.client_session import ClientSession
+from simconsole.bridge.protocol.handshake import Refusal
 from simconsole.bridge.protocol.server_protocol import Outcome
-from simconsole.bridge.transport.client_log import log_departure, log_outcome
+from simconsole.bridge.transport.client_log import log_departure, log_outcome, log_refusal
 
 LOGGER = logging.getLogger("simconsole.bridge.test")
 
@@ -31,3 +33,14 @@ def test_departure_of_the_commander_is_a_warning(caplog: pytest.LogCaptureFixtur
         ("WARNING", "driver was commanding and is gone"),
         ("INFO", "viewer is gone"),
     ]
+
+
+def test_who_is_turned_away_is_logged_now_and_then_and_who_asks_for_the_version_never(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    with caplog.at_level(logging.INFO, LOGGER.name):
+        for number in range(1, 2001):
+            log_refusal(LOGGER, number, Refusal(HTTPStatus.FORBIDDEN, "no"))
+        log_refusal(LOGGER, 1, Refusal(HTTPStatus.OK, "1.0"))
+    lines = [record.getMessage() for record in caplog.records]
+    assert lines == [f"connection refused ({number}): no" for number in (*range(1, 11), 1000, 2000)]

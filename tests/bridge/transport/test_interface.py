@@ -2,15 +2,19 @@
 
 import asyncio
 import json
-from collections.abc import AsyncIterator, Callable, Sequence
+from collections.abc import AsyncIterator, Callable
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
 from functools import partial
 from typing import Any, Protocol
 
 import pytest
 from websockets.asyncio.client import ClientConnection, connect
+from websockets.frames import Frame
+from websockets.protocol import Protocol as WebSocketProtocol
+from websockets.protocol import Side
 
 from simconsole.bridge.protocol.access import Role
+from simconsole.bridge.protocol.frames import FRAME_BYTES, FrameWriter, MessageAssembler, framed
 from simconsole.bridge.protocol.handshake import Admission, HandshakeRequest, Refusal
 from simconsole.bridge.protocol.message_decoding import Binary
 from simconsole.bridge.transport.interface import Connection, ConnectionHandler
@@ -72,6 +76,9 @@ class InMemory:
     def __init__(self) -> None:
         self.is_open = True
         self.client: ConnectionHandler
+        self.max_bytes = 0
+        self._protocol = WebSocketProtocol(Side.CLIENT, max_size=None)
+        self._parts = MessageAssembler(1 << 30)
         self._out: list[bytes] = []
         self._more = asyncio.Event()
 
@@ -79,9 +86,17 @@ class InMemory:
     def takes_more(self) -> bool:
         return len(self._out) < 2
 
-    def write(self, messages: Sequence[bytes]) -> None:
-        self._out += messages
+    def write(self, frames: bytes) -> None:
+        self._protocol.receive_data(frames)
+        for frame in self._protocol.events_received():
+            assert isinstance(frame, Frame)
+            message = self._parts.add(frame.opcode, bytes(frame.data), frame.fin, 0)
+            if message is not None:
+                self._out.append(message)
         self._more.set()
+
+    def limit_messages(self, max_bytes: int) -> None:
+        self.max_bytes = max_bytes
 
     def abort(self) -> None:
         if self.is_open:
@@ -191,7 +206,7 @@ def test_messages_go_out_in_order_and_no_more_are_taken_of_who_does_not_read(pai
         given = [bytes([65 + number % 26]) * 65_536 for number in range(400)]
         sent = 0
         while connection.takes_more:
-            connection.write(given[sent : sent + 1])
+            connection.write(framed(given[sent : sent + 1]))
             sent += 1
             await asyncio.sleep(0)
         assert sent < len(given), "26 MB were taken though nobody reads"
@@ -199,7 +214,7 @@ def test_messages_go_out_in_order_and_no_more_are_taken_of_who_does_not_read(pai
         heard = 0
         while heard < len(given):
             if connection.takes_more and sent < len(given):
-                connection.write(given[sent : sent + 1])
+                connection.write(framed(given[sent : sent + 1]))
                 sent += 1
             assert await far.hear() == given[heard]
             heard += 1
@@ -211,7 +226,7 @@ def test_messages_go_out_in_order_and_no_more_are_taken_of_who_does_not_read(pai
 @each
 def test_text_and_binary_go_out_as_they_are(pair: Pair) -> None:
     async def check(connection: Connection, client: Notes, far: Far) -> None:
-        connection.write([b"a", Binary(b"b")])
+        connection.write(framed([b"a", Binary(b"b")]))
         heard = [await far.hear(), await far.hear()]
         assert heard == [b"a", b"b"]
         assert [isinstance(message, Binary) for message in heard] == [False, True]
@@ -254,3 +269,34 @@ def test_a_server_drives_over_it(pair: Pair, snapshot: Callable[..., Any], contr
             await until(lambda: server.clients == 0)
 
     asyncio.run(main())
+
+
+@each
+def test_long_message_comes_whole_in_several_frames(pair: Pair) -> None:
+    message = b"x" * (2 * FRAME_BYTES + 1)
+
+    async def check(connection: Connection, client: Notes, far: Far) -> None:
+        given, writer = [Binary(message), message, b"{}"], FrameWriter()
+        take = iter(given)
+        while frames := writer.batch(lambda: next(take, None), FRAME_BYTES):
+            assert len(frames) < FRAME_BYTES + 100
+            connection.write(frames)
+        for said in given:
+            heard = await far.hear()
+            assert heard == said
+            assert isinstance(heard, Binary) is isinstance(said, Binary)
+
+    run(pair, check)
+
+
+@each
+def test_length_of_messages_can_be_changed(pair: Pair) -> None:
+    async def check(connection: Connection, client: Notes, far: Far) -> None:
+        connection.limit_messages(5_000_000)
+        await far.say(b"x" * 4_000_000)
+        await until(lambda: len(client.heard) == 1)
+        connection.limit_messages(1000)
+        await far.say(b"x" * 1001)
+        await until(lambda: not connection.is_open or isinstance(connection, InMemory))
+
+    run(pair, check)

@@ -1,10 +1,12 @@
 import asyncio
+import base64
 import http.client
 import json
 import logging
 import math
 import socket
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import cbor2
@@ -124,10 +126,22 @@ def test_flood_of_commands_leaves_the_newest(serving: Callable[..., Any], contro
 
 
 @pytest.mark.parametrize("origin", ["http://evil.example", "null"])
-def test_page_from_elsewhere_is_turned_away(serving: Callable[..., Any], origin: str) -> None:
+def test_page_from_elsewhere_is_turned_away_and_the_log_says_why(
+    serving: Callable[..., Any], origin: str, caplog: pytest.LogCaptureFixture
+) -> None:
     with pytest.raises(InvalidStatus) as caught:
         connect(serving().url, origin=Origin(origin))
     assert caught.value.response.status_code == 403
+    assert f"pages of Origin {origin!r}, which allowed_origins does not name" in caplog.text
+
+
+@pytest.mark.parametrize("origin", ["null", "file://", "app://foxglove"])
+def test_pages_of_files_and_desktop_programs_can_be_let_in_by_name(serving: Callable[..., Any], origin: str) -> None:
+    server = serving(allowed_origins=(origin,))
+    with connect(server.url, origin=Origin(origin)) as peer:
+        settle(peer)
+    with pytest.raises(InvalidStatus):
+        connect(server.url, origin=Origin("app://other"))
 
 
 def test_server_does_not_answer_to_other_names(serving: Callable[..., Any]) -> None:
@@ -188,6 +202,44 @@ def test_message_that_is_too_long_ends_its_connection_only(
         assert caught.value.rcvd.code == 1009
         send(good, op="publish", topic=CONTROL, msg=control(0.2))
         assert server.command().road_wheel_rad == 0.2
+
+
+def test_pictures_pass_in_every_form(serving: Callable[..., Any]) -> None:
+    server = serving()
+    data = bytes(range(256)) * 12 * 1200  # 3.7 MB
+    topic = {"topic": "/picture", "type": "sensor_msgs/Image"}
+    with connect(server.url) as camera, connect(server.url, max_size=None) as viewer:
+        for compression in ("none", "cbor", "cbor-raw"):
+            send(viewer, op="subscribe", **topic, compression=compression)
+            settle(viewer)
+            send(camera, op="publish", **topic, msg={"data": base64.b64encode(data).decode()})
+            heard = viewer.recv(timeout=PATIENCE_S)
+            if isinstance(heard, str):
+                assert base64.b64decode(json.loads(heard)["msg"]["data"]) == data
+            else:
+                message = cbor2.loads(heard)["msg"]
+                assert (message["bytes"].endswith(data)) if compression == "cbor-raw" else message["data"] == data
+            send(viewer, op="unsubscribe", topic="/picture")
+
+
+def test_length_of_messages_goes_by_the_role(serving: Callable[..., Any], tmp_path: Path) -> None:
+    tokens = tmp_path / "tokens"
+    tokens.write_text(f"view {'v' * 16}\npublish {'p' * 16}\n")
+    server = serving(tokens=str(tokens))
+    long = json.dumps({"op": "no_such", "id": "long", "more": "x" * 300_000})
+    for token in ("v", "p"):
+        with connect(f"{server.url}?token={token * 16}") as peer:
+            peer.send(long)
+            if token == "p":
+                assert answer(peer)["id"] == "long"
+                continue
+            with pytest.raises(ConnectionClosed):
+                peer.recv(timeout=PATIENCE_S)
+    with connect(f"{server.url}?token={'v' * 16}") as peer:
+        send(peer, op="auth", token="p" * 16)
+        settle(peer)
+        peer.send(long)
+        assert answer(peer)["id"] == "long"
 
 
 def test_stalled_subscriber_costs_others_nothing(serving: Callable[..., Any]) -> None:
