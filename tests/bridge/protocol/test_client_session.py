@@ -63,3 +63,14 @@ def test_client_that_is_too_slow_is_told_for_each_topic_once_a_second() -> None:
     assert [(said["level"], said["msg"]) for said in told] == [
         ("error", f"{name}: too slow: {count} messages dropped so far") for name in ("/a", "/b") for count in (1, 4)
     ]
+
+
+def test_client_whose_commands_are_passed_over_is_told_once_a_second() -> None:
+    client = session()
+    for now_ns in (0, 1, 1_000_000_000):
+        client.throttle("too many", now_ns)
+    texts = []
+    while (text := client.next_text(0)) is not None:
+        texts.append(json.loads(text)["msg"])
+    assert texts == ["too many"] * 2
+    assert client.throttled == 3

@@ -1,14 +1,17 @@
 import pytest
 from websockets.frames import Frame, Opcode
+from websockets.protocol import Protocol, Side
 
 from simconsole.bridge.protocol.frames import (
     ASSEMBLY_NS,
     BINARY,
     CLOSE,
     CONTINUATION,
+    FRAME_BYTES,
     INVALID_DATA,
     PING,
     TEXT,
+    FrameWriter,
     MessageAssembler,
     check_close,
     framed,
@@ -162,3 +165,24 @@ def test_wrong_text_is_refused_with_the_first_frame_that_has_it() -> None:
 def test_characters_may_be_divided_between_frames() -> None:
     text = "\U0001f697 fährt".encode()
     assert assemble([bytes([byte]) for byte in text]) == text
+
+
+@pytest.mark.parametrize("kind", [bytes, Binary])
+def test_long_message_goes_out_in_several_frames_a_batch_at_a_time(kind: type[bytes]) -> None:
+    message = kind(bytes(range(97, 123)) * (2 * FRAME_BYTES // 26 + 1))
+    given = iter([b"{}", message, b"[]"])
+    writer = FrameWriter()
+    batches = []
+    while batch := writer.batch(lambda: next(given, None), 1000):
+        batches.append(batch)
+    assert max(map(len, batches)) <= FRAME_BYTES + 14
+    protocol = Protocol(Side.CLIENT, max_size=None)
+    protocol.receive_data(b"".join(batches))
+    messages, found = MessageAssembler(len(message)), []
+    for frame in protocol.events_received():
+        assert isinstance(frame, Frame)
+        whole = messages.add(frame.opcode, bytes(frame.data), frame.fin, 0)
+        if whole is not None:
+            found.append(whole)
+    assert found == [b"{}", message, b"[]"]
+    assert [isinstance(each, Binary) for each in found] == [False, kind is Binary, False]

@@ -67,6 +67,7 @@ def test_operations_are_read(fields: dict[str, Any], operation: object) -> None:
         ({"op": "fragment", "id": 0, "data": 5, "num": 0, "total": 1}, r"\$.data"),
         ({"op": "fragment", "id": 0, "data": "x", "num": -1, "total": 1}, r"\$.num"),
         ({"op": "cancel_action_goal", "id": "a"}, "missing required field `action`"),
+        ({"op": "publish", "topic": "/a", "msg": {}, "type": 7}, r"\$.type"),
         ({"op": "set_level", "level": "loud"}, r"\$.level"),
     ],
 )
