@@ -40,6 +40,8 @@ class BridgeLimits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     call_s: Annotated[float, Meta(gt=0.0, le=3600.0)] = 30.0
     commands_hz: Annotated[float, Meta(ge=1.0, le=100_000.0)] = 500.0
     """Of one client, averaged over a second; commands beyond this rate are dropped, not queued."""
+    answered_bytes_per_s: Annotated[float, Meta(ge=65_536.0, le=1e9)] = 4e6
+    """Answers to one client; what it sends after more is handled later. Each piece of an answer counts 64 more."""
     queue_length: Annotated[int, Meta(ge=1, le=100_000)] = 1000
     queued_bytes: Annotated[int, Meta(ge=65_536, le=67_108_864)] = 1_048_576
     """What may wait for one client; the newest message of each topic is kept whatever its length."""

@@ -24,3 +24,23 @@ class RateLimiter:
             return False
         self._left -= 1.0
         return True
+
+
+class ByteMeter:
+    """A token bucket for work whose size is known only when it is done: what is too much is paid off by waiting."""
+
+    def __init__(self, bytes_per_s: float) -> None:
+        """Start full, with a second's worth."""
+        self._bytes_per_s = bytes_per_s
+        self._left = bytes_per_s
+        self._last_ns = 0
+        self.ready_ns = 0
+        """When more may be done."""
+
+    def charge(self, size: int, now_ns: int) -> None:
+        """Count `size` bytes."""
+        gained = max(0, now_ns - self._last_ns) * self._bytes_per_s / NS_PER_S
+        self._left = min(self._bytes_per_s, self._left + gained) - size
+        self._last_ns = now_ns
+        if self._left < 0.0:
+            self.ready_ns = now_ns + int(-self._left / self._bytes_per_s * NS_PER_S)

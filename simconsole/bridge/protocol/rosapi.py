@@ -35,6 +35,8 @@ class RosApi:
         self._router = router
         self._registry = router.registry
         self._parameters: dict[str, str] = {}
+        self._texts: dict[str, str] = {}
+        """Full definitions of types that topics have had: a type never changes."""
         for name, type_name, handler, role in (
             ("topics", "Topics", self._topics, Role.VIEW),
             ("topics_for_type", "TopicsForType", self._topics_for_type, Role.VIEW),
@@ -82,8 +84,13 @@ class RosApi:
         return {"topics": [name for name, topic in self._router.topics.items() if topic.type == wanted]}
 
     def _topics_and_raw_types(self, args: Fields, dialect: Dialect) -> Fields:
-        texts = [full_text(self._registry.with_parts(topic.type)) for topic in self._router.topics.values()]
+        texts = [self._full_text(topic.type) for topic in self._router.topics.values()]
         return {**self._topics(args, dialect), "typedefs_full_text": texts}
+
+    def _full_text(self, type_name: str) -> str:
+        if type_name not in self._texts:
+            self._texts[type_name] = full_text(self._registry.with_parts(type_name))
+        return self._texts[type_name]
 
     def _topic_type(self, args: Fields, dialect: Dialect) -> Fields:
         topic = self._router.topics.get(resolve_topic(args["topic"]))

@@ -15,6 +15,7 @@ from simconsole.bridge.protocol.operations import Id
 from simconsole.values.units import NS_PER_S
 
 MAX_REPLIES: Final = 256
+_PIECE_BYTES: Final = 64
 NS_PER_MS: Final = NS_PER_S // 1000
 
 
@@ -151,6 +152,8 @@ class SendQueue:
         """Bytes of messages that are not the newest of their topic."""
         self._replies: deque[tuple[bytes, int | None]] = deque()
         self._reply_bytes = 0
+        self.answered_bytes = 0
+        """What all answers so far have cost, each piece of one something more."""
         self._pieces: Iterator[bytes] = iter(())
         self._piece: bytes | None = None
         self._messages = 0
@@ -168,6 +171,7 @@ class SendQueue:
     def reply(self, text: bytes, fragment_size: int | None = None) -> None:
         """Queue an answer to the client itself; of too many, or too long ones, the oldest is dropped."""
         self._replies.append((text, fragment_size))
+        self.answered_bytes += len(text) + (_PIECE_BYTES * (len(text) // fragment_size) if fragment_size else 0)
         self._reply_bytes += len(text)
         self._budget.bytes += len(text)
         while len(self._replies) > MAX_REPLIES or (self._reply_bytes > self.max_bytes and len(self._replies) > 1):

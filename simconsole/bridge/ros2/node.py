@@ -15,11 +15,10 @@ from simconsole.bridge.console.relay import Relay
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.ros2.graph import NOT_INSTALLED, Graph, ReceivedMessage
 from simconsole.bridge.ros2.message_types import describe
+from simconsole.bridge.ros2.received_messages import ReceivedMessages
 from simconsole.profiles.bridge import BridgeProfile, Ros2Profile
 from simconsole.values.errors import BridgeError, ProfileError
 
-MAX_RECEIVED: Final = 1000
-"""Messages that wait for the bridge's thread; of more, the oldest are dropped."""
 LOGGED: Final = 10
 LOGGED_EVERY: Final = 1000
 """Remarks of a node that are logged, the first ones and then now and again: a flood must not fill the disk."""
@@ -44,7 +43,7 @@ class Ros2Link:
         """
         settings = profile.ros2 or Ros2Profile()
         self._inbox: deque[tuple[str, tuple[Any, ...]]] = deque()
-        self._received: deque[ReceivedMessage] = deque(maxlen=MAX_RECEIVED)
+        self._received = ReceivedMessages()
         self._remarks: dict[str, int] = {}
         self._wake = wake
         self._relay = Relay(console, role_of_graph(profile, console.router.access.anonymous), describe, wake)
@@ -67,8 +66,10 @@ class Ros2Link:
                 self._graph.set_entities(self._relay.observe(arguments[0], now_ns))
             else:
                 getattr(self._relay, event)(*arguments, now_ns)
-        for _ in range(len(self._received)):
-            self._relay.receive(*self._received.popleft(), now_ns)
+        for message in self._received.take():
+            self._relay.receive(*message, now_ns)
+        if self._received.waits:
+            self._wake()
         for operation in self._relay.operations(now_ns):
             if operation.kind == "remark":
                 self._log(operation.name, operation.text)
@@ -89,7 +90,7 @@ class Ros2Link:
         self._wake()
 
     def _receive(self, message: ReceivedMessage) -> None:
-        self._received.append(message)
+        self._received.put(message)
         self._wake()
 
 

@@ -23,6 +23,12 @@ class Connection(Protocol):
     def limit_messages(self, max_bytes: int) -> None:
         """Refuse longer messages of the client from now on."""
 
+    def pause_reading(self) -> None:
+        """Read nothing more of the client, so that its system holds back what it sends."""
+
+    def resume_reading(self) -> None:
+        """Read on."""
+
     def abort(self) -> None:
         """End the connection at once, without waiting for the other side."""
 

@@ -76,6 +76,14 @@ class PicowsConnection(WSListener):
         """Refuse longer messages of the client from now on; the library has one limit for the frames of all clients."""
         self._checks.assembler.max_bytes = max_bytes
 
+    def pause_reading(self) -> None:
+        """Read nothing more of the client."""
+        self._transport.underlying_transport.pause_reading()
+
+    def resume_reading(self) -> None:
+        """Read on."""
+        self._transport.underlying_transport.resume_reading()
+
     def abort(self) -> None:
         """End the connection at once."""
         self._transport.disconnect(False)

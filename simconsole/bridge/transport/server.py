@@ -16,10 +16,9 @@ from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.input_slots import OnCommand, OnEvents
 from simconsole.bridge.console.operator_acts import OnAct
 from simconsole.bridge.messages import Registry
-from simconsole.bridge.protocol.access import message_limit
-from simconsole.bridge.protocol.frames import FrameWriter
 from simconsole.bridge.protocol.handshake import Admission, HandshakeRequest, Refusal, admit
-from simconsole.bridge.transport.client_log import log_departure, log_outcome, log_refusal
+from simconsole.bridge.transport.client_handler import ClientHandler, ClientTurns
+from simconsole.bridge.transport.client_log import log_departure, log_refusal
 from simconsole.bridge.transport.credentials import load_access, load_tls
 from simconsole.bridge.transport.interface import Connection, ConnectionHandler, Listener
 from simconsole.bridge.transport.message_files import load_registry
@@ -38,89 +37,8 @@ _CHECK_S: Final = 0.25
 _POLL_S: Final = 0.001
 _COUNT_S: Final = 1.0
 _LINK_STATE_S: Final = 0.1
-_WRITE_BYTES: Final = 32_768
-_BATCH_PER_CLIENT: Final = 3
-"""Messages for each client there is that one may have waiting before they are sent: with few clients soon, so that the
-reader works while we do; with many in larger batches, for the processor is busy in any case, and system calls cost."""
-_NOT_LOGGED: Final = ("done", "command")
-"""What becomes of most messages, and is not logged."""
 
 _logger = logging.getLogger("simconsole.bridge.transport.server")
-
-
-class _ClientHandler:
-    """One client: passes its messages to the console, and sends what waits for it while its connection takes more.
-
-    A client that reads nothing holds up nobody: its queues are bounded, and the loop serves the others.
-    """
-
-    def __init__(self, server: "BridgeServer", connection: Connection, peer: str, admission: Admission) -> None:
-        self.connection = connection
-        self.stalled_since_ns: int | None = None
-        self._server = server
-        self._console = server.console
-        self._clock_ns = server.clock_ns
-        self._loop = asyncio.get_running_loop()
-        self._is_woken = False
-        self._queued = 0
-        self._timer: asyncio.TimerHandle | None = None
-        self._writer = FrameWriter()
-        self.session = self._console.router.connect(peer, self._wake, admission.dialect, admission.role)
-        self._role = admission.role
-        connection.limit_messages(message_limit(self._role, server.limits))
-
-    def receive(self, message: bytes) -> None:
-        """Apply a message."""
-        outcome = self._console.receive(self.session, message, self._clock_ns())
-        if outcome.kind not in _NOT_LOGGED:
-            log_outcome(_logger, self.session, outcome)
-        if self.session.role is not self._role:
-            self._role = self.session.role
-            self.connection.limit_messages(message_limit(self._role, self._server.limits))
-
-    def resume(self) -> None:
-        """Continue sending."""
-        self.stalled_since_ns = None
-        self._wake()
-
-    def closed(self) -> None:
-        """Remove the client from the server."""
-        if self._timer is not None:
-            self._timer.cancel()
-        self._server.remove(self)
-
-    def _wake(self) -> None:
-        """Send what is queued by the loop's next turn in one piece; many messages are sent at once."""
-        self._queued += 1
-        if self._queued >= _BATCH_PER_CLIENT * self._server.clients:
-            self._send()
-        elif not self._is_woken:
-            self._is_woken = True
-            self._loop.call_soon(self._send_rest)
-
-    def _send_rest(self) -> None:
-        self._is_woken = False
-        self._send()
-
-    def _send(self) -> None:
-        self._queued = 0
-        connection, now_ns = self.connection, self._clock_ns()
-        while connection.is_open and connection.takes_more:
-            frames = self._writer.batch(lambda: self.session.next_text(now_ns), _WRITE_BYTES)
-            if not frames:
-                self._set_timer(now_ns)
-                return
-            connection.write(frames)
-            if not connection.takes_more:
-                self.stalled_since_ns = now_ns
-
-    def _set_timer(self, now_ns: int) -> None:
-        """Wake up when the first throttled message is due, whether or not more is published until then."""
-        due_ns = self.session.due_ns()
-        if due_ns is not None:
-            if self._timer is not None:
-                self._timer.cancel()
-            self._timer = self._loop.call_later(max(0, due_ns - now_ns) / NS_PER_S, self._wake)
 
 
 class BridgeServer:
@@ -149,11 +67,11 @@ class BridgeServer:
         self._drive = drive
         self._recorder: TopicRecorder | None = None
         self._profile = profile
-        self.limits = profile.limits
         self._access = self.console.router.access = load_access(profile)
         self._tls = load_tls(profile)
         self.clock_ns = clock_ns
-        self._clients: set[_ClientHandler] = set()
+        self.turns = ClientTurns(clock_ns)
+        self._clients: set[ClientHandler] = set()
         self._listener: Listener | None = None
         self._checker: asyncio.Task[None] | None = None
         self._upstream_client: asyncio.Task[None] | None = None
@@ -244,12 +162,12 @@ class BridgeServer:
 
     def accept(self, connection: Connection, peer: str, admission: Admission) -> ConnectionHandler:
         """Add a client (`Acceptor`)."""
-        client = _ClientHandler(self, connection, peer, admission)
+        client = ClientHandler(self, connection, peer, admission)
         self._clients.add(client)
         _logger.info("%s connected", peer)
         return client
 
-    def remove(self, client: _ClientHandler) -> None:
+    def remove(self, client: ClientHandler) -> None:
         """Forget a client whose connection has ended."""
         self._clients.discard(client)
         commanded = self.console.disconnect(client.session, self.clock_ns())
@@ -287,7 +205,7 @@ class BridgeServer:
                 _logger.warning("%s %s and is cut", client.session.peer, reason)
                 client.connection.abort()
 
-    def _abort_reason(self, client: _ClientHandler, now_ns: int) -> str | None:
+    def _abort_reason(self, client: ClientHandler, now_ns: int) -> str | None:
         since_ns, patience_s = client.stalled_since_ns, self._profile.stall_close_s
         if client.connection.is_open and since_ns is not None and now_ns - since_ns > patience_s * NS_PER_S:
             return f"took nothing for {patience_s:g} s"

@@ -61,6 +61,14 @@ class WebsocketsConnection(ServerConnection):
         """Refuse longer messages of the client from now on."""
         self._checks.assembler.max_bytes = self.protocol.max_message_size = max_bytes
 
+    def pause_reading(self) -> None:
+        """Read nothing more of the client."""
+        self.transport.pause_reading()
+
+    def resume_reading(self) -> None:
+        """Read on."""
+        self.transport.resume_reading()
+
     def abort(self) -> None:
         """End the connection at once."""
         self.transport.abort()

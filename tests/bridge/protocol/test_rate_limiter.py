@@ -1,4 +1,4 @@
-from simconsole.bridge.protocol.rate_limiter import RateLimiter
+from simconsole.bridge.protocol.rate_limiter import ByteMeter, RateLimiter
 
 MS = 1_000_000
 
@@ -29,3 +29,19 @@ def test_clock_that_steps_back_gives_nothing() -> None:
 
 def test_no_rate_is_no_limit() -> None:
     assert all(RateLimiter(None).allows(0) for _ in range(10))
+
+
+def test_work_beyond_a_second_s_worth_is_paid_off_by_waiting() -> None:
+    meter = ByteMeter(1000.0)
+    meter.charge(1000, 0)
+    assert meter.ready_ns == 0
+    meter.charge(500, 0)
+    assert meter.ready_ns == 500 * MS
+    meter.charge(500, 500 * MS)
+    assert meter.ready_ns == 1000 * MS
+
+
+def test_silence_saves_up_no_more_than_a_second_s_worth() -> None:
+    meter = ByteMeter(1000.0)
+    meter.charge(2500, 1_000_000 * MS)
+    assert meter.ready_ns == 1_001_500 * MS

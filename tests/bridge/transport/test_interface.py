@@ -98,6 +98,12 @@ class InMemory:
     def limit_messages(self, max_bytes: int) -> None:
         self.max_bytes = max_bytes
 
+    def pause_reading(self) -> None:
+        """What a far end in memory says is here at once."""
+
+    def resume_reading(self) -> None:
+        """See `pause_reading`."""
+
     def abort(self) -> None:
         if self.is_open:
             self.is_open = False
