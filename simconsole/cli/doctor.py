@@ -12,6 +12,12 @@ from simconsole.cli.outcome import Outcome, table
 
 LIBRARIES = ("numpy", "numba", "pygame-ce", "websockets", "msgspec", "orjson", "rerun-sdk", "matplotlib", "pyyaml")
 
+_LOCAL_PROGRAMS = (
+    "as shipped any program of this machine may use a drive's rosbridge: watch, talk to other clients, press the "
+    "emergency stop, ask for modes, pause and reset, set parameters, and command while nobody else does; with "
+    "outputs.bridge.tokens only what its token allows"
+)
+
 
 def doctor(options: Namespace) -> Outcome:
     """Report versions and what of the machine the console could use. Nothing found here stops a headless drive."""
@@ -25,6 +31,7 @@ def doctor(options: Namespace) -> Outcome:
         "display": _yes(bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")), "no window; PNG works"),
         "shared memory": _yes(Path("/dev/shm").is_dir(), "a temporary folder takes its place"),
         "real-time scheduling": _yes(_may_use_fifo(), "the tick loop runs without it, later under load"),
+        "local programs": _LOCAL_PROGRAMS,
     }
     return Outcome(0, found, table(list(found.items())))
 

@@ -29,6 +29,10 @@ class BridgeLimits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     """Resources that one client, or all together, may use."""
 
     clients: Annotated[int, Meta(ge=1, le=1024)] = 64
+    tokenless_clients: Annotated[int, Meta(ge=1, le=1024)] = 16
+    """Where there are tokens: connections that have shown none. They take no place of `clients`."""
+    tokenless_s: Annotated[float, Meta(gt=0.0, le=3600.0)] = 10.0
+    """How long a connection that may do nothing is kept for a token to come."""
     message_bytes: Annotated[int, Meta(ge=1024, le=67_108_864)] = 10_000_000
     """The longest message of a client of role publish or control."""
     viewer_message_bytes: Annotated[int, Meta(ge=1024, le=16_777_216)] = 262_144

@@ -4,6 +4,7 @@ import socket
 import ssl
 import threading
 from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ from simconsole.bridge.transport.credentials import load_tls
 from simconsole.bridge.transport.lockstep_server import LockstepBridge
 from simconsole.bridge.transport.server import BridgeServer
 from simconsole.cli.certificate import make, write_private
-from simconsole.profiles.bridge import BridgeProfile
+from simconsole.profiles.bridge import BridgeLimits, BridgeProfile
 from simconsole.values.errors import BridgeError, ProfileError
 from tests.patience import PATIENCE_S
 
@@ -72,6 +73,22 @@ def test_stock_client_authenticates_after_connecting(serving: Callable[..., Any]
     with connect(f"{server.url}/?token={TOKEN}") as peer:
         peer.send('{"op":"publish","topic":"/console/request","msg":{"data":"mark"}}')
         assert server.events.get(timeout=PATIENCE_S)
+
+
+def test_who_shows_no_token_takes_no_place_of_those_who_do_and_does_not_stay(
+    serving: Callable[..., Any], files: dict[str, str]
+) -> None:
+    limits = BridgeLimits(clients=2, tokenless_clients=3, tokenless_s=1.0)
+    server = serving(tokens=files["tokens"], limits=limits)
+    with ExitStack() as stack:
+        strangers = [stack.enter_context(connect(server.url)) for _ in range(3)]
+        with pytest.raises(InvalidStatus) as refused:
+            connect(server.url)
+        assert refused.value.response.status_code == 503
+        stack.enter_context(connect(f"{server.url}/?token={TOKEN}"))
+        for stranger in strangers:
+            with pytest.raises(ConnectionClosed):
+                stranger.recv(timeout=PATIENCE_S)
 
 
 def test_lockstep_asks_for_the_token_too(files: dict[str, str]) -> None:

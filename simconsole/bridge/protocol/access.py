@@ -14,6 +14,10 @@ from simconsole.profiles.bridge import BridgeLimits
 from simconsole.values.errors import ProfileError, RemoteProtocolError
 
 MIN_TOKEN: Final = 16
+WRONG_TOKENS_PER_S: Final = 100
+"""As many wrong tokens are looked at in a second; after them none is, so that nobody finds one by trying."""
+STAMP_S: Final = 5.0
+"""How far the time `t` of rosauth's clients may be from now; each of their macs is good once."""
 
 
 class Role(IntEnum):
@@ -35,10 +39,20 @@ def message_limit(role: Role, limits: BridgeLimits) -> int:
 class Access:
     """The tokens of one server."""
 
-    def __init__(self, tokens: Mapping[str, Role], anonymous: Role) -> None:
-        """Give each token its role; `anonymous` is that of a client without one."""
+    def __init__(self, tokens: Mapping[str, Role], anonymous: Role, wall_s: Callable[[], float] = lambda: 0.0) -> None:
+        """Give each token its role; `anonymous` is that of a client without one, `wall_s` says the time since 1970."""
         self._tokens = dict(tokens)
         self.anonymous = anonymous
+        self._wall_s = wall_s
+        self._wrong = 0
+        self._wrong_since_s = 0.0
+        self._shown: dict[str, float] = {}
+        """Macs that were good, and when each is too old anyway."""
+
+    @property
+    def has_tokens(self) -> bool:
+        """Whether a token is asked for."""
+        return bool(self._tokens)
 
     def role_of(self, token: str) -> Role:
         """Return the role of a token.
@@ -56,18 +70,35 @@ class Access:
         """
         if auth.token or not self._tokens:
             return self.role_of(auth.token) if self._tokens else self.anonymous
+        now_s = self._wall_s()
+        if abs(now_s - auth.t) > STAMP_S:
+            raise RemoteProtocolError(f"t is not within {STAMP_S:g} s of this server's time")
+        if auth.end <= now_s:
+            raise RemoteProtocolError("end is over")
+        mac = auth.mac.lower()
+        self._shown = {known: until_s for known, until_s in self._shown.items() if until_s >= now_s}
+        if mac in self._shown:
+            raise RemoteProtocolError("this mac was shown before")
         shown = f"{auth.client}{auth.dest}{auth.rand}{auth.t}{auth.level}{auth.end}"
 
         def fits(known: str) -> bool:
             digest = hashlib.sha512(f"{known}{shown}".encode("utf-8", "replace")).hexdigest()
-            return hmac.compare_digest(digest.encode(), auth.mac.lower().encode("utf-8", "replace"))
+            return hmac.compare_digest(digest.encode(), mac.encode("utf-8", "replace"))
 
-        return self._role(fits)
+        role = self._role(fits)
+        self._shown[mac] = auth.t + STAMP_S
+        return role
 
     def _role(self, fits: Callable[[str], bool]) -> Role:
+        now_s = self._wall_s()
+        if abs(now_s - self._wrong_since_s) >= 1.0:
+            self._wrong, self._wrong_since_s = 0, now_s
+        if self._wrong >= WRONG_TOKENS_PER_S:
+            raise RemoteProtocolError("too many wrong tokens: try again in a second")
         # Every token is compared, so that the time taken reveals nothing.
         roles = [role for known, role in self._tokens.items() if fits(known)]
         if not roles:
+            self._wrong += 1
             raise RemoteProtocolError("not a token of this server")
         return max(roles)
 

@@ -51,6 +51,9 @@ class ClientSession:
         self.role = role
         self.assembler = assembler or FragmentAssembler(max_bytes, 256)
         self.rate_limiter = rate_limiter or RateLimiter(None)
+        self.has_token = True
+        """Whether it has shown a token, or none is asked for."""
+        self.wrong_tokens = 0
         self.number = number
         self.peer = peer
         self.send_queue = SendQueue(max_bytes, budget, self._tell_dropped)

@@ -6,7 +6,7 @@ Every transport decides by `admit`, so that they cannot differ.
 import hmac
 import ipaddress
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from http import HTTPStatus
 from typing import Final, NamedTuple
 from urllib.parse import parse_qs, urlsplit
@@ -15,8 +15,9 @@ import orjson
 
 from simconsole import __version__
 from simconsole.bridge.protocol.access import Access, Role
+from simconsole.bridge.protocol.client_session import ClientSession
 from simconsole.bridge.protocol.message_encoding import Dialect
-from simconsole.profiles.bridge import BridgeProfile
+from simconsole.profiles.bridge import BridgeLimits, BridgeProfile
 from simconsole.values.errors import ProfileError, RemoteProtocolError
 
 _LOCAL: Final = ("localhost", "127.0.0.1", "[::1]")
@@ -46,6 +47,21 @@ class Admission(NamedTuple):
 
     role: Role
     dialect: Dialect
+    has_token: bool = False
+
+
+class Places(NamedTuple):
+    """Whether a server has room for one client more: one that shows a token, or needs none, and one that does not."""
+
+    is_full: bool = False
+    is_full_without_token: bool = False
+
+
+def places(clients: Iterable[ClientSession], limits: BridgeLimits) -> Places:
+    """Return what room a server has beside its clients."""
+    have = [client.has_token for client in clients]
+    tokens = sum(have)
+    return Places(tokens >= limits.clients, len(have) - tokens >= limits.tokenless_clients)
 
 
 class Refusal(NamedTuple):
@@ -81,7 +97,7 @@ def handshake_request(path: str, values_of: Callable[[str], Sequence[str]]) -> H
 
 
 def admit(
-    request: HandshakeRequest, profile: BridgeProfile, access: Access, is_full: bool, drive: str | None = None
+    request: HandshakeRequest, profile: BridgeProfile, access: Access, places: Places, drive: str | None = None
 ) -> Admission | Refusal:
     """Decide on a first request to the server of a `drive` (its nonce), or of none."""
     if len(request.hosts) != 1 or not is_host_allowed(request.hosts[0], profile):
@@ -94,13 +110,15 @@ def admit(
         return Refusal(HTTPStatus.FORBIDDEN, "this server belongs to another drive than the one that started you")
     if not any("websocket" in value.lower() for value in request.upgrades):
         return _plain_answer(request.path)
+    tokens = tokens_at(request.path, request.authorizations[0] if request.authorizations else None)
     try:
-        role = role_at(request.path, request.authorizations[0] if request.authorizations else None, access)
-    except RemoteProtocolError:
-        return Refusal(HTTPStatus.UNAUTHORIZED, "this server does not know that token")
-    if is_full:
-        return Refusal(HTTPStatus.SERVICE_UNAVAILABLE, "too many clients")
-    return Admission(role, dialect_of(request.path, profile))
+        role = max(map(access.role_of, tokens), default=access.anonymous)
+    except RemoteProtocolError as error:
+        return Refusal(HTTPStatus.UNAUTHORIZED, f"no admission: {error}")
+    has_token = bool(tokens) or not access.has_tokens
+    if places.is_full if has_token else places.is_full_without_token:
+        return Refusal(HTTPStatus.SERVICE_UNAVAILABLE, "too many clients" + ("" if has_token else " without a token"))
+    return Admission(role, dialect_of(request.path, profile), has_token)
 
 
 def _plain_answer(path: str) -> Refusal:
@@ -144,17 +162,13 @@ def dialect_of(path: str, profile: BridgeProfile) -> Dialect:
     return "ros2" if name == "ros2" else profile.dialect
 
 
-def role_at(path: str, authorization: str | None, access: Access) -> Role:
-    """Return the role a client has from its first request on: by header `Authorization: Bearer`, or by ?token=.
-
-    Raises:
-        RemoteProtocolError: it gives a token that this server does not know.
-    """
+def tokens_at(path: str, authorization: str | None) -> list[str]:
+    """Return the tokens that a first request shows: by header `Authorization: Bearer`, or by ?token=."""
     kind, _, token = (authorization or "").partition(" ")
     tokens = parse_qs(urlsplit(path).query).get("token", [])
     if kind.lower() == "bearer":
         tokens = [token.strip(), *tokens]
-    return max((access.role_of(token) for token in tokens), default=access.anonymous)
+    return tokens
 
 
 def is_loopback(host: str) -> bool:

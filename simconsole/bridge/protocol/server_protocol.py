@@ -5,7 +5,7 @@ nothing a client sends raises: it is answered with a status and counted.
 """
 
 from collections.abc import Callable
-from typing import Any, Literal, NamedTuple
+from typing import Any, Final, Literal, NamedTuple
 
 from simconsole.bridge.messages import Registry, is_stamped
 from simconsole.bridge.protocol.access import OPEN, Role, message_limit
@@ -38,6 +38,9 @@ from simconsole.profiles.bridge import BridgeLimits
 from simconsole.values.errors import BridgeError, RemoteProtocolError
 from simconsole.values.kernels import is_finite
 from simconsole.values.units import NS_PER_S
+
+WRONG_TOKENS: Final = 5
+"""As many may one connection try."""
 
 
 class Outcome(NamedTuple):
@@ -220,7 +223,7 @@ class Router:
             session.set_level(operation.level)
             return Outcome("done", "", "")
         if isinstance(operation, Auth):
-            session.role = self.access.admit(operation)
+            self._admit(session, operation)
             session.assembler.max_bytes = message_limit(session.role, self._limits)
             return Outcome("done", "", "")
         needed = Role.VIEW if isinstance(operation, Subscribe | Unsubscribe | CallService) else Role.PUBLISH
@@ -244,6 +247,16 @@ class Router:
         else:
             self.topic_registry.unadvertise(session, name, operation.id)
         return Outcome("done", name, "")
+
+    def _admit(self, session: ClientSession, operation: Auth) -> None:
+        if session.wrong_tokens >= WRONG_TOKENS:
+            raise RemoteProtocolError("too many wrong tokens: connect anew")
+        try:
+            session.role = self.access.admit(operation)
+        except RemoteProtocolError:
+            session.wrong_tokens += 1
+            raise
+        session.has_token = True
 
     def _require(self, session: ClientSession, role: Role) -> None:
         if session.role < role:

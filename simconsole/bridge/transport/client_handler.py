@@ -102,6 +102,8 @@ class ClientHandler:
         self._timer: asyncio.TimerHandle | None = None
         self._writer = FrameWriter()
         self.session = self._console.router.connect(peer, self._wake, admission.dialect, admission.role)
+        self.session.has_token = admission.has_token
+        self.since_ns = self._clock_ns()
         self.inbox = Inbox(self._apply, ByteMeter(self._limits.answered_bytes_per_s))
         self._role = admission.role
         connection.limit_messages(message_limit(self._role, self._limits))

@@ -1,6 +1,7 @@
 """Tokens and certificates of a server, from the files that its profile names."""
 
 import ssl
+import time
 from pathlib import Path
 
 from simconsole.bridge.protocol.access import OPEN, Access, Role, read_tokens
@@ -18,7 +19,7 @@ def load_access(profile: BridgeProfile) -> Access:
     check_exposure(profile)
     if profile.tokens is None:
         return OPEN
-    return Access(_tokens(profile.tokens), Role[profile.anonymous.upper()])
+    return Access(_tokens(profile.tokens), Role[profile.anonymous.upper()], time.time)
 
 
 def control_token(profile: BridgeProfile) -> str | None:

@@ -14,11 +14,12 @@ from websockets.server import ServerProtocol
 from simconsole.bridge.protocol.access import Access, Role, message_limit
 from simconsole.bridge.protocol.client_session import ClientSession
 from simconsole.bridge.protocol.frames import CLOSE, FrameWriter
-from simconsole.bridge.protocol.handshake import Admission, Refusal, admit, handshake_request
+from simconsole.bridge.protocol.handshake import Admission, Places, Refusal, admit, handshake_request
 from simconsole.bridge.transport.connection_checks import ConnectionChecks
 from simconsole.bridge.transport.sockets import RECEIVE_BYTES
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import FrameError
+from simconsole.values.units import NS_PER_S
 
 UNSENT_BYTES: Final = 262_144
 """Bytes taken out of a session's bounded queues beyond what the system's socket buffer holds."""
@@ -38,6 +39,10 @@ class ConnectionOwner(Protocol):
     def drive(self) -> str | None:
         """The nonce of the drive whose bridge this is."""
 
+    @property
+    def places(self) -> Places:
+        """What room there is."""
+
     def connected(self, peer: str, admission: Admission) -> ClientSession:
         """Add a client whose handshake is done."""
 
@@ -48,10 +53,8 @@ class ConnectionOwner(Protocol):
 class LockstepConnection:
     """A client of the lockstep bridge, from its first byte to its last."""
 
-    def __init__(
-        self, owner: ConnectionOwner, sock: socket.socket, peer: str, profile: BridgeProfile, is_full: bool
-    ) -> None:
-        """Take over an accepted socket; `is_full` answers the handshake with status 503."""
+    def __init__(self, owner: ConnectionOwner, sock: socket.socket, peer: str, profile: BridgeProfile) -> None:
+        """Take over an accepted socket."""
         sock.setblocking(False)
         sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.socket = sock
@@ -60,10 +63,10 @@ class LockstepConnection:
         self.closed = False
         self._owner = owner
         self._profile = profile
-        self._is_full = is_full
         self._web = ServerProtocol(max_size=message_limit(Role.NONE, profile.limits), logger=_logger)
         self._writer = FrameWriter()
-        self._checks = ConnectionChecks(profile, time.monotonic_ns())
+        self._since_ns = time.monotonic_ns()
+        self._checks = ConnectionChecks(profile, self._since_ns)
         self._unsent = bytearray()
         self._ending = False
 
@@ -123,6 +126,9 @@ class LockstepConnection:
             reason = self._checks.closing(now_ns)
         else:
             reason = self._checks.check(now_ns, self.socket, self._send_ping)
+            tokenless_ns = int(self._profile.limits.tokenless_s * NS_PER_S)
+            if self.session is not None and self.session.role is Role.NONE and now_ns - self._since_ns > tokenless_ns:
+                reason = "has shown no token"
         if reason is not None:
             self.close()
 
@@ -145,7 +151,7 @@ class LockstepConnection:
 
     def _answer(self, request: Request) -> None:
         asked = handshake_request(request.path, request.headers.get_all)
-        decision = admit(asked, self._profile, self._owner.access, self._is_full, self._owner.drive)
+        decision = admit(asked, self._profile, self._owner.access, self._owner.places, self._owner.drive)
         if isinstance(decision, Refusal):
             response = self._web.reject(decision.status, decision.body)
             for name, value in decision.headers.items():

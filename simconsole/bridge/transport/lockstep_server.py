@@ -21,7 +21,7 @@ from simconsole.bridge.console.topics import ODOMETRY
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.protocol.access import Access
 from simconsole.bridge.protocol.client_session import ClientSession
-from simconsole.bridge.protocol.handshake import Admission
+from simconsole.bridge.protocol.handshake import Admission, Places, places
 from simconsole.bridge.transport import sockets
 from simconsole.bridge.transport.client_log import log_departure, log_outcome
 from simconsole.bridge.transport.credentials import load_access, load_tls
@@ -218,10 +218,18 @@ class LockstepBridge:
         """Roles by token (`ConnectionOwner`)."""
         return self.console.router.access
 
+    @property
+    def places(self) -> Places:
+        """What room there is (`ConnectionOwner`)."""
+        sessions = [connection.session for connection in self._connections]
+        return places((session for session in sessions if session is not None), self._profile.limits)
+
     def connected(self, peer: str, admission: Admission) -> ClientSession:
         """Add a client (`ConnectionOwner`)."""
         _logger.info("%s connected", peer)
-        return self.console.router.connect(peer, dialect=admission.dialect, role=admission.role)
+        session = self.console.router.connect(peer, dialect=admission.dialect, role=admission.role)
+        session.has_token = admission.has_token
+        return session
 
     def received(self, session: ClientSession, text: bytes) -> None:
         """Apply a text of a client (`ConnectionOwner`)."""
@@ -283,8 +291,11 @@ class LockstepBridge:
             sock = self._tls.wrap_socket(sock, server_side=True, do_handshake_on_connect=False)
         now_s = time.monotonic()
         self._close_stale(now_s)
-        is_full = len(self._connections) >= self._profile.limits.clients
-        connection = LockstepConnection(self, sock, f"{address[0]}:{address[1]}", self._profile, is_full)
+        limits = self._profile.limits
+        if len(self._connections) >= limits.clients + limits.tokenless_clients:
+            sock.close()
+            return
+        connection = LockstepConnection(self, sock, f"{address[0]}:{address[1]}", self._profile)
         self._connections[connection] = now_s
         self._selector.register(sock, selectors.EVENT_READ, connection)
 

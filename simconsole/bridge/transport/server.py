@@ -16,7 +16,8 @@ from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.input_slots import OnCommand, OnEvents
 from simconsole.bridge.console.operator_acts import OnAct
 from simconsole.bridge.messages import Registry
-from simconsole.bridge.protocol.handshake import Admission, HandshakeRequest, Refusal, admit
+from simconsole.bridge.protocol.access import Role
+from simconsole.bridge.protocol.handshake import Admission, HandshakeRequest, Refusal, admit, places
 from simconsole.bridge.transport.client_handler import ClientHandler, ClientTurns
 from simconsole.bridge.transport.client_log import log_departure, log_refusal
 from simconsole.bridge.transport.credentials import load_access, load_tls
@@ -153,8 +154,8 @@ class BridgeServer:
 
     def admit(self, request: HandshakeRequest) -> Admission | Refusal:
         """Decide on a client's opening handshake (`Acceptor`)."""
-        is_full = len(self._clients) >= self._profile.limits.clients
-        decision = admit(request, self._profile, self._access, is_full, self._drive)
+        room = places((client.session for client in self._clients), self._profile.limits)
+        decision = admit(request, self._profile, self._access, room, self._drive)
         if isinstance(decision, Refusal):
             self._turned_away += 1
             log_refusal(_logger, self._turned_away, decision)
@@ -209,6 +210,9 @@ class BridgeServer:
         since_ns, patience_s = client.stalled_since_ns, self._profile.stall_close_s
         if client.connection.is_open and since_ns is not None and now_ns - since_ns > patience_s * NS_PER_S:
             return f"took nothing for {patience_s:g} s"
+        patience_s = self._profile.limits.tokenless_s
+        if client.session.role is Role.NONE and now_ns - client.since_ns > patience_s * NS_PER_S:
+            return f"has shown no token for {patience_s:g} s"
         return client.connection.check(now_ns)
 
 

@@ -5,8 +5,9 @@ from typing import Any
 import pytest
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
-from simconsole.bridge.protocol.access import OPEN, Access, Role, read_tokens
+from simconsole.bridge.protocol.access import OPEN, WRONG_TOKENS_PER_S, Access, Role, message_limit, read_tokens
 from simconsole.bridge.protocol.operations import Auth
+from simconsole.profiles.bridge import BridgeLimits, BridgeProfile
 from simconsole.values.errors import ProfileError, RemoteProtocolError
 
 TOKENS = {"v" * 16: Role.VIEW, "p" * 16: Role.PUBLISH, "ü" * 16: Role.CONTROL}
@@ -16,6 +17,8 @@ CHATTER = {"topic": "/chatter", "type": "std_msgs/String"}
 def mac(token: str, **fields: Any) -> Auth:
     """What rosauth's clients send: SHA-512 over the secret and the fields."""
     auth = Auth(client="me", dest="car", rand="r", t=5, level="admin", end=9)
+    for name in ("t", "rand", "end"):
+        setattr(auth, name, fields.pop(f"signed_{name}", getattr(auth, name)))
     text = f"{token}{auth.client}{auth.dest}{auth.rand}{auth.t}{auth.level}{auth.end}"
     auth.mac = hashlib.sha512(text.encode()).hexdigest()
     for name, value in fields.items():
@@ -29,11 +32,82 @@ def test_roles_of_tokens(token: str, role: Role) -> None:
     assert access.role_of(token) is role
     assert access.admit(Auth(token=token)) is role
     assert access.admit(mac(token)) is role
-    assert access.admit(mac(token, mac=mac(token).mac.upper())) is role
+    other = mac(token, signed_rand="s")
+    other.mac = other.mac.upper()
+    assert access.admit(other) is role
 
 
 @pytest.mark.parametrize(
-    "auth", [Auth(), Auth(token="x"), Auth(mac="x"), mac("v" * 15), mac("v" * 16, end=10), mac("v" * 16, level="x")]
+    ("signed", "now_s", "complaint"),
+    [
+        ({"signed_t": 1000, "signed_end": 2000}, 1005.0, None),
+        ({"signed_t": 1000, "signed_end": 2000}, 995.0, None),
+        ({"signed_t": 1000, "signed_end": 2000}, 1005.1, "t is not within 5 s"),
+        ({"signed_t": 1000, "signed_end": 2000}, 994.9, "t is not within 5 s"),
+        ({"signed_t": 1000, "signed_end": 1001}, 1001.0, "end is over"),
+        ({"signed_t": 1000, "signed_end": 0}, 1000.0, "end is over"),
+    ],
+)
+def test_times_of_a_mac_are_checked(signed: dict[str, int], now_s: float, complaint: str | None) -> None:
+    access, auth = Access(TOKENS, Role.NONE, lambda: now_s), mac("v" * 16, **signed)
+    if complaint is None:
+        assert access.admit(auth) is Role.VIEW
+        return
+    with pytest.raises(RemoteProtocolError, match=complaint):
+        access.admit(auth)
+
+
+def test_mac_is_good_once() -> None:
+    clock = [5.0]
+    access = Access(TOKENS, Role.NONE, lambda: clock[0])
+    access.admit(mac("v" * 16))
+    for clock[0] in (5.0, 8.0):
+        with pytest.raises(RemoteProtocolError, match="shown before"):
+            access.admit(mac("v" * 16))
+    upper = mac("v" * 16)
+    upper.mac = upper.mac.upper()
+    with pytest.raises(RemoteProtocolError, match="shown before"):
+        access.admit(upper)
+    assert access.admit(mac("v" * 16, signed_rand="another")) is Role.VIEW
+
+
+def test_wrong_tokens_are_looked_at_a_hundred_times_a_second() -> None:
+    clock = [0.0]
+    access = Access(TOKENS, Role.NONE, lambda: clock[0])
+    for _ in range(WRONG_TOKENS_PER_S):
+        with pytest.raises(RemoteProtocolError, match="not a token"):
+            access.role_of("x")
+    with pytest.raises(RemoteProtocolError, match="too many wrong tokens"):
+        access.role_of("v" * 16)
+    clock[0] = 1.0
+    assert access.role_of("v" * 16) is Role.VIEW
+
+
+def test_one_connection_may_try_five_wrong_tokens(join: Callable[..., Any]) -> None:
+    bridge = ConsoleBridge(BridgeProfile(port=0))
+    bridge.router.access = Access(TOKENS, Role.NONE)
+    peer = join(bridge)
+    peer.session.has_token = False
+    for _ in range(5):
+        peer.send(op="auth", token="x" * 16)
+    peer.send(op="auth", token="v" * 16)
+    told = peer.statuses()
+    assert ["not a token" in text for text in told] == [True] * 5 + [False]
+    assert "too many wrong tokens: connect anew" in told[5]
+    assert not peer.session.has_token
+    again = join(bridge)
+    again.send(op="auth", token="v" * 16)
+    assert (again.session.role, again.session.has_token) == (Role.VIEW, True)
+
+
+@pytest.mark.parametrize(("role", "most"), [(Role.NONE, 2000), (Role.VIEW, 2000), (Role.PUBLISH, 9000)])
+def test_length_of_messages_by_role(role: Role, most: int) -> None:
+    assert message_limit(role, BridgeLimits(message_bytes=9000, viewer_message_bytes=2000)) == most
+    assert message_limit(role, BridgeLimits(message_bytes=1500)) == 1500
+
+
+@pytest.mark.parametrize(
+    "auth", [Auth(end=9), Auth(token="x"), Auth(mac="x", end=9), mac("v" * 15), mac("v" * 16, end=10), mac("v" * 16, level="x")]
 )
 def test_what_shows_no_token(auth: Auth) -> None:
     with pytest.raises(RemoteProtocolError, match="not a token"):

@@ -4,11 +4,13 @@ from typing import Any
 import pytest
 
 from simconsole import __version__
-from simconsole.bridge.protocol.access import Access, Role
+from simconsole.bridge.protocol.access import OPEN, Access, Role
+from simconsole.bridge.protocol.client_session import ClientSession
 from simconsole.bridge.protocol.handshake import (
     DRIVE_HEADER,
     Admission,
     HandshakeRequest,
+    Places,
     Refusal,
     admit,
     check_exposure,
@@ -16,10 +18,11 @@ from simconsole.bridge.protocol.handshake import (
     handshake_request,
     is_host_allowed,
     is_origin_allowed,
-    role_at,
+    places,
+    tokens_at,
 )
-from simconsole.profiles.bridge import BridgeProfile
-from simconsole.values.errors import ProfileError, RemoteProtocolError
+from simconsole.profiles.bridge import BridgeLimits, BridgeProfile
+from simconsole.values.errors import ProfileError
 
 
 @pytest.mark.parametrize("origin", [None, "http://localhost:8080", "https://127.0.0.1", "http://[::1]:1"])
@@ -86,13 +89,50 @@ ACCESS = Access({"v" * 16: Role.VIEW, "c" * 16: Role.CONTROL}, Role.NONE)
     ],
 )
 def test_role_from_the_first_request_on(path: str, header: str | None, role: Role) -> None:
-    assert role_at(path, header, ACCESS) is role
+    request = HandshakeRequest(path, ["localhost"], [], [] if header is None else [header])
+    admission = admit(request, BridgeProfile(), ACCESS, Places())
+    assert isinstance(admission, Admission)
+    assert admission.role is role
+    assert admission.has_token is bool(tokens_at(path, header))
 
 
 @pytest.mark.parametrize(("path", "header"), [("/?token=x", None), ("/", "Bearer x"), ("/", "Bearer ")])
 def test_wrong_token_is_refused_at_the_handshake(path: str, header: str | None) -> None:
-    with pytest.raises(RemoteProtocolError, match="not a token"):
-        role_at(path, header, ACCESS)
+    request = HandshakeRequest(path, ["localhost"], [], [] if header is None else [header])
+    refusal = admit(request, BridgeProfile(), ACCESS, Places())
+    assert isinstance(refusal, Refusal)
+    assert refusal.status == 401
+    assert "not a token" in refusal.reason
+
+
+@pytest.mark.parametrize(
+    ("given", "room", "is_let_in"),
+    [
+        ({"path": "/"}, Places(is_full=True), True),
+        ({"path": "/"}, Places(is_full_without_token=True), False),
+        ({}, Places(is_full=True), False),
+        ({}, Places(is_full_without_token=True), True),
+    ],
+)
+def test_who_shows_no_token_has_places_of_its_own(given: dict[str, Any], room: Places, is_let_in: bool) -> None:
+    decision = admit(REQUEST._replace(**given), BridgeProfile(), ACCESS, room)
+    assert isinstance(decision, Admission) is is_let_in
+
+
+def test_where_no_tokens_are_asked_for_all_places_are_alike() -> None:
+    asked = REQUEST._replace(path="/")
+    assert isinstance(admit(asked, BridgeProfile(), OPEN, Places(is_full_without_token=True)), Admission)
+    assert isinstance(admit(asked, BridgeProfile(), OPEN, Places(is_full=True)), Refusal)
+
+
+def test_places_are_counted_by_who_has_shown_a_token() -> None:
+    clients = [ClientSession(number, "peer", 1000, lambda: None) for number in range(5)]
+    for stranger in clients[:3]:
+        stranger.has_token = False
+    limits = BridgeLimits(clients=3, tokenless_clients=3)
+    assert places(clients, limits) == Places(is_full=False, is_full_without_token=True)
+    clients[0].has_token = True
+    assert places(clients, limits) == Places(is_full=True, is_full_without_token=False)
 
 
 def test_request_is_read_from_headers_of_any_library() -> None:
@@ -119,7 +159,7 @@ REQUEST = HandshakeRequest("/ros1?token=" + "c" * 16, ["localhost:9090"], [], []
     ],
 )
 def test_first_requests_that_are_refused(given: dict[str, Any], is_full: bool, status: int) -> None:
-    decision = admit(REQUEST._replace(**given), BridgeProfile(), ACCESS, is_full)
+    decision = admit(REQUEST._replace(**given), BridgeProfile(), ACCESS, Places(is_full))
     assert isinstance(decision, Refusal)
     assert decision.status == status
     assert decision.body == f"{decision.reason}\n"
@@ -128,13 +168,13 @@ def test_first_requests_that_are_refused(given: dict[str, Any], is_full: bool, s
 @pytest.mark.parametrize(
     ("given", "admission"),
     [
-        ({}, Admission(Role.CONTROL, "ros1")),
-        ({"path": "/", "authorizations": ["Bearer " + "v" * 16, "Bearer wrong"]}, Admission(Role.VIEW, "ros2")),
+        ({}, Admission(Role.CONTROL, "ros1", True)),
+        ({"path": "/", "authorizations": ["Bearer " + "v" * 16, "Bearer wrong"]}, Admission(Role.VIEW, "ros2", True)),
         ({"path": "/", "origins": ["http://localhost:3000"]}, Admission(Role.NONE, "ros2")),
     ],
 )
 def test_first_requests_that_come_in(given: dict[str, Any], admission: Admission) -> None:
-    assert admit(REQUEST._replace(**given), BridgeProfile(), ACCESS, False) == admission
+    assert admit(REQUEST._replace(**given), BridgeProfile(), ACCESS, Places()) == admission
 
 
 @pytest.mark.parametrize(
@@ -184,7 +224,7 @@ NONCE, OTHER = "a" * 32, "b" * 32
     ],
 )
 def test_a_program_of_another_drive_is_refused(shown: list[str], drive: str | None, enters: bool) -> None:
-    found = admit(REQUEST._replace(drives=shown), BridgeProfile(), ACCESS, False, drive)
+    found = admit(REQUEST._replace(drives=shown), BridgeProfile(), ACCESS, Places(), drive)
     if enters:
         assert isinstance(found, Admission)
     else:
@@ -195,7 +235,7 @@ def test_a_program_of_another_drive_is_refused(shown: list[str], drive: str | No
 
 def test_the_nonce_grants_nothing() -> None:
     request = REQUEST._replace(path="/", drives=[NONCE])
-    found = admit(request, BridgeProfile(), ACCESS, False, NONCE)
+    found = admit(request, BridgeProfile(), ACCESS, Places(), NONCE)
     assert isinstance(found, Admission)
     assert found.role is ACCESS.anonymous
 
@@ -203,7 +243,7 @@ def test_the_nonce_grants_nothing() -> None:
 @pytest.mark.parametrize("upgrades", [[], ["h2c"]])
 def test_plain_http_is_answered_plainly(upgrades: list[str]) -> None:
     asked = HandshakeRequest("/", ["localhost"], [], [], upgrades=upgrades)
-    answer = admit(asked, BridgeProfile(), ACCESS, False)
+    answer = admit(asked, BridgeProfile(), ACCESS, Places())
     assert isinstance(answer, Refusal)
     assert answer.status == 426
     assert "rosbridge" in answer.body
@@ -212,7 +252,7 @@ def test_plain_http_is_answered_plainly(upgrades: list[str]) -> None:
 
 def test_version_is_told_in_plain_http() -> None:
     asked = HandshakeRequest("/version?x=1", ["localhost"], [], [], upgrades=[])
-    answer = admit(asked, BridgeProfile(), ACCESS, False)
+    answer = admit(asked, BridgeProfile(), ACCESS, Places())
     assert isinstance(answer, Refusal)
     assert (answer.status, answer.content_type) == (200, "application/json")
     assert json.loads(answer.body) == {"name": "simconsole", "version": __version__, "protocol": "rosbridge v2.0"}
@@ -220,4 +260,4 @@ def test_version_is_told_in_plain_http() -> None:
 
 def test_plain_http_under_another_name_is_not_answered() -> None:
     asked = HandshakeRequest("/version", ["evil.example"], [], [], upgrades=[])
-    assert admit(asked, BridgeProfile(), ACCESS, False).status == 403  # type: ignore[union-attr]
+    assert admit(asked, BridgeProfile(), ACCESS, Places()).status == 403  # type: ignore[union-attr]
