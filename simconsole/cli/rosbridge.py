@@ -9,6 +9,8 @@ from simconsole.cli.remote import own_token
 from simconsole.processes.lifetimes import INTERRUPTED
 from simconsole.processes.shared_memory import temporary_folder
 from simconsole.values.errors import ProfileError
+from simconsole.values.labels import notice_label
+from simconsole.values.state_vector import Snapshot
 
 
 def bridge(options: Namespace) -> Outcome:
@@ -50,9 +52,29 @@ def serve(options: Namespace) -> Outcome:
         load_registry(session.outputs.bridge)
         load_transport(session.outputs.bridge)
     with temporary_folder() as folder:
-        result = drive(resolve(session), folder, on_bridge=lambda url: print(f"rosbridge at {url}", flush=True))
+        result = drive(
+            resolve(session),
+            folder,
+            watch=_NoticePrinter(),
+            on_bridge=lambda url: print(f"rosbridge at {url}", flush=True),
+        )
     code = INTERRUPTED if result.interrupted else 0
     return Outcome(code, result.summary, f"served {result.ticks} ticks, lateness {result.summary['lateness']}")
+
+
+class _NoticePrinter:
+    """Prints what a controller does not see by itself: that its commands wait for somebody to ask for autonomy."""
+
+    def __init__(self) -> None:
+        self._told = 0.0
+
+    def __call__(self, snapshot: Snapshot) -> bool:
+        """Print a new notice, each once in a row; never end the drive."""
+        notice = snapshot.notice
+        if notice and notice != self._told:
+            print(notice_label(notice), flush=True)
+            self._told = notice
+        return False
 
 
 def _limits(words: list[str]) -> dict[str, float]:

@@ -63,6 +63,7 @@ _NOTICES: Final[dict[float, str]] = {
     Notice.CENTRE_WHEEL: "centre the wheel to start again",
     Notice.RELEASE_PEDALS: "release the pedals to start again",
     Notice.RECORDING_FAILED: "recording failed: the drive is not kept",
+    Notice.NOT_ENGAGED: "parked: nobody has asked for autonomy",
 }
 
 LINK_NOBODY: Final = "nobody"

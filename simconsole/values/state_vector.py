@@ -20,6 +20,8 @@ from simconsole.values.signals import (
     Event,
     EventInput,
     Link,
+    LinkState,
+    Mode,
     Notice,
     RemoteCommand,
     VehicleCommand,
@@ -146,8 +148,18 @@ class Snapshot(NamedTuple):
 
     @property
     def notice(self) -> float:
-        """What people are told (`Notice`): a failed recording takes precedence over the arbiter's notices."""
-        return float(Notice.RECORDING_FAILED) if self.recording_failed else self.arbitration.notice
+        """What people are told (`Notice`): a failed recording first, then the arbiter's, then a missing engagement."""
+        if self.recording_failed:
+            return float(Notice.RECORDING_FAILED)
+        arbitration = self.arbitration
+        if arbitration.notice == Notice.NONE and arbitration.mode == Mode.PARKED and self._is_commanded:
+            return float(Notice.NOT_ENGAGED)
+        return arbitration.notice
+
+    @property
+    def _is_commanded(self) -> bool:
+        fresh = (LinkState.UNSTEADY, LinkState.STEADY)
+        return self.ros_link.state in fresh or self.ecu_link.state in fresh
 
     @property
     def command(self) -> VehicleCommand:

@@ -47,10 +47,10 @@ def test_command_table() -> None:
     assert all(f"`{word}`" in PAGE for word in (*REQUESTS, *OPERATIONS))
 
 
-def test_controller_in_ten_lines_drives(serving: Callable[..., Any], snapshot: Callable[..., Any]) -> None:
+def test_controller_in_fourteen_lines_drives(serving: Callable[..., Any], snapshot: Callable[..., Any]) -> None:
     server = serving(rates_hz={"/odom": 250.0})
     example = blocks("python")[0].replace("ws://127.0.0.1:9090", server.url).replace("timeout_s=5.0", "timeout_s=0.3")
-    assert len(example.strip().splitlines()) <= 10
+    assert len(example.strip().splitlines()) <= 14
     program = threading.Thread(target=exec, args=(example, {}))
     program.start()
     command = None

@@ -1,13 +1,18 @@
 """`simconsole bridge serve`: a rosbridge server to try programs on, with no cockpit and nobody seated."""
 
 import json
+import re
 import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
+from websockets.sync.client import connect
 
 from tests.drives.console import Running, complaint, results, simconsole
 from tests.drives.controllers import Controller, command, free_port
+from tests.paths import ROOT
 from tests.patience import PATIENCE_S, wait_until
 
 
@@ -31,6 +36,32 @@ def test_a_controller_reads_and_commands_a_standing_car(tmp_path: Path) -> None:
     assert not [status for status in controller.statuses if status["level"] == "error"]
     assert "Traceback" not in done.stderr
     assert not list(tmp_path.glob("bundle*"))
+
+
+def test_a_copied_example_drives_at_once(tmp_path: Path) -> None:
+    port = free_port()
+    example = re.findall(r"```python\n(.*?)```", (ROOT / "docs/rosbridge.md").read_text(), re.DOTALL)[0]
+    program = tmp_path / "controller.py"
+    program.write_text(example.replace("9090", str(port)))
+    with Running(tmp_path, "bridge", "serve", "--port", port, "--json") as server:
+        watcher = Controller(port, lambda count, stamp: [json.dumps(command(stamp))] if not driving else [])
+        driving: list[subprocess.Popen[bytes]] = []
+        watcher.start()
+        wait_until(lambda: "parked: nobody has asked for autonomy" in server.out.read_text(), "the notice")
+        driving.append(subprocess.Popen([sys.executable, str(program)]))
+        try:
+            with connect(f"ws://127.0.0.1:{port}") as viewer:
+                viewer.send(json.dumps({"op": "subscribe", "topic": "/odom"}))
+                speed_mps = 0.0
+                while speed_mps < 1.0:
+                    message = json.loads(viewer.recv(timeout=PATIENCE_S))
+                    speed_mps = message["msg"]["twist"]["twist"]["linear"]["x"] if message["op"] == "publish" else 0.0
+        finally:
+            driving[0].kill()
+            driving[0].wait()
+        server.process.send_signal(signal.SIGINT)
+        server.end()
+        watcher.join(PATIENCE_S)
 
 
 def test_it_ends_by_itself_when_told_so() -> None:

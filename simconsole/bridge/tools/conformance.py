@@ -40,6 +40,10 @@ class _Connection:
 
     def __init__(self, peer: ClientConnection) -> None:
         self._peer = peer
+        self.new_topic()
+
+    def new_topic(self) -> None:
+        """Use another topic from now on."""
         self.topic = f"/conformance/t{time.time_ns() % 10**9}_{next(_NUMBERS)}"
 
     def send(self, **operation: Any) -> None:
@@ -80,7 +84,9 @@ class _Connection:
         """Return how a message of this connection comes back to it."""
         self.advertise_and_subscribe(kind, **more)
         self.send(op="publish", topic=self.topic, msg=msg)
-        content = self.receive_op("publish")["msg"]
+        while (published := self.receive_op("publish")).get("topic") != self.topic:
+            pass  # of an earlier topic, which some servers deliver twice
+        content = published["msg"]
         return content if isinstance(content, dict) else {}
 
 
@@ -209,12 +215,17 @@ def _latch(connection: _Connection) -> None:
 
 def _both_names(connection: _Connection) -> None:
     for kind in ("std_msgs/String", "std_msgs/msg/String"):
+        connection.new_topic()  # some servers take one topic's two spellings for two types
         _expect(connection.echo(kind, {"data": kind})["data"] == kind, f"{kind} did not work")
 
 
 def _survives_garbage(connection: _Connection) -> None:
+    connection.echo("std_msgs/msg/String", {"data": "before"})
     connection.send_text('{"op": "publish", "topic": ')
-    data = connection.echo("std_msgs/msg/String", {"data": "after"})["data"]
+    connection.send(op="publish", topic=connection.topic, msg={"data": "after"})
+    data = "before"  # some servers deliver the first message twice
+    while data == "before":
+        data = connection.receive_op("publish")["msg"]["data"]
     _expect(data == "after", f"came back as {data}")
 
 
@@ -229,6 +240,9 @@ def _unknown_has_status(connection: _Connection) -> None:
 
 
 def _set_level(connection: _Connection) -> None:
+    connection.send(op="set_level", level="error")
+    connection.send(op="no_such_operation")
+    connection.receive_op("status")  # a server that never sends one obeys nothing
     connection.send(op="set_level", level="none")
     connection.send(op="no_such_operation")
     _expect(connection.receive(_QUIET_S) is None, "a status came in spite of level none")

@@ -74,7 +74,8 @@ class Notice(IntEnum):
     CENTRING_WHEEL = 2  # by its motor, before a restart
     CENTRE_WHEEL = 3  # the same, where it has no motor
     RELEASE_PEDALS = 4
-    RECORDING_FAILED = 5  # said by the console itself (Snapshot.notice): the arbiter has no part in it
+    RECORDING_FAILED = 5  # this and the next are said by the console itself (Snapshot.notice), not by the arbiter
+    NOT_ENGAGED = 6  # a controller commands a parked car, and nobody has asked for autonomy
 
 
 class Commander(IntEnum):

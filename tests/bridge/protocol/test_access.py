@@ -107,7 +107,15 @@ def test_length_of_messages_by_role(role: Role, most: int) -> None:
 
 
 @pytest.mark.parametrize(
-    "auth", [Auth(end=9), Auth(token="x"), Auth(mac="x", end=9), mac("v" * 15), mac("v" * 16, end=10), mac("v" * 16, level="x")]
+    "auth",
+    [
+        Auth(end=9),
+        Auth(token="x"),
+        Auth(mac="x", end=9),
+        mac("v" * 15),
+        mac("v" * 16, end=10),
+        mac("v" * 16, level="x"),
+    ],
 )
 def test_what_shows_no_token(auth: Auth) -> None:
     with pytest.raises(RemoteProtocolError, match="not a token"):

@@ -49,7 +49,47 @@ def test_deviations_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
     assert [row.name for row in rows] == list(CHECKS)
     assert found["null in is NaN, out is null"] == "sent invalid JSON: the literal NaN"
     assert found["unknown operation has a status with id"] == "no status came"
-    assert "set_level is obeyed" not in found
+    assert found["set_level is obeyed"] == "no status came"
+
+
+def suite_like(peer: ServerConnection) -> None:
+    """Echoes texts as rosbridge_suite: no status, one spelling of a type for each topic, the first message twice.
+
+    What is no JSON spoils nothing.
+    """
+    types: dict[str, str] = {}
+    published: set[str] = set()
+    try:
+        for text in peer:
+            try:
+                operation = json.loads(text)
+            except ValueError:
+                continue
+            topic = operation.get("topic", "")
+            if operation["op"] in ("advertise", "subscribe"):
+                types.setdefault(topic, operation["type"])
+            elif operation["op"] == "publish":
+                for _ in range(1 if topic in published else 2):
+                    peer.send(json.dumps(operation))
+                published.add(topic)
+    except ConnectionClosed:
+        pass
+
+
+def test_quirks_that_a_row_is_not_about_do_not_decide_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = (
+        "type names are taken in two and three parts",
+        "malformed JSON does not spoil the next message",
+        "set_level is obeyed",
+    )
+    monkeypatch.setattr("simconsole.bridge.tools.conformance.CHECKS", {name: CHECKS[name] for name in asked})
+    with serve_websockets(suite_like, "127.0.0.1", 0) as server:
+        thread = threading.Thread(target=server.serve_forever)
+        thread.start()
+        rows = check(f"ws://127.0.0.1:{server.socket.getsockname()[1]}")
+        server.shutdown()
+        thread.join()
+    assert [(row.passed, row.found) for row in rows] == [(True, ""), (True, ""), (False, "no status came")]
 
 
 @pytest.mark.parametrize("scheme", ["ws", "http"])
