@@ -38,7 +38,8 @@ def test_what_cannot_be_meant_is_refused(text: str, told: str) -> None:
 def test_what_can_be_meant_is_read() -> None:
     profile = parse(
         "port: 0\nnamespace: /ego/car_1\nrename: {/odom: /ego/odometry}\nrates_hz: {/odom: 0}\n"
-        "allowed_origins: ['https://x.org:8080', 'null', 'file://', 'app://-']\nallowed_hosts: ['[::1]:9090']\nupstream: {url: 'wss://there/rosbridge'}\n",
+        "allowed_origins: ['https://x.org:8080', 'null', 'file://', 'app://-']\n"
+        "allowed_hosts: ['[::1]:9090']\nupstream: {url: 'wss://there/rosbridge'}\n",
         BridgeProfile,
         "f.yaml",
     )

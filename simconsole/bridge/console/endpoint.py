@@ -7,7 +7,7 @@ from simconsole.bridge.console.counters import bridge_status, total_counts
 from simconsole.bridge.console.input_slots import BridgeInputs, OnCommand, OnEvents
 from simconsole.bridge.console.operator_acts import ACTS_MAX, OPERATE, OPERATE_TYPE, Act, OnAct, Operator
 from simconsole.bridge.console.output_schedule import OutputSchedule, topic_names
-from simconsole.bridge.console.topics import Outputs, PublishedTick
+from simconsole.bridge.console.topics import ROSOUT, ROSOUT_TYPE, Outputs, PublishedTick
 from simconsole.bridge.messages import Registry, standard_registry
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.client_session import ClientSession
@@ -62,13 +62,15 @@ class ConsoleBridge:
         self._schedule = OutputSchedule(outputs, self.names, profile)
         for output in self._schedule.outputs:
             self.router.add_output(output.name, output.type, latch=output.latched)
+        self.router.add_shared(ROSOUT, ROSOUT_TYPE)
+        self._happened: tuple[float, ...] = ()
         for command in commands:
             self.router.add_command(self.names[command.name], command.type, command.accept, command.leased)
 
     def publish(self, snapshot: Snapshot, now_ns: int, *, odometry: bool = False) -> None:
         """Queue every message of `snapshot` that is due and wanted; with `odometry`, that in any case."""
         self.keep_time(snapshot, now_ns)
-        tick: PublishedTick | None = None
+        tick = self._tell(snapshot, now_ns)
         for output in self._schedule.due(snapshot, odometry=odometry):
             if self.router.has_subscribers(output.name):
                 tick = tick or self._out.published_tick(snapshot)
@@ -91,6 +93,18 @@ class ConsoleBridge:
         if room:
             self._acts.append(act)
         return room
+
+    def _tell(self, snapshot: Snapshot, now_ns: int) -> PublishedTick | None:
+        """Tell on /rosout what has changed; return the tick as published if anything has, and somebody listens."""
+        if not self.router.has_subscribers(ROSOUT):
+            return None
+        happened = (snapshot.arbitration.mode, snapshot.arbitration.reason, snapshot.notice)
+        if happened == self._happened:
+            return None
+        self._happened = happened
+        tick = self._out.published_tick(snapshot)
+        self.router.publish(ROSOUT, self._out.happening(tick), now_ns)
+        return tick
 
     def counts(self) -> dict[str, int]:
         """Return how many messages went to and from all clients."""

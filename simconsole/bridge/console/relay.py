@@ -231,7 +231,11 @@ class Relay:
             del known[name]
             self._submit(now_ns, op=f"un{op}", **{kind: name})
         for name, type_name in seen.items():
-            if name in known or type_name.partition("/")[0] in _UNASKED or not self._is_free(kind, name, type_name):
+            if (
+                name in known
+                or (kind == "service" and type_name.partition("/")[0] in _UNASKED)
+                or not self._is_free(kind, name, type_name)
+            ):
                 continue
             if self._is_usable(type_name) and self._submit(now_ns, op=op, type=type_name, **{kind: name}):
                 known[name] = type_name

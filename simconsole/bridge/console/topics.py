@@ -32,6 +32,10 @@ TURN_INDICATORS_STATUS: Final = "/vehicle/status/turn_indicators_status"
 HAZARD_LIGHTS_STATUS: Final = "/vehicle/status/hazard_lights_status"
 CONTROL_MODE: Final = "/vehicle/status/control_mode"
 
+ROSOUT: Final = "/rosout"
+"""What happens, as every ROS 2 node tells it; nodes of a graph publish there too."""
+ROSOUT_TYPE: Final = "rcl_interfaces/msg/Log"
+
 GLOBAL_TOPICS: Final = frozenset({CLOCK, TF, TF_STATIC})
 """Never put under a namespace: ROS programs expect exactly these names."""
 
@@ -49,7 +53,7 @@ geometry_msgs/Quaternion geometry_msgs/Pose geometry_msgs/PoseWithCovariance geo
 geometry_msgs/TwistWithCovariance autoware_vehicle_msgs/VelocityReport autoware_vehicle_msgs/SteeringReport
 autoware_vehicle_msgs/GearReport autoware_vehicle_msgs/TurnIndicatorsReport autoware_vehicle_msgs/HazardLightsReport
 autoware_vehicle_msgs/ControlModeReport simconsole_msgs/Arbitration simconsole_msgs/Controller simconsole_msgs/Bridge
-simconsole_msgs/BridgeClient
+simconsole_msgs/BridgeClient rcl_interfaces/Log
 """
 _NO_COVARIANCE: Final = [0.0] * 36
 _NO_IMU_COVARIANCE: Final = [0.0] * 9
@@ -161,6 +165,18 @@ class Outputs:
                     tick, tick.measured, self._odometry_frame, self._pose_covariance, self._twist_covariance
                 ),
             ),
+        )
+
+    def happening(self, tick: PublishedTick) -> Any:
+        """Return mode, reason and notice of a tick as a message of /rosout."""
+        arbitration, notice = tick.snapshot.arbitration, tick.snapshot.notice
+        text = f"{mode_label(arbitration.mode)}: {reason_label(arbitration.reason)}"
+        log = self._types["Log"]
+        return log(
+            stamp=tick.stamp,
+            level=log.WARN if notice else log.INFO,
+            name="simconsole",
+            msg=f"{text}; {notice_label(notice)}" if notice else text,
         )
 
     def published_tick(self, snapshot: Snapshot) -> PublishedTick:

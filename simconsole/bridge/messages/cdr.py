@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 _HEADER: Final = b"\x00\x01\x00\x00"
 _ORDERS: Final = {b"\x00\x00": ">", b"\x00\x01": "<"}
-_LETTERS: Final = {
+LETTERS: Final = {
     "bool": "?",
     "byte": "B",
     "char": "B",
@@ -70,7 +70,7 @@ def _elements(registry: "Registry", kind: FieldType, values: Any, body: bytearra
     elif kind.is_octets and kind.array:
         body += values
     else:
-        _numbers(_LETTERS[kind.base], values, body)
+        _numbers(LETTERS[kind.base], values, body)
 
 
 def _numbers(letter: str, values: Any, body: bytearray) -> None:
@@ -130,7 +130,7 @@ class _Reader:
             return [self._text(kind.base) for _ in range(count)]
         if kind.is_octets:
             return self._bytes(count)
-        return list(self._numbers(_LETTERS[kind.base], count))
+        return list(self._numbers(LETTERS[kind.base], count))
 
     def _text(self, base: str) -> str:
         length = self._count()

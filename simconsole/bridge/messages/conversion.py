@@ -11,7 +11,8 @@ from simconsole.bridge.messages.definition import DURATION, FLOATS, HEADER, TIME
 from simconsole.values.units import NS_PER_S
 
 _NAN: Final = float("nan")
-_ROS1_TIME: Final = {"secs": "sec", "nsecs": "nanosec"}
+_OTHER_TIMES: Final = {"secs": "sec", "nsecs": "nanosec", "nsec": "nanosec"}
+"""ROS 1's names, and what viewers (Foxglove, Lichtblick) send."""
 
 Definitions = Callable[[str], Definition]
 """Gives the definition of a type by its full name."""
@@ -20,7 +21,7 @@ Definitions = Callable[[str], Definition]
 def normalise(definitions: Definitions, name: str, value: Any, gaps: bool, now_ns: int) -> Any:
     """Return a copy of `value` in which known other spellings are replaced; what is simply wrong stays wrong.
 
-    Replaced: secs and nsecs of a time, "now" as a time, a header's seq (ROS 1 has it, ROS 2 not), null as NaN for a
+    Replaced: secs, nsecs, nsec of a time, "now" as a time, a header's seq (ROS 1 has it, ROS 2 not), null as NaN for a
     float if `gaps`, a list of integers for an array of bytes.
     """
     if name in (TIME, DURATION):
@@ -65,5 +66,5 @@ def _normalise_time(value: Any, now_ns: int) -> Any:
     if value == "now":
         return {"sec": now_ns // NS_PER_S, "nanosec": now_ns % NS_PER_S}
     if isinstance(value, dict):
-        return {_ROS1_TIME.get(key, key): part for key, part in value.items()}
+        return {_OTHER_TIMES.get(key, key): part for key, part in value.items()}
     return value

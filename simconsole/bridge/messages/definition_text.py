@@ -24,6 +24,8 @@ def text_of(definition: Definition, ros1: bool = False) -> str:
 def full_text(definitions: Sequence[Definition], ros1: bool = False) -> str:
     """Return the first definition's text, then those it uses, each under its name: the form of rosbag and MCAP."""
     first, *others = definitions
+    if ros1:
+        others = [other for other in others if other.name not in _ROS1_NAMES]
     parts = [f"{RULE}\nMSG: {two_parts(other.name)}\n{text_of(other, ros1)}" for other in others]
     return "".join([text_of(first, ros1), *parts])
 

@@ -16,6 +16,7 @@ import orjson
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.messages.cdr import serialize
 from simconsole.bridge.messages.definition import DURATION, HEADER, TIME, FieldType
+from simconsole.bridge.messages.ros1 import serialize_ros1
 from simconsole.bridge.protocol.message_decoding import Binary
 from simconsole.bridge.protocol.operations import Compression
 from simconsole.values.units import NS_PER_S
@@ -88,7 +89,10 @@ class Encoder:
             message = self._plain(encoding.dialect, True)
         else:
             seconds, nanoseconds = divmod(self._now_ns, NS_PER_S)
-            raw = serialize(self._registry, self._type, self._message)
+            if encoding.dialect == "ros1":
+                raw = serialize_ros1(self._registry, self._type, self._message, self._sequence)
+            else:
+                raw = serialize(self._registry, self._type, self._message)
             message = {"secs": seconds, "nsecs": nanoseconds, "bytes": raw}
         return Binary(cbor2.dumps({"op": "publish", "topic": topic, "msg": message}))
 

@@ -19,6 +19,7 @@ from simconsole.values.errors import BridgeError, RemoteProtocolError
 from simconsole.values.units import NS_PER_S
 
 NODE: Final = "/simconsole"
+LOG: Final = "rcl_interfaces/msg/Log"
 MAX_PARAMETERS: Final = 256
 MAX_PARAMETER: Final = 16_384
 _DISTRO: Final = "jazzy"
@@ -35,7 +36,7 @@ class RosApi:
         self._router = router
         self._registry = router.registry
         self._parameters: dict[str, str] = {}
-        self._texts: dict[str, str] = {}
+        self._texts: dict[tuple[str, Dialect], str] = {}
         """Full definitions of types that topics have had: a type never changes."""
         for name, type_name, handler, role in (
             ("topics", "Topics", self._topics, Role.VIEW),
@@ -73,7 +74,7 @@ class RosApi:
             router.calls.add_builtin(f"/rosapi/{name}", f"rosapi/{type_name}", handler, role)
 
     def _topics(self, args: Fields, dialect: Dialect) -> Fields:
-        topics = self._router.topics
+        topics = self._listed(dialect)
         return {"topics": list(topics), "types": [_type_name(topic.type, dialect) for topic in topics.values()]}
 
     def _topics_for_type(self, args: Fields, dialect: Dialect) -> Fields:
@@ -84,13 +85,19 @@ class RosApi:
         return {"topics": [name for name, topic in self._router.topics.items() if topic.type == wanted]}
 
     def _topics_and_raw_types(self, args: Fields, dialect: Dialect) -> Fields:
-        texts = [self._full_text(topic.type) for topic in self._router.topics.values()]
+        texts = [self._full_text(topic.type, dialect) for topic in self._listed(dialect).values()]
         return {**self._topics(args, dialect), "typedefs_full_text": texts}
 
-    def _full_text(self, type_name: str) -> str:
-        if type_name not in self._texts:
-            self._texts[type_name] = full_text(self._registry.with_parts(type_name))
-        return self._texts[type_name]
+    def _listed(self, dialect: Dialect) -> dict[str, Topic]:
+        """Return the topics that a client is told of: viewers take a server with ROS 2's log for one of ROS 2."""
+        topics = self._router.topics
+        return topics if dialect == "ros2" else {name: topic for name, topic in topics.items() if topic.type != LOG}
+
+    def _full_text(self, type_name: str, dialect: Dialect) -> str:
+        key = (type_name, dialect)
+        if key not in self._texts:
+            self._texts[key] = full_text(self._registry.with_parts(type_name), dialect == "ros1")
+        return self._texts[key]
 
     def _topic_type(self, args: Fields, dialect: Dialect) -> Fields:
         topic = self._router.topics.get(resolve_topic(args["topic"]))

@@ -114,6 +114,10 @@ class Router:
         """Add a topic that only the console publishes, keeping the `depth` newest messages for a slow client."""
         self.topic_registry.add(Topic(name, self.registry.resolve(type_name), depth, owned=True, latch=latch))
 
+    def add_shared(self, name: str, type_name: str) -> None:
+        """Add a topic that the console publishes as its clients may, and that stays without any of them."""
+        self.topic_registry.add(Topic(name, self.registry.resolve(type_name), RELAY_DEPTH, stays=True))
+
     def add_command(self, name: str, type_name: str, accept: Accept, leased: bool = True) -> None:
         """Add a topic by which clients command the console."""
         topic_type, command = self.registry.resolve(type_name), Command(accept, leased)

@@ -39,12 +39,14 @@ class Topic:
         owned: bool = False,
         command: Command | None = None,
         latch: bool = False,
+        stays: bool = False,
     ) -> None:
-        """Create a topic; `owned` topics belong to the console and stay."""
+        """Create a topic; `owned` topics belong to the console and stay, others only if told so."""
         self.name = name
         self.type = type_name
         self.depth = depth
         self.owned = owned
+        self.stays = owned or stays
         self.command = command
         self.latch = latch
         self.latched: Encoder | None = None
@@ -216,5 +218,5 @@ class TopicRegistry:
 
     def _remove_unused(self, topic: Topic) -> None:
         """Remove a clients' topic that has neither publishers nor subscribers."""
-        if not topic.owned and not topic.publishers and not topic.subscribers:
+        if not topic.stays and not topic.publishers and not topic.subscribers:
             self._topics.pop(topic.name, None)

@@ -6,7 +6,8 @@ import pytest
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import ProfileError
-from simconsole.values.signals import Event
+from simconsole.values.signals import Event, Link, LinkState, Notice
+from simconsole.values.state_vector import LAYOUT
 
 MS = 1_000_000
 CONTROL = "/control/command/control_cmd"
@@ -107,3 +108,39 @@ def test_watcher_that_goes_is_no_event(
     assert not bridge.disconnect(watcher.session, 1)
     assert not bridge.disconnect(driver.session, 500 * MS)
     assert bridge.inputs.take(1)[1].events == 0.0
+
+
+def test_rosout_tells_what_changes_to_whoever_listens(
+    bridge: ConsoleBridge, join: Callable[..., Any], snapshot: Callable[..., Any]
+) -> None:
+    listener, node = join(bridge), join(bridge)
+    bridge.publish(snapshot(1), 0)
+    listener.send(op="subscribe", topic="/rosout")
+    for tick, mode in ((2, 0.0), (3, 0.0), (4, 3.0)):
+        bridge.publish(snapshot(tick, mode=mode), 0)
+    told = [message["msg"] for message in listener.heard()]
+    assert [(said["name"], said["level"], said["msg"].partition(":")[0]) for said in told] == [
+        ("simconsole", 20, "PARKED"),
+        ("simconsole", 20, "AUTONOMOUS"),
+    ]
+    log = {"level": 30, "name": "planner", "msg": "hello"}
+    assert node.publish("/rosout", log, type="rcl_interfaces/msg/Log").kind == "done"
+    assert [message["msg"]["msg"] for message in listener.heard()] == ["hello"]
+    node.send(op="unadvertise", topic="/rosout")
+    listener.send(op="unsubscribe", topic="/rosout")
+    assert bridge.router.topics["/rosout"].type == "rcl_interfaces/msg/Log"
+
+
+def test_a_controller_that_nobody_asked_for_is_told(
+    bridge: ConsoleBridge, join: Callable[..., Any], snapshot: Callable[..., Any]
+) -> None:
+    listener = join(bridge)
+    listener.send(op="subscribe", topic="/console/arbitration")
+    listener.send(op="subscribe", topic="/rosout")
+    commanded = snapshot(5)
+    commanded.vector[LAYOUT.ros_link.start + Link._fields.index("state")] = float(LinkState.STEADY)
+    bridge.publish(commanded, 0)
+    heard = {message["topic"]: message["msg"] for message in listener.heard()}
+    assert heard["/console/arbitration"]["notice"] == Notice.NOT_ENGAGED
+    assert heard["/console/arbitration"]["notice_words"] == "parked: nobody has asked for autonomy"
+    assert (heard["/rosout"]["level"], heard["/rosout"]["msg"].endswith("asked for autonomy")) == (30, True)

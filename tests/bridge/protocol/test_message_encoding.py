@@ -83,3 +83,12 @@ def test_each_form_is_made_once_for_all() -> None:
     encoding = Encoding("ros2", "cbor")
     assert made.text(encoding, HEAD, "/a") is made.text(encoding, HEAD, "/a")
     assert made.text(encoding, HEAD.replace(b"/a", b"a"), "a") != made.text(encoding, HEAD, "/a")
+
+
+def test_cbor_raw_is_ros_1_s_serialization_for_its_clients() -> None:
+    registry = standard_registry()
+    message = registry.from_plain("std_msgs/Header", {"stamp": {"sec": 1}, "frame_id": "m"})
+    encoder = Encoder(registry, "std_msgs/msg/Header", message, 7, 0)
+    raw = cbor2.loads(encoder.text(Encoding("ros1", "cbor-raw"), b"", "/h"))["msg"]["bytes"]
+    assert raw == bytes.fromhex("07000000 01000000 00000000 01000000 6d")
+    assert encoder.text(Encoding("ros2", "cbor-raw"), b"", "/h") != raw
