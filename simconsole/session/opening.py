@@ -30,6 +30,7 @@ from simconsole.session.paced import (
 )
 from simconsole.session.pacing import Pacer, UnpacedPacer, realtime_hints
 from simconsole.session.recorder import LogRecorder
+from simconsole.session.resolution import route_of
 from simconsole.session.seat import open_seating
 from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession
@@ -269,7 +270,9 @@ def _open_lockstep(
     period_ticks = session.mode.control_period_ticks
     token, drive = _own_token(session), new_nonce()
     odometry_hz = console.tick_hz / period_ticks
-    bridge = LockstepBridge(session.outputs.bridge, odometry_hz=odometry_hz, folder=folder, drive=drive)
+    bridge = LockstepBridge(
+        session.outputs.bridge, odometry_hz=odometry_hz, folder=folder, drive=drive, route=route_of(resolved)
+    )
     course = session.features.autopilot
     program = None
     if course is not None:

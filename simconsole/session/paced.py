@@ -12,6 +12,7 @@ from simconsole.hud.view import HudSettings, settings_of
 from simconsole.processes.shared_memory import EventCounters, Ring, TextQueue
 from simconsole.processes.worker import Worker, WorkerSpec
 from simconsole.profiles.view import HudProfile
+from simconsole.session.resolution import route_of
 from simconsole.session.scene_job import LIVE_SCENE, scene_job
 from simconsole.session.worker_programs import (
     ACTS,
@@ -177,7 +178,11 @@ def worker_specs(
     workers: dict[str, Worker] = {}
     if outputs.bridge is not None:
         workers["bridge"] = BridgeWorker(
-            profile=outputs.bridge, tick_hz=tick_hz, drive=drive, bundle=str(bundle.absolute())
+            profile=outputs.bridge,
+            tick_hz=tick_hz,
+            drive=drive,
+            bundle=str(bundle.absolute()),
+            route=route_of(resolved),
         )
     if outputs.can is not None:
         from simconsole.canbus.messages import wheel_columns

@@ -53,6 +53,8 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
     """The drive's nonce."""
     bundle: str
     """The bundle's folder, for recorded topics."""
+    route: tuple[tuple[float, float, float], ...] = ()
+    """What /route shows."""
 
     def run(self, folder: Path, stop: Callable[[], bool]) -> None:
         """Serve until `stop`."""
@@ -83,7 +85,7 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
         serve(
             profile, snapshots, command_writer(folder / COMMAND), events.raise_events, stop,
             on_ready=ready, on_act=keep_act, on_counts=write_counts, on_link_state=write_link_state,
-            folder=Path(self.bundle), drive=self.drive,
+            folder=Path(self.bundle), drive=self.drive, route=self.route,
         )  # fmt: skip
 
 

@@ -7,7 +7,7 @@ from simconsole.bridge.console.counters import bridge_status, total_counts
 from simconsole.bridge.console.input_slots import BridgeInputs, OnCommand, OnEvents
 from simconsole.bridge.console.operator_acts import ACTS_MAX, OPERATE, OPERATE_TYPE, Act, OnAct, Operator
 from simconsole.bridge.console.output_schedule import OutputSchedule, topic_names
-from simconsole.bridge.console.topics import ROSOUT, ROSOUT_TYPE, Outputs, PublishedTick
+from simconsole.bridge.console.topics import ROSOUT, ROSOUT_TYPE, Outputs, PublishedTick, Route
 from simconsole.bridge.messages import Registry, standard_registry
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.client_session import ClientSession
@@ -28,6 +28,7 @@ class ConsoleBridge:
         on_command: OnCommand | None = None,
         on_events: OnEvents | None = None,
         on_act: OnAct | None = None,
+        route: Route = (),
     ) -> None:
         """Build the topics of `profile`.
 
@@ -37,6 +38,7 @@ class ConsoleBridge:
             on_command: sees each change of the command at once (`BridgeInputs`).
             on_events: sees each event at once.
             on_act: sees each act of an operator at once; without, they are kept until `take_acts`.
+            route: what /route shows.
 
         Raises:
             ProfileError: the profile renames or rates a topic that does not exist, or gives two topics one name.
@@ -56,7 +58,7 @@ class ConsoleBridge:
         self._command_decoder = CommandDecoder(self.inputs, profile)
         self.router.on_new_commander = self._command_decoder.forget_stamps
         self._now_ns = 0
-        self._out = Outputs(self.router.registry, profile, lambda: bridge_status(self.router, self._now_ns))
+        self._out = Outputs(self.router.registry, profile, lambda: bridge_status(self.router, self._now_ns), route)
         outputs, commands = self._out.topics(), self._command_decoder.topics()
         self.names = topic_names(profile, [*(topic.name for topic in outputs), *(topic.name for topic in commands)])
         self._schedule = OutputSchedule(outputs, self.names, profile)

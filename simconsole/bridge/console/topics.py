@@ -4,7 +4,7 @@ Every stamp is the tick's simulated time. Frames are REP-105's map, odom and bas
 not drift, so map and odom coincide.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Final, NamedTuple
 
 from simconsole.bridge.link.localisation import Localisation, covariances
@@ -36,6 +36,10 @@ ROSOUT: Final = "/rosout"
 """What happens, as every ROS 2 node tells it; nodes of a graph publish there too."""
 ROSOUT_TYPE: Final = "rcl_interfaces/msg/Log"
 
+ROUTE: Final = "/route"
+Route = Sequence[tuple[float, float, float]]
+"""The lane's middle to follow in the map: x and y in m, yaw in rad, point after point."""
+
 GLOBAL_TOPICS: Final = frozenset({CLOCK, TF, TF_STATIC})
 """Never put under a namespace: ROS programs expect exactly these names."""
 
@@ -53,7 +57,7 @@ geometry_msgs/Quaternion geometry_msgs/Pose geometry_msgs/PoseWithCovariance geo
 geometry_msgs/TwistWithCovariance autoware_vehicle_msgs/VelocityReport autoware_vehicle_msgs/SteeringReport
 autoware_vehicle_msgs/GearReport autoware_vehicle_msgs/TurnIndicatorsReport autoware_vehicle_msgs/HazardLightsReport
 autoware_vehicle_msgs/ControlModeReport simconsole_msgs/Arbitration simconsole_msgs/Controller simconsole_msgs/Bridge
-simconsole_msgs/BridgeClient rcl_interfaces/Log
+simconsole_msgs/BridgeClient rcl_interfaces/Log nav_msgs/Path geometry_msgs/PoseStamped
 """
 _NO_COVARIANCE: Final = [0.0] * 36
 _NO_IMU_COVARIANCE: Final = [0.0] * 9
@@ -122,8 +126,18 @@ class PublishedTick:
 class Outputs:
     """Builds the messages of the output topics."""
 
-    def __init__(self, registry: Registry, profile: BridgeProfile, counts: Callable[[], dict[str, Any]] = dict) -> None:
-        """Generate the classes of all output topics; `counts` fills /console/bridge (`counters.bridge_status`)."""
+    def __init__(
+        self,
+        registry: Registry,
+        profile: BridgeProfile,
+        counts: Callable[[], dict[str, Any]] = dict,
+        route: Route = (),
+    ) -> None:
+        """Generate the classes of all output topics.
+
+        `counts` fills /console/bridge (`counters.bridge_status`), `route` /route.
+        """
+        self._route_points = route
         self._counts = counts
         self._odometry_frame = profile.odometry_frame
         self._localisation = Localisation(profile.link)
@@ -143,6 +157,7 @@ class Outputs:
         return (
             OutputTopic(CLOCK, "rosgraph_msgs/Clock", 100.0, self._clock),
             OutputTopic(TF_STATIC, "tf2_msgs/TFMessage", ONCE, self._tf_static),
+            OutputTopic(ROUTE, "nav_msgs/Path", ONCE, self._route),
             OutputTopic(TF, "tf2_msgs/TFMessage", 50.0, self._tf),
             OutputTopic(JOY, "sensor_msgs/Joy", 100.0, self._joy),
             OutputTopic(VELOCITY, "autoware_vehicle_msgs/VelocityReport", 30.0, self._velocity),
@@ -227,6 +242,16 @@ class Outputs:
     def _tf_static(self, tick: PublishedTick) -> Any:
         nowhere, unturned = self._types["Vector3"](), self._types["Quaternion"]()
         return self._transform(tick, MAP_FRAME, self._odometry_frame, nowhere, unturned)
+
+    def _route(self, tick: PublishedTick) -> Any:
+        types, header = self._types, tick.header(MAP_FRAME)
+        poses = [
+            types["PoseStamped"](
+                header, types["Pose"](types["Point"](x_m, y_m), types["Quaternion"](*quaternion(0.0, 0.0, yaw_rad)))
+            )
+            for x_m, y_m, yaw_rad in self._route_points
+        ]
+        return types["Path"](header, poses)
 
     def _transform(self, tick: PublishedTick, parent: str, child: str, place: Any, turn: Any) -> Any:
         types = self._types

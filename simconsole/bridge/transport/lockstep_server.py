@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Final, Self
 import msgspec
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
-from simconsole.bridge.console.topics import ODOMETRY
+from simconsole.bridge.console.topics import ODOMETRY, Route
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.protocol.access import Access
 from simconsole.bridge.protocol.client_session import ClientSession
@@ -55,6 +55,7 @@ class LockstepBridge:
         odometry_hz: float | None = None,
         folder: Path | None = None,
         drive: str | None = None,
+        route: Route = (),
     ) -> None:
         """Listen on the profile's host and port.
 
@@ -63,6 +64,7 @@ class LockstepBridge:
             registry: message types; without, the standard ones and those of the profile's folder.
             folder: where topics are recorded if the profile says so.
             drive: the nonce of the drive whose bridge it is.
+            route: what /route shows.
             odometry_hz: rate of /odom in place of the profile's: the control rate, so that every answer is waited for.
 
         Raises:
@@ -74,7 +76,7 @@ class LockstepBridge:
             limits = msgspec.structs.replace(profile.limits, commands_hz=commands_hz)
             rates_hz = {**profile.rates_hz, ODOMETRY: odometry_hz}
             profile = msgspec.structs.replace(profile, rates_hz=rates_hz, limits=limits)
-        self.console = ConsoleBridge(profile, load_registry(profile) if registry is None else registry)
+        self.console = ConsoleBridge(profile, load_registry(profile) if registry is None else registry, route=route)
         self.console.router.access = load_access(profile)
         if profile.upstream is not None:
             raise ProfileError("outputs.bridge.upstream: a drive in lockstep waits for its own clients only")

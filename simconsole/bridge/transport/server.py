@@ -15,6 +15,7 @@ from simconsole.bridge.console.counters import link_state
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.input_slots import OnCommand, OnEvents
 from simconsole.bridge.console.operator_acts import OnAct
+from simconsole.bridge.console.topics import Route
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.handshake import Admission, HandshakeRequest, Refusal, admit, places
@@ -56,6 +57,7 @@ class BridgeServer:
         clock_ns: Callable[[], int] = time.monotonic_ns,
         folder: Path | None = None,
         drive: str | None = None,
+        route: Route = (),
     ) -> None:
         """Build the bridge; `start` opens it.
 
@@ -63,7 +65,7 @@ class BridgeServer:
         the nonce of the drive whose bridge it is.
         """
         registry = load_registry(profile) if registry is None else registry
-        self.console = ConsoleBridge(profile, registry, on_command, on_events, on_act)
+        self.console = ConsoleBridge(profile, registry, on_command, on_events, on_act, route)
         self._folder = folder
         self._drive = drive
         self._recorder: TopicRecorder | None = None
@@ -230,6 +232,7 @@ def serve(
     registry: Registry | None = None,
     folder: Path | None = None,
     drive: str | None = None,
+    route: Route = (),
 ) -> None:
     """Run a bridge server until `stop()` says so; for a process of its own.
 
@@ -246,6 +249,7 @@ def serve(
         registry: message types; without, the standard ones and those of the profile's folder.
         folder: where topics are recorded if the profile says so.
         drive: the nonce of the drive whose bridge it is.
+        route: what /route shows.
 
     Raises:
         BridgeError: the address cannot be listened on.
@@ -262,6 +266,7 @@ def serve(
             on_act=on_act,
             folder=folder,
             drive=drive,
+            route=route,
         )
         await server.start()
         on_ready(server.port)

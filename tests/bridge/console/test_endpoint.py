@@ -1,3 +1,4 @@
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -144,3 +145,18 @@ def test_a_controller_that_nobody_asked_for_is_told(
     assert heard["/console/arbitration"]["notice"] == Notice.NOT_ENGAGED
     assert heard["/console/arbitration"]["notice_words"] == "parked: nobody has asked for autonomy"
     assert (heard["/rosout"]["level"], heard["/rosout"]["msg"].endswith("asked for autonomy")) == (30, True)
+
+
+def test_route_is_there_for_whoever_comes_later(join: Callable[..., Any], snapshot: Callable[..., Any]) -> None:
+    bridge = ConsoleBridge(BridgeProfile(), route=[(1.0, 2.0, 0.0), (1.0, 4.0, math.pi / 2.0)])
+    bridge.publish(snapshot(1), 0)
+    late = join(bridge)
+    late.send(op="subscribe", topic="/route", type="nav_msgs/Path")
+    (heard,) = late.heard()
+    path = heard["msg"]
+    assert path["header"]["frame_id"] == "map"
+    assert [(each["pose"]["position"]["x"], each["pose"]["position"]["y"]) for each in path["poses"]] == [
+        (1, 2),
+        (1, 4),
+    ]
+    assert path["poses"][1]["pose"]["orientation"]["z"] == pytest.approx(math.sqrt(0.5))

@@ -94,7 +94,7 @@ def test_what_the_console_wants_in_the_graph(graph: Graph) -> None:
 def test_outputs_are_sent_while_somebody_listens(graph: Graph, snapshot: Any) -> None:
     graph.observe()
     graph.bridge.publish(snapshot(250), 0)
-    assert graph.operations() == []
+    assert [operation.name for operation in graph.operations()] == ["/route"], "it is latched"
     graph.observe(listened=frozenset({"/odom"}))
     graph.bridge.publish(snapshot(500, x_m=3.0), 0)
     (operation,) = graph.operations()
@@ -111,7 +111,7 @@ def test_latched_outputs_are_sent_at_once(graph: Graph, snapshot: Any) -> None:
     try:
         graph.bridge.publish(snapshot(1), 0)
         assert graph.observe().publishers["/tf_static"] == GraphPublisher("tf2_msgs/msg/TFMessage", True, 1)
-        assert [operation.name for operation in graph.operations()] == ["/tf_static"]
+        assert [operation.name for operation in graph.operations()] == ["/route", "/tf_static"]
     finally:
         NOT_INSTALLED.add("tf2_msgs/msg/TFMessage")
 
@@ -313,3 +313,17 @@ def test_leaving(graph: Graph) -> None:
     graph.relay.leave(10 * MS)
     assert graph.bridge.router.sessions == ()
     assert graph.bridge.inputs.take(1)[1].events == float(Event.COMMANDER_LOST)
+
+
+def test_log_of_the_graph_reaches_clients_and_quality_of_service_the_graph(
+    graph: Graph, join: Callable[..., Any]
+) -> None:
+    client = join(graph.bridge)
+    qos = {"reliability": "best_effort", "deadline": 0.5, "lifespan": "infinite"}
+    client.send(op="advertise", topic="/numbers", type="std_msgs/Int32", qos=qos)
+    client.send(op="subscribe", topic="/rosout")
+    entities = graph.observe(topics={"/rosout": "rcl_interfaces/msg/Log"})
+    assert entities.subscriptions["/rosout"] == "rcl_interfaces/msg/Log"
+    offer = entities.publishers["/numbers"]
+    assert (offer.best_effort, offer.deadline_ns, offer.lifespan_ns) == (True, 500_000_000, None)
+    assert graph.bridge.router.topics["/rosout"].publishers

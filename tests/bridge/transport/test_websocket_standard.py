@@ -76,7 +76,8 @@ OFFERS: Final = [
 @pytest.fixture(params=EDGES, scope="module")
 def server(request: pytest.FixtureRequest) -> Iterator[Any]:
     kind, transport = EDGES[request.param]
-    started = kind(BridgeProfile(port=0, transport=transport))
+    profile: dict[str, Any] = {"port": 0, "transport": transport}
+    started: Any = kind(BridgeProfile(**profile))
     yield started
     started.stop()
 
