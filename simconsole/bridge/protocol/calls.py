@@ -230,7 +230,8 @@ class Calls:
             return
         if self._next_deadline_ns is None or deadline_ns < self._next_deadline_ns:
             self._next_deadline_ns = deadline_ns
-        _send(provider.session, op="call_service", id=identifier, service=name, args=args)
+        limit = {"timeout": operation.timeout} if operation.timeout else {}
+        _send(provider.session, op="call_service", id=identifier, service=name, args=args, **limit)
 
     def _builtin(self, builtin: _Builtin, caller: _Caller, args: Any) -> Any:
         if caller.session.role < builtin.role:
@@ -306,8 +307,9 @@ class Calls:
         feedback: bool = False,
         is_goal: bool = False,
     ) -> str:
-        if sum(call.caller.session is caller.session for call in self._calls.values()) >= self._limits.calls:
-            raise RemoteProtocolError(f"{self._limits.calls} calls at a time are the most allowed")
+        most = caller.session.max_calls or self._limits.calls
+        if sum(call.caller.session is caller.session for call in self._calls.values()) >= most:
+            raise RemoteProtocolError(f"{most} calls at a time are the most allowed")
         self._numbers += 1
         identifier = f"{'goal' if is_goal else 'call'}:{name}:{self._numbers}"
         self._calls[identifier] = _Call(

@@ -1,20 +1,29 @@
 """A node of rclpy on a thread of its own, and all that it has in the graph."""
 
+import logging
 import os
 import threading
+import time
 from collections import deque
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from typing import Any, Final, NamedTuple
 
-from simconsole.bridge.console.relay import ANYONE, GraphEntities, GraphOperation, GraphPublisher, GraphView
+from simconsole.bridge.console.graph_view import (
+    ANYONE,
+    GraphEntities,
+    GraphOperation,
+    GraphPublisher,
+    GraphView,
+    Kind,
+)
+from simconsole.bridge.ros2.endpoints import POLL_S, Endpoints
 from simconsole.bridge.ros2.message_types import load
+from simconsole.bridge.ros2.offered_calls import OfferedCalls
 from simconsole.bridge.ros2.service_calls import GraphCalls
 from simconsole.profiles.bridge import Ros2Profile
 from simconsole.values.errors import BridgeError
 
-POLL_S: Final = 0.1
-"""Period of polling the graph: changes there are seen this much later."""
 DEPTH: Final = 10
 MAX_POLLS: Final = 10
 MAX_PENDING: Final = 100
@@ -26,12 +35,18 @@ NOT_INSTALLED: Final = (
 )
 _JOIN_S: Final = 3.0
 _DISCOVERY: Final = "ROS_AUTOMATIC_DISCOVERY_RANGE"
+MAX_ERRORS: Final = 100
+"""Turns of rclpy's executor that may fail one after the other before the whole node is taken for broken."""
+_ERROR_PAUSE_S: Final = 0.02
+
+_logger: Final = logging.getLogger("simconsole.bridge.ros2.graph")
 
 
 class ReceivedMessage(NamedTuple):
     """A message of the graph, in CDR, and the node that published it."""
 
     topic: str
+    type: str
     data: bytes
     node: str
 
@@ -40,6 +55,7 @@ class _PendingMessage(NamedTuple):
     """A message whose publisher's node is not known yet, and for how many polls of the graph it has waited."""
 
     topic: str
+    type: str
     data: bytes
     identity: bytes
     polls: int
@@ -57,9 +73,13 @@ class Graph:
     """The console's node. Public methods belong to the bridge's thread, all others to rclpy's."""
 
     def __init__(
-        self, settings: Ros2Profile, put: Callable[..., None], receive: Callable[[ReceivedMessage], None]
+        self,
+        settings: Ros2Profile,
+        call_s: float,
+        put: Callable[..., None],
+        receive: Callable[[ReceivedMessage], None],
     ) -> None:
-        """Join; `put` and `receive` are called on rclpy's thread.
+        """Join; `put` and `receive` are called on rclpy's thread, `call_s` is how long a service may take to answer.
 
         Raises:
             BridgeError: rclpy is not installed, or cannot join.
@@ -88,17 +108,18 @@ class Graph:
         self._group = ReentrantCallbackGroup()
         self._executor: Any = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(node)
-        self._calls = GraphCalls(node, self._executor, self._group, put)
+        self._calls = GraphCalls(node, self._group, put, call_s)
+        self._offered = OfferedCalls(node, self._executor, self._group, put)
         self._entities = GraphEntities({}, {}, {}, {})
-        self._publishers: dict[str, tuple[Any, Any]] = {}
-        self._subscriptions: dict[str, tuple[Any, Any]] = {}
-        self._services: dict[str, tuple[Any, Any]] = {}
-        self._actions: dict[str, tuple[Any, Any]] = {}
+        self._publishers = Endpoints(self._make_publisher, node.destroy_publisher, self._reporter("topic"))
+        self._subscriptions = Endpoints(self._make_subscription, node.destroy_subscription, self._reporter("topic"))
+        self._services = Endpoints(self._offered.make_service, self._offered.end, self._reporter("service"))
+        self._actions = Endpoints(self._offered.make_action, self._offered.end, self._reporter("action"))
         self.broken = False
         """Whether rclpy's thread has ended unexpectedly."""
         self._closing = False
-        self._early: dict[str, bytes] = {}
-        """The newest message of each topic whose publisher is not yet made."""
+        self._early: dict[str, tuple[str, bytes]] = {}
+        """The newest message, and its type, of each topic whose publisher is not yet made."""
         self._lock = threading.Lock()
         self._sent: dict[str, deque[bytes]] = {}
         """The newest messages that were sent on topics which are also subscribed to."""
@@ -118,9 +139,9 @@ class Graph:
     def execute(self, operation: GraphOperation) -> None:
         """Carry out one operation of the relay."""
         if operation.kind == "send":
-            self._send(operation.name, operation.data or b"")
+            self._send(operation.name, operation.type, operation.data or b"")
         else:
-            self._executor.create_task(self._calls.execute, operation)
+            self._executor.create_task(self._execute, operation)
 
     def close(self) -> None:
         """Leave; harmless when closed."""
@@ -133,27 +154,45 @@ class Graph:
         self._node.destroy_node()
         self._rclpy.shutdown(context=self._context)
 
-    def _send(self, name: str, data: bytes) -> None:
-        known = self._publishers.get(name)
-        if known is None:
-            self._early[name] = data
+    def _send(self, name: str, type_name: str, data: bytes) -> None:
+        known = self._publishers.find(name)
+        if known is None or known[0].type != type_name:
+            self._early[name] = (type_name, data)
             return
-        from rclpy.exceptions import InvalidHandle
-
         if name in self._subscriptions:
             with self._lock:
                 self._sent.setdefault(name, deque(maxlen=MAX_SENT)).append(data)
-        with suppress(InvalidHandle):  # destroyed meanwhile, because nothing subscribes any more
+        try:
             known[1].publish(data)
+        except Exception as error:  # noqa: BLE001  it may have been destroyed meanwhile, because nothing subscribes any more
+            _logger.debug("%s: not published: %s", name, error)
 
     def _spin(self) -> None:
+        errors = 0
         try:
-            while not self._closing:
-                self._executor.spin_once()
+            while not self._closing and errors < MAX_ERRORS:
+                try:
+                    self._executor.spin_once()
+                    errors = 0
+                except Exception as error:  # noqa: BLE001  of one callback, or of one endpoint that ended while it was read
+                    errors += 1
+                    self._put("remarked", "rclpy", f"{type(error).__name__}: {error}")
+                    time.sleep(_ERROR_PAUSE_S)
         finally:
             if not self._closing:
                 self.broken = True
                 self._put("view", GraphView({}, frozenset(), {}, {}, frozenset()))
+
+    def _execute(self, operation: GraphOperation) -> None:
+        match operation.kind:
+            case "call" | "goal":
+                self._calls.request(operation)
+            case "cancel":
+                self._calls.cancel(operation)
+            case "reply" | "end":
+                self._offered.finish(operation)
+            case "feedback":
+                self._offered.publish_feedback(operation)
 
     def _poll(self) -> None:
         node = self._node
@@ -179,16 +218,32 @@ class Graph:
         nodes = {_path(space, name) for name, space in node.get_node_names_and_namespaces()}
         self._resolve_publishers(1)
         self._calls.poll()
+        self._offered.poll()
         self._put("view", GraphView(topics, frozenset(listened), services, actions, frozenset(nodes)))
         self._update_entities()
 
     def _update_entities(self) -> None:
-        entities, node = self._entities, self._node
-        _synchronise(self._publishers, entities.publishers, self._make_publisher, node.destroy_publisher)
+        entities = self._entities
         ways = {name: self._subscription_settings(name, kind) for name, kind in entities.subscriptions.items()}
-        _synchronise(self._subscriptions, ways, self._make_subscription, node.destroy_subscription)
-        _synchronise(self._services, entities.services, self._calls.make_service, node.destroy_service)
-        _synchronise(self._actions, entities.actions, self._calls.make_action, lambda server: server.destroy())
+        wanted = (
+            (self._publishers, entities.publishers),
+            (self._subscriptions, ways),
+            (self._services, entities.services),
+            (self._actions, entities.actions),
+        )
+        # A node cannot have one name in two types: all that ends does so before anything is made.
+        for endpoints, names in wanted:
+            endpoints.retire(names)
+        for endpoints, names in wanted:
+            endpoints.create(names)
+        for name in [name for name in self._early if name not in entities.publishers]:
+            self._early.pop(name, None)
+        for name in [name for name in self._sent if name not in self._subscriptions]:
+            with self._lock:
+                self._sent.pop(name, None)
+
+    def _reporter(self, kind: Kind) -> Callable[[str, str], None]:
+        return lambda name, why: self._put("failed", kind, name, why)
 
     def _make_publisher(self, name: str, offer: GraphPublisher) -> Any:
         from rclpy.qos import DurabilityPolicy, QoSProfile
@@ -197,8 +252,8 @@ class Graph:
         qos = QoSProfile(depth=offer.depth, durability=durability)
         publisher = self._node.create_publisher(load(offer.type), name, qos)
         early = self._early.pop(name, None)
-        if early is not None:
-            publisher.publish(early)
+        if early is not None and early[0] == offer.type:
+            publisher.publish(early[1])
         return publisher
 
     def _subscription_settings(self, name: str, kind: str) -> _SubscriptionSettings:
@@ -225,9 +280,9 @@ class Graph:
             identity = (info.get("publisher_gid") or {}).get("data")
             if identity is None:
                 if not self._is_own(name, data):
-                    self._receive(ReceivedMessage(name, data, ANYONE))
+                    self._receive(ReceivedMessage(name, way.type, data, ANYONE))
                 return
-            self._pending.append(_PendingMessage(name, data, identity, 0))
+            self._pending.append(_PendingMessage(name, way.type, data, identity, 0))
             self._resolve_publishers(0)
 
         return self._node.create_subscription(load(way.type), name, take, qos, raw=True, callback_group=self._group)
@@ -253,7 +308,7 @@ class Graph:
             if node is None and each.polls < MAX_POLLS:
                 self._pending.append(each._replace(polls=each.polls + polls))
             elif node != self._name:
-                self._receive(ReceivedMessage(each.topic, each.data, node or ANYONE))
+                self._receive(ReceivedMessage(each.topic, each.type, each.data, node or ANYONE))
         del self._pending[:-MAX_PENDING]
 
     def _publisher(self, message: _PendingMessage) -> str | None:
@@ -266,17 +321,6 @@ class Graph:
 
 def _path(namespace: str, name: str) -> str:
     return f"{namespace.rstrip('/')}/{name}"
-
-
-def _synchronise(
-    have: dict[str, tuple[Any, Any]], want: Any, make: Callable[[str, Any], Any], end: Callable[[Any], Any]
-) -> None:
-    """Make the entities match what is wanted; a changed one is destroyed and created anew."""
-    for name in [name for name, (how, _) in have.items() if want.get(name) != how]:
-        end(have.pop(name)[1])
-    for name, how in want.items():
-        if name not in have:
-            have[name] = (how, make(name, how))
 
 
 @contextmanager

@@ -49,7 +49,7 @@ class Ros2Link:
         self._wake = wake
         self._relay = Relay(console, role_of_graph(profile, console.router.access.anonymous), describe, wake)
         try:
-            self._graph = Graph(settings, self._put, self._receive)
+            self._graph = Graph(settings, profile.limits.call_s, self._put, self._receive)
         except BridgeError:
             self._relay.leave(0)
             raise
@@ -65,8 +65,10 @@ class Ros2Link:
             event, arguments = self._inbox.popleft()
             if event == "view":
                 self._graph.set_entities(self._relay.observe(arguments[0], now_ns))
-            else:
+            elif event in ("failed", "remarked"):
                 getattr(self._relay, event)(*arguments, now_ns)
+            else:
+                getattr(self._relay.calls, event)(*arguments, now_ns)
         for _ in range(len(self._received)):
             self._relay.receive(*self._received.popleft(), now_ns)
         for operation in self._relay.operations(now_ns):
