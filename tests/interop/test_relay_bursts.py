@@ -71,8 +71,8 @@ def test_calls_of_a_client_all_at_once(web: Client, node: Puppet) -> None:
 
 def test_calls_of_a_node(web: Client, node: Puppet) -> None:
     web.say(op="advertise_service", service="/web/flip", type=FLIP)
-    for hz in (CALLS_HZ, CALLS_HZ, 100_000.0):
-        node.do("call", name="/web/flip", count=CALLS, hz=hz)
+    for _ in range(5):
+        node.do("call", name="/web/flip", count=CALLS, hz=CALLS_HZ)
         for _ in range(CALLS):
             call = web.hear(lambda heard: heard["op"] == "call_service")
             values = {"success": call["args"]["data"], "message": "web"}
@@ -113,7 +113,7 @@ def test_a_service_that_is_just_appearing(web: Client, node: Puppet) -> None:
     for number in range(5):
         name = f"/ros/appearing{number}"
         node.do("serve", name=name)
-        wait_for(web, "services", "services", name)
+        node.hear(lambda said: "served" in said)
         web.say(op="call_service", id=number, service=name, args={"data": True})
         assert web.answers(1)[number]["message"] == name
 
@@ -148,7 +148,7 @@ def test_a_burst_of_goals_that_are_cancelled(web: Client, node: Puppet) -> None:
         web.say(**goal, id=number)
     for number in range(GOALS):
         web.say(op="cancel_action_goal", action="/ros/patient", id=number)
-    ends = {}
+    ends: dict[int, int] = {}
     while len(ends) < GOALS:
         heard = web.hear(lambda heard: heard["op"] == "action_result")
         ends[heard["id"]] = heard["status"]

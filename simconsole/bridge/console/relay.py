@@ -31,6 +31,7 @@ from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.client_session import ClientSession
 from simconsole.bridge.protocol.message_decoding import Binary
 from simconsole.values.errors import BridgeError
+from simconsole.values.units import NS_PER_S
 
 Describe = Callable[[str], tuple[Definition, ...] | None]
 """Returns the messages that a type of the graph is made of, None where it is not installed."""
@@ -43,6 +44,8 @@ MAX_NODES: Final = 64
 _UNASKED: Final = frozenset({"rcl_interfaces", "type_description_interfaces"})
 """Packages of services that every node has; six for each would fill the table."""
 
+APPEARING_NS: Final = NS_PER_S
+"""How long a call waits for a service that the graph may just be getting."""
 MAX_CALLS: Final = 200
 """Calls and goals of the whole graph that may be with clients at a time; one client's limit is not meant for it."""
 
@@ -70,6 +73,7 @@ class Relay:
         self._main.set_level("warning")
         self._nodes: dict[str, ClientSession] = {}
         self._main.max_calls = MAX_CALLS
+        self._router.calls.held.patience_ns = APPEARING_NS
         self._unusable: dict[str, str] = {}
         """Why a type cannot be relayed, empty where it can."""
         self._advertised: dict[Kind, dict[str, str]] = {"topic": {}, "service": {}, "action": {}}

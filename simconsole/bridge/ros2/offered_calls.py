@@ -11,6 +11,7 @@ from typing import Any, Final
 from simconsole.bridge.console.graph_view import GraphOperation
 from simconsole.bridge.protocol.operations import ABORTED, CANCELED, SUCCEEDED
 from simconsole.bridge.ros2.message_types import load
+from simconsole.bridge.ros2.pacer import ACTION_AT_ONCE, ACTION_PERIOD_S, SERVICE_AT_ONCE, SERVICE_PERIOD_S, Pacer
 
 LINGER_POLLS: Final = 3
 """How long the provider's endpoint stays after it has left, in polls: for requests and answers on their way."""
@@ -30,6 +31,8 @@ class Offered:
         self.open: dict[str, Any] = {}
         """Futures of the answers by key."""
         self.goals: dict[str, Any] = {}
+        self.accepting = 0
+        """Goals that wait for their turn to be accepted."""
         self.until_poll: int | None = None
         """The poll from which on it may be destroyed; None while it has its provider."""
 
@@ -46,6 +49,8 @@ class OfferedCalls:
         self._numbers = itertools.count(1)
         self._open: dict[str, Offered] = {}
         self._polls = 0
+        self._services = Pacer(node, group, SERVICE_AT_ONCE, SERVICE_PERIOD_S)
+        self._actions = Pacer(node, group, ACTION_AT_ONCE, ACTION_PERIOD_S)
 
     @property
     def open(self) -> int:
@@ -78,6 +83,7 @@ class OfferedCalls:
         from rclpy.action import ActionServer, CancelResponse, GoalResponse
         from rclpy.qos import QoSProfile
         from rclpy.serialization import serialize_message
+        from rclpy.task import Future
 
         offered = Offered(name, load(kind))
         qos = QoSProfile(depth=QUEUE)
@@ -87,7 +93,12 @@ class OfferedCalls:
             operation = await self._forward(offered, "send_goal", serialize_message(goal.request), goal)
             return self._end_goal(offered, goal, operation)
 
-        def accept(request: Any) -> Any:
+        async def accept(request: Any) -> Any:
+            turn: Any = Future(executor=self._executor)
+            offered.accepting += 1
+            self._actions.do(offered.accepting + len(offered.open), lambda: self._let(turn))
+            await turn
+            offered.accepting -= 1
             return GoalResponse.ACCEPT if offered.until_poll is None else GoalResponse.REJECT
 
         def cancel(goal: Any) -> Any:
@@ -112,7 +123,7 @@ class OfferedCalls:
             offered.until_poll = self._polls + LINGER_POLLS
             for key in list(offered.open):
                 self.finish(GraphOperation("reply", offered.name, key, text=_LEFT, status=ABORTED))
-        if offered.open or self._polls < offered.until_poll:
+        if offered.open or offered.accepting or self._polls < offered.until_poll:
             return False
         if hasattr(offered.endpoint, "send_response"):
             self._node.destroy_service(offered.endpoint)
@@ -126,6 +137,12 @@ class OfferedCalls:
 
     def finish(self, operation: GraphOperation) -> None:
         """Answer a request, or end a goal, of the graph."""
+        offered = self._open.get(operation.key)
+        if offered is not None:
+            pacer = self._actions if offered.goals else self._services
+            pacer.do(len(offered.open), lambda: self._answer(operation))
+
+    def _answer(self, operation: GraphOperation) -> None:
         offered = self._open.pop(operation.key, None)
         if offered is not None:
             offered.open[operation.key].set_result(operation)
@@ -139,6 +156,10 @@ class OfferedCalls:
         if offered is not None and operation.key in offered.goals and operation.data is not None:
             feedback = deserialize_message(operation.data, offered.types.Feedback)
             offered.goals[operation.key].publish_feedback(feedback)
+
+    def _let(self, turn: Any) -> None:
+        turn.set_result(True)
+        self._executor.wake()
 
     async def _forward(self, offered: Offered, event: str, data: bytes, goal: Any = None) -> GraphOperation:
         from rclpy.task import Future

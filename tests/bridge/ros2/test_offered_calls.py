@@ -184,9 +184,9 @@ def test_an_action_whose_provider_leaves_aborts_its_goals_and_takes_no_more(benc
     goal = Goal()
     pursuit = bench.action["execute"](goal)
     turn(pursuit)
-    assert bench.action["goal_callback"](None) == "accept"
+    assert turn(bench.action["goal_callback"](None)) == "accept"
     assert not bench.offered.end(offered)
-    assert bench.action["goal_callback"](None) == "reject"
+    assert turn(bench.action["goal_callback"](None)) == "reject"
     assert turn(pursuit) == b"empty"
     assert goal.end == "aborted"
     for _ in range(LINGER_POLLS):
