@@ -45,7 +45,7 @@ class Puppet(Node):  # type: ignore[misc]  # rclpy has no types here
 
     def _do_publish(self, name: str, data: Any, latched: bool = False, kind: str = "String") -> None:
         durability = DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE
-        qos = QoSProfile(depth=10, durability=durability)
+        qos = QoSProfile(depth=1 if latched else 10, durability=durability)
         publisher = self._keep("publisher", name, lambda: self.create_publisher(TYPES[kind], name, qos))
         publisher.publish(TYPES[kind](data=data))
 

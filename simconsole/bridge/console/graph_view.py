@@ -24,6 +24,8 @@ class GraphView(NamedTuple):
     services: Mapping[str, str]
     actions: Mapping[str, str]
     nodes: frozenset[str]
+    latching: Mapping[str, frozenset[bytes]]
+    """Identities of the publishers of each topic that is subscribed to as latched."""
 
 
 class GraphPublisher(NamedTuple):

@@ -30,6 +30,7 @@ from simconsole.bridge.messages.rosidl_types import is_same_layout
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.client_session import ClientSession
 from simconsole.bridge.protocol.message_decoding import Binary
+from simconsole.bridge.protocol.topic_registry import Origin
 from simconsole.values.errors import BridgeError
 from simconsole.values.units import NS_PER_S
 
@@ -88,6 +89,10 @@ class Relay:
         """Take in what the graph has now; return what the relay needs to have in it."""
         for node in [node for node in self._nodes if node not in view.nodes and node != ANYONE]:
             self._console.disconnect(self._nodes.pop(node), now_ns)
+        for name, topic in self._router.topics.items():
+            present = view.latching.get(name, frozenset())
+            for origin in [origin for origin in topic.latched if origin and origin.publisher not in present]:
+                del topic.latched[origin]  # its publisher has left, or nobody here subscribes any more
         before, self._unrelayed = self._unrelayed, {}
         if self._role >= Role.PUBLISH:
             self._advertise("topic", view.topics, now_ns)
@@ -103,8 +108,8 @@ class Relay:
         self._listening = heard
         return entities
 
-    def receive(self, name: str, type_name: str, data: bytes, node: str, now_ns: int) -> None:
-        """Take a message of the graph's `node`, of the type that was subscribed to."""
+    def receive(self, name: str, type_name: str, data: bytes, node: str, latched_by: bytes | None, now_ns: int) -> None:
+        """Take a message of the graph's `node`, of the type that was subscribed to; latched by a publisher or not."""
         topic = self._router.topic(name)
         if topic is None or topic.type != type_name:
             return
@@ -115,7 +120,8 @@ class Relay:
             self.remarked(node, f"{name}: {error}", now_ns)
             return
         self._drain(now_ns)
-        self._console.receive_plain(session, name, plain, now_ns)
+        origin = None if latched_by is None else Origin(self._main.number, latched_by)
+        self._console.receive_plain(session, name, plain, now_ns, origin)
         echo = self._main.queues.get(name)
         if echo is not None:
             # What was drained before was for the graph; what waits now came from it and must not go back.

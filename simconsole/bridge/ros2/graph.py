@@ -25,9 +25,12 @@ from simconsole.profiles.bridge import Ros2Profile
 from simconsole.values.errors import BridgeError
 
 DEPTH: Final = 10
+LATCHED_DEPTH: Final = 100
 MAX_POLLS: Final = 10
 MAX_PENDING: Final = 100
 MAX_SENT: Final = 100
+UNNAMED: Final = b""
+"""The identity of all publishers where ROS does not name them."""
 _NAMELESS: Final = "_NODE_NAME_UNKNOWN_"
 """rmw's name of a node whose endpoints are known before itself."""
 NOT_INSTALLED: Final = (
@@ -49,6 +52,7 @@ class ReceivedMessage(NamedTuple):
     type: str
     data: bytes
     node: str
+    latched_by: bytes | None
 
 
 class _PendingMessage(NamedTuple):
@@ -58,6 +62,7 @@ class _PendingMessage(NamedTuple):
     type: str
     data: bytes
     identity: bytes
+    latched: bool
     polls: int
 
 
@@ -67,6 +72,11 @@ class _SubscriptionSettings(NamedTuple):
     type: str
     reliable: bool
     latched: bool
+
+    @property
+    def depth(self) -> int:
+        """Messages that wait to be read; of latched ones each publisher has one at once."""
+        return LATCHED_DEPTH if self.latched else DEPTH
 
 
 class Graph:
@@ -181,7 +191,7 @@ class Graph:
         finally:
             if not self._closing:
                 self.broken = True
-                self._put("view", GraphView({}, frozenset(), {}, {}, frozenset()))
+                self._put("view", GraphView({}, frozenset(), {}, {}, frozenset(), {}))
 
     def _execute(self, operation: GraphOperation) -> None:
         match operation.kind:
@@ -219,7 +229,7 @@ class Graph:
         self._resolve_publishers(1)
         self._calls.poll()
         self._offered.poll()
-        self._put("view", GraphView(topics, frozenset(listened), services, actions, frozenset(nodes)))
+        self._put("view", GraphView(topics, frozenset(listened), services, actions, frozenset(nodes), self._latching()))
         self._update_entities()
 
     def _update_entities(self) -> None:
@@ -241,6 +251,16 @@ class Graph:
         for name in [name for name in self._sent if name not in self._subscriptions]:
             with self._lock:
                 self._sent.pop(name, None)
+
+    def _latching(self) -> dict[str, frozenset[bytes]]:
+        """Return who publishes what is subscribed to as latched."""
+        found = {}
+        for name in self._entities.subscriptions:
+            known = self._subscriptions.find(name)
+            if known is not None and known[0].latched:
+                publishers = self._node.get_publishers_info_by_topic(name)
+                found[name] = frozenset([*(bytes(each.endpoint_gid) for each in publishers), UNNAMED])
+        return found
 
     def _reporter(self, kind: Kind) -> Callable[[str, str], None]:
         return lambda name, why: self._put("failed", kind, name, why)
@@ -270,7 +290,7 @@ class Graph:
         from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
         qos = QoSProfile(
-            depth=DEPTH,
+            depth=way.depth,
             reliability=ReliabilityPolicy.RELIABLE if way.reliable else ReliabilityPolicy.BEST_EFFORT,
             durability=DurabilityPolicy.TRANSIENT_LOCAL if way.latched else DurabilityPolicy.VOLATILE,
         )
@@ -280,9 +300,9 @@ class Graph:
             identity = (info.get("publisher_gid") or {}).get("data")
             if identity is None:
                 if not self._is_own(name, data):
-                    self._receive(ReceivedMessage(name, way.type, data, ANYONE))
+                    self._receive(ReceivedMessage(name, way.type, data, ANYONE, UNNAMED if way.latched else None))
                 return
-            self._pending.append(_PendingMessage(name, way.type, data, identity, 0))
+            self._pending.append(_PendingMessage(name, way.type, data, bytes(identity), way.latched, 0))
             self._resolve_publishers(0)
 
         return self._node.create_subscription(load(way.type), name, take, qos, raw=True, callback_group=self._group)
@@ -308,7 +328,8 @@ class Graph:
             if node is None and each.polls < MAX_POLLS:
                 self._pending.append(each._replace(polls=each.polls + polls))
             elif node != self._name:
-                self._receive(ReceivedMessage(each.topic, each.type, each.data, node or ANYONE))
+                latched_by = each.identity if each.latched else None
+                self._receive(ReceivedMessage(each.topic, each.type, each.data, node or ANYONE, latched_by))
         del self._pending[:-MAX_PENDING]
 
     def _publisher(self, message: _PendingMessage) -> str | None:

@@ -15,7 +15,7 @@ from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.operations import ABORTED, CANCELED, SUCCEEDED
 from simconsole.values.signals import Event, RemoteKind
 
-NOTHING = GraphView({}, frozenset(), {}, {}, frozenset())
+NOTHING = GraphView({}, frozenset(), {}, {}, frozenset(), {})
 GRIP = (definition_of("demo/msg/Grip", {"force": "double"}),)
 NOT_INSTALLED = {"tf2_msgs/msg/TFMessage"}
 PARTS = {"msg": ("",), "srv": ("_Request", "_Response"), "action": ("_Goal", "_Result", "_Feedback")}
@@ -61,9 +61,11 @@ class Graph:
             if operation.kind == "remark"
         ]
 
-    def receive(self, topic: str, type_name: str, plain: dict[str, Any], node: str = "/driver") -> None:
+    def receive(
+        self, topic: str, type_name: str, plain: dict[str, Any], node: str = "/driver", latched_by: bytes | None = None
+    ) -> None:
         full = self.bridge.router.registry.resolve(type_name)
-        self.relay.receive(topic, full, self.cdr(type_name, plain), node, self.now_ns)
+        self.relay.receive(topic, full, self.cdr(type_name, plain), node, latched_by, self.now_ns)
 
     def cdr(self, type_name: str, plain: dict[str, Any]) -> bytes:
         registry = self.bridge.router.registry
@@ -132,8 +134,8 @@ def test_commands_are_checked(graph: Graph) -> None:
     graph.observe()
     graph.receive("/cmd_vel", "geometry_msgs/Twist", {"linear": {"x": float("nan")}})
     graph.receive("/cmd_vel", "geometry_msgs/Twist", {"linear": {"x": 1e6}})
-    graph.relay.receive("/cmd_vel", "geometry_msgs/msg/Twist", b"\0\1\0\0\0", "/driver", 0)
-    graph.relay.receive("/nowhere", "std_msgs/msg/Empty", b"", "/driver", 0)
+    graph.relay.receive("/cmd_vel", "geometry_msgs/msg/Twist", b"\0\1\0\0\0", "/driver", None, 0)
+    graph.relay.receive("/nowhere", "std_msgs/msg/Empty", b"", "/driver", None, 0)
     assert graph.bridge.inputs.command.sequence == 0.0
     assert graph.bridge.inputs.command.refused == 2.0  # what is no message at all is nobody's command
     said = [text for _, text in graph.remarks()]
@@ -196,6 +198,27 @@ def test_topics_between_graph_and_clients(graph: Graph, join: Callable[..., Any]
     assert [message["msg"]["force"] for message in peer.heard()] == [2.5, 3.5, 4.5, 5.5]
 
 
+def test_latched_topics_of_the_graph_reach_every_later_subscriber(graph: Graph, join: Callable[..., Any]) -> None:
+    view = {"topics": {"/map": "std_msgs/msg/String"}, "latching": {"/map": frozenset({b"one", b"two"})}}
+    graph.observe(**view)
+    first, second, third = join(graph.bridge), join(graph.bridge), join(graph.bridge)
+    first.send(op="subscribe", topic="/map")
+    graph.observe(**view)
+    for text, publisher in (("old", b"one"), ("new", b"one"), ("other", b"two")):
+        graph.receive("/map", "std_msgs/String", {"data": text}, latched_by=publisher)
+    second.send(op="subscribe", topic="/map")
+    assert [message["msg"]["data"] for message in first.heard()] == ["old", "new", "other"]
+    assert [message["msg"]["data"] for message in second.heard()] == ["new", "other"], "of each publisher the newest"
+    second.send(op="advertise", topic="/map", type="std_msgs/String", latch=True)
+    graph.observe(**view)
+    assert graph.operations() == [], "the graph is not sent its own"
+    second.publish("/map", {"data": "here"})
+    graph.observe(topics=view["topics"], latching={"/map": frozenset({b"two"})})
+    third.send(op="subscribe", topic="/map")
+    assert [message["msg"]["data"] for message in third.heard()] == ["other", "here"], "one publisher has left"
+    assert [graph.plain("std_msgs/String", operation.data)["data"] for operation in graph.operations()] == ["here"]
+
+
 def test_what_leaves_the_graph_is_no_longer_advertised(graph: Graph) -> None:
     graph.observe(topics={"/grip": "demo/msg/Grip"}, services={"/sum": ADD}, actions={"/go": FIBONACCI})
     router = graph.bridge.router
@@ -240,7 +263,7 @@ def test_what_the_graph_could_not_make_is_said(graph: Graph, join: Callable[...,
 def test_a_message_of_a_type_that_the_topic_had_before(graph: Graph, join: Callable[..., Any]) -> None:
     peer = join(graph.bridge)
     peer.send(op="subscribe", topic="/turns", type="std_msgs/Int32")
-    graph.relay.receive("/turns", "std_msgs/msg/String", graph.cdr("std_msgs/String", {"data": "old"}), "/n", 0)
+    graph.relay.receive("/turns", "std_msgs/msg/String", graph.cdr("std_msgs/String", {"data": "old"}), "/n", None, 0)
     assert peer.heard() == []
 
 
