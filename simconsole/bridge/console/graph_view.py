@@ -4,6 +4,8 @@ import re
 from collections.abc import Mapping
 from typing import Final, Literal, NamedTuple
 
+from simconsole.bridge.protocol.rosapi_graph import NodeNames
+
 Kind = Literal["topic", "service", "action"]
 
 ANYONE: Final = "graph"
@@ -24,6 +26,8 @@ class GraphView(NamedTuple):
     services: Mapping[str, str]
     actions: Mapping[str, str]
     nodes: frozenset[str]
+    details: Mapping[str, NodeNames]
+    """What each node had about a second ago."""
     latching: Mapping[str, frozenset[bytes]]
     """Identities of the publishers of each topic that is subscribed to as latched."""
 

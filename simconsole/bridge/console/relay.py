@@ -30,6 +30,7 @@ from simconsole.bridge.messages.rosidl_types import is_same_layout
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.client_session import ClientSession
 from simconsole.bridge.protocol.message_decoding import Binary
+from simconsole.bridge.protocol.rosapi_graph import NO_GRAPH, GraphNames, Unrelayed
 from simconsole.bridge.protocol.topic_registry import Origin
 from simconsole.values.errors import BridgeError
 from simconsole.values.units import NS_PER_S
@@ -42,9 +43,6 @@ OUTPUT_DEPTH: Final = 10
 
 MAX_NODES: Final = 64
 """Nodes that are distinguished as commanders; further ones count as one."""
-_UNASKED: Final = frozenset({"rcl_interfaces", "type_description_interfaces"})
-"""Packages of services that every node has; six for each would fill the table."""
-
 APPEARING_NS: Final = NS_PER_S
 """How long a call waits for a service that the graph may just be getting."""
 MAX_CALLS: Final = 200
@@ -54,6 +52,7 @@ MAX_CALLS: Final = 200
 class _Unrelayed(NamedTuple):
     """Why something is not in the graph, how bad that is, and the clients that are to be told."""
 
+    type: str
     why: str
     level: Literal["error", "warning"]
     clients: frozenset[int]
@@ -73,6 +72,7 @@ class Relay:
         self._main = self._router.connect("ros2", wake, role=role)
         self._main.set_level("warning")
         self._nodes: dict[str, ClientSession] = {}
+        self._main.in_graph = True
         self._main.max_calls = MAX_CALLS
         self._router.calls.held.patience_ns = APPEARING_NS
         self._unusable: dict[str, str] = {}
@@ -100,6 +100,8 @@ class Relay:
             self._advertise("action", view.actions, now_ns)
         entities = self._entities()
         self._report(before)
+        unrelayed = {name: Unrelayed(found.type, found.why) for (_, name), found in self._unrelayed.items()}
+        self._router.graph = GraphNames(view.details, unrelayed)
         heard = {name for name, offer in entities.publishers.items() if offer.latched or name in view.listened}
         for name in sorted(heard - self._listening):
             self._submit(now_ns, op="subscribe", topic=name, compression="cbor-raw")
@@ -148,6 +150,7 @@ class Relay:
         for session in (self._main, *self._nodes.values()):
             self._console.disconnect(session, now_ns)
         self._nodes.clear()
+        self._router.graph = NO_GRAPH
 
     def _entities(self) -> GraphEntities:
         router, own = self._router, self._main.number
@@ -185,14 +188,14 @@ class Relay:
         unusable = "" if wrong else self._why_unusable(type_name)
         if wrong or unusable:
             level: Literal["error", "warning"] = "error" if wrong else "warning"
-            self._unrelayed[kind, name] = _Unrelayed(wrong or unusable, level, frozenset(clients))
+            self._unrelayed[kind, name] = _Unrelayed(type_name, wrong or unusable, level, frozenset(clients))
         return not unusable and (not wrong or (kind, name) in self._failed)
 
     def _report(self, before: Mapping[tuple[Kind, str], _Unrelayed]) -> None:
         """Say, once each, what is not in the graph: to the clients whose it is, and in the log."""
         sessions = {session.number: session for session in self._router.sessions}
         news = []
-        for (kind, name), (why, level, clients) in self._unrelayed.items():
+        for (kind, name), (_, why, level, clients) in self._unrelayed.items():
             known = before.get((kind, name))
             known = known if known is not None and known.why == why else None
             for number in sorted(clients - (known.clients if known else set())):
@@ -211,7 +214,7 @@ class Relay:
             self._submit(now_ns, op=f"un{op}", **{kind: name})
             del known[name]
         for name, type_name in seen.items():
-            if name in known or type_name.partition("/")[0] in _UNASKED or not self._is_free(kind, name, type_name):
+            if name in known or not self._is_free(kind, name, type_name):
                 continue
             if self._fits(kind, name, type_name, ()) and self._submit(now_ns, op=op, type=type_name, **{kind: name}):
                 known[name] = type_name
@@ -249,6 +252,7 @@ class Relay:
                 return self._main
             session = self._nodes[node] = self._router.connect(f"ros2:{node}", self._wake, role=self._role)
             session.set_level("warning")
+            session.in_graph = True
         return session
 
     def _submit(self, now_ns: int, **operation: Any) -> bool:

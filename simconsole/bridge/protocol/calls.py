@@ -26,12 +26,12 @@ from simconsole.bridge.protocol.operations import (
     UnadvertiseAction,
     UnadvertiseService,
 )
-from simconsole.bridge.protocol.pending_calls import NOBODY, Caller, HeldCalls, send
+from simconsole.bridge.protocol.pending_calls import NOBODY, Caller, Forward, HeldCalls, send
 from simconsole.profiles.bridge import BridgeLimits
 from simconsole.values.errors import BridgeError, RemoteProtocolError
 from simconsole.values.units import NS_PER_S
 
-Handler = Callable[[dict[str, Any], Dialect], dict[str, Any]]
+Handler = Callable[[dict[str, Any], Dialect], dict[str, Any] | Forward]
 """A service of the console: takes arguments and the caller's dialect, returns values; raises BridgeError to fail."""
 
 
@@ -56,6 +56,8 @@ class _Call(NamedTuple):
     deadline_ns: int | None
     feedback: bool
     is_goal: bool
+    read: Callable[[Any], Any] | None = None
+    """Makes a console's answer of the provider's."""
 
 
 class Calls:
@@ -170,7 +172,8 @@ class Calls:
         known = table.get(name)
         if name in self._builtins or (known is not None and known.session is not session):
             raise RemoteProtocolError("somebody else provides it already")
-        if known is None and len(self._services) + len(self._actions) >= self._limits.topics:
+        count = sum(not each.session.in_graph for each in (*self._services.values(), *self._actions.values()))
+        if known is None and not session.in_graph and count >= self._limits.topics:
             raise RemoteProtocolError(f"there are {self._limits.topics} services and actions already, the most allowed")
         table[name] = _Provider(session, operation.type[:256])
 
@@ -193,7 +196,7 @@ class Calls:
         try:
             builtin = self._builtins.get(name)
             if builtin is not None:
-                caller.respond(self._builtin(builtin, caller, operation.args), True)
+                self._call_builtin(builtin, caller, operation.args, now_ns)
                 return
             provider = self._services.get(name)
             if session.role < Role.PUBLISH:
@@ -211,17 +214,41 @@ class Calls:
         limit = {"timeout": operation.timeout} if operation.timeout else {}
         send(provider.session, op="call_service", id=identifier, service=name, args=args, **limit)
 
-    def _builtin(self, builtin: _Builtin, caller: Caller, args: Any) -> Any:
+    def _call_builtin(self, builtin: _Builtin, caller: Caller, args: Any, now_ns: int) -> None:
         if caller.session.role < builtin.role:
             raise RemoteProtocolError(f"this needs the role {builtin.role.name.lower()}")
         args = self._to_plain("ros2", builtin.type, "Request", self._args(builtin.type, "Request", args))
-        values = builtin.handler(args, caller.session.dialect)
-        return self._to_plain(caller.session.dialect, builtin.type, "Response", values, caller.is_typed)
+        found = builtin.handler(args, caller.session.dialect)
+
+        def respond(values: dict[str, Any]) -> Any:
+            return self._to_plain(caller.session.dialect, builtin.type, "Response", values, caller.is_typed)
+
+        if not isinstance(found, Forward):
+            caller.respond(respond(found), True)
+            return
+        provider = self._services.get(found.service)
+        if provider is None:
+            raise RemoteProtocolError(f"{found.service}: {NOBODY}")
+        deadline_ns = now_ns + int(self._limits.call_s * NS_PER_S)
+        identifier = self._open(caller, provider, found.service, deadline_ns)
+        args = self._arguments(provider, "Request", found.args, identifier)
+        read, kind = found.read, provider.type
+        self._calls[identifier] = self._calls[identifier]._replace(
+            read=lambda values: respond(read(self._to_plain("ros2", kind, "Response", values)))
+        )
+        self._note_deadline(deadline_ns)
+        send(provider.session, op="call_service", id=identifier, service=found.service, args=args)
 
     def _respond(self, session: ClientSession, name: str, operation: ServiceResponse) -> None:
         identifier, call = self._find_call(session, name, operation.id)
         del self._calls[identifier]
         values, result = operation.values, operation.result
+        if call.read is not None and result:
+            try:
+                call.caller.respond(call.read(values), True)
+            except BridgeError as error:
+                self._fail(call, str(error))
+            return
         # rosbridge_suite for ROS 1 uses the values alone, and its clients set no meaningful result.
         if isinstance(values, dict) and (values or result):
             try:

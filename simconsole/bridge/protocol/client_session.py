@@ -52,6 +52,8 @@ class ClientSession:
         self.rate_limiter = rate_limiter or RateLimiter(None)
         self.number = number
         self.peer = peer
+        self.in_graph = False
+        """Whether it stands for the nodes of a graph that the console has joined."""
         self.max_calls: int | None = None
         """How many calls it may have open; without, what the server's limits say of one client."""
         self.send_queue = SendQueue(max_bytes)

@@ -1,6 +1,6 @@
 """Who waits for the end of a call or goal, and what waits for a provider that may just be appearing."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any, Final, NamedTuple
 
 import cbor2
@@ -42,6 +42,17 @@ class Caller(NamedTuple):
     def end(self, values: Any, status: int, result: bool) -> None:
         """End a goal."""
         self.send(op="action_result", action=self.called, values=values, status=status, result=result)
+
+
+class Forward(NamedTuple):
+    """What a service of the console asks a provider before it answers; `read` makes its answer of the provider's.
+
+    `read` raises RemoteProtocolError where the call has failed.
+    """
+
+    service: str
+    args: dict[str, Any]
+    read: Callable[[dict[str, Any]], dict[str, Any]]
 
 
 class HeldCall(NamedTuple):

@@ -32,6 +32,7 @@ from simconsole.bridge.protocol.operations import (
     read_operation,
 )
 from simconsole.bridge.protocol.rate_limiter import RateLimiter
+from simconsole.bridge.protocol.rosapi_graph import NO_GRAPH
 from simconsole.bridge.protocol.topic_registry import RELAY_DEPTH, Accept, Command, Origin, Topic, TopicRegistry
 from simconsole.profiles.bridge import BridgeLimits
 from simconsole.values.errors import BridgeError, RemoteProtocolError
@@ -69,6 +70,8 @@ class Router:
         reconnects."""
         self.calls = Calls(registry, limits)
         self.access = OPEN
+        self.graph = NO_GRAPH
+        """What is known of a graph that the console has joined."""
 
     @property
     def sessions(self) -> tuple[ClientSession, ...]:

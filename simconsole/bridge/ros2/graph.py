@@ -17,6 +17,7 @@ from simconsole.bridge.console.graph_view import (
     GraphView,
     Kind,
 )
+from simconsole.bridge.protocol.rosapi_graph import NodeNames
 from simconsole.bridge.ros2.endpoints import POLL_S, Endpoints
 from simconsole.bridge.ros2.message_types import load
 from simconsole.bridge.ros2.offered_calls import OfferedCalls
@@ -26,6 +27,8 @@ from simconsole.values.errors import BridgeError
 
 DEPTH: Final = 10
 LATCHED_DEPTH: Final = 100
+DETAIL_POLLS: Final = 10
+"""Polls between two looks at what each node has."""
 MAX_POLLS: Final = 10
 MAX_PENDING: Final = 100
 MAX_SENT: Final = 100
@@ -134,6 +137,8 @@ class Graph:
         self._sent: dict[str, deque[bytes]] = {}
         """The newest messages that were sent on topics which are also subscribed to."""
         self._pending: list[_PendingMessage] = []
+        self._details: dict[str, NodeNames] = {}
+        self._polls = 0
         self._nodes: dict[bytes, str] = {}
         """Who publishes, by the identity of the publisher."""
         node.create_timer(POLL_S, self._poll, callback_group=self._group)
@@ -191,7 +196,7 @@ class Graph:
         finally:
             if not self._closing:
                 self.broken = True
-                self._put("view", GraphView({}, frozenset(), {}, {}, frozenset(), {}))
+                self._put("view", GraphView({}, frozenset(), {}, {}, frozenset(), {}, {}))
 
     def _execute(self, operation: GraphOperation) -> None:
         match operation.kind:
@@ -225,12 +230,33 @@ class Graph:
             for name, types in self._rclpy.action.get_action_names_and_types(node)
             if len(types) == 1 and node.count_services(f"{name}/_action/send_goal") > (name in self._actions)
         }
-        nodes = {_path(space, name) for name, space in node.get_node_names_and_namespaces()}
+        named = node.get_node_names_and_namespaces()
+        nodes = {_path(space, name) for name, space in named}
+        if nodes != self._details.keys() or self._polls % DETAIL_POLLS == 0:
+            self._details = {_path(space, name): self._names_of(name, space) for name, space in named}
+        self._polls += 1
         self._resolve_publishers(1)
         self._calls.poll()
         self._offered.poll()
-        self._put("view", GraphView(topics, frozenset(listened), services, actions, frozenset(nodes), self._latching()))
+        view = GraphView(
+            topics, frozenset(listened), services, actions, frozenset(nodes), self._details, self._latching()
+        )  # fmt: skip
+        self._put("view", view)
         self._update_entities()
+
+    def _names_of(self, name: str, namespace: str) -> NodeNames:
+        def visible(found: list[tuple[str, list[str]]]) -> tuple[str, ...]:
+            return tuple(sorted(each for each, _ in found if "/_" not in each))
+
+        node = self._node
+        try:
+            return NodeNames(
+                publishing=visible(node.get_publisher_names_and_types_by_node(name, namespace)),
+                subscribing=visible(node.get_subscriber_names_and_types_by_node(name, namespace)),
+                services=visible(node.get_service_names_and_types_by_node(name, namespace)),
+            )
+        except Exception:  # noqa: BLE001  it may have left just now
+            return NodeNames((), (), ())
 
     def _update_entities(self) -> None:
         entities = self._entities
