@@ -199,8 +199,7 @@ class Relay:
             known = before.get((kind, name))
             known = known if known is not None and known.why == why else None
             for number in sorted(clients - (known.clients if known else set())):
-                if number in sessions:
-                    sessions[number].send_status(level, f"{name} is not relayed to the ROS 2 graph: {why}")
+                sessions[number].send_status(level, f"{name} is not relayed to the ROS 2 graph: {why}")
             if known is None and not clients:
                 news.append(f"{name}: {why}")
         if news:
@@ -269,9 +268,8 @@ class Relay:
         if isinstance(text, Binary):
             published = cbor2.loads(text)
             topic = self._router.topic(published["topic"])
-            if topic is not None:
-                data = published["msg"]["bytes"]
-                self._order(GraphOperation("send", topic.name, type=topic.type, data=data))
+            assert topic is not None, "it has a subscriber, the relay"
+            self._order(GraphOperation("send", topic.name, type=topic.type, data=published["msg"]["bytes"]))
             return
         said = orjson.loads(text)
         if said["op"] == "status":

@@ -56,3 +56,11 @@ def test_what_the_graph_asks_and_nobody_understands(bench: Bench, part: str, kin
     (operation,) = bench.put
     assert (operation.kind, operation.key, operation.data, operation.status) == (kind, "one", None, ABORTED)
     assert operation.text
+
+
+def test_what_does_not_fit_the_type_of_the_graph(bench: Bench) -> None:
+    bench.calls.translate({"op": "call_service", "service": "/sum", "id": "one", "args": {"a": "many"}})
+    bench.calls.translate({"op": "call_service", "service": "/gone", "id": "two", "args": {}})
+    wrong, gone = bench.put
+    assert (wrong.key, wrong.data, "a" in wrong.text) == ("one", None, True)
+    assert (gone.data, gone.text) == (None, "it has left the graph")
