@@ -165,6 +165,10 @@ class Puppet(Node):  # type: ignore[misc]  # rclpy has no types here
         }
         ends.get(kind, lambda entity: entity.destroy())(entity)
 
+    def _do_destroy_all(self) -> None:
+        for kind, name in list(self._had):
+            self._do_destroy(kind, name)
+
     def _do_declare(self, name: str, value: Any) -> None:
         self.declare_parameter(name, value)
 
