@@ -32,6 +32,11 @@ class GraphView(NamedTuple):
     """Identities of the publishers of each topic that is subscribed to as latched."""
 
 
+NOTHING: Final = GraphView(
+    topics={}, listened=frozenset(), services={}, actions={}, nodes=frozenset(), details={}, latching={}
+)
+
+
 class GraphPublisher(NamedTuple):
     """One topic that the relay publishes in the graph."""
 

@@ -11,6 +11,7 @@ from typing import Any, Final, NamedTuple
 
 from simconsole.bridge.console.graph_view import (
     ANYONE,
+    NOTHING,
     GraphEntities,
     GraphOperation,
     GraphPublisher,
@@ -196,7 +197,7 @@ class Graph:
         finally:
             if not self._closing:
                 self.broken = True
-                self._put("view", GraphView({}, frozenset(), {}, {}, frozenset(), {}, {}))
+                self._put("view", NOTHING)
 
     def _execute(self, operation: GraphOperation) -> None:
         match operation.kind:
@@ -239,8 +240,14 @@ class Graph:
         self._calls.poll()
         self._offered.poll()
         view = GraphView(
-            topics, frozenset(listened), services, actions, frozenset(nodes), self._details, self._latching()
-        )  # fmt: skip
+            topics=topics,
+            listened=frozenset(listened),
+            services=services,
+            actions=actions,
+            nodes=frozenset(nodes),
+            details=self._details,
+            latching=self._latching(),
+        )
         self._put("view", view)
         self._update_entities()
 
@@ -328,7 +335,10 @@ class Graph:
                 if not self._is_own(name, data):
                     self._receive(ReceivedMessage(name, way.type, data, ANYONE, UNNAMED if way.latched else None))
                 return
-            self._pending.append(_PendingMessage(name, way.type, data, bytes(identity), way.latched, 0))
+            message = _PendingMessage(
+                topic=name, type=way.type, data=data, identity=bytes(identity), latched=way.latched, polls=0
+            )
+            self._pending.append(message)
             self._resolve_publishers(0)
 
         return self._node.create_subscription(load(way.type), name, take, qos, raw=True, callback_group=self._group)

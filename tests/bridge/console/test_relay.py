@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
-from simconsole.bridge.console.graph_view import GraphOperation, GraphPublisher, GraphView
+from simconsole.bridge.console.graph_view import NOTHING, GraphOperation, GraphPublisher
 from simconsole.bridge.console.relay import MAX_NODES, Relay
 from simconsole.bridge.messages import Definition, standard_registry
 from simconsole.bridge.messages.cdr import deserialize, serialize
@@ -15,7 +15,6 @@ from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.operations import ABORTED, CANCELED, SUCCEEDED
 from simconsole.values.signals import Event, RemoteKind
 
-NOTHING = GraphView({}, frozenset(), {}, {}, frozenset(), {}, {})
 GRIP = (definition_of("demo/msg/Grip", {"force": "double"}),)
 NOT_INSTALLED = {"tf2_msgs/msg/TFMessage"}
 PARTS = {"msg": ("",), "srv": ("_Request", "_Response"), "action": ("_Goal", "_Result", "_Feedback")}
