@@ -13,7 +13,8 @@ from typing import Any, Final
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.relay import Relay
 from simconsole.bridge.protocol.access import Role
-from simconsole.bridge.ros2.graph import NOT_INSTALLED, Graph, ReceivedMessage
+from simconsole.bridge.ros2.graph import NOT_INSTALLED, Graph
+from simconsole.bridge.ros2.graph_topics import ReceivedMessage
 from simconsole.bridge.ros2.message_types import describe
 from simconsole.profiles.bridge import BridgeProfile, Ros2Profile
 from simconsole.values.errors import BridgeError, ProfileError
