@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from random import Random
 
+import pytest
+
 from tests.interop.programs import client
 from tests.interop.puppets import puppet, served
 from tests.interop.relay_walk import Walker, endpoints, node_step, wait_for_all
@@ -17,6 +19,7 @@ SETTLED = 500
 """Operations after which every call is waited for."""
 
 
+@pytest.mark.timeout(7200)
 def test_walk(sample: Sample, record_property: Callable[[str, object], None]) -> None:
     random = Random(sample.seed)
     steps = sample.of(2000, 100_000)
