@@ -86,6 +86,7 @@ def open_headless(
         DeviceError: a device is missing.
     """
     check_commander(resolved.session)
+    _check_links(resolved.session)
     commands: CommandSource = NobodyCommands()
     outputs: tuple[Output, ...] = ()
     pace = UnpacedPacer()
@@ -236,6 +237,17 @@ def _await_workers(
     if session.outputs.can is not None:
         wait_for_can(folder, lambda: alive() and not supervisor.counters().get("canbus"))
     return address
+
+
+def _check_links(session: SessionProfile) -> None:
+    """Refuse links that a drive without a bridge would leave out in silence."""
+    bridge = session.outputs.bridge
+    if session.mode.pacing == "lockstep" or bridge is None:
+        return
+    if bridge.upstream is not None:
+        raise ProfileError("mode.pacing: value free: realtime, where outputs.bridge.upstream is to be connected to")
+    if bridge.ros2 is not None:
+        raise ProfileError("mode.pacing: value free: lockstep or realtime, where outputs.bridge.ros2 joins a graph")
 
 
 def _check_address(profile: BridgeProfile) -> None:

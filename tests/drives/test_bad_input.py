@@ -121,6 +121,15 @@ def test_an_autopilot_needs_lockstep_or_real_time(tmp_path: Path) -> None:
     assert "mode.pacing: value free: lockstep or realtime" in drive(tmp_path, session, "--for", 1)
 
 
+@pytest.mark.parametrize("link", ["upstream: {url: 'ws://ros:9090'}", "ros2: {}"])
+def test_a_free_drive_refuses_links_that_it_would_not_open(tmp_path: Path, link: str) -> None:
+    session = tmp_path / "session.yaml"
+    session.write_text(SESSION.replace("scene: null", f"scene: null, bridge: {{{link}}}"))
+    said = drive(tmp_path, session, "--for", 1)
+    assert said.startswith("mode.pacing: value free: ")
+    assert f"outputs.bridge.{link.partition(':')[0]}" in said
+
+
 def test_lockstep_needs_a_bridge(tmp_path: Path) -> None:
     session = tmp_path / "session.yaml"
     session.write_text("schema: 1\ndevices: {driver: none}\nmode: {pacing: lockstep}\n")

@@ -74,6 +74,13 @@ class Client:
             if wanted(heard):
                 return heard
 
+    def status(self) -> dict[str, Any]:
+        """The next status."""
+        while True:
+            heard: dict[str, Any] = json.loads(self.web.recv(timeout=PATIENCE_S))
+            if heard["op"] == "status":
+                return heard
+
     def answers(self, count: int) -> dict[int, dict[str, Any]]:
         """Values of the answers to calls 0 to `count` - 1, in whatever order they come."""
         found: dict[int, dict[str, Any]] = {}

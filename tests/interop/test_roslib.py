@@ -68,7 +68,7 @@ def test_every_kind_of_operation_and_a_restart(
                 "cbor": ["odom", 36, "Float64Array"],
                 "chatter": "hello",
                 "sum": 5,
-                "failed": "/none: nobody provides this service",
+                "failed": "/none: nobody provides it",
                 "feedback": [[0, 1]],
                 "result": {"sequence": [0, 1, 1, 2]},
                 "cancelled": 'GoalError: Action was canceled: {"sequence":[0]}',

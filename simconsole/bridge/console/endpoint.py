@@ -13,6 +13,7 @@ from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.client_session import ClientSession
 from simconsole.bridge.protocol.rosapi import RosApi
 from simconsole.bridge.protocol.server_protocol import Outcome, Router
+from simconsole.bridge.protocol.topic_registry import Origin
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.signals import Event
 from simconsole.values.state_vector import Snapshot
@@ -116,9 +117,11 @@ class ConsoleBridge:
         """Apply one text of a client."""
         return self.router.receive(session, text, now_ns)
 
-    def receive_plain(self, session: ClientSession, name: str, plain: dict[str, Any], now_ns: int) -> Outcome:
+    def receive_plain(
+        self, session: ClientSession, name: str, plain: dict[str, Any], now_ns: int, origin: Origin | None = None
+    ) -> Outcome:
         """Apply one message of a topic that did not come as text."""
-        return self.router.receive_plain(session, name, plain, now_ns)
+        return self.router.receive_plain(session, name, plain, now_ns, origin)
 
     def disconnect(self, session: ClientSession, now_ns: int) -> bool:
         """Remove a client; if it was commanding, raise COMMANDER_LOST and return True."""

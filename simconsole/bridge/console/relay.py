@@ -5,7 +5,7 @@ that is not a command, and one for each node that commands, so that two nodes ne
 CDR; what comes from the graph is read and checked as if it came from a rosbridge client.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Final, Literal, NamedTuple
 
 import cbor2
@@ -13,74 +13,49 @@ import msgspec
 import orjson
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.console.graph_view import (
+    ANYONE,
+    GraphEntities,
+    GraphOperation,
+    GraphPublisher,
+    GraphView,
+    Kind,
+    full_type,
+    why_unfit,
+)
+from simconsole.bridge.console.relay_calls import RelayCalls
 from simconsole.bridge.messages import Definition
-from simconsole.bridge.messages.cdr import deserialize, serialize
+from simconsole.bridge.messages.cdr import deserialize
 from simconsole.bridge.messages.rosidl_types import is_same_layout
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.client_session import ClientSession
 from simconsole.bridge.protocol.message_decoding import Binary
-from simconsole.bridge.protocol.operations import ABORTED, SUCCEEDED
+from simconsole.bridge.protocol.rosapi_graph import NO_GRAPH, GraphNames, Unrelayed
+from simconsole.bridge.protocol.topic_registry import Origin
 from simconsole.values.errors import BridgeError
+from simconsole.values.units import NS_PER_S
 
 Describe = Callable[[str], tuple[Definition, ...] | None]
 """Returns the messages that a type of the graph is made of, None where it is not installed."""
-
-ANYONE: Final = "graph"
-"""The publishing node where ROS does not name it: all unnamed publishers count as one node."""
 
 OUTPUT_DEPTH: Final = 10
 """Messages of a topic of the console that ROS keeps for a slow node: rclpy's default."""
 
 MAX_NODES: Final = 64
 """Nodes that are distinguished as commanders; further ones count as one."""
-_UNASKED: Final = frozenset({"rcl_interfaces", "type_description_interfaces"})
-"""Packages of services that every node has; six for each would fill the table."""
+APPEARING_NS: Final = NS_PER_S
+"""How long a call waits for a service that the graph may just be getting."""
+MAX_CALLS: Final = 200
+"""Calls and goals of the whole graph that may be with clients at a time; one client's limit is not meant for it."""
 
 
-class GraphView(NamedTuple):
-    """What others have in the graph: topics, services, actions with their types, topics listened to, nodes."""
-
-    topics: Mapping[str, str]
-    listened: frozenset[str]
-    services: Mapping[str, str]
-    actions: Mapping[str, str]
-    nodes: frozenset[str]
-
-
-class GraphPublisher(NamedTuple):
-    """One topic that the relay publishes in the graph."""
+class _Unrelayed(NamedTuple):
+    """Why something is not in the graph, how bad that is, and the clients that are to be told."""
 
     type: str
-    latched: bool
-    depth: int
-    best_effort: bool = False
-    deadline_ns: int | None = None
-    lifespan_ns: int | None = None
-
-
-class GraphEntities(NamedTuple):
-    """What the relay needs to have in the graph, by name: publishers, and types of topics, services and actions."""
-
-    publishers: dict[str, GraphPublisher]
-    subscriptions: dict[str, str]
-    services: dict[str, str]
-    actions: dict[str, str]
-
-
-class GraphOperation(NamedTuple):
-    """One thing to do in the graph; `data` is CDR, None where something failed and `text` says why.
-
-    send a message; call a service or pursue a goal of the graph; cancel such a goal; reply to a call of the graph;
-    tell feedback and the end of a goal of the graph; remark something about a node.
-    """
-
-    kind: Literal["send", "call", "goal", "cancel", "reply", "feedback", "end", "remark"]
-    name: str
-    key: str = ""
-    type: str = ""
-    data: bytes | None = None
-    text: str = ""
-    status: int = 0
+    why: str
+    level: Literal["error", "warning"]
+    clients: frozenset[int]
 
 
 class Relay:
@@ -97,27 +72,36 @@ class Relay:
         self._main = self._router.connect("ros2", wake, role=role)
         self._main.set_level("warning")
         self._nodes: dict[str, ClientSession] = {}
-        self._usable: dict[str, bool] = {}
-        self._missing: list[str] = []
-        self._advertised: dict[str, dict[str, str]] = {"topic": {}, "service": {}, "action": {}}
+        self._main.in_graph = True
+        self._main.max_calls = MAX_CALLS
+        self._router.calls.held.patience_ns = APPEARING_NS
+        self._unusable: dict[str, str] = {}
+        """Why a type cannot be relayed, empty where it can."""
+        self._advertised: dict[Kind, dict[str, str]] = {"topic": {}, "service": {}, "action": {}}
         self._listening: set[str] = set()
-        self._asked: dict[str, str] = {}
-        """Services and actions by key that the graph waits for, with their types."""
         self._operations: list[GraphOperation] = []
+        self._unrelayed: dict[tuple[Kind, str], _Unrelayed] = {}
+        self._failed: dict[tuple[Kind, str], str] = {}
+        """What the graph could not make."""
+        self.calls = RelayCalls(self._router, self._main, self._advertised, self._order)
 
     def observe(self, view: GraphView, now_ns: int) -> GraphEntities:
         """Take in what the graph has now; return what the relay needs to have in it."""
         for node in [node for node in self._nodes if node not in view.nodes and node != ANYONE]:
             self._console.disconnect(self._nodes.pop(node), now_ns)
+        for name, topic in self._router.topics.items():
+            present = view.latching.get(name, frozenset())
+            for origin in [origin for origin in topic.latched if origin and origin.publisher not in present]:
+                del topic.latched[origin]  # its publisher has left, or nobody here subscribes any more
+        before, self._unrelayed = self._unrelayed, {}
         if self._role >= Role.PUBLISH:
             self._advertise("topic", view.topics, now_ns)
             self._advertise("service", view.services, now_ns)
             self._advertise("action", view.actions, now_ns)
         entities = self._entities()
-        if self._missing:
-            text = f"not relayed, because this ROS 2 has no such type: {', '.join(self._missing)}"
-            self._operations.append(GraphOperation("remark", "ros2", text=text))
-            self._missing.clear()
+        self._report(before)
+        unrelayed = {name: Unrelayed(found.type, found.why) for (_, name), found in self._unrelayed.items()}
+        self._router.graph = GraphNames(view.details, unrelayed)
         heard = {name for name, offer in entities.publishers.items() if offer.latched or name in view.listened}
         for name in sorted(heard - self._listening):
             self._submit(now_ns, op="subscribe", topic=name, compression="cbor-raw")
@@ -126,56 +110,34 @@ class Relay:
         self._listening = heard
         return entities
 
-    def receive(self, name: str, data: bytes, node: str, now_ns: int) -> None:
-        """Take a message of the graph's `node`."""
+    def receive(self, name: str, type_name: str, data: bytes, node: str, latched_by: bytes | None, now_ns: int) -> None:
+        """Take a message of the graph's `node`, of the type that was subscribed to; latched by a publisher or not."""
         topic = self._router.topic(name)
-        if topic is None:
+        if topic is None or topic.type != type_name:
             return
         session = self._main if topic.command is None else self._session_of(node)
         try:
             plain = deserialize(self._registry, topic.type, data)
         except BridgeError as error:
-            self._operations.append(GraphOperation("remark", node, text=f"{name}: {error}"))
+            self.remarked(node, f"{name}: {error}", now_ns)
             return
         self._drain(now_ns)
-        self._console.receive_plain(session, name, plain, now_ns)
+        origin = None if latched_by is None else Origin(self._main.number, latched_by)
+        self._console.receive_plain(session, name, plain, now_ns, origin)
         echo = self._main.queues.get(name)
         if echo is not None:
             # What was drained before was for the graph; what waits now came from it and must not go back.
             self._main.send_queue.forget(echo)
 
-    def call_service(self, key: str, service: str, data: bytes, now_ns: int) -> None:
-        """Take a call by the graph of a client's service; a `reply` operation with this key will follow."""
-        self._pass_on(key, service, "Request", data, now_ns, op="call_service", service=service)
+    def failed(self, kind: Kind, name: str, why: str, now_ns: int) -> None:
+        """Take the news that the graph could not make an endpoint, or, with an empty `why`, that it now could."""
+        self._failed[kind, name] = why
+        if not why:
+            del self._failed[kind, name]
 
-    def send_goal(self, key: str, action: str, data: bytes, now_ns: int) -> None:
-        """Take a goal of the graph for a client's action; an `end` operation with this key will follow."""
-        self._pass_on(key, action, "Goal", data, now_ns, op="send_action_goal", action=action, feedback=True)
-
-    def cancel(self, key: str, action: str, now_ns: int) -> None:
-        """Take the graph's request to cancel a goal."""
-        self._submit(now_ns, op="cancel_action_goal", action=action, id=key)
-
-    def service_responded(self, key: str, service: str, data: bytes | None, why: str, now_ns: int) -> None:
-        """Take the graph's answer to a `call`, None for a failure."""
-        values = self._values("service", service, "Response", data)
-        self._submit(
-            now_ns, op="service_response", service=service, id=key, result=values is not None,
-            values=why if values is None else values,
-        )  # fmt: skip
-
-    def feedback_received(self, key: str, action: str, data: bytes, now_ns: int) -> None:
-        """Take feedback on a `goal`."""
-        values = self._values("action", action, "Feedback", data)
-        self._submit(now_ns, op="action_feedback", action=action, id=key, values=values)
-
-    def goal_ended(self, key: str, action: str, data: bytes | None, status: int, why: str, now_ns: int) -> None:
-        """Take the end of a `goal`, None for a failure."""
-        values = self._values("action", action, "Result", data)
-        self._submit(
-            now_ns, op="action_result", action=action, id=key, status=status, result=status == SUCCEEDED,
-            values=why if values is None else values,
-        )  # fmt: skip
+    def remarked(self, node: str, text: str, now_ns: int) -> None:
+        """Take a remark on a node or name, for the log."""
+        self._order(GraphOperation("remark", node, text=text))
 
     def operations(self, now_ns: int) -> list[GraphOperation]:
         """Return what is to be done in the graph, in order, each once."""
@@ -188,12 +150,16 @@ class Relay:
         for session in (self._main, *self._nodes.values()):
             self._console.disconnect(session, now_ns)
         self._nodes.clear()
+        self._router.graph = NO_GRAPH
 
     def _entities(self) -> GraphEntities:
         router, own = self._router, self._main.number
         publishers, subscriptions = {}, {}
         for name, topic in router.topics.items():
-            if not self._is_usable(topic.type):
+            others = (topic.publishers | topic.subscribers.keys()) - {own}
+            if not (topic.owned or others):
+                continue
+            if not self._fits("topic", name, topic.type, () if topic.owned else others):
                 continue
             if topic.command is not None:
                 if self._role >= Role.CONTROL:
@@ -211,33 +177,52 @@ class Relay:
             if not topic.owned and topic.subscribers.keys() - {own} and self._role >= Role.PUBLISH:
                 subscriptions[name] = topic.type
         calls = router.calls
-        services = self._offered("srv", calls.services(), calls.providers())
+        services = self._offered("service", calls.services(), calls.providers())
         actions = self._offered("action", calls.actions(), calls.action_providers())
         return GraphEntities(publishers, subscriptions, services, actions)
 
-    def _offered(self, kind: str, types: Mapping[str, str], providers: Mapping[str, int]) -> dict[str, str]:
+    def _offered(self, kind: Kind, types: Mapping[str, str], providers: Mapping[str, int]) -> dict[str, str]:
         offered = {}
         for name, number in providers.items():
-            full = _three_parts(types[name], kind)
-            if number != self._main.number and self._role >= Role.PUBLISH and self._is_usable(full):
+            full = full_type(types[name], kind)
+            if number != self._main.number and self._role >= Role.PUBLISH and self._fits(kind, name, full, {number}):
                 offered[name] = full
         return offered
 
-    def _advertise(self, kind: Literal["topic", "service", "action"], seen: Mapping[str, str], now_ns: int) -> None:
+    def _fits(self, kind: Kind, name: str, type_name: str, clients: Iterable[int]) -> bool:
+        """Return whether the graph can have this; note why not, and who is to be told."""
+        wrong = why_unfit(kind, name, type_name) or self._failed.get((kind, name), "")
+        unusable = "" if wrong else self._why_unusable(type_name)
+        if wrong or unusable:
+            level: Literal["error", "warning"] = "error" if wrong else "warning"
+            self._unrelayed[kind, name] = _Unrelayed(type_name, wrong or unusable, level, frozenset(clients))
+        return not unusable and (not wrong or (kind, name) in self._failed)
+
+    def _report(self, before: Mapping[tuple[Kind, str], _Unrelayed]) -> None:
+        """Say, once each, what is not in the graph: to the clients whose it is, and in the log."""
+        sessions = {session.number: session for session in self._router.sessions}
+        news = []
+        for (kind, name), (_, why, level, clients) in self._unrelayed.items():
+            known = before.get((kind, name))
+            known = known if known is not None and known.why == why else None
+            for number in sorted(clients - (known.clients if known else set())):
+                sessions[number].send_status(level, f"{name} is not relayed to the ROS 2 graph: {why}")
+            if known is None and not clients:
+                news.append(f"{name}: {why}")
+        if news:
+            self._order(GraphOperation("remark", "ros2", text=f"not relayed: {'; '.join(news)}"))
+
+    def _advertise(self, kind: Kind, seen: Mapping[str, str], now_ns: int) -> None:
         """Advertise to the clients what the graph has."""
         known = self._advertised[kind]
         op = "advertise" if kind == "topic" else f"advertise_{kind}"
         for name in [name for name in known if seen.get(name) != known[name]]:
-            del known[name]
             self._submit(now_ns, op=f"un{op}", **{kind: name})
+            del known[name]
         for name, type_name in seen.items():
-            if (
-                name in known
-                or (kind == "service" and type_name.partition("/")[0] in _UNASKED)
-                or not self._is_free(kind, name, type_name)
-            ):
+            if name in known or not self._is_free(kind, name, type_name):
                 continue
-            if self._is_usable(type_name) and self._submit(now_ns, op=op, type=type_name, **{kind: name}):
+            if self._fits(kind, name, type_name, ()) and self._submit(now_ns, op=op, type=type_name, **{kind: name}):
                 known[name] = type_name
 
     def _is_free(self, kind: str, name: str, type_name: str) -> bool:
@@ -248,26 +233,23 @@ class Relay:
         calls = self._router.calls
         return name not in (calls.services() if kind == "service" else calls.actions())
 
-    def _is_usable(self, type_name: str) -> bool:
-        """Return whether a type is installed in the graph and the same there; makes it known here."""
-        if type_name not in self._usable:
-            self._usable[type_name] = self._learn(type_name)
-        return self._usable[type_name]
+    def _why_unusable(self, type_name: str) -> str:
+        """Return why a type cannot be relayed, empty where it is installed and the same; makes it known here."""
+        if type_name not in self._unusable:
+            self._unusable[type_name] = self._learn(type_name)
+        return self._unusable[type_name]
 
-    def _learn(self, type_name: str) -> bool:
+    def _learn(self, type_name: str) -> str:
         found = self._describe(type_name)
         if found is None:
-            self._missing.append(type_name)
-            return False
+            return f"this ROS 2 has no type {type_name}"
         names = set(self._registry.names())
         for definition in found:
             if definition.name not in names:
                 self._registry.add_definition(definition)
             elif not is_same_layout(definition, self._registry.definition(definition.name)):
-                text = f"{type_name} is not relayed: {definition.name} has other fields in this ROS 2"
-                self._operations.append(GraphOperation("remark", "ros2", text=text))
-                return False
-        return True
+                return f"{definition.name} has other fields in this ROS 2"
+        return ""
 
     def _session_of(self, node: str) -> ClientSession:
         session = self._nodes.get(node)
@@ -276,29 +258,12 @@ class Relay:
                 return self._main
             session = self._nodes[node] = self._router.connect(f"ros2:{node}", self._wake, role=self._role)
             session.set_level("warning")
+            session.in_graph = True
         return session
 
     def _submit(self, now_ns: int, **operation: Any) -> bool:
         """Send an operation to the router as a client; return whether it was accepted."""
         return self._router.receive(self._main, msgspec.json.encode(operation), now_ns).kind == "done"
-
-    def _pass_on(self, key: str, name: str, part: str, data: bytes, now_ns: int, **operation: Any) -> None:
-        type_name = (self._router.calls.actions() if part == "Goal" else self._router.calls.services()).get(name, "")
-        self._asked[key] = type_name
-        try:
-            args = deserialize(self._registry, self._registry.part(type_name, part) or "", data)
-        except BridgeError as error:
-            self._finish(
-                key, GraphOperation("end" if part == "Goal" else "reply", name, text=str(error), status=ABORTED)
-            )
-            return
-        self._submit(now_ns, id=key, args=args, **operation)
-
-    def _values(self, kind: str, name: str, part: str, data: bytes | None) -> Any:
-        if data is None:
-            return None
-        full = self._registry.part(self._advertised[kind].get(name, ""), part)
-        return None if full is None else deserialize(self._registry, full, data)
 
     def _drain(self, now_ns: int) -> None:
         for name, session in (("ros2", self._main), *self._nodes.items()):
@@ -309,54 +274,16 @@ class Relay:
         """Turn what the router sends to one of the relay's sessions into a graph operation."""
         if isinstance(text, Binary):
             published = cbor2.loads(text)
-            self._operations.append(GraphOperation("send", published["topic"], data=published["msg"]["bytes"]))
+            topic = self._router.topic(published["topic"])
+            assert topic is not None, "it has a subscriber, the relay"
+            self._order(GraphOperation("send", topic.name, type=topic.type, data=published["msg"]["bytes"]))
             return
         said = orjson.loads(text)
-        key = said.get("id")
-        match said["op"]:
-            case "status":
-                self._operations.append(GraphOperation("remark", peer, text=said["msg"]))
-            case "call_service":
-                self._operations.append(self._request("call", "service", said, "Request"))
-            case "send_action_goal":
-                self._operations.append(self._request("goal", "action", said, "Goal"))
-            case "cancel_action_goal":
-                self._operations.append(GraphOperation("cancel", said["action"], key))
-            case "action_feedback":
-                data, why = self._cdr(self._asked.get(key, ""), "Feedback", said["values"])
-                self._operations.append(GraphOperation("feedback", said["action"], key, data=data, text=why))
-            case "service_response":
-                data, why = self._ending(key, "Response", said)
-                self._finish(key, GraphOperation("reply", said["service"], data=data, text=why))
-            case _:  # action_result
-                data, why = self._ending(key, "Result", said)
-                self._finish(key, GraphOperation("end", said["action"], data=data, text=why, status=said["status"]))
+        if said["op"] == "status":
+            self._order(GraphOperation("remark", peer, text=said["msg"]))
+        else:
+            self.calls.translate(said)
 
-    def _request(
-        self, operation: Literal["call", "goal"], kind: str, said: dict[str, Any], part: str
-    ) -> GraphOperation:
-        name = said[kind]
-        type_name = self._advertised[kind].get(name, "")
-        data, why = self._cdr(type_name, part, said["args"])
-        return GraphOperation(operation, name, key=said["id"], type=type_name, data=data, text=why)
-
-    def _ending(self, key: str, part: str, said: dict[str, Any]) -> tuple[bytes | None, str]:
-        if not isinstance(said["values"], dict):
-            return None, str(said["values"])
-        return self._cdr(self._asked.get(key, ""), part, said["values"])
-
-    def _finish(self, key: str, operation: GraphOperation) -> None:
-        self._asked.pop(key, None)
-        self._operations.append(operation._replace(key=key))
+    def _order(self, operation: GraphOperation) -> None:
+        self._operations.append(operation)
         self._wake()
-
-    def _cdr(self, type_name: str, part: str, values: Any) -> tuple[bytes | None, str]:
-        full = self._registry.part(type_name, part)
-        if full is None:
-            return None, "it has left the graph"
-        return serialize(self._registry, full, self._registry.from_plain(full, values)), ""
-
-
-def _three_parts(name: str, kind: str) -> str:
-    package, _, rest = name.partition("/")
-    return f"{package}/{kind}/{rest.removeprefix(f'{kind}/')}"

@@ -25,6 +25,10 @@ IMU: Final = "/imu/data"
 JOY: Final = "/console/joy"
 ARBITRATION: Final = "/console/arbitration"
 BRIDGE: Final = "/console/bridge"
+MODE: Final = "/console/mode"
+LATERAL_AUTHORITY: Final = "/console/authority/lateral"
+LONGITUDINAL_AUTHORITY: Final = "/console/authority/longitudinal"
+"""The remote side's share, 0 to 1, as a type that every ROS has, like the mode."""
 VELOCITY: Final = "/vehicle/status/velocity_status"
 STEERING: Final = "/vehicle/status/steering_status"
 GEAR_STATUS: Final = "/vehicle/status/gear_status"
@@ -51,8 +55,9 @@ SHIFTER_BUTTONS: Final = 10
 """The T500 RS and the TH8 RS (facts of their HID descriptors)."""
 
 _TYPES: Final = """
-builtin_interfaces/Time std_msgs/Header rosgraph_msgs/Clock nav_msgs/Odometry tf2_msgs/TFMessage sensor_msgs/Joy
-sensor_msgs/Imu geometry_msgs/TransformStamped geometry_msgs/Transform geometry_msgs/Vector3 geometry_msgs/Point
+std_msgs/String std_msgs/Float64 builtin_interfaces/Time std_msgs/Header rosgraph_msgs/Clock
+nav_msgs/Odometry tf2_msgs/TFMessage sensor_msgs/Joy sensor_msgs/Imu
+geometry_msgs/TransformStamped geometry_msgs/Transform geometry_msgs/Vector3 geometry_msgs/Point
 geometry_msgs/Quaternion geometry_msgs/Pose geometry_msgs/PoseWithCovariance geometry_msgs/Twist
 geometry_msgs/TwistWithCovariance autoware_vehicle_msgs/VelocityReport autoware_vehicle_msgs/SteeringReport
 autoware_vehicle_msgs/GearReport autoware_vehicle_msgs/TurnIndicatorsReport autoware_vehicle_msgs/HazardLightsReport
@@ -169,6 +174,9 @@ class Outputs:
             OutputTopic(HAZARD_LIGHTS_STATUS, "autoware_vehicle_msgs/HazardLightsReport", 30.0, self._hazard_lights),
             OutputTopic(CONTROL_MODE, "autoware_vehicle_msgs/ControlModeReport", 30.0, self._control_mode),
             OutputTopic(ARBITRATION, "simconsole_msgs/Arbitration", 50.0, self._arbitration),
+            OutputTopic(MODE, "std_msgs/String", 10.0, self._mode),
+            OutputTopic(LATERAL_AUTHORITY, "std_msgs/Float64", 10.0, self._lateral_authority),
+            OutputTopic(LONGITUDINAL_AUTHORITY, "std_msgs/Float64", 10.0, self._longitudinal_authority),
             OutputTopic(BRIDGE, "simconsole_msgs/Bridge", 1.0, self._bridge),
             OutputTopic(IMU, "sensor_msgs/Imu", 100.0, self._imu),
             *((truth,) if self._shows_truth else ()),
@@ -294,6 +302,15 @@ class Outputs:
         if mode is None:
             mode = _shared_mode(arbitration.remote_lateral > 0.0, arbitration.remote_longitudinal > 0.0)
         return self._types["ControlModeReport"](tick.stamp, mode)
+
+    def _mode(self, tick: PublishedTick) -> Any:
+        return self._types["String"](mode_label(tick.snapshot.arbitration.mode))
+
+    def _lateral_authority(self, tick: PublishedTick) -> Any:
+        return self._types["Float64"](tick.snapshot.arbitration.remote_lateral)
+
+    def _longitudinal_authority(self, tick: PublishedTick) -> Any:
+        return self._types["Float64"](tick.snapshot.arbitration.remote_longitudinal)
 
     def _bridge(self, tick: PublishedTick) -> Any:
         counts = self._counts()

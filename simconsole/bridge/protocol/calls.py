@@ -7,15 +7,10 @@ never waits for another, so that one slow provider holds up nobody else.
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-import cbor2
-import msgspec
-import orjson
-
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.client_session import ClientSession, resolve_topic
-from simconsole.bridge.protocol.message_decoding import Binary
-from simconsole.bridge.protocol.message_encoding import Dialect, png, to_plain
+from simconsole.bridge.protocol.message_encoding import Dialect, to_plain
 from simconsole.bridge.protocol.operations import (
     ABORTED,
     ActionFeedback,
@@ -25,18 +20,18 @@ from simconsole.bridge.protocol.operations import (
     CallOperation,
     CallService,
     CancelActionGoal,
-    Compression,
     Id,
     SendActionGoal,
     ServiceResponse,
     UnadvertiseAction,
     UnadvertiseService,
 )
+from simconsole.bridge.protocol.pending_calls import NOBODY, Caller, Forward, HeldCalls, send
 from simconsole.profiles.bridge import BridgeLimits
 from simconsole.values.errors import BridgeError, RemoteProtocolError
 from simconsole.values.units import NS_PER_S
 
-Handler = Callable[[dict[str, Any], Dialect], dict[str, Any]]
+Handler = Callable[[dict[str, Any], Dialect], dict[str, Any] | Forward]
 """A service of the console: takes arguments and the caller's dialect, returns values; raises BridgeError to fail."""
 
 
@@ -51,38 +46,18 @@ class _Provider(NamedTuple):
     type: str
 
 
-class _Caller(NamedTuple):
-    """The calling client, and the form of the answer."""
-
-    session: ClientSession
-    id: Id
-    called: str  # the service or action in the caller's spelling
-    fragment_size: int | None
-    compression: Compression
-
-    def send(self, **fields: Any) -> None:
-        """Send an operation to the caller in the form it asked for."""
-        self.session.answer(_encode(self.compression, id=self.id, **fields), self.fragment_size)
-
-    def respond(self, values: Any, result: bool) -> None:
-        """Answer a request."""
-        self.send(op="service_response", service=self.called, values=values, result=result)
-
-    def end(self, values: Any, status: int, result: bool) -> None:
-        """End a goal."""
-        self.send(op="action_result", action=self.called, values=values, status=status, result=result)
-
-
 class _Call(NamedTuple):
     """A request or goal that is with its provider."""
 
-    caller: _Caller
+    caller: Caller
     provider: ClientSession
     name: str
     type: str
     deadline_ns: int | None
     feedback: bool
     is_goal: bool
+    read: Callable[[Any], Any] | None = None
+    """Makes a console's answer of the provider's."""
 
 
 class Calls:
@@ -96,13 +71,14 @@ class Calls:
         self._services: dict[str, _Provider] = {}
         self._actions: dict[str, _Provider] = {}
         self._calls: dict[str, _Call] = {}
+        self.held = HeldCalls(limits)
         self._numbers = 0
         self._next_deadline_ns: int | None = None
 
     @property
     def open(self) -> int:
         """Calls that wait for their answer."""
-        return len(self._calls)
+        return len(self._calls) + len(self.held)
 
     def add_builtin(self, name: str, type_name: str, handler: Handler, role: Role = Role.VIEW) -> None:
         """Add a service of the console, for clients of at least `role`."""
@@ -142,10 +118,12 @@ class Calls:
                 self._respond(session, name, operation)
             case AdvertiseService() | AdvertiseAction():
                 self._advertise(session, name, operation)
+                for held in self.held.release(name, now_ns):
+                    self.apply(held.session, held.operation, now_ns)
             case UnadvertiseService() | UnadvertiseAction():
                 self._unadvertise(session, name, operation)
             case SendActionGoal():
-                self._goal(session, name, operation)
+                self._goal(session, name, operation, now_ns)
             case CancelActionGoal():
                 self._cancel(session, name, operation)
             case ActionFeedback():
@@ -157,24 +135,26 @@ class Calls:
     def reject(self, session: ClientSession, operation: CallService | SendActionGoal, reason: str) -> None:
         """Answer a call or goal of a client that may not make any: it would wait for ever."""
         if isinstance(operation, CallService):
-            _Caller(session, operation.id, operation.service, None, "none").respond(reason, False)
+            Caller(session, operation.id, operation.service, None, "none").respond(reason, False)
         else:
-            _Caller(session, operation.id, operation.action, None, "none").end(reason, ABORTED, False)
+            Caller(session, operation.id, operation.action, None, "none").end(reason, ABORTED, False)
 
     def expire(self, now_ns: int) -> None:
         """End the calls that have timed out; cheap when there are none."""
         if self._next_deadline_ns is None or now_ns < self._next_deadline_ns:
             return
+        for held in self.held.expire(now_ns):
+            self.reject(held.session, held.operation, f"{held.name}: {NOBODY}")
         for identifier, call in list(self._calls.items()):
             if call.deadline_ns is not None and now_ns >= call.deadline_ns:
                 del self._calls[identifier]
                 self._fail(call, "no answer within the time limit")
-        self._next_deadline_ns = min(
-            (call.deadline_ns for call in self._calls.values() if call.deadline_ns is not None), default=None
-        )
+        deadlines_ns = [call.deadline_ns for call in self._calls.values() if call.deadline_ns is not None]
+        self._next_deadline_ns = min((*deadlines_ns, *self.held.deadlines_ns()), default=None)
 
     def disconnect(self, session: ClientSession) -> None:
         """Remove everything of a client: what it provides, its own calls, and calls to it."""
+        self.held.disconnect(session)
         for table in (self._services, self._actions):
             for name in [name for name, provider in table.items() if provider.session is session]:
                 del table[name]
@@ -182,7 +162,7 @@ class Calls:
             if call.caller.session is session:
                 del self._calls[identifier]
                 if call.is_goal:
-                    _send(call.provider, op="cancel_action_goal", action=call.name, id=identifier)
+                    send(call.provider, op="cancel_action_goal", action=call.name, id=identifier)
             elif call.provider is session:
                 del self._calls[identifier]
                 self._fail(call, "whoever was asked is gone")
@@ -192,7 +172,8 @@ class Calls:
         known = table.get(name)
         if name in self._builtins or (known is not None and known.session is not session):
             raise RemoteProtocolError("somebody else provides it already")
-        if known is None and len(self._services) + len(self._actions) >= self._limits.topics:
+        count = sum(not each.session.in_graph for each in (*self._services.values(), *self._actions.values()))
+        if known is None and not session.in_graph and count >= self._limits.topics:
             raise RemoteProtocolError(f"there are {self._limits.topics} services and actions already, the most allowed")
         table[name] = _Provider(session, operation.type[:256])
 
@@ -211,38 +192,63 @@ class Calls:
                 self._fail(call, "it is no longer provided")
 
     def _call(self, session: ClientSession, name: str, operation: CallService, now_ns: int) -> None:
-        caller = _Caller(session, operation.id, operation.service, operation.fragment_size, operation.compression)
+        caller = Caller(session, operation.id, operation.service, operation.fragment_size, operation.compression)
         try:
             builtin = self._builtins.get(name)
             if builtin is not None:
-                caller.respond(self._builtin(builtin, caller, operation.args), True)
+                self._call_builtin(builtin, caller, operation.args, now_ns)
                 return
             provider = self._services.get(name)
             if session.role < Role.PUBLISH:
                 raise RemoteProtocolError("services of other clients need the role publish")
             if provider is None:
-                raise RemoteProtocolError("nobody provides this service")
+                self._note_deadline(self.held.hold(session, name, operation, now_ns))
+                return
             deadline_ns = now_ns + int((operation.timeout or self._limits.call_s) * NS_PER_S)
             identifier = self._open(caller, provider, name, deadline_ns)
             args = self._arguments(provider, "Request", operation.args, identifier)
         except BridgeError as error:
             caller.respond(f"{name}: {error}", False)
             return
-        if self._next_deadline_ns is None or deadline_ns < self._next_deadline_ns:
-            self._next_deadline_ns = deadline_ns
-        _send(provider.session, op="call_service", id=identifier, service=name, args=args)
+        self._note_deadline(deadline_ns)
+        limit = {"timeout": operation.timeout} if operation.timeout else {}
+        send(provider.session, op="call_service", id=identifier, service=name, args=args, **limit)
 
-    def _builtin(self, builtin: _Builtin, caller: _Caller, args: Any) -> Any:
+    def _call_builtin(self, builtin: _Builtin, caller: Caller, args: Any, now_ns: int) -> None:
         if caller.session.role < builtin.role:
             raise RemoteProtocolError(f"this needs the role {builtin.role.name.lower()}")
         args = self._to_plain("ros2", builtin.type, "Request", self._args(builtin.type, "Request", args))
-        values = builtin.handler(args, caller.session.dialect)
-        return self._to_plain(caller.session.dialect, builtin.type, "Response", values, _is_typed(caller))
+        found = builtin.handler(args, caller.session.dialect)
+
+        def respond(values: dict[str, Any]) -> Any:
+            return self._to_plain(caller.session.dialect, builtin.type, "Response", values, caller.is_typed)
+
+        if not isinstance(found, Forward):
+            caller.respond(respond(found), True)
+            return
+        provider = self._services.get(found.service)
+        if provider is None:
+            raise RemoteProtocolError(f"{found.service}: {NOBODY}")
+        deadline_ns = now_ns + int(self._limits.call_s * NS_PER_S)
+        identifier = self._open(caller, provider, found.service, deadline_ns)
+        args = self._arguments(provider, "Request", found.args, identifier)
+        read, kind = found.read, provider.type
+        self._calls[identifier] = self._calls[identifier]._replace(
+            read=lambda values: respond(read(self._to_plain("ros2", kind, "Response", values)))
+        )
+        self._note_deadline(deadline_ns)
+        send(provider.session, op="call_service", id=identifier, service=found.service, args=args)
 
     def _respond(self, session: ClientSession, name: str, operation: ServiceResponse) -> None:
         identifier, call = self._find_call(session, name, operation.id)
         del self._calls[identifier]
         values, result = operation.values, operation.result
+        if call.read is not None and result:
+            try:
+                call.caller.respond(call.read(values), True)
+            except BridgeError as error:
+                self._fail(call, str(error))
+            return
         # rosbridge_suite for ROS 1 uses the values alone, and its clients set no meaningful result.
         if isinstance(values, dict) and (values or result):
             try:
@@ -254,19 +260,20 @@ class Calls:
             values = {}
         call.caller.respond(values, result)
 
-    def _goal(self, session: ClientSession, name: str, operation: SendActionGoal) -> None:
-        caller = _Caller(session, operation.id, operation.action, operation.fragment_size, operation.compression)
+    def _goal(self, session: ClientSession, name: str, operation: SendActionGoal, now_ns: int) -> None:
+        caller = Caller(session, operation.id, operation.action, operation.fragment_size, operation.compression)
         try:
             provider = self._actions.get(name)
             if provider is None:
-                raise RemoteProtocolError("nobody provides this action")
+                self._note_deadline(self.held.hold(session, name, operation, now_ns))
+                return
             identifier = self._open(caller, provider, name, None, operation.feedback, True)
             args = self._arguments(provider, "Goal", operation.args, identifier)
         except BridgeError as error:
             caller.end(f"{name}: {error}", ABORTED, False)
             return
         kind = operation.action_type or provider.type
-        _send(
+        send(
             provider.session, op="send_action_goal", id=identifier, action=name, action_type=kind, args=args,
             feedback=operation.feedback,
         )  # fmt: skip
@@ -282,7 +289,7 @@ class Calls:
             if not goals:
                 raise RemoteProtocolError("no such goal is pursued")
         for identifier, call in goals.items():
-            _send(call.provider, op="cancel_action_goal", action=name, id=identifier)
+            send(call.provider, op="cancel_action_goal", action=name, id=identifier)
 
     def _feedback(self, session: ClientSession, name: str, operation: ActionFeedback) -> None:
         _, call = self._find_call(session, name, operation.id)
@@ -304,15 +311,16 @@ class Calls:
 
     def _open(
         self,
-        caller: _Caller,
+        caller: Caller,
         provider: _Provider,
         name: str,
         deadline_ns: int | None,
         feedback: bool = False,
         is_goal: bool = False,
     ) -> str:
-        if sum(call.caller.session is caller.session for call in self._calls.values()) >= self._limits.calls:
-            raise RemoteProtocolError(f"{self._limits.calls} calls at a time are the most allowed")
+        most = caller.session.max_calls or self._limits.calls
+        if sum(call.caller.session is caller.session for call in self._calls.values()) >= most:
+            raise RemoteProtocolError(f"{most} calls at a time are the most allowed")
         self._numbers += 1
         identifier = f"{'goal' if is_goal else 'call'}:{name}:{self._numbers}"
         self._calls[identifier] = _Call(
@@ -332,6 +340,10 @@ class Calls:
         except BridgeError:
             del self._calls[identifier]
             raise
+
+    def _note_deadline(self, deadline_ns: int) -> None:
+        if self._next_deadline_ns is None or deadline_ns < self._next_deadline_ns:
+            self._next_deadline_ns = deadline_ns
 
     def _find_call(self, session: ClientSession, name: str, identifier: Id) -> tuple[str, _Call]:
         """Return the open call that a provider refers to."""
@@ -363,7 +375,7 @@ class Calls:
         return args
 
     def _checked(self, call: _Call, part: str, values: Any) -> Any:
-        return self._to_plain(call.caller.session.dialect, call.type, part, values, _is_typed(call.caller))
+        return self._to_plain(call.caller.session.dialect, call.type, part, values, call.caller.is_typed)
 
     def _to_plain(self, dialect: Dialect, type_name: str, part: str, values: Any, typed: bool = False) -> Any:
         """Return values checked against their type, if it is known here, in the receiver's dialect."""
@@ -371,22 +383,3 @@ class Calls:
         if full is None:
             return values
         return to_plain(self._registry, full, self._registry.from_plain(full, values), dialect, typed)
-
-
-def _is_typed(caller: _Caller) -> bool:
-    """Return whether numeric arrays are CBOR's own."""
-    return caller.compression in ("cbor", "cbor-raw")
-
-
-def _encode(compression: Compression, **fields: Any) -> bytes:
-    """Return an operation in the receiver's compression; cbor-raw is for topics, its answers come in plain CBOR."""
-    if fields.get("id") is None:
-        fields.pop("id", None)
-    if compression in ("cbor", "cbor-raw"):
-        return Binary(cbor2.dumps(fields))
-    text = msgspec.json.encode(fields)
-    return orjson.dumps({"op": "png", "data": png(text)}) if compression == "png" else text
-
-
-def _send(session: ClientSession, **fields: Any) -> None:
-    session.answer(_encode("none", **fields))

@@ -56,6 +56,10 @@ class ClientSession:
         self.wrong_tokens = 0
         self.number = number
         self.peer = peer
+        self.in_graph = False
+        """Whether it stands for the nodes of a graph that the console has joined."""
+        self.max_calls: int | None = None
+        """How many calls it may have open; without, what the server's limits say of one client."""
         self.send_queue = SendQueue(max_bytes, budget, self._tell_dropped)
         self.queues: dict[str, SubscriptionQueue] = {}
         self.advertised: dict[str, set[Id]] = {}

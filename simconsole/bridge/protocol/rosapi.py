@@ -1,7 +1,7 @@
 """rosapi, built in: the services by which clients ask for topics, types, services, nodes, parameters and the time.
 
-The console is the node /simconsole, client number n is /client_n. Parameters live as long as the server and mean
-nothing to the console.
+The console is the node /simconsole, client number n is /client_n; beside them are the nodes of a ROS 2 graph that it
+has joined. Their parameters are theirs; others live as long as the server and mean nothing to the console.
 """
 
 from typing import Any, Final
@@ -13,6 +13,8 @@ from simconsole.bridge.messages.definition_text import full_text, two_parts
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.client_session import resolve_topic
 from simconsole.bridge.protocol.message_encoding import Dialect
+from simconsole.bridge.protocol.pending_calls import Forward
+from simconsole.bridge.protocol.rosapi_graph import get_parameter, has_parameter, is_of_node, set_parameter
 from simconsole.bridge.protocol.server_protocol import Router
 from simconsole.bridge.protocol.topic_registry import Topic
 from simconsole.values.errors import BridgeError, RemoteProtocolError
@@ -20,6 +22,8 @@ from simconsole.values.units import NS_PER_S
 
 NODE: Final = "/simconsole"
 LOG: Final = "rcl_interfaces/msg/Log"
+UNRELAYED: Final = "/rosapi/unrelayed"
+"""Not rosapi's own: what does not cross between the console and the graph that it has joined."""
 MAX_PARAMETERS: Final = 256
 MAX_PARAMETER: Final = 16_384
 _DISTRO: Final = "jazzy"
@@ -72,6 +76,7 @@ class RosApi:
             ("get_ros_version", "GetROSVersion", self._get_ros_version, Role.VIEW),
         ):
             router.calls.add_builtin(f"/rosapi/{name}", f"rosapi/{type_name}", handler, role)
+        router.calls.add_builtin(UNRELAYED, "simconsole_msgs/Unrelayed", self._unrelayed)
 
     def _topics(self, args: Fields, dialect: Dialect) -> Fields:
         topics = self._listed(dialect)
@@ -142,7 +147,14 @@ class RosApi:
         if service not in self._router.calls.services():
             return ""
         number = self._router.calls.providers().get(service)
-        return NODE if number is None else f"/client_{number}"
+        for session in self._router.sessions:
+            if session.number == number:
+                return self._graph_provider(service) if session.in_graph else f"/client_{number}"
+        return NODE
+
+    def _graph_provider(self, service: str) -> str:
+        nodes = self._router.graph.nodes.items()
+        return next((name for name, node in nodes if service in node.services and name != NODE), "")
 
     def _action_servers(self, args: Fields, dialect: Dialect) -> Fields:
         return {"action_servers": list(self._router.calls.actions())}
@@ -167,7 +179,8 @@ class RosApi:
         return {"interfaces": [_type_name(name, dialect) for name in self._registry.names()]}
 
     def _node_names(self) -> list[str]:
-        return [NODE, *(f"/client_{session.number}" for session in self._router.sessions)]
+        clients = [f"/client_{session.number}" for session in self._router.sessions if not session.in_graph]
+        return [NODE, *clients, *(name for name in self._router.graph.nodes if name != NODE)]
 
     def _nodes(self, args: Fields, dialect: Dialect) -> Fields:
         return {"nodes": self._node_names()}
@@ -186,10 +199,22 @@ class RosApi:
     def _publishes(self, node: str, topic: Topic) -> bool:
         if node == NODE:
             return topic.owned and topic.command is None
-        return int(node.rpartition("_")[2]) in topic.publishers
+        known = self._router.graph.nodes.get(node)
+        return topic.name in known.publishing if known else int(node.rpartition("_")[2]) in topic.publishers
 
     def _subscribes(self, node: str, topic: Topic) -> bool:
-        return topic.command is not None if node == NODE else int(node.rpartition("_")[2]) in topic.subscribers
+        if node == NODE:
+            return topic.command is not None
+        known = self._router.graph.nodes.get(node)
+        return topic.name in known.subscribing if known else int(node.rpartition("_")[2]) in topic.subscribers
+
+    def _unrelayed(self, args: Fields, dialect: Dialect) -> Fields:
+        found = self._router.graph.unrelayed
+        return {
+            "names": list(found),
+            "types": [_type_name(each.type, dialect) for each in found.values()],
+            "reasons": [each.reason for each in found.values()],
+        }
 
     def _message_details(self, args: Fields, dialect: Dialect) -> Fields:
         return {"typedefs": self._typedefs(self._registry.resolve(args["type"]))}
@@ -220,10 +245,17 @@ class RosApi:
             for definition in self._registry.with_parts(name)
         ]
 
-    def _get_param(self, args: Fields, dialect: Dialect) -> Fields:
+    def _is_of_node(self, name: str) -> bool:
+        return bool(self._router.graph.nodes) and is_of_node(name)
+
+    def _get_param(self, args: Fields, dialect: Dialect) -> Fields | Forward:
+        if self._is_of_node(args["name"]):
+            return get_parameter(args["name"], args["default_value"] or args["default"])
         return {"value": self._parameters.get(args["name"]) or args["default_value"] or args["default"] or "null"}
 
-    def _has_param(self, args: Fields, dialect: Dialect) -> Fields:
+    def _has_param(self, args: Fields, dialect: Dialect) -> Fields | Forward:
+        if self._is_of_node(args["name"]):
+            return has_parameter(args["name"])
         return {"exists": args["name"] in self._parameters}
 
     def _get_param_names(self, args: Fields, dialect: Dialect) -> Fields:
@@ -235,8 +267,10 @@ class RosApi:
         found = next((known for known in (name, f"/{name}") if known in self._parameters), "")
         return {"global_name": found}
 
-    def _set_param(self, args: Fields, dialect: Dialect) -> Fields:
+    def _set_param(self, args: Fields, dialect: Dialect) -> Fields | Forward:
         name, value = args["name"], args["value"]
+        if self._is_of_node(name):
+            return set_parameter(name, value)
         if not name or len(name) + len(value) > MAX_PARAMETER:
             raise RemoteProtocolError(f"a parameter has a name and at most {MAX_PARAMETER} characters")
         if name not in self._parameters and len(self._parameters) >= MAX_PARAMETERS:
@@ -248,7 +282,9 @@ class RosApi:
         self._parameters[name] = value
         return {}
 
-    def _delete_param(self, args: Fields, dialect: Dialect) -> Fields:
+    def _delete_param(self, args: Fields, dialect: Dialect) -> Fields | Forward:
+        if self._is_of_node(args["name"]):
+            return set_parameter(args["name"], None)
         self._parameters.pop(args["name"], None)
         return {}
 

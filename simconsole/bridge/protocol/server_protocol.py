@@ -32,8 +32,9 @@ from simconsole.bridge.protocol.operations import (
     read_operation,
 )
 from simconsole.bridge.protocol.rate_limiter import RateLimiter
+from simconsole.bridge.protocol.rosapi_graph import NO_GRAPH
 from simconsole.bridge.protocol.subscription_queue import SendBudget
-from simconsole.bridge.protocol.topic_registry import RELAY_DEPTH, Accept, Command, Topic, TopicRegistry
+from simconsole.bridge.protocol.topic_registry import RELAY_DEPTH, Accept, Command, Origin, Topic, TopicRegistry
 from simconsole.profiles.bridge import BridgeLimits
 from simconsole.values.errors import BridgeError, RemoteProtocolError
 from simconsole.values.kernels import is_finite
@@ -74,6 +75,8 @@ class Router:
         reconnects."""
         self.calls = Calls(registry, limits)
         self.access = OPEN
+        self.graph = NO_GRAPH
+        """What is known of a graph that the console has joined."""
 
     @property
     def sessions(self) -> tuple[ClientSession, ...]:
@@ -192,13 +195,15 @@ class Router:
             return self._refuse(session, fields, str(error), now_ns)
         return Outcome("done", "", "") if whole is None else self._receive(session, whole, now_ns, True)
 
-    def receive_plain(self, session: ClientSession, name: str, plain: dict[str, Any], now_ns: int) -> Outcome:
+    def receive_plain(
+        self, session: ClientSession, name: str, plain: dict[str, Any], now_ns: int, origin: Origin | None = None
+    ) -> Outcome:
         """Apply a message that did not come as text: checked like any other. Never raises for what is in it."""
         session.received += 1
         self.calls.expire(now_ns)
         fields = {"op": "publish", "topic": name, "msg": plain}
         try:
-            return self._publish(session, Publish(name, plain), DecodedMessage(fields, False), b"", now_ns)
+            return self._publish(session, Publish(name, plain), DecodedMessage(fields, False), b"", now_ns, origin)
         except BridgeError as error:
             return self._refuse(session, fields, str(error), now_ns)
 
@@ -268,7 +273,13 @@ class Router:
             raise RemoteProtocolError(f"this needs the role {role.name.lower()}; you have {held}")
 
     def _publish(
-        self, session: ClientSession, operation: Publish, decoded: DecodedMessage, text: bytes, now_ns: int
+        self,
+        session: ClientSession,
+        operation: Publish,
+        decoded: DecodedMessage,
+        text: bytes,
+        now_ns: int,
+        origin: Origin | None = None,
     ) -> Outcome:
         self._require(session, Role.PUBLISH)
         # A name that is registered as given needs no resolving.
@@ -287,7 +298,7 @@ class Router:
         self._stamp(topic.type, operation.msg, message)
         if operation.latch or operation.qos is not None:
             self.topic_registry.apply_qos(topic, operation)
-        self.topic_registry.distribute(topic, message, now_ns)
+        self.topic_registry.distribute(topic, message, now_ns, origin)
         return Outcome("done", topic.name, "")
 
     def _advertised(self, session: ClientSession, topic: Topic | None, operation: Publish, type_name: str) -> Topic:

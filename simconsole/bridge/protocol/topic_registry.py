@@ -27,6 +27,13 @@ class Command(NamedTuple):
     leased: bool  # only for the holder of the lease; a request such as an emergency stop is open to everyone
 
 
+class Origin(NamedTuple):
+    """One latching publisher of a graph: the relay's session, and who it is there."""
+
+    session: int
+    publisher: bytes
+
+
 class Topic:
     """One topic: its type, publishers, subscribers, and whether the console owns it."""
 
@@ -49,8 +56,9 @@ class Topic:
         self.stays = owned or stays
         self.command = command
         self.latch = latch
-        self.latched: Encoder | None = None
-        self.latched_ns = 0
+        self.latched: dict[Origin | None, tuple[Encoder, int]] = {}
+        """The message, and when it came in ns, that who comes later gets: the newest of the clients and the console,
+        and of a graph the newest of each publisher."""
         self.lifespan_ns: int | None = None
         self.deadline_ns: int | None = None
         """Promised to the nodes of a graph."""
@@ -61,11 +69,15 @@ class Topic:
         self.publishers: set[int] = set()
         self.subscribers: dict[int, tuple[ClientSession, SubscriptionQueue]] = {}
 
-    def latched_message(self, now_ns: int) -> Encoder | None:
-        """Return the latched message that a new subscriber gets, None without one or when its lifespan is over."""
-        if self.lifespan_ns is not None and now_ns - self.latched_ns > self.lifespan_ns:
-            self.latched = None
-        return self.latched
+    def latched_messages(self, session: int, now_ns: int) -> list[Encoder]:
+        """Return what a new subscriber gets: no message whose lifespan is over, nor a graph its own."""
+        if self.lifespan_ns is not None:
+            self.latched = {
+                origin: (message, then_ns)
+                for origin, (message, then_ns) in self.latched.items()
+                if now_ns - then_ns <= self.lifespan_ns
+            }
+        return [message for origin, (message, _) in self.latched.items() if origin is None or origin.session != session]
 
 
 class TopicRegistry:
@@ -96,14 +108,14 @@ class TopicRegistry:
         """Return every topic by name."""
         return dict(sorted(self._topics.items()))
 
-    def distribute(self, topic: Topic, message: Any, now_ns: int) -> None:
-        """Send a typed message to all subscribers of a topic."""
-        if not topic.subscribers and not topic.latch:
+    def distribute(self, topic: Topic, message: Any, now_ns: int, origin: Origin | None = None) -> None:
+        """Send a typed message to all subscribers of a topic; one with an `origin` is kept for those who come later."""
+        if not topic.subscribers and not topic.latch and origin is None:
             return
         topic.sequence = (topic.sequence + 1) & _UINT32
         encoder = Encoder(self.registry, topic.type, message, topic.sequence, self.ros_time_ns)
-        if topic.latch:
-            topic.latched, topic.latched_ns = encoder, now_ns
+        if topic.latch or origin is not None:
+            topic.latched[origin] = (encoder, now_ns)
         for session, queue in topic.subscribers.values():
             session.deliver(queue, encoder.text(queue.encoding, queue.head, queue.topic), now_ns)
 
@@ -120,9 +132,9 @@ class TopicRegistry:
             head = topic.head if operation.topic == name else publish_head(operation.topic)
             queue = session.queues[name] = SubscriptionQueue(head, topic.depth, operation.topic)
             topic.subscribers[session.number] = (session, queue)
-            latched = topic.latched_message(now_ns)
-            if latched is not None and qos.durability != "volatile":
-                session.deliver(queue, latched.text(encoding, head, operation.topic), now_ns)
+            if qos.durability != "volatile":
+                for latched in topic.latched_messages(session.number, now_ns):
+                    session.deliver(queue, latched.text(encoding, head, operation.topic), now_ns)
         else:
             self._topic(name, operation.type)
         if operation.id not in queue.subscriptions and len(queue.subscriptions) >= self._limits.subscriptions:

@@ -13,7 +13,8 @@ from typing import Any, Final
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.relay import Relay
 from simconsole.bridge.protocol.access import Role
-from simconsole.bridge.ros2.graph import NOT_INSTALLED, Graph, ReceivedMessage
+from simconsole.bridge.ros2.graph import NOT_INSTALLED, Graph
+from simconsole.bridge.ros2.graph_topics import ReceivedMessage
 from simconsole.bridge.ros2.message_types import describe
 from simconsole.bridge.ros2.received_messages import ReceivedMessages
 from simconsole.profiles.bridge import BridgeProfile, Ros2Profile
@@ -48,7 +49,7 @@ class Ros2Link:
         self._wake = wake
         self._relay = Relay(console, role_of_graph(profile, console.router.access.anonymous), describe, wake)
         try:
-            self._graph = Graph(settings, self._put, self._receive)
+            self._graph = Graph(settings, profile.limits.call_s, self._put, self._receive)
         except BridgeError:
             self._relay.leave(0)
             raise
@@ -64,8 +65,10 @@ class Ros2Link:
             event, arguments = self._inbox.popleft()
             if event == "view":
                 self._graph.set_entities(self._relay.observe(arguments[0], now_ns))
-            else:
+            elif event in ("failed", "remarked"):
                 getattr(self._relay, event)(*arguments, now_ns)
+            else:
+                getattr(self._relay.calls, event)(*arguments, now_ns)
         for message in self._received.take():
             self._relay.receive(*message, now_ns)
         if self._received.waits:

@@ -7,7 +7,7 @@ import threading
 from collections import deque
 from typing import Final
 
-from simconsole.bridge.ros2.graph import ReceivedMessage
+from simconsole.bridge.ros2.graph_topics import ReceivedMessage
 
 TOPIC_MESSAGES: Final = 100
 TOPIC_BYTES: Final = 4_194_304

@@ -1,207 +1,255 @@
-"""Services and actions of a ROS 2 node, both ways: the graph's for rosbridge clients, and theirs for the graph.
+"""Services and actions of the graph that clients of the bridge use.
 
-Everything here runs on rclpy's thread. What is for the bridge's thread is `put`: the name of one of the relay's
-methods and its arguments.
+All here runs on rclpy's thread. Every call and goal ends: with its answer, or with the reason why there is none. A
+service reads from a queue of ten requests and loses what comes beyond them, so no more than it holds are unanswered.
 """
 
-import itertools
-import logging
+from collections import deque
 from collections.abc import Callable
 from typing import Any, Final
 
-from simconsole.bridge.console.relay import GraphOperation
-from simconsole.bridge.protocol.operations import ABORTED, CANCELED, SUCCEEDED
+from simconsole.bridge.console.graph_view import GraphOperation
+from simconsole.bridge.protocol.operations import ABORTED, CANCELED
+from simconsole.bridge.ros2.endpoints import POLL_S
 from simconsole.bridge.ros2.message_types import load
 
-MAX_POLLS: Final = 300
-"""How often a service or action that is known but not found is looked for."""
+WINDOW: Final = 8
+"""Requests to one service, or goals not yet accepted of one action, that are on their way at a time."""
+READY_POLLS: Final = 10
+"""How long a service or action that is known may take to be there, and to come back: a second."""
+IDLE_POLLS: Final = 50
+"""How long the end of ours of a service stays when nobody calls it."""
+QUEUE: Final = 1000
+"""Answers of a burst that wait to be read."""
 
-_logger: Final = logging.getLogger("simconsole.bridge.ros2.node")
+
+class _Called:
+    """One service or action of the graph, and what is asked of it."""
+
+    def __init__(self, name: str, type_name: str, is_call: bool) -> None:
+        self.name = name
+        self.type_name = type_name
+        self.types = load(type_name)
+        self.is_call = is_call
+        self.client: Any = None
+        self.waiting: deque[GraphOperation] = deque()
+        self.unanswered: dict[str, int] = {}
+        """Requests on their way by key, and the poll at which their time is over."""
+        self.goals: dict[str, Any] = {}
+        """Handles of accepted goals."""
+        self.unwanted: set[str] = set()
+        """Goals that were cancelled before they were accepted."""
+        self.unready_polls = 0
+        self.idle_polls = 0
+
+    @property
+    def is_ready(self) -> bool:
+        return bool(self.client.service_is_ready() if self.is_call else self.client.server_is_ready())
+
+    @property
+    def keys(self) -> list[str]:
+        return [*(operation.key for operation in self.waiting), *self.unanswered, *self.goals]
 
 
 class GraphCalls:
-    """All open calls and goals of one node."""
+    """All open calls and goals of clients in one graph."""
 
-    def __init__(self, node: Any, executor: Any, group: Any, put: Callable[..., None]) -> None:
-        """Begin without any; `group` is a reentrant callback group, so that no call waits for another."""
+    def __init__(self, node: Any, group: Any, put: Callable[..., None], call_s: float) -> None:
+        """Begin without any.
+
+        Args:
+            node: rclpy's.
+            group: a reentrant callback group, so that no call waits for another.
+            put: takes the name of one of the relay's methods and its arguments.
+            call_s: how long an answer may take where the caller does not say.
+        """
         self._node = node
-        self._executor = executor
         self._group = group
         self._put = put
-        self._numbers = itertools.count(1)
-        self._clients: dict[str, Any] = {}
-        self._waiting: dict[str, Any] = {}
-        """Futures by key, of the graph's calls to rosbridge clients."""
-        self._served: dict[str, tuple[Any, Any]] = {}
-        """The graph's goals by key: handle and types."""
-        self._goals: dict[str, Any] = {}
-        """Handles of the clients' goals by key; None before acceptance, a string if cancelled before."""
-        self._unready: list[tuple[GraphOperation, int]] = []
-        """What is for a service or action not yet found by our end of it, and how many polls are left."""
+        self._call_s = call_s
+        self._called: dict[tuple[bool, str], _Called] = {}
+        self._polls = 0
 
-    def execute(self, operation: GraphOperation) -> None:
-        """Do one thing that the relay ordered."""
-        match operation.kind:
-            case "call" | "goal":
-                self._request(operation, MAX_POLLS)
-            case "cancel":
-                self._cancel(operation)
-            case "reply" | "end":
-                self._finish(operation)
-            case "feedback":
-                self._publish_feedback(operation)
+    @property
+    def open(self) -> int:
+        """How many calls and goals wait for their end."""
+        return sum(len(called.keys) for called in self._called.values())
 
-    def poll(self) -> None:
-        """Ask again for what was not yet there: a request sent before both ends know each other is lost."""
-        waiting, self._unready = self._unready, []
-        for operation, polls in waiting:
-            if polls:
-                self._request(operation, polls - 1)
+    def __len__(self) -> int:
+        """Return how many services and actions have an end of ours."""
+        return len(self._called)
 
-    def make_service(self, name: str, kind: str) -> Any:
-        """Return a service of the graph that a client of the bridge answers."""
-        from rclpy.serialization import deserialize_message, serialize_message
-
-        types = load(kind)
-
-        async def serve(request: Any, response: Any) -> Any:
-            """Have the bridge answer a request of the graph; what fails is the empty answer."""
-            _, answer = self._forward("call_service", name, serialize_message(request))
-            operation = await answer
-            if operation.data is None:
-                # ROS 2 cannot express a failed call: the response keeps its defaults.
-                _logger.warning("%s: %s", name, operation.text)
-                return response
-            return deserialize_message(operation.data, types.Response)
-
-        return self._node.create_service(types, name, serve, callback_group=self._group)
-
-    def make_action(self, name: str, kind: str) -> Any:
-        """Return an action of the graph whose goals a client of the bridge pursues."""
-        from rclpy.action import ActionServer, CancelResponse
-        from rclpy.serialization import deserialize_message, serialize_message
-
-        types = load(kind)
-
-        async def execute(goal: Any) -> Any:
-            """Have the bridge pursue a goal of the graph, to its end."""
-            key, end = self._forward("send_goal", name, serialize_message(goal.request))
-            self._served[key] = (goal, types)
-            operation = await end
-            del self._served[key]
-            if operation.status == SUCCEEDED:
-                goal.succeed()
-            elif operation.status == CANCELED and goal.is_cancel_requested:
-                goal.canceled()
-            else:
-                _logger.warning("%s: %s", name, operation.text or "aborted")
-                goal.abort()
-            return types.Result() if operation.data is None else deserialize_message(operation.data, types.Result)
-
-        def cancel(goal: Any) -> Any:
-            """Pass the request to cancel a goal on to the client that executes it."""
-            identity = bytes(goal.goal_id.uuid)
-            for key, (known, _) in self._served.items():
-                if bytes(known.goal_id.uuid) == identity:
-                    self._put("cancel", key, name)
-                    return CancelResponse.ACCEPT
-            return CancelResponse.REJECT
-
-        return ActionServer(
-            self._node, types, name, execute, callback_group=self._group, cancel_callback=cancel
-        )  # fmt: skip
-
-    def _forward(self, event: str, name: str, data: bytes) -> tuple[str, Any]:
-        from rclpy.task import Future
-
-        key = f"graph:{next(self._numbers)}"
-        future: Any = Future(executor=self._executor)
-        self._waiting[key] = future
-        self._put(event, key, name, data)
-        return key, future
-
-    def _finish(self, operation: GraphOperation) -> None:
-        future = self._waiting.pop(operation.key, None)
-        if future is not None:
-            future.set_result(operation)
-
-    def _publish_feedback(self, operation: GraphOperation) -> None:
-        from rclpy.serialization import deserialize_message
-
-        if operation.key in self._served and operation.data is not None:
-            goal, types = self._served[operation.key]
-            goal.publish_feedback(deserialize_message(operation.data, types.Feedback))
-
-    def _request(self, operation: GraphOperation, polls: int) -> None:
-        from rclpy.action import ActionClient
-        from rclpy.serialization import deserialize_message
-
+    def request(self, operation: GraphOperation) -> None:
+        """Call a service or pursue a goal, once it is there."""
         is_call = operation.kind == "call"
         if operation.data is None:
-            if is_call:
-                self._put("service_responded", operation.key, operation.name, None, operation.text)
-            else:
-                self._put("goal_ended", operation.key, operation.name, None, ABORTED, operation.text)
+            self._fail(is_call, operation.name, operation.key, operation.text)
             return
-        types = load(operation.type)
-        client = self._clients.get(operation.name)
-        if client is None and is_call:
-            client = self._node.create_client(types, operation.name, callback_group=self._group)
-        elif client is None:
-            client = ActionClient(self._node, types, operation.name, callback_group=self._group)
-        self._clients[operation.name] = client
-        if not is_call:
-            self._goals.setdefault(operation.key, None)
-        if not (client.service_is_ready() if is_call else client.server_is_ready()):
-            self._unready.append((operation, polls))
-        elif is_call:
-            self._call(operation, client, deserialize_message(operation.data, types.Request))
-        else:
-            self._send_goal(operation, client, deserialize_message(operation.data, types.Goal))
+        try:
+            called = self._find(operation.name, operation.type, is_call)
+        except Exception as error:  # noqa: BLE001  rclpy says of no call what it raises
+            self._fail(is_call, operation.name, operation.key, str(error))
+            return
+        called.waiting.append(operation)
+        try:
+            self._advance(called)
+        except Exception as error:  # noqa: BLE001  rclpy says of no call what it raises
+            self._fail_all(called, str(error))
 
-    def _call(self, operation: GraphOperation, client: Any, request: Any) -> None:
-        from rclpy.serialization import serialize_message
+    def cancel(self, operation: GraphOperation) -> None:
+        """Cancel a goal, also one that is not yet accepted or sent."""
+        called = self._called.get((False, operation.name))
+        if called is None:
+            return
+        key = operation.key
+        if key in called.goals:
+            called.goals[key].cancel_goal_async()
+        elif key in called.unanswered:
+            called.unwanted.add(key)
+        elif key in called.keys:
+            called.waiting = deque(waiting for waiting in called.waiting if waiting.key != key)
+            self._put("goal_ended", key, called.name, None, CANCELED, "cancelled before it was sent")
+
+    def poll(self) -> None:
+        """Send what could not be sent; end what has waited too long; forget who is not called any more."""
+        self._polls += 1
+        for key, called in list(self._called.items()):
+            try:
+                self._tend(called)
+            except Exception as error:  # noqa: BLE001  rclpy says of no call what it raises
+                self._fail_all(called, str(error))
+                called.idle_polls = IDLE_POLLS + 1
+            if called.idle_polls > IDLE_POLLS:
+                del self._called[key]
+                self._destroy(called)
+
+    def _tend(self, called: _Called) -> None:
+        called.unready_polls = 0 if called.is_ready else called.unready_polls + 1
+        if called.unready_polls > READY_POLLS:
+            self._fail_all(called, "it was not there within a second, or has left the graph")
+        for late in [late for late, end in called.unanswered.items() if self._polls > end]:
+            self._take(called, late)
+            self._fail(called.is_call, called.name, late, "no answer within the time limit")
+        self._advance(called)
+        called.idle_polls = 0 if called.keys else called.idle_polls + 1
+
+    def _find(self, name: str, type_name: str, is_call: bool) -> _Called:
+        from rclpy.action import ActionClient
+        from rclpy.qos import QoSProfile
+
+        called = self._called.get((is_call, name))
+        if called is not None and called.type_name != type_name:
+            del self._called[is_call, name]
+            self._fail_all(called, "it has another type now")
+            self._destroy(called)
+            called = None
+        if called is None:
+            called = _Called(name, type_name, is_call)
+            qos = QoSProfile(depth=QUEUE)
+            if is_call:
+                called.client = self._node.create_client(
+                    called.types, name, qos_profile=qos, callback_group=self._group
+                )
+            else:
+                called.client = ActionClient(
+                    self._node, called.types, name, callback_group=self._group, goal_service_qos_profile=qos,
+                    result_service_qos_profile=qos, cancel_service_qos_profile=qos,
+                    feedback_sub_qos_profile=QoSProfile(depth=QUEUE),
+                )  # fmt: skip
+            self._called[is_call, name] = called
+        return called
+
+    def _advance(self, called: _Called) -> None:
+        """Send what waits, as far as it is there and the window allows: a request sent before both know is lost."""
+        while called.waiting and len(called.unanswered) < WINDOW and called.is_ready:
+            operation = called.waiting.popleft()
+            limit_s = self._call_s if operation.timeout_s is None else operation.timeout_s
+            called.unanswered[operation.key] = self._polls + int(limit_s / POLL_S) + 1
+            try:
+                if called.is_call:
+                    self._send_call(called, operation)
+                else:
+                    self._send_goal(called, operation)
+            except Exception as error:  # noqa: BLE001  rclpy says of no call what it raises
+                self._take(called, operation.key)
+                self._fail(called.is_call, called.name, operation.key, str(error))
+
+    def _send_call(self, called: _Called, operation: GraphOperation) -> None:
+        from rclpy.serialization import deserialize_message, serialize_message
+
+        key, name = operation.key, called.name
 
         def done(future: Any) -> None:
             """Put the answer of the graph, or why there is none, into the bridge's inbox."""
-            error = future.exception()
-            data = None if error is not None else serialize_message(future.result())
-            self._put("service_responded", operation.key, operation.name, data, str(error))
+            if not self._take(called, key):
+                return  # it came too late
+            try:
+                self._put("service_responded", key, name, serialize_message(future.result()), "")
+            except Exception as error:  # noqa: BLE001  rclpy says of no call what it raises
+                self._put("service_responded", key, name, None, str(error))
+            self._advance(called)
 
-        client.call_async(request).add_done_callback(done)
+        request = deserialize_message(operation.data, called.types.Request)
+        called.client.call_async(request).add_done_callback(done)
 
-    def _send_goal(self, operation: GraphOperation, client: Any, goal: Any) -> None:
-        from rclpy.serialization import serialize_message
+    def _send_goal(self, called: _Called, operation: GraphOperation) -> None:
+        from rclpy.serialization import deserialize_message, serialize_message
 
-        key, name = operation.key, operation.name
+        key, name = operation.key, called.name
 
         def accepted(future: Any) -> None:
             handle = future.result()
-            if not handle.accepted:
-                self._goals.pop(key, None)
-                self._put("goal_ended", key, name, None, ABORTED, "the goal was not accepted")
+            if not self._take(called, key):
+                if handle.accepted:
+                    handle.cancel_goal_async()  # nobody waits for it any more
                 return
-            is_unwanted = isinstance(self._goals.get(key), str)
-            self._goals[key] = handle
-            handle.get_result_async().add_done_callback(ended)
-            if is_unwanted:
-                handle.cancel_goal_async()
+            if not handle.accepted:
+                self._fail(False, name, key, "the goal was not accepted")
+            else:
+                called.goals[key] = handle
+                handle.get_result_async().add_done_callback(ended)
+                if key in called.unwanted:
+                    handle.cancel_goal_async()
+            called.unwanted.discard(key)
+            self._advance(called)
 
         def ended(future: Any) -> None:
-            self._goals.pop(key, None)
-            found = future.result()
-            self._put("goal_ended", key, name, serialize_message(found.result), found.status, "")
+            if called.goals.pop(key, None) is None:
+                return
+            try:
+                found = future.result()
+                status = found.status or ABORTED
+                self._put("goal_ended", key, name, serialize_message(found.result), status, "")
+            except Exception as error:  # noqa: BLE001  rclpy says of no call what it raises
+                self._fail(False, name, key, str(error))
 
         def progressed(message: Any) -> None:
-            self._put("feedback_received", key, name, serialize_message(message.feedback))
+            if key in called.goals or key in called.unanswered:
+                self._put("feedback_received", key, name, serialize_message(message.feedback))
 
-        client.send_goal_async(goal, feedback_callback=progressed).add_done_callback(accepted)
+        goal = deserialize_message(operation.data, called.types.Goal)
+        called.client.send_goal_async(goal, feedback_callback=progressed).add_done_callback(accepted)
 
-    def _cancel(self, operation: GraphOperation) -> None:
-        if operation.key not in self._goals:
-            return
-        goal = self._goals[operation.key]
-        if goal is None:
-            self._goals[operation.key] = "cancel"
-        elif not isinstance(goal, str):
-            goal.cancel_goal_async()
+    def _take(self, called: _Called, key: str) -> bool:
+        """Return whether a request is still waited for, and wait no longer."""
+        return called.unanswered.pop(key, None) is not None
+
+    def _fail_all(self, called: _Called, why: str) -> None:
+        for key in called.keys:
+            self._fail(called.is_call, called.name, key, why)
+        called.waiting.clear()
+        called.unanswered.clear()
+        called.goals.clear()
+        called.unwanted.clear()
+
+    def _fail(self, is_call: bool, name: str, key: str, why: str) -> None:
+        if is_call:
+            self._put("service_responded", key, name, None, why)
+        else:
+            self._put("goal_ended", key, name, None, ABORTED, why)
+
+    def _destroy(self, called: _Called) -> None:
+        if called.is_call:
+            self._node.destroy_client(called.client)
+        else:
+            called.client.destroy()

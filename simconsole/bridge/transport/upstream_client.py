@@ -111,8 +111,12 @@ class UpstreamClient:
             self._ready.clear()
             try:
                 while (text := session.next_text(self._clock_ns())) is not None:
-                    await peer.send(text, text=True)
+                    async with asyncio.timeout(DEAD_AFTER_S):
+                        await peer.send(text, text=True)
             except WebSocketException:
+                return
+            except TimeoutError:  # it takes nothing more, so that not even a ping would be sent
+                peer.transport.abort()
                 return
             due_ns = session.due_ns()
             if due_ns is not None:

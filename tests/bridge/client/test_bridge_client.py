@@ -272,7 +272,7 @@ def test_services_and_actions_both_ways(serving: Callable[..., Any]) -> None:
         caller.call_service("/add", {}, take)
         while len(answers) < 4:
             caller.receive(0.01)
-        assert answers[3] == ("/add: nobody provides this service", False)
+        assert answers[3] == ("/add: nobody provides it", False)
         assert caller.call_service("/rosapi/get_time", None, take)
         caller.disconnect()
         assert answers[4] == ("the connection has ended", False)

@@ -6,7 +6,8 @@ from typing import Any
 import pytest
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
-from simconsole.bridge.console.relay import MAX_NODES, GraphOperation, GraphPublisher, GraphView, Relay
+from simconsole.bridge.console.graph_view import NOTHING, GraphOperation, GraphPublisher
+from simconsole.bridge.console.relay import MAX_NODES, Relay
 from simconsole.bridge.messages import Definition, standard_registry
 from simconsole.bridge.messages.cdr import deserialize, serialize
 from simconsole.bridge.messages.rosidl_types import definition_of
@@ -14,7 +15,6 @@ from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.operations import ABORTED, CANCELED, SUCCEEDED
 from simconsole.values.signals import Event, RemoteKind
 
-NOTHING = GraphView({}, frozenset(), {}, {}, frozenset())
 GRIP = (definition_of("demo/msg/Grip", {"force": "double"}),)
 NOT_INSTALLED = {"tf2_msgs/msg/TFMessage"}
 PARTS = {"msg": ("",), "srv": ("_Request", "_Response"), "action": ("_Goal", "_Result", "_Feedback")}
@@ -60,8 +60,11 @@ class Graph:
             if operation.kind == "remark"
         ]
 
-    def receive(self, topic: str, type_name: str, plain: dict[str, Any], node: str = "/driver") -> None:
-        self.relay.receive(topic, self.cdr(type_name, plain), node, self.now_ns)
+    def receive(
+        self, topic: str, type_name: str, plain: dict[str, Any], node: str = "/driver", latched_by: bytes | None = None
+    ) -> None:
+        full = self.bridge.router.registry.resolve(type_name)
+        self.relay.receive(topic, full, self.cdr(type_name, plain), node, latched_by, self.now_ns)
 
     def cdr(self, type_name: str, plain: dict[str, Any]) -> bytes:
         registry = self.bridge.router.registry
@@ -83,10 +86,10 @@ def test_what_the_console_wants_in_the_graph(graph: Graph) -> None:
     assert entities.subscriptions["/cmd_vel"] == "geometry_msgs/msg/Twist"
     assert "/tf_static" not in entities.publishers
     assert entities.services == entities.actions == {}
-    missing, other = graph.remarks()[::-1]
-    assert missing[1].startswith("not relayed, because this ROS 2 has no such type: ")
-    assert "tf2_msgs/msg/TFMessage" in missing[1]
-    assert other == ("ros2", "std_msgs/msg/Float64 is not relayed: std_msgs/msg/Float64 has other fields in this ROS 2")
+    ((_, text),) = graph.remarks()
+    assert text.startswith("not relayed: ")
+    assert "/tf_static: this ROS 2 has no type tf2_msgs/msg/TFMessage" in text
+    assert "std_msgs/msg/Float64 has other fields in this ROS 2" in text
     assert graph.observe() == entities
     assert graph.remarks() == []
 
@@ -130,8 +133,8 @@ def test_commands_are_checked(graph: Graph) -> None:
     graph.observe()
     graph.receive("/cmd_vel", "geometry_msgs/Twist", {"linear": {"x": float("nan")}})
     graph.receive("/cmd_vel", "geometry_msgs/Twist", {"linear": {"x": 1e6}})
-    graph.relay.receive("/cmd_vel", b"\0\1\0\0\0", "/driver", 0)
-    graph.relay.receive("/nowhere", b"", "/driver", 0)
+    graph.relay.receive("/cmd_vel", "geometry_msgs/msg/Twist", b"\0\1\0\0\0", "/driver", None, 0)
+    graph.relay.receive("/nowhere", "std_msgs/msg/Empty", b"", "/driver", None, 0)
     assert graph.bridge.inputs.command.sequence == 0.0
     assert graph.bridge.inputs.command.refused == 2.0  # what is no message at all is nobody's command
     said = [text for _, text in graph.remarks()]
@@ -194,6 +197,27 @@ def test_topics_between_graph_and_clients(graph: Graph, join: Callable[..., Any]
     assert [message["msg"]["force"] for message in peer.heard()] == [2.5, 3.5, 4.5, 5.5]
 
 
+def test_latched_topics_of_the_graph_reach_every_later_subscriber(graph: Graph, join: Callable[..., Any]) -> None:
+    view = {"topics": {"/map": "std_msgs/msg/String"}, "latching": {"/map": frozenset({b"one", b"two"})}}
+    graph.observe(**view)
+    first, second, third = join(graph.bridge), join(graph.bridge), join(graph.bridge)
+    first.send(op="subscribe", topic="/map")
+    graph.observe(**view)
+    for text, publisher in (("old", b"one"), ("new", b"one"), ("other", b"two")):
+        graph.receive("/map", "std_msgs/String", {"data": text}, latched_by=publisher)
+    second.send(op="subscribe", topic="/map")
+    assert [message["msg"]["data"] for message in first.heard()] == ["old", "new", "other"]
+    assert [message["msg"]["data"] for message in second.heard()] == ["new", "other"], "of each publisher the newest"
+    second.send(op="advertise", topic="/map", type="std_msgs/String", latch=True)
+    graph.observe(**view)
+    assert graph.operations() == [], "the graph is not sent its own"
+    second.publish("/map", {"data": "here"})
+    graph.observe(topics=view["topics"], latching={"/map": frozenset({b"two"})})
+    third.send(op="subscribe", topic="/map")
+    assert [message["msg"]["data"] for message in third.heard()] == ["other", "here"], "one publisher has left"
+    assert [graph.plain("std_msgs/String", operation.data)["data"] for operation in graph.operations()] == ["here"]
+
+
 def test_what_leaves_the_graph_is_no_longer_advertised(graph: Graph) -> None:
     graph.observe(topics={"/grip": "demo/msg/Grip"}, services={"/sum": ADD}, actions={"/go": FIBONACCI})
     router = graph.bridge.router
@@ -204,13 +228,51 @@ def test_what_leaves_the_graph_is_no_longer_advertised(graph: Graph) -> None:
     assert ("/sum" in router.calls.services(), router.calls.actions()) == (False, {})
 
 
+def test_what_the_graph_would_refuse_is_said_once_to_whose_it_is(graph: Graph, join: Callable[..., Any]) -> None:
+    peer, other = join(graph.bridge), join(graph.bridge)
+    long = "/" + "n" * 250
+    peer.send(op="advertise", topic=long, type="std_msgs/String")
+    peer.send(op="advertise_service", service="/bad", type="a/b/c/d")
+    for _ in range(2):
+        entities = graph.observe()
+    assert (long in entities.publishers, entities.services) == (False, {})
+    assert [message["msg"].partition("graph: ")[2] for message in peer.heard()] == [
+        "its name is longer than 247 characters",
+        "'a/b/c/d' is no type such as package/srv/Name",
+    ]
+    other.send(op="subscribe", topic=long)
+    graph.observe()
+    assert [message["op"] for message in other.heard()] == ["status"]
+    assert peer.heard() == []
+
+
+def test_what_the_graph_could_not_make_is_said(graph: Graph, join: Callable[..., Any]) -> None:
+    peer = join(graph.bridge)
+    peer.send(op="advertise", topic="/grip", type="std_msgs/String")
+    graph.relay.failed("topic", "/grip", "it broke", 0)
+    assert "/grip" in graph.observe().publishers, "it is tried again"
+    assert [message["msg"] for message in peer.heard()] == ["/grip is not relayed to the ROS 2 graph: it broke"]
+    graph.relay.failed("topic", "/grip", "", 0)
+    graph.observe()
+    graph.relay.failed("topic", "/grip", "it broke again", 0)
+    graph.observe()
+    assert [message["msg"][-5:] for message in peer.heard()] == ["again"]
+
+
+def test_a_message_of_a_type_that_the_topic_had_before(graph: Graph, join: Callable[..., Any]) -> None:
+    peer = join(graph.bridge)
+    peer.send(op="subscribe", topic="/turns", type="std_msgs/Int32")
+    graph.relay.receive("/turns", "std_msgs/msg/String", graph.cdr("std_msgs/String", {"data": "old"}), "/n", None, 0)
+    assert peer.heard() == []
+
+
 def test_what_somebody_has_already_is_left_to_them(graph: Graph, join: Callable[..., Any]) -> None:
     peer = join(graph.bridge)
     peer.send(op="advertise", topic="/chatter", type="std_msgs/Int8")
     peer.send(op="advertise_service", service="/add", type=ADD)
     graph.observe(
         topics={"/chatter": "std_msgs/msg/String", "/odd": "nowhere/msg/Odd"},
-        services={"/add": ADD, "/n/list_parameters": "rcl_interfaces/srv/ListParameters"},
+        services={"/add": ADD},
     )
     assert graph.bridge.router.calls.providers() == {"/add": peer.session.number}
     topics = graph.bridge.router.topics
@@ -226,8 +288,8 @@ def test_clients_call_services_of_the_graph(graph: Graph, join: Callable[..., An
     assert {(operation.kind, operation.name, operation.type) for operation in operations} == {("call", "/sum", ADD)}
     assert graph.plain("example_interfaces/AddTwoInts_Request", operations[2].data) == {"a": 1, "b": 2}
     answer = graph.cdr("example_interfaces/AddTwoInts_Response", {"sum": 3})
-    graph.relay.service_responded(operations[2].key, "/sum", answer, "", 0)
-    graph.relay.service_responded(operations[0].key, "/sum", None, "it broke", 0)
+    graph.relay.calls.service_responded(operations[2].key, "/sum", answer, "", 0)
+    graph.relay.calls.service_responded(operations[0].key, "/sum", None, "it broke", 0)
     heard = {message["id"]: (message["result"], message["values"]) for message in peer.heard()}
     assert heard == {2: (True, {"sum": 3}), 0: (False, "it broke")}
     graph.observe()  # the third is never answered: the service is gone
@@ -240,7 +302,7 @@ def test_the_graph_calls_services_of_clients(graph: Graph, join: Callable[..., A
     assert graph.observe().services == {"/add": ADD}
     request = graph.cdr("example_interfaces/AddTwoInts_Request", {"a": 2, "b": 3})
     for key in ("one", "two", "three"):
-        graph.relay.call_service(key, "/add", request, 0)
+        graph.relay.calls.call_service(key, "/add", request, 0)
     first, second, third = peer.heard()
     assert first["args"] == {"a": 2, "b": 3}
     peer.send(op="service_response", service="/add", id=first["id"], values={"sum": 5}, result=True)
@@ -252,8 +314,8 @@ def test_the_graph_calls_services_of_clients(graph: Graph, join: Callable[..., A
     )  # fmt: skip
     assert (bad.key, bad.data, bad.text) == ("two", None, "no")
     assert (wrong.key, wrong.data) == ("three", None)
-    graph.relay.call_service("four", "/add", b"", 0)
-    graph.relay.call_service("five", "/none", request, 0)
+    graph.relay.calls.call_service("four", "/add", b"", 0)
+    graph.relay.calls.call_service("five", "/none", request, 0)
     assert [(operation.key, operation.data) for operation in graph.operations()] == [("four", None), ("five", None)]
 
 
@@ -267,9 +329,9 @@ def test_clients_pursue_goals_in_the_graph(graph: Graph, join: Callable[..., Any
     assert (goal.kind, goal.name, goal.type, cancel.kind, cancel.key) == ("goal", "/go", FIBONACCI, "cancel", other.key)
     assert graph.plain("example_interfaces/Fibonacci_Goal", goal.data) == {"order": 3}
     sequence = graph.cdr("example_interfaces/Fibonacci_Result", {"sequence": [0, 1, 1]})
-    graph.relay.feedback_received(goal.key, "/go", sequence, 0)
-    graph.relay.goal_ended(goal.key, "/go", sequence, SUCCEEDED, "", 0)
-    graph.relay.goal_ended(other.key, "/go", None, CANCELED, "gone", 0)
+    graph.relay.calls.feedback_received(goal.key, "/go", sequence, 0)
+    graph.relay.calls.goal_ended(goal.key, "/go", sequence, SUCCEEDED, "", 0)
+    graph.relay.calls.goal_ended(other.key, "/go", None, CANCELED, "gone", 0)
     feedback, result, cancelled = peer.heard()
     assert feedback == {"op": "action_feedback", "action": "/go", "id": "g", "values": {"sequence": [0, 1, 1]}}
     assert (result["id"], result["status"], result["values"]) == ("g", SUCCEEDED, {"sequence": [0, 1, 1]})
@@ -281,9 +343,9 @@ def test_the_graph_pursues_goals_of_clients(graph: Graph, join: Callable[..., An
     peer.send(op="advertise_action", action="/go", type=FIBONACCI)
     assert graph.observe().actions == {"/go": FIBONACCI}
     goal = graph.cdr("example_interfaces/Fibonacci_Goal", {"order": 3})
-    graph.relay.send_goal("one", "/go", goal, 0)
-    graph.relay.send_goal("two", "/go", b"", 0)
-    graph.relay.cancel("one", "/go", 0)
+    graph.relay.calls.send_goal("one", "/go", goal, 0)
+    graph.relay.calls.send_goal("two", "/go", b"", 0)
+    graph.relay.calls.cancel("one", "/go", 0)
     asked, cancel = peer.heard()
     assert (asked["args"], asked["feedback"], cancel["id"]) == ({"order": 3}, True, asked["id"])
     told = {"action": "/go", "id": asked["id"], "values": {"sequence": [0, 1]}}
@@ -303,7 +365,7 @@ def test_a_service_that_leaves_with_a_call_on_its_way(graph: Graph, join: Callab
     graph.observe()
     (operation,) = graph.operations()
     assert (operation.kind, operation.data, operation.text) == ("call", None, "it has left the graph")
-    graph.relay.service_responded(operation.key, "/sum", b"\0\1\0\0", "", 0)  # nobody waits for it any more
+    graph.relay.calls.service_responded(operation.key, "/sum", b"\0\1\0\0", "", 0)  # nobody waits for it any more
     assert [message["result"] for message in peer.heard()] == [False]
 
 

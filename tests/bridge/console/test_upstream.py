@@ -30,7 +30,8 @@ def heard(link: Upstream) -> list[dict[str, Any]]:
 
 def test_outputs_are_advertised_and_commands_asked_for_under_the_console_s_names() -> None:
     profile = BridgeProfile(namespace="/ego", rename={"/odom": "/localization"}, rates_hz={"/tf": 0.0})
-    registrations = [json.loads(text) for text in upstream(ConsoleBridge(profile)).connected(0)]
+    texts = [json.loads(text) for text in upstream(ConsoleBridge(profile)).connected(0)]
+    registrations = [text for text in texts if text["op"] != "call_service"]
     advertised = {
         registration["topic"]: registration for registration in registrations if registration["op"] == "advertise"
     }
@@ -49,7 +50,7 @@ def test_outputs_are_advertised_and_commands_asked_for_under_the_console_s_names
 
 def test_topics_between_clients_stay_here(bridge: ConsoleBridge, join: Callable[..., Any]) -> None:
     join(bridge).send(op="advertise", topic="/own", type="std_msgs/String")
-    assert not [text for text in upstream(bridge).connected(0) if json.loads(text)["topic"] == "/own"]
+    assert not [text for text in upstream(bridge).connected(0) if json.loads(text).get("topic") == "/own"]
 
 
 @pytest.mark.parametrize(("dialect", "stamp"), [("ros2", {"sec": 1, "nanosec": 0}), ("ros1", {"secs": 1, "nsecs": 0})])
@@ -114,3 +115,59 @@ def test_a_new_connection_begins_anew(bridge: ConsoleBridge, snapshot: Callable[
     assert link.connected(0) == first
     bridge.publish(snapshot(5), 0)
     assert "/odom" in {text["topic"] for text in heard(link)}
+
+
+VELOCITY = "/vehicle/status/velocity_status"
+
+
+def answer(link: Upstream, texts: list[bytes], has: Callable[[str], bool]) -> list[str]:
+    """Answer the questions for types; return what is remarked."""
+    asked = [each for each in map(json.loads, texts) if each["op"] == "call_service"]
+    assert {each["service"] for each in asked} == {"/rosapi/message_details"}
+    said = []
+    for each in asked:
+        found = {"typedefs": ["some"] if has(each["args"]["type"]) else []}
+        response = {"op": "service_response", "service": each["service"], "id": each["id"], "values": found}
+        outcome = link.receive(json.dumps({**response, "result": True}).encode(), 0)
+        said += [outcome.text] * (outcome.kind == "remark")
+    return said
+
+
+def test_types_that_it_lacks_are_not_published_and_that_is_said_once(
+    bridge: ConsoleBridge, snapshot: Callable[..., Any]
+) -> None:
+    link = upstream(bridge)
+    for number in range(2):
+        texts = link.connected(0)
+        assert VELOCITY not in {json.loads(text).get("topic") for text in texts}
+        said = answer(link, texts, lambda kind: kind.partition("/")[0] in ("std_msgs", "nav_msgs"))
+        assert len(said) == (1, 0)[number]
+        bridge.publish(snapshot(250 * (number + 1)), 0)
+        topics = {text["topic"] for text in heard(link) if text["op"] == "publish"}
+        assert "/odom" in topics
+        assert not topics & {VELOCITY, "/tf"}, "tf2_msgs is of every ROS, but not of this"
+        link.lost(0)
+    assert not said
+    assert len(answer(link, link.connected(0), lambda kind: kind != "tf2_msgs/TFMessage")) == 1
+
+
+def test_types_that_it_has_are_published_as_soon_as_it_says_so(
+    bridge: ConsoleBridge, snapshot: Callable[..., Any]
+) -> None:
+    link = upstream(bridge)
+    assert answer(link, link.connected(0), lambda kind: True) == []
+    assert VELOCITY in {text["topic"] for text in heard(link) if text["op"] == "advertise"}
+    bridge.publish(snapshot(250), 0)
+    assert {VELOCITY, "/tf", "/odom"} <= {text["topic"] for text in heard(link)}
+    late = {"op": "service_response", "service": "/rosapi/message_details", "id": "x", "values": "no", "result": False}
+    assert link.receive(json.dumps(late).encode(), 0).kind == "done"
+
+
+def test_without_rosapi_what_every_ros_has_is_published(bridge: ConsoleBridge, snapshot: Callable[..., Any]) -> None:
+    link = upstream(bridge)
+    (said,) = answer(link, link.connected(0), lambda kind: False)
+    assert "no rosapi" in said
+    assert f"{VELOCITY} (autoware_vehicle_msgs/msg/VelocityReport)" in said
+    bridge.publish(snapshot(250), 0)
+    topics = {text["topic"] for text in heard(link)}
+    assert ("/tf" in topics, "/odom" in topics, VELOCITY in topics) == (True, True, False)

@@ -24,7 +24,7 @@ def ask(peer: Any, service: str, /, **args: Any) -> Any:
 def test_every_service_has_its_type(peer: Any) -> None:
     services = peer.bridge.router.calls.services()
     defined = [f"rosapi/{path.stem}" for path in (DEFINITIONS / "rosapi" / "srv").iterdir()]
-    assert sorted(services.values()) == sorted([*defined, "simconsole_msgs/Operate"])
+    assert sorted(services.values()) == sorted([*defined, "simconsole_msgs/Operate", "simconsole_msgs/Unrelayed"])
     assert ask(peer, "services") == {"services": list(services)}
     for name, kind in services.items():
         assert ask(peer, "service_type", service=name) == {"type": kind}

@@ -57,3 +57,12 @@ def test_what_is_not_installed_is_none() -> None:
     for name in ("made_msgs/msg/Other", "made_msgs/none/Point", "other_msgs/msg/Point"):
         assert load(name) is None
         assert describe(name) is None
+
+
+@pytest.mark.parametrize(
+    "name", ["a/b/c/d", "a", "", "os/srv/Path", "json/msg/Tool", "made_msgs/msg/__doc__", "this/msg/Poem"]
+)
+def test_nothing_but_interfaces_is_imported_whatever_a_client_names(name: str) -> None:
+    sys.modules.pop("this", None)
+    assert load(name) is None
+    assert "this" not in sys.modules

@@ -1,4 +1,4 @@
-from simconsole.bridge.ros2.graph import ReceivedMessage
+from simconsole.bridge.ros2.graph_topics import ReceivedMessage
 from simconsole.bridge.ros2.received_messages import (
     TOPIC_BYTES,
     TOPIC_MESSAGES,
@@ -9,7 +9,7 @@ from simconsole.bridge.ros2.received_messages import (
 
 
 def message(topic: str, size: int = 1, node: str = "/n") -> ReceivedMessage:
-    return ReceivedMessage(topic, b"x" * size, node)
+    return ReceivedMessage(topic=topic, type="std_msgs/String", data=b"x" * size, node=node, latched_by=None)
 
 
 def test_flooded_topic_loses_its_own_oldest_and_no_other_s() -> None:

@@ -1,9 +1,14 @@
 """The console as a client of another server, over real sockets: a double that behaves as rosbridge_server does."""
 
 import asyncio
+import itertools
 import json
-from collections.abc import AsyncIterator, Callable
-from contextlib import asynccontextmanager
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import AsyncIterator, Callable, Iterator
+from contextlib import asynccontextmanager, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +22,8 @@ from simconsole.bridge.transport.server import BridgeServer
 from simconsole.bridge.transport.upstream_client import UpstreamClient
 from simconsole.profiles.bridge import BridgeProfile, UpstreamProfile
 from simconsole.values.errors import ProfileError
+from tests.drives.controllers import free_port
+from tests.paths import ROOT
 from tests.patience import until
 
 CONTROL = "/control/command/control_cmd"
@@ -90,6 +97,57 @@ def test_it_comes_back_with_everything_and_nobody_engaged(
             server.publish(snapshot(5))
             await until(lambda: bool(double.heard("publish", "/odom")))
             assert len(double.heard("advertise", "/odom")) == 4
+
+    asyncio.run(main())
+
+
+SERVER = """
+import sys
+from simconsole.bridge.transport.server import serve
+from simconsole.profiles.bridge import BridgeProfile
+ignore = lambda *_: None
+serve(BridgeProfile(port=int(sys.argv[1])), ignore, ignore, ignore, lambda: False)
+"""
+
+
+@contextmanager
+def serving(port: int) -> Iterator["subprocess.Popen[bytes]"]:
+    """A server in one process of its own."""
+    words = [sys.executable, "-c", SERVER, str(port)]
+    quiet = subprocess.DEVNULL
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    with subprocess.Popen(words, env=environment, stdin=quiet, stdout=quiet, stderr=quiet) as process:
+        try:
+            yield process
+        finally:
+            process.kill()
+
+
+def test_a_server_that_is_killed_started_again_and_stopped(snapshot: Callable[..., Any]) -> None:
+    port = free_port()
+
+    async def main() -> None:
+        server = BridgeServer(BridgeProfile(port=0, upstream=UpstreamProfile(url=f"ws://127.0.0.1:{port}")))
+        await server.start()
+        ticks = itertools.count(1)
+
+        def is_in(state: str) -> bool:
+            server.publish(snapshot(5 * next(ticks)))  # a drive goes on, whatever becomes of the server
+            return server.console.router.upstream == state
+
+        try:
+            for _ in range(2):
+                with serving(port):
+                    await until(lambda: is_in("connected"))
+                await until(lambda: is_in("lost"))
+            with serving(port) as far:
+                await until(lambda: is_in("connected"))
+                far.send_signal(signal.SIGSTOP)
+                await until(lambda: is_in("lost"))
+                far.send_signal(signal.SIGCONT)
+                await until(lambda: is_in("connected"))
+        finally:
+            await server.close()
 
     asyncio.run(main())
 

@@ -1,0 +1,155 @@
+"""Nothing is lost in a burst of calls or goals through the relay, and each has its end; against a real rclpy."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from tests.interop.programs import Client, client
+from tests.interop.puppets import Puppet, Served, puppet, served
+from tests.interop.ros2 import domain, needs_ros2
+from tests.patience import pause, wait_until
+
+pytestmark = needs_ros2
+
+FLIP = "std_srvs/srv/SetBool"
+FIBONACCI = "test_msgs/action/Fibonacci"
+SUCCEEDED = 4
+CALLS = 60
+CALLS_HZ = 200.0
+GOALS = 50
+CANCELED = 5
+ABORTED = 6
+
+
+@pytest.fixture(scope="module")
+def sides() -> Iterator[tuple[Served, Puppet]]:
+    around = domain()
+    with served(around) as console, puppet(around) as node:
+        yield console, node
+
+
+@pytest.fixture
+def web(sides: tuple[Served, Puppet]) -> Iterator[Client]:
+    with client(sides[0].url) as made:
+        yield made
+
+
+@pytest.fixture
+def node(sides: tuple[Served, Puppet]) -> Puppet:
+    return sides[1]
+
+
+def wait_for(web: Client, service: str, key: str, name: str) -> None:
+    """Wait until the console knows a service or action of the graph."""
+
+    def known() -> bool:
+        web.say(op="call_service", id="list", service=f"/rosapi/{service}")
+        return name in web.hear(lambda heard: heard.get("id") == "list")["values"][key]
+
+    wait_until(known, f"{name} at the console")
+
+
+def test_calls_of_a_client(web: Client, node: Puppet) -> None:
+    node.do("serve", name="/ros/flip")
+    wait_for(web, "services", "services", "/ros/flip")
+    for _ in range(5):
+        for number in range(CALLS):
+            web.say(op="call_service", id=number, service="/ros/flip", args={"data": bool(number % 2)})
+            pause(1.0 / CALLS_HZ)
+        answers = web.answers(CALLS)
+        assert [answers[number]["success"] for number in range(CALLS)] == [number % 2 == 0 for number in range(CALLS)]
+
+
+def test_calls_of_a_client_all_at_once(web: Client, node: Puppet) -> None:
+    node.do("serve", name="/ros/flip")
+    wait_for(web, "services", "services", "/ros/flip")
+    for number in range(CALLS):
+        web.say(op="call_service", id=number, service="/ros/flip", args={"data": bool(number % 2)})
+    assert len(web.answers(CALLS)) == CALLS
+
+
+def test_calls_of_a_node(web: Client, node: Puppet) -> None:
+    web.say(op="advertise_service", service="/web/flip", type=FLIP)
+    for _ in range(5):
+        node.do("call", name="/web/flip", count=CALLS, hz=CALLS_HZ)
+        for _ in range(CALLS):
+            call = web.hear(lambda heard: heard["op"] == "call_service")
+            values = {"success": call["args"]["data"], "message": "web"}
+            web.say(op="service_response", service="/web/flip", id=call["id"], values=values, result=True)
+        answers = node.answers("answered", "/web/flip", CALLS)
+        assert [answers[number]["success"] for number in range(CALLS)] == [number % 2 == 1 for number in range(CALLS)]
+
+
+def test_goals_of_a_client(web: Client, node: Puppet) -> None:
+    node.do("act", name="/ros/fibonacci")
+    wait_for(web, "action_servers", "action_servers", "/ros/fibonacci")
+    goal = {"op": "send_action_goal", "action": "/ros/fibonacci", "action_type": FIBONACCI, "args": {"order": 3}}
+    for _ in range(3):
+        for number in range(GOALS):
+            web.say(**goal, id=number)
+            pause(0.001)
+        ends: dict[int, Any] = {}
+        while len(ends) < GOALS:
+            heard = web.hear(lambda heard: heard["op"] == "action_result")
+            ends[heard["id"]] = (heard["status"], heard["values"]["sequence"])
+        assert {status for status, _ in ends.values()} == {SUCCEEDED}
+
+
+def test_goals_of_a_node(web: Client, node: Puppet) -> None:
+    web.say(op="advertise_action", action="/web/fibonacci", type=FIBONACCI)
+    for _ in range(3):
+        node.do("pursue", name="/web/fibonacci", count=GOALS)
+        for _ in range(GOALS):
+            goal = web.hear(lambda heard: heard["op"] == "send_action_goal")
+            told = {"action": "/web/fibonacci", "id": goal["id"], "values": {"sequence": [0, 1]}}
+            web.say(op="action_feedback", **told)
+            web.say(op="action_result", status=SUCCEEDED, result=True, **told)
+        ends = node.answers("ended", "/web/fibonacci", GOALS)
+        assert {end["status"] for end in ends.values()} == {SUCCEEDED}
+
+
+def test_a_service_that_is_just_appearing(web: Client, node: Puppet) -> None:
+    for number in range(5):
+        name = f"/ros/appearing{number}"
+        node.do("serve", name=name)
+        node.hear(lambda said: "served" in said)
+        web.say(op="call_service", id=number, service=name, args={"data": True})
+        assert web.answers(1)[number]["message"] == name
+
+
+def test_calls_and_goals_whose_node_leaves_end(sides: tuple[Served, Puppet], web: Client, node: Puppet) -> None:
+    node.do("serve_mute", name="/ros/mute")
+    node.do("act", name="/ros/slow", step_s=1.0)
+    wait_for(web, "services", "services", "/ros/mute")
+    wait_for(web, "action_servers", "action_servers", "/ros/slow")
+    for number in range(20):
+        web.say(op="call_service", id=number, service="/ros/mute", args={"data": True})
+    goal = {"op": "send_action_goal", "action": "/ros/slow", "action_type": FIBONACCI, "args": {"order": 40}}
+    for number in range(20):
+        web.say(**goal, id=number, feedback=True)
+    node.hear(lambda said: said.get("asked") == "/ros/mute")
+    web.hear(lambda heard: heard["op"] == "action_feedback")
+    node.do("destroy", kind="service", name="/ros/mute")
+    node.do("destroy", kind="action server", name="/ros/slow")
+    ended: dict[str, set[int]] = {"service_response": set(), "action_result": set()}
+    while len(ended["service_response"]) < 20 or len(ended["action_result"]) < 20:
+        heard = web.hear(lambda heard: heard["op"] in ended)
+        assert heard["result"] is False
+        assert heard["values"], "it says why"
+        ended[heard["op"]].add(heard["id"])
+
+
+def test_a_burst_of_goals_that_are_cancelled(web: Client, node: Puppet) -> None:
+    node.do("act", name="/ros/patient", step_s=0.5)
+    wait_for(web, "action_servers", "action_servers", "/ros/patient")
+    goal = {"op": "send_action_goal", "action": "/ros/patient", "action_type": FIBONACCI, "args": {"order": 20}}
+    for number in range(GOALS):
+        web.say(**goal, id=number)
+    for number in range(GOALS):
+        web.say(op="cancel_action_goal", action="/ros/patient", id=number)
+    ends: dict[int, int] = {}
+    while len(ends) < GOALS:
+        heard = web.hear(lambda heard: heard["op"] == "action_result")
+        ends[heard["id"]] = heard["status"]
+    assert set(ends.values()) == {CANCELED}
