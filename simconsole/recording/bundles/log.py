@@ -32,6 +32,7 @@ LAST_TICKS: Final = 2
 """Ticks still tried once recording has failed: the one that failed, and the next, which holds the alarm."""
 
 _READ_BYTES: Final = 1 << 20
+_NO_MESSAGES: Final[tuple[bytes, dict[int, bytes]]] = (b"", {})
 
 _synchronise = getattr(os, "fdatasync", os.fsync)
 
@@ -109,7 +110,7 @@ class LogWriter:
         content = vector.tobytes()
         if len(content) != self._vector_bytes:
             raise ValueError(f"a state vector of {len(content)} bytes in a log of {self._vector_bytes}")
-        sealed, digests = self._sealed(tick, messages) if messages else (b"", {})
+        sealed, digests = self._sealed(tick, messages) if messages else _NO_MESSAGES
         frame, digest = seal(self.digest, tick, content, sealed)
         problem = self._problem(frame)
         if problem is not None:
@@ -122,7 +123,8 @@ class LogWriter:
         if problem is None:
             self.ticks += 1
             self.digest = digest
-            self._message_digests.update(digests)
+            if digests:
+                self._message_digests.update(digests)
 
     def _sealed(self, tick: int, messages: Sequence[tuple[str, bytes]]) -> tuple[bytes, dict[int, bytes]]:
         """Return the messages of a tick as they lie in its frame, and the chained hashes of their streams after it."""

@@ -1,7 +1,7 @@
 """Bundles that earlier versions recorded: they replay to the last bit, or it is said how far they do not.
 
-Those in tests/recording/earlier have logs of schema 1: a person who hands over to the autopilot, a light van in slow bends, and a ball
-that a program rolls.
+Those in tests/recording/earlier have logs of schema 1: a person who hands over to the autopilot, a light van in two
+bends, and a ball that a program rolls.
 """
 
 import json
@@ -12,8 +12,9 @@ import pytest
 
 from simconsole.cli.main import main
 from simconsole.recording.bundles import replay_bundle as replaying
-from simconsole.recording.bundles.bundle import open_bundle, verify
+from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.replay_bundle import replay_bundle
+from simconsole.recording.bundles.verification import verify
 from simconsole.recording.compare import compare
 from simconsole.values.host import jit as compiling
 from simconsole.vehicle.car import tyre
