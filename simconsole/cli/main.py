@@ -204,9 +204,11 @@ def _recordings(commands: Any) -> None:
     unpack = _command(commands, "unpack", "recordings:unpack", "make the logs of packed bundles again, byte for byte")
     for command in (pack, unpack):
         command.add_argument("bundles", nargs="+", metavar="BUNDLE", help="the folder that a drive has written")
-    compare = _command(commands, "compare", "recordings:compare", "find the first differing tick and field")
+    compare = _command(commands, "compare", "recordings:compare", "find every field in which two bundles differ")
     compare.add_argument("bundle", metavar="A")
     compare.add_argument("other", metavar="B")
+    for command in (replay, compare):
+        command.add_argument("--tolerances", metavar="FILE", help="YAML or JSON: field or pattern to what may differ")
 
 
 def _exchange(commands: Any) -> None:

@@ -3,8 +3,9 @@
 from argparse import Namespace
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
+from simconsole.cli.differing import columns_text, differences_text, plain_differences, read_tolerances
 from simconsole.cli.outcome import Outcome
 from simconsole.cli.progress import Progress
 from simconsole.recording.bundles.bundle import open_bundle
@@ -16,31 +17,38 @@ from simconsole.recording.bundles.verification import coverage, examine
 from simconsole.recording.compare import compare as compare_logs
 from simconsole.values.errors import RecordingError
 
+REPLAY: Final = ("recorded", "replayed")
+COMPARISON: Final = ("first", "second")
+
 
 def replay(options: Namespace) -> Outcome:
-    """Re-simulate a bundle from its recorded inputs; code 1 and the first differing tick and field otherwise."""
+    """Re-simulate a bundle from its recorded inputs; code 1 with a table of the fields that differ."""
     from simconsole.recording.bundles.replay_bundle import replay_bundle
 
-    result = replay_bundle(Path(options.bundle))
+    result = replay_bundle(Path(options.bundle), read_tolerances(options.tolerances))
     covered = coverage(Path(options.bundle))
     results = {
-        "equal": result.equal,
-        "ticks": result.ticks,
+        **result._asdict(),
         "digest": result.digest.hex(),
-        "difference": None if result.difference is None else result.difference._asdict(),
-        "problems": result.problems,
-        "remarks": result.remarks,
-        "vouches_for": covered.replayed if result.good else [],
+        "differences": plain_differences(result.differences, REPLAY),
+        "vouches_for": covered.replayed if result.good and result.hashes_equal else [],
     }
-    if not result.equal:
-        verdict = f"{options.bundle}: differs at {result.difference}"
+    if result.differences:
+        verdict = f"{options.bundle}: {result.ticks} ticks replayed, {len(result.differences)} fields differ"
     elif result.problems:
         verdict = f"{options.bundle}: {result.ticks} ticks replayed, equal, but they are not the whole drive"
-    else:
+    elif result.hashes_equal:
         verdict = f"{options.bundle}: {result.ticks} ticks replayed, every hash equal"
         says = f"this vouches for {', '.join(covered.replayed)}; for {', '.join(covered.others)}: simconsole verify"
         verdict = f"{verdict}\n{says}"
-    return Outcome(0 if result.good else 1, results, "\n".join((verdict, *result.problems, *result.remarks)))
+    else:
+        verdict = f"{options.bundle}: {result.ticks} ticks replayed, no field of both differs" + (
+            " by more than its tolerance" if options.tolerances else ""
+        )
+    lines = [verdict, *([differences_text(result.differences, REPLAY)] if result.differences else [])]
+    lines += columns_text(result.new, "new, not in the recording")
+    lines += columns_text(result.missing, "in the recording only")
+    return Outcome(0 if result.good else 1, results, "\n".join((*lines, *result.problems, *result.remarks)))
 
 
 def verify(options: Namespace) -> Outcome:
@@ -77,19 +85,28 @@ def sign(options: Namespace) -> Outcome:
 
 
 def compare(options: Namespace) -> Outcome:
-    """Compare two bundles tick by tick; code 1 with the first differing tick and field and a window around it."""
+    """Compare two bundles tick by tick; code 1 with a table of the fields that differ."""
     first, second = open_bundle(Path(options.bundle)), open_bundle(Path(options.other))
-    found = compare_logs(first.log, first.log.header, second.log, second.log.header)
+    found = compare_logs(first.log, second.log, read_tolerances(options.tolerances))
     problems = first.problems() + second.problems()
     results = {
-        "equal": found.equal,
-        "ticks": found.ticks,
-        "difference": None if found.difference is None else found.difference._asdict(),
+        **found._asdict(),
+        "differences": plain_differences(found.differences, COMPARISON),
+        "messages": [stream._asdict() for stream in found.messages],
         "problems": problems,
     }
+    lines = columns_text(found.only_first, "in the first only") + columns_text(found.only_second, "in the second only")
     if found.equal:
-        return _judged(problems, results, f"{found.ticks} ticks, all equal")
-    return Outcome(1, results, "\n".join((f"{found.difference or 'not equal'}\n{found.window}", *problems)))
+        return _judged(problems, results, "\n".join((f"{found.ticks} ticks, all equal", *lines)))
+    lines = [f"{found.ticks} ticks compared, {len(found.differences)} fields differ", *lines]
+    if found.differences:
+        lines.insert(1, differences_text(found.differences, COMPARISON))
+    for stream in found.messages:
+        unlike = f"{list(stream.first)} and {list(stream.second)}"
+        lines.append(
+            f"stream {stream.stream}: differs in {stream.ticks} ticks, first at tick {stream.first_tick}: {unlike}"
+        )
+    return Outcome(1, results, "\n".join((*lines, *([found.reason] if found.reason else []), *problems)))
 
 
 def report(options: Namespace) -> Outcome:

@@ -197,11 +197,12 @@ class TextQueue:
     Reader and writer each move a number of their own, and neither waits: how many were written, and how many were read.
     """
 
-    _TAKEN: Final = 4  # the word of the header that the reader moves
+    _NEWEST: Final = 3
+    _TAKEN: Final = 4  # the words of the header that the writer and the reader move
 
     def __init__(self, ring: Ring) -> None:
         self._ring = ring
-        self._head = ring._head
+        self._head = ring._head.data  # as an array, one look would take three times as long
 
     @classmethod
     def create(cls, path: Path, text_bytes: int, capacity: int) -> "TextQueue":
@@ -216,14 +217,14 @@ class TextQueue:
     def put(self, text: bytes) -> bool:
         """Add a text; return False where it is too long or the queue is full. Only ever called by the one writer."""
         room_bytes = 8 * self._ring.width
-        if len(text) > room_bytes or self._ring.newest - int(self._head[self._TAKEN]) >= self._ring.capacity:
+        if len(text) > room_bytes or self._head[self._NEWEST] - self._head[self._TAKEN] >= self._ring.capacity:
             return False
         self._ring.write(np.frombuffer(text.ljust(room_bytes, b"\0"), np.float64), stamp=len(text))
         return True
 
     def take(self) -> list[bytes]:
         """Return the texts since the last call, oldest first. Only ever called by the one reader."""
-        newest, taken = self._ring.newest, int(self._head[self._TAKEN])
+        newest, taken = self._head[self._NEWEST], self._head[self._TAKEN]
         if newest == taken:  # nearly every tick
             return []
         records = [self._ring._read(number) for number in range(taken + 1, newest + 1)]

@@ -1,124 +1,124 @@
-"""Compare two recordings: the first differing tick and field, with a small readable window around it."""
+"""Compare two recordings: every field that differs, and where the messages of a stream do."""
 
-import math
-from collections import deque
-from collections.abc import Iterable, Iterator, Mapping
-from fnmatch import fnmatchcase
-from itertools import islice, zip_longest
-from typing import Final, NamedTuple
+from collections.abc import Iterator, Mapping
+from itertools import zip_longest
+from typing import NamedTuple, Protocol
 
-import numpy as np
-
+from simconsole.recording.differences import Differences, FieldDifference, allowed_differences
 from simconsole.recording.framing import Record
 from simconsole.recording.log_header import LogHeader
-from simconsole.values.kernels import Row
-
-CONTEXT_TICKS: Final = 3
-SHOWN_FIELDS: Final = 6
+from simconsole.recording.matching import RENAMED, matched, renamed
 
 
-class FieldDifference(NamedTuple):
-    """One value that differs by more than its tolerance."""
+class Recorded(Protocol):
+    """What a comparison needs of a `Recording`."""
 
-    tick: int
-    field: str
-    first: float
-    second: float
+    header: LogHeader
 
-    def __str__(self) -> str:
-        """One line for a person."""
-        return f"tick {self.tick}: {self.field}: {self.first!r} and {self.second!r}"
+    def __iter__(self) -> Iterator[Record]:
+        """Yield all whole records in the order of their ticks."""
+
+
+class MessageDifference(NamedTuple):
+    """A stream whose messages differ."""
+
+    stream: str
+    first_tick: int
+    ticks: int  # in how many they differ
+    first: tuple[str, ...]  # those of the first such tick
+    second: tuple[str, ...]
 
 
 class Comparison(NamedTuple):
     """What a comparison found."""
 
     equal: bool
-    ticks: int  # compared and found equal
-    difference: FieldDifference | None
-    window: str  # text around the difference, or why the recordings cannot be compared; empty if equal
-
-
-Pair = tuple[Record | None, Record | None]
+    ticks: int  # compared
+    differences: tuple[FieldDifference, ...] = ()
+    messages: tuple[MessageDifference, ...] = ()
+    only_first: tuple[str, ...] = ()  # columns
+    only_second: tuple[str, ...] = ()
+    reason: str = ""  # why not all ticks could be compared
 
 
 def compare(
-    first: Iterable[Record],
-    first_header: LogHeader,
-    second: Iterable[Record],
-    second_header: LogHeader,
+    first: Recorded,
+    second: Recorded,
     tolerances: Mapping[str, float] | None = None,
+    names: Mapping[str, str] = RENAMED,
 ) -> Comparison:
-    """Compare two recordings tick by tick.
+    """Compare two recordings tick by tick, by the names of their columns, in memory that does not grow with them.
 
     Args:
-        first: ticks of the one recording (a `LogReader`).
-        first_header: its header.
-        second: ticks of the other.
-        second_header: its header.
-        tolerances: column name or pattern (`platform.*`) to the absolute difference allowed, in the column's unit;
-            the last match counts. Columns without one must be equal to the byte; `inf` ignores a column.
+        first: the one recording.
+        second: the other.
+        tolerances: as of `allowed_differences`; without, all must be equal to the byte.
+        names: earlier names of columns to those of now.
 
     Returns:
-        The first tick that differs, and its first differing column in the order of the state vector.
+        The fields of both that differ, and the columns that only one has: these do not count as a difference.
+
+    Raises:
+        RecordingError: a pattern of the tolerances fits no column, or a recording has two columns of one name.
     """
-    for key in ("columns", "tick_hz"):
-        if getattr(first_header, key) != getattr(second_header, key):
-            return Comparison(False, 0, None, f"the recordings have different {key} and cannot be compared")
-    columns = first_header.columns
-    allowed = _allowed(columns, tolerances or {})
-    before: deque[Pair] = deque(maxlen=CONTEXT_TICKS)
-    pairs: Iterator[Pair] = zip_longest(first, second)
-    ticks = 0
-    for left, right in pairs:
+    if first.header.tick_hz != second.header.tick_hz:
+        rates = f"tick_hz {first.header.tick_hz} against {second.header.tick_hz}"
+        return Comparison(False, 0, reason=f"the recordings cannot be compared: {rates}")
+    match = matched(renamed(first.header, names), renamed(second.header, names))
+    fields = Differences(match.columns, allowed_differences(match.columns, tolerances or {}))
+    messages = _Messages(first.header, second.header)
+    ticks, reason = 0, ""
+    for left, right in zip_longest(first, second):
         if left is None or right is None or left.tick != right.tick:
-            return Comparison(False, ticks, None, f"after {ticks} equal ticks: {_name(left)} against {_name(right)}")
-        if fields := unequal_fields(left.vector, right.vector, allowed):
-            index = fields[0]
-            found = FieldDifference(left.tick, columns[index], float(left.vector[index]), float(right.vector[index]))
-            around = [*before, (left, right), *islice(pairs, CONTEXT_TICKS)]
-            return Comparison(False, ticks, found, _window(around, columns, fields, left.tick))
-        before.append((left, right))
+            reason = f"only {ticks} ticks could be compared, then {_name(left)} against {_name(right)}"
+            break
+        fields.add(left.tick, match.of_first(left.vector), match.of_second(right.vector))
+        if left.messages or right.messages:
+            messages.add(left, right)
         ticks += 1
-    return Comparison(True, ticks, None, "")
+    found, texts = fields.found(), messages.found()
+    return Comparison(
+        equal=not (found or texts or reason),
+        ticks=ticks,
+        differences=found,
+        messages=texts,
+        only_first=match.only_first,
+        only_second=match.only_second,
+        reason=reason,
+    )
 
 
-def unequal_fields(left: Row, right: Row, allowed: Row) -> list[int]:
-    """Return the indices of values that differ by more than `allowed` (0: to the byte; NaN equals the same NaN)."""
-    differs = left.view(np.uint64) != right.view(np.uint64)
-    if not differs.any():
-        return []
-    with np.errstate(invalid="ignore"):
-        beyond = ~(np.abs(left - right) <= allowed) & ~np.isinf(allowed)
-    return [int(index) for index in np.flatnonzero(differs & (beyond | (allowed == 0.0)))]
+class _Messages:
+    """Compares the messages of each stream, by its name; a stream that one recording lacks is empty there."""
+
+    def __init__(self, first: LogHeader, second: LogHeader) -> None:
+        self._first = [stream.name for stream in first.streams]
+        self._second = [stream.name for stream in second.streams]
+        self._found: dict[str, MessageDifference] = {}
+
+    def add(self, first: Record, second: Record) -> None:
+        left, right = _by_stream(first, self._first), _by_stream(second, self._second)
+        for name in sorted({*left, *right}):
+            mine, other = left.get(name, ()), right.get(name, ())
+            if mine != other:
+                known = self._found.get(name) or MessageDifference(name, first.tick, 0, _texts(mine), _texts(other))
+                self._found[name] = known._replace(ticks=known.ticks + 1)
+
+    def found(self) -> tuple[MessageDifference, ...]:
+        return tuple(self._found.values())
 
 
-def _allowed(columns: tuple[str, ...], tolerances: Mapping[str, float]) -> Row:
-    allowed = np.zeros(len(columns))
-    for pattern, tolerance in tolerances.items():
-        if math.isnan(tolerance) or tolerance < 0.0:
-            raise ValueError(f"tolerance of {pattern!r} is {tolerance}, not 0 or more")
-        for index, column in enumerate(columns):
-            if fnmatchcase(column, pattern):
-                allowed[index] = tolerance
-    return allowed
+def _by_stream(record: Record, names: list[str]) -> dict[str, tuple[bytes, ...]]:
+    found: dict[str, tuple[bytes, ...]] = {}
+    for message in record.messages:
+        name = names[message.stream]
+        found[name] = (*found.get(name, ()), message.content)
+    return found
+
+
+def _texts(contents: tuple[bytes, ...]) -> tuple[str, ...]:
+    return tuple(content.decode("utf-8", "replace") for content in contents)
 
 
 def _name(record: Record | None) -> str:
     return "the end" if record is None else f"tick {record.tick}"
-
-
-def _window(around: Iterable[Pair], columns: tuple[str, ...], fields: list[int], tick: int) -> str:
-    """Draw the differing columns over the ticks around `tick`, first recording above second."""
-    pairs = [(left, right) for left, right in around if left is not None and right is not None]
-    head = " " * 10 + "".join(f"{('>' if left.tick == tick else '') + str(left.tick):>14}" for left, _ in pairs)
-    lines = [head]
-    for index in fields[:SHOWN_FIELDS]:
-        lines.append(columns[index])
-        lines.append("  first   " + "".join(f"{left.vector[index]:>14.6g}" for left, _ in pairs))
-        lines.append("  second  " + "".join(f"{right.vector[index]:>14.6g}" for _, right in pairs))
-        changes = (right.vector[index] - left.vector[index] for left, right in pairs)
-        lines.append("  change  " + "".join(f"{change:>14.3g}" for change in changes))
-    if len(fields) > SHOWN_FIELDS:
-        lines.append(f"and {len(fields) - SHOWN_FIELDS} more columns at tick {tick}")
-    return "\n".join(lines)

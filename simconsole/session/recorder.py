@@ -24,10 +24,12 @@ class LogRecorder:
     def write(self, snapshot: Snapshot) -> int:
         """Append one tick; an exception, as of a failing disk, goes into the log's `failure` and raises an event."""
         try:
-            acts = self._take_acts()
-            self._log.append(snapshot.tick, snapshot.vector, [(ACTS, act) for act in acts] if acts else ())
-            for act in acts:
-                self._summary.add(act)
+            if acts := self._take_acts():
+                self._log.append(snapshot.tick, snapshot.vector, [(ACTS, act) for act in acts])
+                for act in acts:
+                    self._summary.add(act)
+            else:  # nearly every tick
+                self._log.append(snapshot.tick, snapshot.vector)
         except Exception as error:
             self._log.failure = self._log.failure or f"{type(error).__name__}: {error}"
             raise

@@ -16,6 +16,18 @@ def copy(short: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(short, tmp_path / "copy"))
 
 
+ALL_EQUAL = {
+    "equal": True,
+    "ticks": 750,
+    "differences": [],
+    "messages": [],
+    "only_first": [],
+    "only_second": [],
+    "reason": "",
+    "problems": [],
+}
+
+
 def test_verify_says_that_a_bundle_is_whole_or_what_is_wrong(short: Path, tmp_path: Path) -> None:
     done = simconsole("verify", short)
     assert done.returncode == 0
@@ -34,7 +46,7 @@ def test_verify_says_that_a_bundle_is_whole_or_what_is_wrong(short: Path, tmp_pa
 def test_compare_finds_a_bundle_equal_to_itself(short: Path) -> None:
     done = simconsole("compare", short, short, "--json")
     assert done.returncode == 0
-    assert results(done) == {"equal": True, "ticks": 750, "difference": None, "problems": []}
+    assert results(done) == ALL_EQUAL
 
 
 def test_report_is_written_again(short: Path, tmp_path: Path) -> None:
@@ -64,7 +76,7 @@ def test_compare_finds_two_drives_of_one_script_equal(short: Path, script: Path,
     assert results(done)["packing_failure"] is None
     compared = simconsole("compare", short, again, "--json")
     assert compared.returncode == 0, compared.stdout
-    assert results(compared) == {"equal": True, "ticks": 750, "difference": None, "problems": []}
+    assert results(compared) == ALL_EQUAL
     assert not (again / "drive.log").exists()
     assert simconsole("unpack", again).returncode == 0
     assert (short / "drive.log").read_bytes() == (again / "drive.log").read_bytes()
@@ -95,16 +107,25 @@ def test_what_cannot_be_packed_is_named_and_the_others_are_packed(copy: Path, tm
     assert (copy / "drive.parquet").exists()
 
 
-def test_compare_names_the_first_difference_with_a_window(
-    short: Path, copy: Path, rewrite_log: Callable[..., None], rewrite_checksums: Callable[[Path], None]
-) -> None:
+@pytest.fixture
+def forged(copy: Path, rewrite_log: Callable[..., None], rewrite_checksums: Callable[[Path], None]) -> Path:
+    """A bundle with one value changed, all hashes right."""
     rewrite_log(copy / "drive.log", FORGED_TICK, "vehicle.vx_mps", 7.25)
     rewrite_checksums(copy)
-    done = simconsole("compare", short, copy, "--json")
+    return copy
+
+
+def test_compare_names_every_field_that_differs_with_the_ticks_around(short: Path, forged: Path) -> None:
+    done = simconsole("compare", short, forged, "--json")
     assert done.returncode == 1
-    difference = results(done)["difference"]
-    assert difference["tick"] == FORGED_TICK
-    assert "vehicle.vx_mps" in str(difference)
+    found = results(done)
+    (difference,) = found["differences"]
+    assert (found["equal"], found["ticks"]) == (False, 750)
+    assert (difference["field"], difference["unit"]) == ("vehicle.vx_mps", "m/s")
+    assert (difference["first_tick"], difference["ticks"], difference["second"]) == (FORGED_TICK, 1, 7.25)
+    assert [around["tick"] for around in difference["around"]] == list(range(FORGED_TICK - 3, FORGED_TICK + 4))
+    assert "750 ticks compared, 1 fields differ" in done.stdout
+    assert f">{FORGED_TICK}" in done.stdout
     assert "7.25" in done.stdout
 
 
@@ -159,3 +180,25 @@ def test_a_changed_manifest_is_one_line_to_every_command(copy: Path) -> None:
     path.write_bytes(path.read_bytes().replace(b'"lateness": "not paced"', b'"lateness": "all paced"'))
     for command in ("verify", "replay", "report"):
         assert f"{path}: altered: sha256 " in complaint(simconsole(command, copy))
+
+
+@pytest.mark.parametrize("command", ["compare", "replay"])
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [("vehicle.vx_mps: 100\n", 0), ('{"vehicle.*": "ignore"}', 0), ("vehicle.vx_mps: 0.001\n", 1)],
+)
+def test_tolerances_are_read_from_a_file(
+    short: Path, forged: Path, tmp_path: Path, command: str, text: str, code: int
+) -> None:
+    (tmp_path / "tolerances.yaml").write_text(text)
+    bundles = (short, forged) if command == "compare" else (forged,)
+    done = simconsole(command, *bundles, "--tolerances", tmp_path / "tolerances.yaml", "--json")
+    assert done.returncode == code, done.stdout + done.stderr
+    assert results(done)["equal"] is (code == 0)
+    assert "every hash equal" not in done.stdout
+    assert command == "compare" or code or "no field of both differs by more than its tolerance" in done.stdout
+
+
+def test_a_tolerance_for_no_field_is_one_line(short: Path, tmp_path: Path) -> None:
+    (tmp_path / "tolerances.yaml").write_text("vehicle.speed_kmh: 1\n")
+    assert "vehicle.speed_kmh" in complaint(simconsole("replay", short, "--tolerances", tmp_path / "tolerances.yaml"))

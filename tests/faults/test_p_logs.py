@@ -1,6 +1,7 @@
 """P02 to P04 of the fault catalogue: what is left of a drive after kills, power cuts and damage."""
 
 import io
+import json
 import os
 import random
 import shutil
@@ -31,11 +32,17 @@ KILLED = """
 import mmap, os, sys, time
 from pathlib import Path
 from simconsole.recording.bundles.provenance import Given
+from simconsole.session import opening
 from simconsole.session.lifecycle import drive
 from tests.faults.recorded import session
 folder = Path(sys.argv[1])
 resolved = session(Path(sys.argv[2]), 3600.0)
 begun = memoryview(mmap.mmap(os.open(folder / "begun", os.O_RDWR), 8)).cast("q")
+recorder = opening.LogRecorder
+def said():  # by an operator, in each third tick; the tick in work is the one after the last that began
+    tick = begun[0] + 1
+    return [b'{"tick":%d,"act":"mark","participant":"P07"}' % tick] if tick % 3 == 0 else []
+opening.LogRecorder = lambda log, take_acts: recorder(log, said)
 drive(resolved, folder / "warm", lambda snapshot: snapshot.tick >= 10)  # compiled and loaded, once for all
 def watch(snapshot):
     begun[0] = snapshot.tick  # shared memory: survives the kill, like nothing inside the process
@@ -86,6 +93,9 @@ def test_p02_kill_9_of_a_drive_loses_at_most_the_tick_in_work(
             assert ticks == list(range(1, len(ticks) + 1))
             assert begun() - 1 <= len(ticks) <= begun() + 1
             lost = max(lost, begun() - len(ticks))
+            acts = [(message.tick, json.loads(message.content)) for message in bundle.log.messages("acts")]
+            said = {"act": "mark", "participant": "P07"}
+            assert acts == [(tick, {"tick": tick, **said}) for tick in ticks if tick % 3 == 0]
             replayed = replay_bundle(bundle.folder)
             assert replayed.good, replayed
             assert replayed.ticks == len(ticks)

@@ -1,92 +1,89 @@
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import msgspec
 import numpy as np
 import pytest
 
-from simconsole.recording.compare import Comparison, compare
-from simconsole.recording.framing import Record
+from simconsole.recording.compare import Comparison, MessageDifference, compare
+from simconsole.recording.framing import Record, SealedMessage
 from simconsole.recording.log_header import LogHeader, vector_stream
+from simconsole.values.errors import RecordingError
+from tests.recording.conftest import with_messages
+
+
+class Ticks:
+    """A recording in memory."""
+
+    def __init__(self, header: LogHeader, records: Sequence[Record]) -> None:
+        self.header = header
+        self._records = records
+
+    def __iter__(self) -> Iterator[Record]:
+        return iter(self._records)
 
 
 def records(rows: Sequence[np.ndarray], first: int = 1) -> list[Record]:
     return [Record(tick, row, b"") for tick, row in enumerate(rows, start=first)]
 
 
-def against(header: LogHeader, left: list[Record], right: list[Record], **tolerances: float) -> Comparison:
-    named = {key.replace("__", "."): value for key, value in tolerances.items()}
-    return compare(left, header, right, header, named)
-
-
-def changed(rows: list[np.ndarray], tick: int, column: int, value: float) -> list[Record]:
-    other = [row.copy() for row in rows]
-    other[tick - 1][column] = value
-    return records(other)
+def with_columns(header: LogHeader, *columns: str) -> LogHeader:
+    return msgspec.structs.replace(header, streams=(vector_stream(columns, 2),))
 
 
 def test_equal_recordings(header: LogHeader, rows: list[np.ndarray]) -> None:
-    assert against(header, records(rows), records(rows)) == Comparison(True, 40, None, "")
+    drive = Ticks(header, records(rows))
+    assert compare(drive, drive) == Comparison(True, 40)
 
 
-def test_the_first_differing_tick_and_field_with_a_window(header: LogHeader, rows: list[np.ndarray]) -> None:
-    other = changed(rows, 20, 3, rows[19][3] + 0.5)
-    result = against(header, records(rows), other)
-    assert not result.equal
-    assert result.ticks == 19
-    assert result.difference is not None
-    assert result.difference[:2] == (20, "vehicle.vx_mps")
-    assert str(result.difference).startswith("tick 20: vehicle.vx_mps: ")
-    lines = result.window.splitlines()
-    assert lines[0].split() == ["17", "18", "19", ">20", "21", "22", "23"]
-    assert lines[1] == "vehicle.vx_mps"
-    assert lines[4].split() == ["change", "0", "0", "0", "0.5", "0", "0", "0"]
-
-
-def test_one_bit_is_a_difference_without_a_tolerance(header: LogHeader, rows: list[np.ndarray]) -> None:
-    value = math.nextafter(rows[4][2], math.inf)
-    assert against(header, records(rows), changed(rows, 5, 2, value)).ticks == 4
-    assert against(header, records(rows), changed(rows, 5, 2, value), driver__brake=1e-9).equal
-
-
-@pytest.mark.parametrize(("change", "equal"), [(0.0625, True), (0.125, False), (math.nan, False), (math.inf, False)])
-def test_a_tolerance_is_absolute_and_per_column(
-    header: LogHeader, rows: list[np.ndarray], change: float, equal: bool
-) -> None:
-    base = changed(rows, 9, 3, 1.0)
-    other = changed(rows, 9, 3, 1.0 + change)
-    assert compare(base, header, other, header, {"vehicle.*": 0.0625}).equal is equal
-    assert not compare(base, header, other, header, {"driver.*": 100.0}).equal
-    assert compare(base, header, other, header, {"*": math.inf}).equal
-
-
-def test_the_last_matching_pattern_counts(header: LogHeader, rows: list[np.ndarray]) -> None:
-    other = changed(rows, 9, 3, rows[8][3] + 1.0)
-    assert compare(records(rows), header, other, header, {"*": 0.1, "vehicle.vx_mps": 2.0}).equal
-    assert not compare(records(rows), header, other, header, {"vehicle.vx_mps": 2.0, "*": 0.1}).equal
-
-
-@pytest.mark.parametrize("tolerance", [-1.0, math.nan])
-def test_a_tolerance_below_zero_is_a_bug(header: LogHeader, tolerance: float) -> None:
-    with pytest.raises(ValueError, match="not 0 or more"):
-        compare([], header, [], header, {"*": tolerance})
+def test_every_field_that_differs_to_the_end(header: LogHeader, rows: list[np.ndarray]) -> None:
+    other = [row.copy() for row in rows]
+    other[19][3] += 0.5
+    other[39][2] += 0.25
+    result = compare(Ticks(header, records(rows)), Ticks(header, records(other)))
+    assert (result.equal, result.ticks) == (False, 40)
+    assert [(one.field, one.first_tick) for one in result.differences] == [("vehicle.vx_mps", 20), ("driver.brake", 40)]
+    assert compare(Ticks(header, records(rows)), Ticks(header, records(other)), {"*": 0.5}).equal
+    with pytest.raises(RecordingError, match=r"vehicle\.vz_mps"):
+        compare(Ticks(header, []), Ticks(header, []), {"vehicle.vz_mps": 0.5})
 
 
 def test_a_shorter_recording_differs_where_it_ends(header: LogHeader, rows: list[np.ndarray]) -> None:
-    result = against(header, records(rows), records(rows[:30]))
-    assert not result.equal
-    assert result.window == "after 30 equal ticks: tick 31 against the end"
-    assert against(header, records(rows), records(rows, 2)).window == "after 0 equal ticks: tick 1 against tick 2"
+    whole = Ticks(header, records(rows))
+    short = compare(whole, Ticks(header, records(rows[:30])))
+    assert (short.equal, short.ticks, short.differences) == (False, 30, ())
+    assert short.reason == "only 30 ticks could be compared, then tick 31 against the end"
+    shifted = compare(whole, Ticks(header, records(rows, 2)))
+    assert shifted.reason == "only 0 ticks could be compared, then tick 1 against tick 2"
 
 
-def test_recordings_of_different_kinds_are_not_compared(header: LogHeader, rows: list[np.ndarray]) -> None:
+def test_recordings_of_different_rates_are_not_compared(header: LogHeader) -> None:
     slower = msgspec.structs.replace(header, tick_hz=100)
-    assert "different tick_hz" in compare([], header, [], slower).window
-    other = msgspec.structs.replace(header, streams=(vector_stream((*header.columns, "more"), 2),))
-    assert "different columns" in compare([], header, [], other).window
+    assert compare(Ticks(header, []), Ticks(slower, [])).reason.endswith("tick_hz 250 against 100")
 
 
-def test_many_differing_columns_are_counted_not_listed(header: LogHeader) -> None:
-    wide = msgspec.structs.replace(header, streams=(vector_stream(tuple(f"c{index}" for index in range(10)), 2),))
-    result = against(wide, records([np.zeros(10)]), records([np.ones(10)]))
-    assert result.window.splitlines()[-1] == "and 4 more columns at tick 1"
+def test_columns_that_only_one_has_are_named_and_the_others_compared(header: LogHeader, rows: list[np.ndarray]) -> None:
+    wider = with_columns(header, *header.columns[:2], "sample.new_axis", *header.columns[2:3], "vehicle.speed_mps")
+    other = [np.array([*row[:2], 9.0, row[2], row[3]]) for row in rows]
+    result = compare(Ticks(header, records(rows)), Ticks(wider, records(other)))
+    assert (result.equal, result.only_first) == (True, ("vehicle.vx_mps",))
+    assert result.only_second == ("sample.new_axis", "vehicle.speed_mps")
+    names = {"vehicle.vx_mps": "vehicle.speed_mps"}
+    again = compare(Ticks(header, records(rows)), Ticks(wider, records(other)), names=names)
+    assert (again.equal, again.only_first, again.only_second) == (True, (), ("sample.new_axis",))
+    other[4][4] += math.pi
+    assert not compare(Ticks(header, records(rows)), Ticks(wider, records(other)), names=names).equal
+
+
+def test_messages_are_compared_by_stream_and_tick(header: LogHeader, rows: list[np.ndarray]) -> None:
+    said, unsaid = records(rows), records(rows)
+    for tick, words in ((7, b"a"), (9, b"b"), (12, b"c")):
+        said[tick - 1] = said[tick - 1]._replace(messages=(SealedMessage(1, words, b""),))
+    unsaid[6] = said[6]
+    unsaid[8] = unsaid[8]._replace(messages=(SealedMessage(1, b"B\xff", b""), SealedMessage(1, b"", b"")))
+    result = compare(Ticks(with_messages(header), said), Ticks(with_messages(header), unsaid))
+    assert not result.equal
+    assert result.messages == (MessageDifference("acts", 9, 2, ("b",), ("B\ufffd", "")),)
+    assert compare(Ticks(with_messages(header), said), Ticks(with_messages(header), said)).equal
+    assert not compare(Ticks(header, records(rows)), Ticks(with_messages(header), said)).equal
+    assert compare(Ticks(header, records(rows)), Ticks(with_messages(header), records(rows))).equal

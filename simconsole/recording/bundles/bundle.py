@@ -46,6 +46,8 @@ SESSION_FILE: Final = "session.json"
 _EVENTS: Final = "events.events"
 BLOCK_BYTES: Final = 1 << 12
 """Allocation unit of a file system: the last ticks may begin and end inside a block."""
+MESSAGE_BYTES: Final = 1 << 13
+"""Room for the messages of each of the last ticks: more than any act of an operator is long."""
 
 
 Log = LogReader | PackedLog
@@ -149,7 +151,8 @@ class BundleWriter:
                 versions=dict(versions or {}),
                 provenance=provenance,
             )
-            self._room_bytes = ROOM_BYTES + LAST_TICKS * frame_size(len(header.columns)) + 2 * BLOCK_BYTES
+            last_ticks_bytes = LAST_TICKS * (frame_size(len(header.columns)) + MESSAGE_BYTES) + 2 * BLOCK_BYTES
+            self._room_bytes = ROOM_BYTES + last_ticks_bytes
             self._write_first()
             free_room = partial(give_back, folder / MANIFEST, ROOM_BYTES)
             self.log = LogWriter(folder / LOG, header, free_room=free_room)

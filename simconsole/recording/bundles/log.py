@@ -33,6 +33,7 @@ LAST_TICKS: Final = 2
 
 _READ_BYTES: Final = 1 << 20
 _AT_ONCE: Final = 256  # ticks; BLOCK_TICKS is a multiple of it
+_NO_MESSAGES: Final[tuple[bytes, dict[int, bytes]]] = (b"", {})
 
 _synchronise = getattr(os, "fdatasync", os.fsync)
 
@@ -110,7 +111,7 @@ class LogWriter:
         content = vector.tobytes()
         if len(content) != self._vector_bytes:
             raise ValueError(f"a state vector of {len(content)} bytes in a log of {self._vector_bytes}")
-        sealed, digests = self._sealed(tick, messages) if messages else (b"", {})
+        sealed, digests = self._sealed(tick, messages) if messages else _NO_MESSAGES
         frame, digest = seal(self.digest, tick, content, sealed)
         problem = self._problem(frame)
         if problem is not None:
@@ -123,7 +124,8 @@ class LogWriter:
         if problem is None:
             self.ticks += 1
             self.digest = digest
-            self._message_digests.update(digests)
+            if digests:
+                self._message_digests.update(digests)
 
     def _sealed(self, tick: int, messages: Sequence[tuple[str, bytes]]) -> tuple[bytes, dict[int, bytes]]:
         """Return the messages of a tick as they lie in its frame, and the chained hashes of their streams after it."""

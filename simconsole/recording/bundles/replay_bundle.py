@@ -1,6 +1,7 @@
 """Replay of a bundle: build the console that the bundle describes and make every tick again."""
 
 import hashlib
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -8,12 +9,14 @@ import numpy as np
 from simconsole import __version__
 from simconsole.profiles.files.loader import parse
 from simconsole.recording.bundles.bundle import SESSION_FILE, Bundle, open_bundle, session_problem
-from simconsole.recording.replay import ReplayResult, replay
+from simconsole.recording.replay import Remade, ReplayResult, replay
 from simconsole.tick.advance import Console, ConsoleState, advance_vector, decide
 from simconsole.tick.assembly import ResolvedSession, assemble
 from simconsole.values.errors import RecordingError
 from simconsole.values.host import jit as compiling
 from simconsole.values.host.jit import compiled
+from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE
+from simconsole.values.state_vector import TickInputs, input_vector
 
 
 def recorded_session(bundle: Bundle) -> ResolvedSession:
@@ -45,33 +48,42 @@ def state_at(folder: Path, tick: int) -> tuple[Console, ConsoleState]:
     console, start = assemble(recorded_session(bundle), compiled)
     if tick == 0:
         return console, start
+    if bundle.log.header.columns != console.columns:
+        raise RecordingError(f"{folder}: its columns are not this version's: no drive can go on from it")
     last = 0
-    for record in bundle.log if bundle.log.header.columns == console.columns else ():
+    for record in bundle.log:
         if record.tick == tick:
             return console, ConsoleState(tick, np.array(record.vector))
         last = record.tick
-    raise RecordingError(f"{folder}: tick: value {tick}: 0 to {last}, of a drive with the same columns")
+    raise RecordingError(f"{folder}: tick: value {tick}: 0 to {last}, and recorded")
 
 
-def replay_bundle(folder: Path) -> ReplayResult:
-    """Make every tick of the bundle in `folder` again from its recorded inputs.
+def replay_bundle(folder: Path, tolerances: Mapping[str, float] | None = None) -> ReplayResult:
+    """Make every tick of the bundle in `folder` again from its recorded inputs, and compare the fields of both.
+
+    `tolerances` are absolute differences that are allowed, by column or pattern, as of `allowed_differences`.
 
     Raises:
-        RecordingError: not a bundle, truncated, or of another version.
+        RecordingError: not a bundle, truncated, with a gap, or a tolerance for no field.
     """
     bundle = open_bundle(folder)
     console, state = assemble(recorded_session(bundle), compiled)
     found = replay(
         bundle.log,
         bundle.log.header,
-        console.columns,
-        state.vector,
-        lambda tick, previous, inputs: advance_vector(previous, inputs, console),
+        Remade(
+            columns=console.columns,
+            no_inputs=input_vector(TickInputs(NO_SAMPLE, NO_COMMAND, NO_EVENTS)),
+            initial=state.vector,
+            advance=lambda tick, previous, inputs: advance_vector(previous, inputs, console),
+        ),
+        tolerances=tolerances,
         first_tick=1,
         recorded_ticks=bundle.manifest.ticks if bundle.manifest.finished else None,
     )
     remarks = bundle.remarks() + _other_sources(bundle, console)
-    return found._replace(problems=tuple(bundle.problems()), remarks=tuple(remarks))
+    broken = [f"{bundle.log.path}: {problem}" for problem in found.problems]
+    return found._replace(problems=(*broken, *bundle.problems()), remarks=tuple(remarks))
 
 
 def _other_sources(bundle: Bundle, console: Console) -> list[str]:

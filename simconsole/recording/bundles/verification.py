@@ -29,7 +29,7 @@ from simconsole.recording.bundles.manifest import (
 )
 from simconsole.recording.bundles.packed_log import PackedLog
 from simconsole.recording.bundles.signing import signature_problem, signed_by
-from simconsole.recording.framing import START_OF_CHAIN, chain
+from simconsole.recording.chains import Chains
 from simconsole.values.errors import RecordingError
 
 
@@ -112,12 +112,9 @@ def coverage(folder: Path) -> Coverage:
 
 def log_problems(log: Log, manifest: Manifest) -> Iterator[str]:
     """Yield one line for each way in which the log is not the one that `manifest` tells of, after a pass over it."""
-    digest, ticks, broken = START_OF_CHAIN, 0, None
+    chains, ticks = Chains(log.header), 0
     for record in log:
-        digest = chain(digest, record.tick, record.vector.tobytes())
-        if broken is None and digest != record.digest:
-            broken = record.tick
-        digest = record.digest
+        chains.follow(record)
         ticks += 1
     session = log.path.parent / SESSION_FILE
     if SESSION_FILE in manifest.files:
@@ -127,9 +124,8 @@ def log_problems(log: Log, manifest: Manifest) -> Iterator[str]:
     if manifest.recording_failure is None and (said := alarm(log)):
         yield said
     yield from (f"{log.path}: {part}" for part in log.breaks)
-    if broken is not None:
-        yield f"{log.path}: the chained hash does not hold at tick {broken}"
-    found, stated = f"{ticks} ticks, hash {digest.hex()}", f"{manifest.ticks} ticks, hash {manifest.digest}"
+    yield from (f"{log.path}: {problem}" for problem in chains.problems())
+    found, stated = f"{ticks} ticks, hash {chains.digest.hex()}", f"{manifest.ticks} ticks, hash {manifest.digest}"
     if manifest.finished and found != stated:
         yield f"{log.path}: {found}, {MANIFEST} says {stated}"
     if isinstance(log, PackedLog) and not log.breaks and entry_of(log.log_bytes()) != manifest.packed_log:

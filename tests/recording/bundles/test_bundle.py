@@ -103,7 +103,7 @@ def test_verify_names_the_tick_whose_hash_does_not_hold(
         parts.append(seal(before if record.tick != 5 else bytes(8), record.tick, record.vector.tobytes())[0])
     (bundle / "drive.log").write_bytes(b"".join(parts))
     rewrite_checksums(bundle)
-    assert verify(bundle) == [f"{bundle / 'drive.log'}: the chained hash does not hold at tick 5"]
+    assert verify(bundle) == [f"{bundle / 'drive.log'}: stream state: the chained hash does not hold at tick 5"]
 
 
 def test_exports_may_be_added_and_lost(bundle: Path) -> None:
