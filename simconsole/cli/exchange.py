@@ -23,16 +23,18 @@ def export_bundle(options: Namespace) -> Outcome:
     from simconsole.recording.exports.export_formats import default_path, export_drive
 
     bundle = open_bundle(Path(options.bundle))
+    resolved = recorded_session(bundle)
     path = Path(options.out) if options.out else default_path(Path(options.bundle), options.to)
     with Progress(f"exporting to {options.to}") as progress:
         done = export_drive(
             bundle.log,
-            recorded_session(bundle).session,
+            resolved.session,
             options.to,
             path,
             _choice(options),
             options.layout,
             lambda tick: progress.count(tick, bundle.manifest.ticks),
+            resolved.world,
         )
     problems = bundle.problems()
     rows = [(name, f"{count}") for name, count in done.counts.items()]

@@ -30,7 +30,6 @@ from simconsole.session.paced import (
 )
 from simconsole.session.pacing import Pacer, UnpacedPacer, realtime_hints
 from simconsole.session.recorder import LogRecorder
-from simconsole.session.resolution import route_of
 from simconsole.session.seat import open_seating
 from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession
@@ -40,6 +39,7 @@ from simconsole.values.errors import BridgeError, ProfileError
 from simconsole.values.latency import LatencyStatistics
 from simconsole.values.protocols import CommandSource, DeviceIdentity, NobodyCommands, Output
 from simconsole.values.state_vector import Snapshot
+from simconsole.world.route import route_of
 
 LOOKED_AT = 16
 """In a drive that is not paced, hops are timed in each 16th tick."""
@@ -283,7 +283,7 @@ def _open_lockstep(
     token, drive = _own_token(session), new_nonce()
     odometry_hz = console.tick_hz / period_ticks
     bridge = LockstepBridge(
-        session.outputs.bridge, odometry_hz=odometry_hz, folder=folder, drive=drive, route=route_of(resolved)
+        session.outputs.bridge, odometry_hz=odometry_hz, folder=folder, drive=drive, route=route_of(resolved.world)
     )
     course = session.features.autopilot
     program = None

@@ -12,7 +12,6 @@ from simconsole.hud.view import HudSettings, settings_of
 from simconsole.processes.shared_memory import EventCounters, Ring, TextQueue
 from simconsole.processes.worker import Worker, WorkerSpec
 from simconsole.profiles.view import HudProfile
-from simconsole.session.resolution import route_of
 from simconsole.session.scene_job import LIVE_SCENE, scene_job
 from simconsole.session.worker_programs import (
     ACTS,
@@ -44,6 +43,7 @@ from simconsole.values.protocols import CommandSource, NobodyCommands
 from simconsole.values.signals import NEVER_TICKS, NO_COMMAND, EventInput, RemoteCommand
 from simconsole.values.state_vector import LAYOUT, Snapshot
 from simconsole.values.units import NS_PER_S
+from simconsole.world.route import route_of
 
 START_PATIENCE_S = 20.0
 
@@ -182,7 +182,7 @@ def worker_specs(
             tick_hz=tick_hz,
             drive=drive,
             bundle=str(bundle.absolute()),
-            route=route_of(resolved),
+            route=route_of(resolved.world),
         )
     if outputs.can is not None:
         from simconsole.canbus.messages import wheel_columns

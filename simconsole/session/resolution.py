@@ -22,7 +22,6 @@ _NAMED: Final = (
     ("devices", "cockpit"),
 )
 """Keys of a session that name another profile."""
-ROUTE_STEP_M: Final = 2.0
 
 
 def resolve(session: SessionProfile, cockpit: str | None = None) -> ResolvedSession:
@@ -38,17 +37,6 @@ def resolve(session: SessionProfile, cockpit: str | None = None) -> ResolvedSess
         vehicle=load_vehicle(session.scenario.vehicle),
         world=None if world is None else load("worlds", world, WorldProfile, max_bytes=MAX_DATA_BYTES),
     )
-
-
-def route_of(resolved: ResolvedSession) -> tuple[tuple[float, float, float], ...]:
-    """Return the course to follow, one lap, as points of x and y in m and yaw in rad; empty without a course."""
-    if resolved.world is None:
-        return ()
-    from simconsole.world.course import Course
-
-    course = Course(resolved.world)
-    points = [course.at(at_m * ROUTE_STEP_M) for at_m in range(int(course.length_m / ROUTE_STEP_M) + 1)]
-    return tuple((point.x_m, point.y_m, point.yaw_rad) for point in points)
 
 
 def load_session(name_or_path: str) -> SessionProfile:

@@ -75,16 +75,20 @@ def driven(tmp_path_factory: pytest.TempPathFactory) -> Bundle:
 @pytest.fixture(scope="module")
 def exported(driven: Bundle) -> Callable[[str], Path]:
     """That drive in a format of topics, made once."""
-    session = recorded_session(driven).session
+    resolved = recorded_session(driven)
 
     def made(name: str) -> Path:
         path = driven.folder.parent / f"drive.{name}"
         path = path if name == "mcap" else path.with_suffix("")
         if not path.exists():
-            export_drive(driven.log, session, name, path)
+            export_drive(driven.log, resolved.session, name, path, world=resolved.world)
         return path
 
     return made
+
+
+NOT_IN_THE_LOG = ("/control", "/console/request", "/console/bridge", "/rosout")
+"""Commands, which are compared by themselves, and what the console says of its connections."""
 
 
 def raw(path: Path) -> dict[str, list[tuple[int, bytes]]]:
@@ -99,8 +103,8 @@ def raw(path: Path) -> dict[str, list[tuple[int, bytes]]]:
 def test_an_export_is_what_a_client_got_during_the_drive(driven: Bundle, exported: Callable[[str], Path]) -> None:
     """Against the recorder on the live bridge: every topic of the log, message by message and byte by byte."""
     live, made = raw(driven.folder / "topics.mcap"), raw(exported("mcap"))
-    outputs = [name for name in live if not name.startswith(("/control", "/console/request", "/console/bridge"))]
-    assert len(outputs) == 13
+    outputs = [name for name in live if not name.startswith(NOT_IN_THE_LOG)]
+    assert len(outputs) == 18
     for name in outputs:
         assert made[name] == live[name], name
     command_times = {name: [time_ns for time_ns, _ in made[name]] for name in made if name.startswith("/control")}

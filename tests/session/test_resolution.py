@@ -1,15 +1,12 @@
-import math
-from itertools import pairwise
 from pathlib import Path
 
-import msgspec
 import pytest
 
 from simconsole.profiles.files import loader as profile_files
 from simconsole.profiles.files.loader import names, profiles_folder
 from simconsole.profiles.session import SessionProfile
 from simconsole.profiles.vehicle import CarProfile
-from simconsole.session.resolution import load_scenario, load_session, override, resolve, route_of
+from simconsole.session.resolution import load_scenario, load_session, override, resolve
 from simconsole.values.errors import ProfileError
 
 
@@ -148,12 +145,3 @@ def test_a_vehicles_own_file_lies_beside_the_session_or_the_scenario_that_names_
     session.write_text("schema: 1\nscenario: {vehicle: ../mine}\n")
     with pytest.raises(ProfileError, match=r"scenario.vehicle"):
         load_session(str(session))
-
-
-def test_route_is_one_lap_of_the_course_and_nothing_without_one() -> None:
-    resolved = resolve(load_session("bridge"))
-    route = route_of(resolved)
-    steps = [math.dist(one[:2], other[:2]) for one, other in pairwise((*route, route[0]))]
-    assert len(route) > 1000
-    assert max(steps) <= 2.01
-    assert route_of(msgspec.structs.replace(resolved, world=None)) == ()

@@ -10,7 +10,7 @@ from simconsole.bridge.console.command_decoder import CommandDecoder
 from simconsole.bridge.console.command_messages import CommandMessages
 from simconsole.bridge.console.input_slots import BridgeInputs
 from simconsole.bridge.console.output_schedule import OutputSchedule, topic_names
-from simconsole.bridge.console.topics import BRIDGE, ODOMETRY, Outputs
+from simconsole.bridge.console.topics import BRIDGE, ODOMETRY, Outputs, Route
 from simconsole.bridge.messages import standard_registry
 from simconsole.bridge.messages.cdr import serialize
 from simconsole.profiles.bridge import BridgeProfile
@@ -48,8 +48,10 @@ class TopicMessage(NamedTuple):
 class DriveTopics:
     """Makes the messages of one drive, in the order of their times, by the code that the bridge has."""
 
-    def __init__(self, session: SessionProfile) -> None:
+    def __init__(self, session: SessionProfile, route: Route = ()) -> None:
         """Take names and rates of the session's bridge, or of a bridge as shipped where it has none.
+
+        `route` is what /route shows.
 
         Raises:
             ProfileError: the session's bridge renames or rates a topic that does not exist.
@@ -62,7 +64,7 @@ class DriveTopics:
             self._step_ticks = session.mode.control_period_ticks
             odometry_hz = session.mode.tick_hz / self._step_ticks
             profile = msgspec.structs.replace(profile, rates_hz={**profile.rates_hz, ODOMETRY: odometry_hz})
-        self._outputs = Outputs(self.registry, profile)
+        self._outputs = Outputs(self.registry, profile, route=route)
         outputs, commands = self._outputs.topics(), CommandDecoder(BridgeInputs(), profile).topics()
         self.names = topic_names(profile, [*(topic.name for topic in outputs), *(topic.name for topic in commands)])
         recorded = tuple(output for output in outputs if output.name not in UNRECORDED)

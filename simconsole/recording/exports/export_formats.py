@@ -10,11 +10,13 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 from simconsole.profiles.session import SessionProfile
+from simconsole.profiles.world import WorldProfile
 from simconsole.recording.exports.column_table import ColumnTable, TableChoice
 from simconsole.recording.exports.drive_topics import DriveTopics, OnTick
 from simconsole.recording.exports.foxglove import foxglove_layout
 from simconsole.recording.reading import Recording
 from simconsole.values.errors import RecordingError
+from simconsole.world.route import route_of
 
 TOPIC_FORMATS: Final = {"mcap": "mcap_file", "rosbag2": "rosbag2_folder"}
 TABLE_FORMATS: Final = {"csv": "csv_file", "parquet": "parquet_file"}
@@ -39,6 +41,7 @@ def export_drive(
     choice: TableChoice | None = None,
     layout: bool = False,
     on_tick: OnTick = lambda tick: None,
+    world: WorldProfile | None = None,
 ) -> Exported:
     """Write a recorded drive to the new file or folder `path`.
 
@@ -50,6 +53,7 @@ def export_drive(
         choice: what of it, for a table; None for all columns in every tick.
         layout: write a layout of Foxglove beside the topics.
         on_tick: told now and then how far it is.
+        world: where it was driven: the route.
 
     Raises:
         RecordingError: `path` exists or cannot be written, or the choice does not fit the format or the recording.
@@ -65,7 +69,7 @@ def export_drive(
         if taken.exists():
             raise RecordingError(f"{taken}: cannot be exported to: it exists already")
     module = import_module(f"simconsole.recording.exports.{FORMATS[format_name]}")
-    topics = DriveTopics(session) if of_topics else None
+    topics = DriveTopics(session, route_of(world)) if of_topics else None
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         # A folder of its own to write in, because rosbag2 names its files after its folder.

@@ -42,10 +42,10 @@ def test_replay_of_the_demo_finds_every_hash_equal(demo: Demo) -> None:
         "missing": [],
         "problems": [],
         "remarks": [],
-        "vouches_for": ["drive.log", "session.json"],
+        "vouches_for": ["drive.parquet", "session.json"],
     }
     assert "every hash equal" in done.stdout
-    says = "this vouches for drive.log, session.json; for manifest.json, report.html, scene.rrd: simconsole verify"
+    says = "this vouches for drive.parquet, session.json; for manifest.json, report.html, scene.rrd: simconsole verify"
     assert says in done.stdout.splitlines()
 
 
