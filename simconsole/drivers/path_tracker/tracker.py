@@ -100,7 +100,7 @@ class Tracker:
         is one period after the one before.
         """
         found = self.s_m is not None
-        if not engaged:
+        if not (engaged and found):  # at its first sight of the car, too: somebody has steered it so far
             self._follow(seen, max(seen.vx_mps, 0.0))
         now, self._wheel = self._estimator.observe(seen, time_s, self._accel if engaged else 0.0)
         place = self.course.project(now.x_m, now.y_m, self.s_m, now.yaw_rad)
@@ -114,15 +114,18 @@ class Tracker:
             offset, slope = self._line.at(place.s_m)
         heading = place.heading_error_rad - math.atan(slope)
         before = self._command
-        self._command = self._steer(now, place.s_m, place.lateral_m - offset, heading, speed)
+        change = self._change(now, place.s_m, place.lateral_m - offset, heading)
+        self._command = self._limited(change, speed, engaged)
         self._estimator.sent(self._command)
         target, accel = self._accelerate(place.s_m, speed)
         period = self._timing.period_s
-        change = (math.atan(self._command) - math.atan(before)) / period
+        turned = (math.atan(self._command) - math.atan(before)) / period
         jerk, self._accel = (accel - self._accel) / period, accel
-        return TrackerCommand(math.atan(self._command), change, target, accel, jerk)
+        return TrackerCommand(math.atan(self._command), turned, target, accel, jerk)
 
-    def _steer(self, seen: VehicleMotion, s_m: float, lateral_m: float, heading_rad: float, speed: float) -> float:
+    def _change(self, seen: VehicleMotion, s_m: float, lateral_m: float, heading_rad: float) -> float:
+        """Return by how much the command's tangent should change in the coming period."""
+        speed = seen.vx_mps
         index, share = _between(speed)
         feedback = self._feedback[index] * (1.0 - share) + self._feedback[index + 1] * share
         preview = self._preview[index] * (1.0 - share) + self._preview[index + 1] * share
@@ -130,9 +133,13 @@ class Tracker:
         cells = (way / self._curvature_step_m).astype(np.int64) % len(self._curvature)
         ahead = self._curvature[cells] + self._line.curvature(way)
         state = (lateral_m, heading_rad, seen.vy_mps, seen.yaw_rate_radps, self._wheel, self._command)
-        change = -float(feedback @ state) - float(preview @ ahead)
+        return -float(feedback @ state) - float(preview @ ahead)
+
+    def _limited(self, change: float, speed: float, engaged: bool) -> float:
+        """Return the command after a change, as far as steering and gate go; while not engaged no gate holds it."""
         tightest = self._car.wheelbase_m / max(speed * speed, 1.0)
-        step = min(_STEERING_RATE_RADPS, _LATERAL_JERK_MPS3 * tightest) * self._timing.period_s
+        rate = min(_STEERING_RATE_RADPS, _LATERAL_JERK_MPS3 * tightest) if engaged else _STEERING_RATE_RADPS
+        step = rate * self._timing.period_s
         limit = min(math.tan(self._car.max_road_wheel_rad), _LATERAL_MPS2 * tightest)
         return clip(self._command + clip(change, -step, step), -limit, limit)
 

@@ -4,8 +4,12 @@ from typing import Any
 
 import pytest
 
+from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.topics import ONCE, is_due, quaternion
+from simconsole.profiles.bridge import BridgeProfile
+from simconsole.profiles.link import LinkProfile, LocalisationProfile
 from simconsole.values.signals import NEVER_TICKS, Event, Mode, Reason
+from tests.bridge.fixtures import Peer
 
 TYPES = {
     "/clock": "rosgraph_msgs/Clock",
@@ -186,3 +190,25 @@ def test_quaternion_is_the_rotation(roll: float, pitch: float, yaw: float) -> No
     assert 2 * (x * z - w * y) == pytest.approx(-math.sin(pitch))
     assert math.atan2(2 * (y * z + w * x), 1 - 2 * (x * x + y * y)) == pytest.approx(roll)
     assert math.atan2(2 * (x * y + w * z), 1 - 2 * (y * y + z * z)) == pytest.approx(yaw)
+
+
+def test_with_errors_a_controller_gets_no_ground_truth_unless_it_is_granted(snapshot: Callable[..., Any]) -> None:
+    noise = LocalisationProfile(position_noise_m=0.5, yaw_noise_deg=5.0)
+    hidden = ConsoleBridge(BridgeProfile(link=LinkProfile(localisation=noise)))
+    assert "/ground_truth/odom" not in hidden.router.topics
+    shown = Peer(ConsoleBridge(BridgeProfile(link=LinkProfile(localisation=noise, ground_truth=True))))
+    for topic in ("/odom", "/ground_truth/odom", "/tf", "/imu/data"):
+        shown.send(op="subscribe", topic=topic)
+    shown.bridge.publish(snapshot(125), 0)
+    shown.heard()
+    shown.bridge.publish(snapshot(375, x_m=3.0, yaw_rad=0.5), 0)
+    messages = {message["topic"]: message["msg"] for message in shown.heard()}
+    truth, odometry = (messages[topic]["pose"] for topic in ("/ground_truth/odom", "/odom"))
+    assert truth["pose"]["position"]["x"] == 3.0
+    assert truth["pose"]["orientation"]["z"] == pytest.approx(math.sin(0.25))
+    assert truth["covariance"] == [0.0] * 36
+    assert odometry["pose"]["position"]["x"] != 3.0
+    assert odometry["covariance"][0] == pytest.approx(0.25)
+    (transform,) = messages["/tf"]["transforms"]
+    assert transform["transform"]["translation"]["x"] == odometry["pose"]["position"]["x"]
+    assert messages["/imu/data"]["orientation"] == odometry["pose"]["orientation"]
