@@ -8,9 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 
 from simconsole.recording.bundles.bundle import BundleWriter, add_export, unlisted
 from simconsole.recording.bundles.manifest import read_manifest
+from simconsole.recording.bundles.pack import pack
 from simconsole.recording.bundles.signing import make_key, sign
 from simconsole.recording.bundles.verification import coverage, examine, verify
 from simconsole.recording.log_header import LogHeader
@@ -44,13 +46,17 @@ def refused(folder: Path) -> bool:
         return "\n" not in str(error)
 
 
-def test_no_changed_byte_of_any_file_passes(short: Path, tmp_path: Path, sample: Sample) -> None:
-    """Of log, session, report, scene, manifest and signature alike, however short the file is."""
-    bundle = signed(Path(shutil.copytree(short, tmp_path / "bundle")), tmp_path)
+@pytest.mark.parametrize("log", ["drive.log", "drive.parquet"])
+def test_no_changed_byte_of_any_file_passes(short: Path, tmp_path: Path, sample: Sample, log: str) -> None:
+    """Of log, session, report, scene, manifest and signature alike, however short the file is; packed or not."""
+    bundle = Path(shutil.copytree(short, tmp_path / "bundle"))
+    if log == "drive.parquet":
+        pack(bundle)
+    signed(bundle, tmp_path)
     names = sorted(path.name for path in bundle.iterdir())
-    assert names == ["drive.log", "manifest.json", "report.html", "scene.rrd", "session.json", "signature.json"]
+    assert names == [log, "manifest.json", "report.html", "scene.rrd", "session.json", "signature.json"]
     assert verify(bundle) == []
-    chance, times = random.Random(sample.seed), sample.of(150, 2_000)
+    chance, times = random.Random(sample.seed), sample.of(90, 2_000)
     for turn in range(times):
         path = bundle / names[turn % len(names)]
         content = path.read_bytes()
