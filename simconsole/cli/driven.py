@@ -58,7 +58,7 @@ def _pack(result: DriveResult, results: dict[str, Any]) -> list[tuple[str, str]]
     """Pack the bundle; return rows for a person, and add to `results` why it stays as it is, if so."""
     try:
         with Progress("packing" + _patience(result)) as progress:
-            sizes = pack(result.folder, progress.part)
+            sizes = pack(result.folder, progress.done)
     except Exception as error:  # noqa: BLE001  as above: the log stays
         results["packing_failure"] = said = one_line(error)
         return [("packed", f"no: {said}")]

@@ -55,10 +55,6 @@ class Progress:
             self._next_s = time.monotonic() + INTERVAL_S
             self._write(f"{self._what}: {done} ticks" + (f" of {total}" if total else ""))
 
-    def part(self, what: str, share: float) -> None:
-        """Show a part of the work and how far it has come, 0 to 1."""
-        self._write(f"{self._what}: {what}: {share:.0%}")
-
     def done(self, what: str, share: float) -> None:
         """Show how much of something is done, from 0 to 1, beside the other things; at most every INTERVAL_S."""
         self._shares[what] = share

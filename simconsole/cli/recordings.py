@@ -149,7 +149,7 @@ def _each(folders: list[str], change: Callable[[Path, Watch], Sizes], doing: str
     for folder in folders:
         try:
             with Progress(doing) as progress:
-                found = change(Path(folder), progress.part)
+                found = change(Path(folder), progress.done)
         except RecordingError as error:
             failures[folder] = str(error)
             lines.append(str(error))
