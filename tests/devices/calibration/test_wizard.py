@@ -158,9 +158,12 @@ def test_button_that_was_refused_for_one_meaning_is_free_for_another(person: Per
 
 
 @pytest.mark.parametrize("typed", ["39", "2521", "wide", "nan"])
-def test_degrees_that_no_wheel_turns_are_refused(typed: str, t500: CockpitProfile) -> None:
-    with pytest.raises(DeviceError, match=f"degrees: value {typed}: 40 to 2520"):
-        Person(t500, degrees=typed).wizard.run("by hand")
+def test_degrees_that_no_wheel_turns_are_refused_and_asked_again(typed: str, t500: CockpitProfile) -> None:
+    person = Person(t500, degrees=typed)
+    person.gives_up_after = ("degrees", 3)
+    with pytest.raises(KeyboardInterrupt):
+        person.wizard.run("by hand")
+    assert sum(f"degrees: value {typed}: 40 to 2520" in line for line in person.said) == 2
 
 
 def test_throttle_cannot_be_skipped(t500: CockpitProfile) -> None:
