@@ -10,7 +10,6 @@ from simconsole.devices.calibration.input_detection import DeviceKey, SteadyRead
 from simconsole.devices.calibration.wizard import QUIT, SKIP, TRIES, Entry, Wizard
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load
-from simconsole.values.errors import DeviceError
 
 PAD: DeviceKey = (0x045E, 0x028E)
 LEVER: DeviceKey = (1, 2)
