@@ -63,7 +63,7 @@ def test_ecu_drives_the_car_by_can_alone(port: int, codec: Codec, tmp_path: Path
     frames = {suffix: read_log(bundle / f"can.{suffix}") for suffix in ("blf", "log")}
     assert [frame for _, frame in frames["blf"]] == [frame for _, frame in frames["log"]]
     ids = {frame.can_id for _, frame in frames["blf"]}
-    assert ids == {0x100, 0x101, 0x102, 0x110, 0x111, 0x112, 0x120, 0x200}
+    assert ids == {0x100, 0x101, 0x102, 0x103, 0x110, 0x111, 0x112, 0x120, 0x200}
     assert {"can.blf", "can.log"} <= set(open_bundle(bundle).manifest.files)
 
 

@@ -124,7 +124,8 @@ def test_an_autopilot_needs_lockstep_or_real_time(tmp_path: Path) -> None:
 @pytest.mark.parametrize("link", ["upstream: {url: 'ws://ros:9090'}", "ros2: {}"])
 def test_a_free_drive_refuses_links_that_it_would_not_open(tmp_path: Path, link: str) -> None:
     session = tmp_path / "session.yaml"
-    session.write_text(SESSION.replace("scene: null", f"scene: null, bridge: {{{link}}}"))
+    text = SESSION.replace("scene: null", f"scene: null, bridge: {{{link}}}")
+    session.write_text(text + "devices: {driver: none}\n")
     said = drive(tmp_path, session, "--for", 1)
     assert said.startswith("mode.pacing: value free: ")
     assert f"outputs.bridge.{link.partition(':')[0]}" in said

@@ -3,7 +3,7 @@
 //   node roslib_program.mjs ROSLIB drive URL SECONDS  drive until the odometry's stamp has come so far
 // What they saw goes to standard output, one line of JSON each time.
 
-import { createHash } from "node:crypto";
+import { createHash, randomUUID } from "node:crypto";
 import { pathToFileURL } from "node:url";
 
 const [file, job, url, word] = process.argv.slice(2);
@@ -22,7 +22,8 @@ const first = (topic, wanted = () => true) =>
   });
 
 function authenticate(ros) {
-  const shown = ["roslib", "simconsole", "salt", 1, "control", 2];
+  const now = Math.floor(Date.now() / 1000);
+  const shown = ["roslib", "simconsole", randomUUID(), now, "control", now + 60];
   const mac = createHash("sha512").update([word, ...shown].join("")).digest("hex");
   ros.authenticate(mac, ...shown);
 }

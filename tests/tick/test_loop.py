@@ -207,7 +207,7 @@ def test_a_failed_recording_is_an_event_of_every_tick_after_it_and_changes_nothi
         rows.append(recorder.vectors)
         if fails_at == 100:
             assert [snapshot.tick for snapshot in shown if snapshot.recording_failed] == list(range(101, 301))
-            assert [shown[at].notice for at in (99, 100)] == [Notice.NONE, Notice.RECORDING_FAILED]
+            assert [shown[at].notice for at in (99, 100)] == [Notice.NOT_ENGAGED, Notice.RECORDING_FAILED]
             assert shown[199].events.events == Event.RECORDING_FAILED | Event.MARK
     told = console.columns.index("events.events")
     assert np.array_equal(np.delete(rows[0], told, 1), np.delete(rows[1], told, 1), equal_nan=True)

@@ -21,7 +21,6 @@ from simconsole.values.errors import BridgeError, RemoteProtocolError
 from simconsole.values.units import NS_PER_S
 
 NODE: Final = "/simconsole"
-LOG: Final = "rcl_interfaces/msg/Log"
 UNRELAYED: Final = "/rosapi/unrelayed"
 """Not rosapi's own: what does not cross between the console and the graph that it has joined."""
 MAX_PARAMETERS: Final = 256
@@ -79,7 +78,7 @@ class RosApi:
         router.calls.add_builtin(UNRELAYED, "simconsole_msgs/Unrelayed", self._unrelayed)
 
     def _topics(self, args: Fields, dialect: Dialect) -> Fields:
-        topics = self._listed(dialect)
+        topics = self._router.topics
         return {"topics": list(topics), "types": [_type_name(topic.type, dialect) for topic in topics.values()]}
 
     def _topics_for_type(self, args: Fields, dialect: Dialect) -> Fields:
@@ -90,13 +89,8 @@ class RosApi:
         return {"topics": [name for name, topic in self._router.topics.items() if topic.type == wanted]}
 
     def _topics_and_raw_types(self, args: Fields, dialect: Dialect) -> Fields:
-        texts = [self._full_text(topic.type, dialect) for topic in self._listed(dialect).values()]
+        texts = [self._full_text(topic.type, dialect) for topic in self._router.topics.values()]
         return {**self._topics(args, dialect), "typedefs_full_text": texts}
-
-    def _listed(self, dialect: Dialect) -> dict[str, Topic]:
-        """Return the topics that a client is told of: viewers take a server with ROS 2's log for one of ROS 2."""
-        topics = self._router.topics
-        return topics if dialect == "ros2" else {name: topic for name, topic in topics.items() if topic.type != LOG}
 
     def _full_text(self, type_name: str, dialect: Dialect) -> str:
         key = (type_name, dialect)

@@ -61,7 +61,7 @@ def test_headless_node_sends_at_the_drives_own_time(on_bus: OnBus, ecu_port: Can
     received = 0
     while ecu_port.receive(0.0) is not None:
         received += 1
-    assert received == 410  # 3 x 100 + 2 x 50 + 10: no wheel speeds here
+    assert received == 510  # 4 x 100 + 2 x 50 + 10: no wheel speeds here
 
 
 def test_headless_flood_takes_a_bounded_number_of_frames_a_tick(
@@ -147,8 +147,8 @@ def test_worker_without_new_ticks_is_silent(on_bus: OnBus, ecu_port: CanPort, sn
     worker = Worker(on_bus)
     try:
         worker.snapshots.append(snapshot(0))
-        wait_until(lambda: on_bus.node.counters().sent == 6, "the frames of a tick")
+        wait_until(lambda: on_bus.node.counters().sent == 7, "the frames of a tick")
         pause(0.1)
-        assert on_bus.node.counters().sent == 6
+        assert on_bus.node.counters().sent == 7
     finally:
         worker.end()
