@@ -297,7 +297,7 @@ def unlisted(folder: Path, manifest: Manifest) -> list[str]:
 
 def leftovers(manifest: Manifest) -> set[str]:
     """Return the names of files that a killed pack or unpack may have left: the other form of the log, drafts."""
-    both = {LOG, PACKED_LOG} if manifest.finished else set()
+    both = {LOG, PACKED_LOG, MANIFEST + DRAFT} if manifest.finished else set()
     return {name for name in (*both, LOG + DRAFT, PACKED_LOG + DRAFT) if name not in manifest.files}
 
 
