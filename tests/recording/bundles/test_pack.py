@@ -59,7 +59,7 @@ moment = sys.argv.pop()
 def part(self, what, share):
     if what == moment:
         os.kill(os.getpid(), signal.SIGINT)
-Progress.part = part
+Progress.done = part
 sys.exit(main())
 """
 
