@@ -20,10 +20,11 @@ from tests.samples import SAMPLED, draw_seed, measured, module_sample, sample
 
 __all__ = ["demo", "measured", "module_sample", "sample", "script", "short"]
 
-# A shell starts background jobs with SIGINT ignored, and every program a test starts would inherit that: a Ctrl-C sent
-# to it would be lost, however the tests themselves were started.
+# A shell starts background jobs with SIGINT ignored, and nohup ignores SIGHUP; every program that a test starts would
+# inherit that: a Ctrl-C or a hang-up sent to it would be lost, however the tests themselves were started.
 signal.signal(signal.SIGINT, signal.default_int_handler)
-
+if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 HARDWARE = Path(__file__).parent / "hardware"
 

@@ -12,7 +12,7 @@ from typing import Final, TypeVar
 
 T = TypeVar("T")
 
-PATIENCE_S: Final = 120.0
+PATIENCE_S: Final = 600.0
 """A time-out against hanging, far above what anything takes beside other work."""
 
 

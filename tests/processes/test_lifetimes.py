@@ -17,9 +17,8 @@ from simconsole.processes.lifetimes import ORPHAN_S, close_pipe, end, end_with_p
 from simconsole.processes.shared_memory import temporary_folder
 from simconsole.processes.supervisor import SUPERVISOR_END_S
 from tests.faults.lives import holders, marked, standard_input
-from tests.patience import wait_until
+from tests.patience import PATIENCE_S, wait_until
 
-FOREVER_S = 60.0
 CHILD = """
 import sys, time
 from pathlib import Path
@@ -58,32 +57,32 @@ def test_a_child_ends_at_the_end_of_the_pipe_whatever_it_does(tmp_path: Path) ->
         assert (tmp_path / "told").read_bytes() == b"a line\n"
         assert holders(standard_input(process.pid)) == {os.getpid()}
         close_pipe(process)
-        assert process.wait(FOREVER_S) == 1
+        assert process.wait(PATIENCE_S) == 1
 
 
 def test_a_pipe_that_closed_while_the_child_was_being_loaded_ends_it(tmp_path: Path) -> None:
     with child(tmp_path, "None", "soon") as process:
         close_pipe(process)
-        assert process.wait(FOREVER_S) == 1
+        assert process.wait(PATIENCE_S) == 1
 
 
 def test_a_child_that_was_told_half_a_line_has_been_told_nothing(tmp_path: Path) -> None:
     with child(tmp_path, "None", "soon", told=b"half a li") as process:
         close_pipe(process)
-        assert process.wait(FOREVER_S) == 1
+        assert process.wait(PATIENCE_S) == 1
     assert not (tmp_path / "told").exists() or (tmp_path / "told").read_bytes() == b""
 
 
 def test_a_child_that_is_told_to_end_ends_in_its_own_way(tmp_path: Path) -> None:
     with child(tmp_path, "3600", "obeys") as process:
-        end([process], FOREVER_S)
+        end([process], PATIENCE_S)
         assert process.returncode == 7
 
 
 def test_a_child_that_does_not_obey_has_its_patience_only(tmp_path: Path) -> None:
     with child(tmp_path, "0.1", "late") as process:
         wait_for_file(tmp_path / "told")
-        end([process], FOREVER_S)
+        end([process], PATIENCE_S)
         assert process.returncode == 1
 
 
@@ -113,7 +112,7 @@ def test_siblings_do_not_keep_each_other_alive(tmp_path: Path) -> None:
         wait_for_file(tmp_path / "a" / "told")
         wait_for_file(tmp_path / "b" / "told")
         close_pipe(first)
-        assert first.wait(FOREVER_S) == 1
+        assert first.wait(PATIENCE_S) == 1
         assert second.poll() is None
 
 
@@ -181,7 +180,7 @@ def test_what_is_ended_at_once_leaves_nothing(number: signal.Signals, where: str
         if where == "drive":
             assert process.stdout.readline() == b"noted\n"
         process.send_signal(number)
-        assert process.wait(FOREVER_S) == 130
+        assert process.wait(PATIENCE_S) == 130
     assert not folder.exists()
 
 
@@ -234,7 +233,7 @@ def test_a_signal_ends_a_process_that_is_in_c_code(where: str, signals: list[sig
         for number in signals:
             assert process.poll() is None
             process.send_signal(number)
-        assert process.wait(FOREVER_S) == lifetimes.INTERRUPTED
+        assert process.wait(PATIENCE_S) == lifetimes.INTERRUPTED
     finally:
         process.kill()
         process.wait()
