@@ -98,7 +98,7 @@ def pretend(platform: str) -> None:
         words = (importer, *rest) if "globals" not in named else ()
         return modules[name] if ours and name in modules else import_(name, *words, **named)
 
-    builtins.__import__ = foreign_import
+    builtins.__import__ = foreign_import  # type: ignore[assignment]  # Python calls it with one to five words
     for name in ("is_dir", "exists"):
         setattr(pathlib.Path, name, without_linux_folders(getattr(pathlib.Path, name)))
 
