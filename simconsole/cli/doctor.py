@@ -27,7 +27,10 @@ def doctor(options: Namespace) -> Outcome:
         "system": f"{platform.system()} {platform.release()} {platform.machine()}",
         "cores": str(os.cpu_count()),
         **{name: _version(name) for name in LIBRARIES},
-        "input devices": _yes(Path("/dev/input").is_dir(), "no wheel can be read; virtual, trace and script can"),
+        "input devices": _yes(
+            sys.platform != "linux" or Path("/dev/input").is_dir(),
+            "no wheel can be read; virtual, trace and script can",
+        ),
         "display": _yes(bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")), "no window; PNG works"),
         "shared memory": _yes(Path("/dev/shm").is_dir(), "a temporary folder takes its place"),
         "real-time scheduling": _yes(_may_use_fifo(), "the tick loop runs without it, later under load"),
@@ -48,7 +51,7 @@ def _yes(has: bool, otherwise: str) -> str:
 
 
 def _may_use_fifo() -> bool:
-    if not sys.platform.startswith("linux"):
+    if sys.platform != "linux":
         return False
     import resource
 

@@ -39,6 +39,7 @@ def parser() -> argparse.ArgumentParser:
     root.add_argument("--version", action="version", version=f"simconsole {__version__}")
     commands = root.add_subparsers(dest="command", required=True, metavar="COMMAND")
     _driving(commands)
+    _beside_a_drive(commands)
     _recordings(commands)
     _exchange(commands)
     _tools(commands)
@@ -142,6 +143,8 @@ def _driving(commands: Any) -> None:
     check.add_argument("--junit", metavar="FILE", help="write a JUnit report")
     check.add_argument("--update-golden", action="store_true", help="accept what was driven as the new golden")
 
+
+def _beside_a_drive(commands: Any) -> None:
     operate = _command(commands, "operate", "operate:operate", "an operator's act in a running drive")
     acts = (
         "start",

@@ -73,7 +73,9 @@ def spawn(
         stdout=subprocess.DEVNULL if stdout is None else stdout,
         stderr=stderr,
         env={**(os.environ if environment is None else environment), "PYTHONPATH": path},
-        process_group=0,  # a terminal's Ctrl-C reaches the core only, which then ends what it started in order
+        # A terminal's Ctrl-C reaches the core only, which then ends what it started in order.
+        process_group=0,
+        creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),
     )
     _write(process, told)
     return process
@@ -299,7 +301,8 @@ def act_promptly() -> None:
     handler is going to do, if that is to end the process.
     """
     read, write = os.pipe()
-    os.set_blocking(write, False)
+    if hasattr(os, "set_blocking"):  # Windows: from Python 3.12 on; a pipe that is never full blocks nobody
+        os.set_blocking(write, False)
     signal.set_wakeup_fd(write, warn_on_full_buffer=False)
     threading.Thread(target=_act_promptly, args=(read,), name="signals", daemon=True).start()
 

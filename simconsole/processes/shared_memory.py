@@ -10,6 +10,7 @@ import contextlib
 import mmap
 import os
 import shutil
+import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -27,6 +28,9 @@ PREFIX: Final = "simconsole-"
 MAGIC: Final = 0x53494D52494E4701  # 'SIMRING', layout 1
 HEADER_WORDS: Final = 8  # magic, width, capacity, newest number, then spare
 RECORD_HEAD_WORDS: Final = 3  # number, stamp, second stamp; the number again behind the values
+_SYNCHRONIZE: Final = 0x00100000  # winnt.h
+_WAIT_TIMEOUT: Final = 0x102  # winerror.h
+_ERROR_ACCESS_DENIED: Final = 5
 READ_TRIES: Final = 8
 """A reader gives up after so many records were overwritten under it; the next call succeeds."""
 
@@ -262,7 +266,7 @@ def _make(base: Path) -> Path:
     sweep()
     try:
         folder = Path(tempfile.mkdtemp(prefix=f"{PREFIX}{os.getpid()}-", dir=base))
-        if os.name == "posix":
+        if sys.platform != "win32":
             _owned[folder] = os.open(folder, os.O_RDONLY)
             _lock(_owned[folder])
     except OSError as error:
@@ -281,10 +285,8 @@ def remove_run_folder(folder: Path) -> None:
 def sweep(*bases: Path) -> list[Path]:
     """Remove what dead processes of this user have left in `bases`: folders and files; return all of it.
 
-    Without bases, where they are made. Nothing where there is no POSIX.
+    Without bases, where they are made.
     """
-    if os.name != "posix":
-        return []
     places = set(bases) or {_base(), Path(tempfile.gettempdir())}
     stale = [path for base in places for path in base.glob(f"{PREFIX}*-*") if _is_stale(path)]
     for path in stale:
@@ -311,6 +313,8 @@ def _is_stale(path: Path) -> bool:
     owner = path.name.removeprefix(PREFIX).partition("-")[0]
     if not owner.isdigit() or _alive(int(owner)):
         return False
+    if sys.platform == "win32":  # temporary folders are a user's own, and nobody hides processes there
+        return True
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
     except OSError:
@@ -325,12 +329,23 @@ def _is_stale(path: Path) -> bool:
 
 
 def _lock(descriptor: int) -> None:
-    import fcntl
+    if sys.platform != "win32":
+        import fcntl
 
-    fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
 def _alive(process_id: int) -> bool:
+    if sys.platform == "win32":  # os.kill would end it there, whatever the signal
+        import ctypes
+
+        kernel32 = ctypes.WinDLL("kernel32", use_last_error=True)
+        handle = kernel32.OpenProcess(_SYNCHRONIZE, False, process_id)
+        if not handle:
+            return ctypes.get_last_error() == _ERROR_ACCESS_DENIED
+        alive = kernel32.WaitForSingleObject(handle, 0) == _WAIT_TIMEOUT
+        kernel32.CloseHandle(handle)
+        return bool(alive)
     try:
         os.kill(process_id, 0)
     except ProcessLookupError:

@@ -1,6 +1,6 @@
 """The cockpit profile: which devices make one cockpit and what their axes and buttons mean; the script of a drive."""
 
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, Literal, NamedTuple, TypeAlias
 
 from msgspec import Meta, Struct
 
@@ -9,7 +9,7 @@ from simconsole.profiles.force_feedback import ForceFeedback
 RoleName: TypeAlias = Literal["wheel", "pedals", "shifter", "handbrake"]
 UsbId: TypeAlias = Annotated[int, Meta(ge=0, le=0xFFFF)]
 AxisIndex: TypeAlias = Annotated[int, Meta(ge=0, le=31)]
-ButtonIndex: TypeAlias = Annotated[int, Meta(ge=0, le=23)]
+ButtonIndex: TypeAlias = Annotated[int, Meta(ge=0, le=127)]
 Raw: TypeAlias = Annotated[float, Meta(ge=-1.0, le=1.0)]
 Share: TypeAlias = Annotated[float, Meta(ge=0.0, le=1.0)]
 Curve: TypeAlias = Annotated[float, Meta(ge=0.2, le=5.0)]
@@ -19,8 +19,18 @@ Title: TypeAlias = Annotated[str, Meta(max_length=200)]
 ButtonLabel: TypeAlias = Annotated[str, Meta(min_length=1, max_length=16)]
 """What is printed on a button, or what it is called."""
 
+MAX_BUTTONS = 128
+"""As many as Windows tells of one device (DIJOYSTATE2)."""
 MIN_TRAVEL_RAW = 0.2
 """A pedal whose ends lie closer together than this cannot be distinguished from its noise."""
+
+
+class DeviceKey(NamedTuple):
+    """One device: USB vendor and product id, and where several of them are plugged in the port of this one."""
+
+    vendor_id: int
+    product_id: int
+    port: str = ""
 
 
 class OtherDevice(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -30,7 +40,7 @@ class OtherDevice(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     product_id: UsbId
     name: Title
     axes: Annotated[int, Meta(ge=0, le=32)]  # at least
-    buttons: Annotated[int, Meta(ge=0, le=24)]
+    buttons: Annotated[int, Meta(ge=0, le=MAX_BUTTONS)]
 
 
 class RoleBinding(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -40,10 +50,11 @@ class RoleBinding(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     vendor_id: UsbId
     product_id: UsbId
     name: Title  # as the firmware says it; shown to people, never matched
+    port: Title = ""  # of two devices with one id: where this one is plugged in, as `simconsole devices list` says
     axes: Annotated[int, Meta(ge=0, le=32)]
-    buttons: Annotated[int, Meta(ge=0, le=24)]
+    buttons: Annotated[int, Meta(ge=0, le=MAX_BUTTONS)]
     hats: Annotated[int, Meta(ge=0, le=4)] = 0
-    button_labels: Annotated[list[ButtonLabel], Meta(max_length=24)] = []  # of button 0, 1, ...
+    button_labels: Annotated[list[ButtonLabel], Meta(max_length=MAX_BUTTONS)] = []  # of button 0, 1, ...
     others: Annotated[list[OtherDevice], Meta(max_length=8)] = []  # of a shifter only
 
     def __post_init__(self) -> None:
@@ -54,6 +65,16 @@ class RoleBinding(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
         """
         if self.others and self.role != "shifter":
             raise ValueError(f"others must be empty where role is {self.role}: only a shifter may be another")
+
+    @property
+    def key(self) -> DeviceKey:
+        """The device."""
+        return DeviceKey(self.vendor_id, self.product_id, self.port)
+
+    @property
+    def candidates(self) -> "tuple[RoleBinding | OtherDevice, ...]":
+        """The device, then those that may play the role in its place."""
+        return (self, *self.others)
 
 
 class BootMode(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -104,6 +125,26 @@ class Pedals(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     brake: PedalAxis
     clutch: PedalAxis | None = None
     handbrake: PedalAxis | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse a throttle and a brake on one axis that do not go apart from a common rest.
+
+        Raises:
+            ValueError: names the keys.
+        """
+        if not self.combined:
+            return
+        apart = (self.throttle.full_raw - self.throttle.rest_raw) * (self.brake.full_raw - self.brake.rest_raw) < 0.0
+        if not apart or abs(self.throttle.rest_raw - self.brake.rest_raw) > MIN_TRAVEL_RAW:
+            raise ValueError(
+                f"throttle and brake share axis {self.brake.axis}: rest_raw must be the same and full_raw on either "
+                "side of it"
+            )
+
+    @property
+    def combined(self) -> bool:
+        """Whether one axis is throttle to one side and brake to the other."""
+        return self.throttle.axis == self.brake.axis
 
 
 class Shifter(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -206,6 +247,8 @@ class CockpitProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
             raise ValueError("shifter.gears must name at least one button where shifter.pattern is h")
         for binding in self.roles:
             _check_indices(binding, self)
+            if any(binding.key[:2] == other.key[:2] and not binding.port and other.port for other in self.roles):
+                raise ValueError(f"roles.port must be given for all devices {binding.key[0]:04x}:{binding.key[1]:04x}")
 
     def button_label(self, action: str) -> str:
         """Return what the button with this meaning is called, empty where no button has it.

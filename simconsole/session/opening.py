@@ -19,6 +19,7 @@ from simconsole.recording.bundles.log import LogWriter
 from simconsole.session.lockstep import STAND_S, LockstepLink, start_autopilot
 from simconsole.session.paced import (
     CommandPort,
+    Memory,
     add_can_memory,
     bridge_address,
     bridge_summary,
@@ -160,45 +161,33 @@ def open_realtime(
     recorder = LogRecorder(log, memory.acts.take)
     ecu = add_can_memory(resolved, console, folder)
     supervisor = SupervisorHandle(folder, worker_specs(resolved, console, folder, bundle, drive))
-    programs: list[Popen[bytes]] = []
-    stack.callback(end, programs, PROGRAM_END_S)
-    stack.callback(supervisor.stop, lambda: memory.snapshots.is_empty)
-    stack.callback(tell_to_end, programs)
-    supervisor.start()
+    programs = _started(supervisor, memory, stack)
     opening.close()  # from here on the supervisor removes the folder, however the core ends
-
-    address = _await_workers(
-        resolved.session,
-        folder,
-        lambda url, course, bridge: programs.append(
-            start_autopilot(url, course, bridge, drive, token, resolved.session.scenario.vehicle)
-        ),
-        supervisor,
-        interrupt.check,
-    )
+    address = _await_workers(resolved, folder, programs, (drive, token), supervisor, interrupt.check)
     with_window = resolved.session.outputs.hud is not None
     seating = open_seating(resolved, console, stack, memory.keys if with_window else None)
     missing = stack.enter_context(realtime_hints())
-    pace = Pacer(console.tick_hz)
-    components = Components(
-        devices=seating.devices,
-        commands=_over_link(memory.commands, resolved, console),
-        recorder=recorder,
-        outputs=(*seating.outputs, memory.snapshots, supervisor),
-        pace=pace,
-        seat=seating.seat,
-        ecu=ecu,
-        standby=(supervisor.publish, memory.commands.stand, *((ecu.stand,) if isinstance(ecu, CommandPort) else ())),
-    )
-    latencies = LatencyStatistics(time.monotonic_ns, console.tick_hz)
-    faulty = with_faults(components, resolved, console.tick_hz)
-    components = isolated(faulty, lambda: Pacer(console.tick_hz))._replace(latencies=latencies)
+    pace, latencies = Pacer(console.tick_hz), LatencyStatistics(time.monotonic_ns, console.tick_hz)
+    components = _paced_components(
+        resolved,
+        console,
+        Components(
+            devices=seating.devices,
+            commands=memory.commands,
+            recorder=recorder,
+            outputs=(*seating.outputs, memory.snapshots, supervisor),
+            pace=pace,
+            seat=seating.seat,
+            ecu=ecu,
+            standby=(supervisor.publish, memory.commands.stand),
+        ),
+    )._replace(latencies=latencies)
 
     def summary() -> dict[str, Any]:
-        kept = {**bridge_summary(folder), **can_summary(folder), **recorder.acts_summary()}
-        workers = {"station_restarts": supervisor.counters(), **kept}
         latency = {**latencies.summary_us(), **worker_latencies(folder)}
-        return {**pace.summary(), **workers, "latency_us": latency, "not_granted": missing}
+        workers = {"station_restarts": supervisor.counters(), **bridge_summary(folder), **can_summary(folder)}
+        own = {**recorder.acts_summary(), "latency_us": latency, "not_granted": missing}
+        return {**pace.summary(), **workers, **own}
 
     return Opened(
         components=components,
@@ -210,6 +199,23 @@ def open_realtime(
     )
 
 
+def _started(supervisor: SupervisorHandle, memory: Memory, stack: ExitStack) -> "list[Popen[bytes]]":
+    """Start the supervisor; return the list of programs that end with the drive, before the workers do."""
+    programs: list[Popen[bytes]] = []
+    stack.callback(end, programs, PROGRAM_END_S)
+    stack.callback(supervisor.stop, lambda: memory.snapshots.is_empty)
+    stack.callback(tell_to_end, programs)
+    supervisor.start()
+    return programs
+
+
+def _paced_components(resolved: ResolvedSession, console: Console, plain: Components) -> Components:
+    """Return the components with the session's link and faults around them, each isolated."""
+    standby = (*plain.standby, *((plain.ecu.stand,) if isinstance(plain.ecu, CommandPort) else ()))
+    linked = plain._replace(commands=_over_link(plain.commands, resolved, console), standby=standby)
+    return isolated(with_faults(linked, resolved, console.tick_hz), lambda: Pacer(console.tick_hz))
+
+
 def _over_link(source: CommandSource, resolved: ResolvedSession, console: Console) -> CommandSource:
     """Return the ROS side's commands as they arrive over the link that the session describes."""
     bridge = resolved.session.outputs.bridge
@@ -217,13 +223,18 @@ def _over_link(source: CommandSource, resolved: ResolvedSession, console: Consol
 
 
 def _await_workers(
-    session: SessionProfile,
+    resolved: ResolvedSession,
     folder: Path,
-    start: Callable[[str, str, BridgeProfile], None],
+    programs: "list[Popen[bytes]]",
+    credentials: tuple[str, str | None],
     supervisor: SupervisorHandle,
     check: Callable[[], None],
 ) -> str | None:
-    """Wait until bridge and CAN bus are open, starting the session's own autopilot; return the bridge's address."""
+    """Wait until bridge and CAN bus are open and return the bridge's address.
+
+    Adds the session's own autopilot to `programs`, with the drive's nonce and the token of `credentials`.
+    """
+    session = resolved.session
 
     def alive() -> bool:
         check()
@@ -233,7 +244,8 @@ def _await_workers(
     if bridge is not None:
         address = bridge_address(folder, alive)
         if session.features.autopilot is not None:
-            start(address, session.features.autopilot, bridge)
+            vehicle = session.scenario.vehicle
+            programs.append(start_autopilot(address, session.features.autopilot, bridge, *credentials, vehicle))
     if session.outputs.can is not None:
         wait_for_can(folder, lambda: alive() and not supervisor.counters().get("canbus"))
     return address

@@ -23,6 +23,7 @@ STALL_NS: Final = 100_000_000
 _PR_SET_TIMERSLACK: Final = 29  # linux/prctl.h
 _MCL_CURRENT: Final = 1  # sys/mman.h; not MCL_FUTURE: the log of a long drive must not be locked
 _PRIORITY: Final = 50
+_FINE_S: Final = 1e-4
 
 
 class Pacer:
@@ -120,34 +121,41 @@ def realtime_hints() -> Iterator[list[str]]:
     gc.collect()
     gc.freeze()
     try:
-        if sys.platform.startswith("linux"):
-            with _linux_hints() as missing:
-                yield missing
-        else:
-            yield ["real-time scheduling, locked memory and timer slack: only on Linux"]
+        with _system_hints() as missing:
+            yield missing
     finally:
         gc.unfreeze()
 
 
+def _coarse_clock() -> list[str]:
+    resolution_s = time.get_clock_info("monotonic").resolution
+    if resolution_s <= _FINE_S:
+        return []
+    return [f"a clock with steps of {1000.0 * resolution_s:.1f} ms: on Windows Python 3.13 or later has a fine one"]
+
+
 @contextmanager
-def _linux_hints() -> Iterator[list[str]]:
+def _system_hints() -> Iterator[list[str]]:
     import ctypes
     import os
 
-    missing = []
-    libc = ctypes.CDLL(None, use_errno=True)
-    libc.prctl(_PR_SET_TIMERSLACK, 1, 0, 0, 0)
-    if libc.mlockall(_MCL_CURRENT) != 0:
-        missing.append("locked memory: not permitted")
-    before, parameters = os.sched_getscheduler(0), os.sched_getparam(0)
-    try:
-        os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(_PRIORITY))
-    except OSError as error:
-        missing.append(f"real-time scheduling: {error.strerror}")
-    try:
-        yield missing
-    finally:
-        # Only a privileged process may clear reset-on-fork again, so it stays.
-        os.sched_setscheduler(0, before | os.SCHED_RESET_ON_FORK, parameters)
-        libc.munlockall()
-        libc.prctl(_PR_SET_TIMERSLACK, 0, 0, 0, 0)
+    if sys.platform == "linux":
+        missing = []
+        libc = ctypes.CDLL(None, use_errno=True)
+        libc.prctl(_PR_SET_TIMERSLACK, 1, 0, 0, 0)
+        if libc.mlockall(_MCL_CURRENT) != 0:
+            missing.append("locked memory: not permitted")
+        before, parameters = os.sched_getscheduler(0), os.sched_getparam(0)
+        try:
+            os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(_PRIORITY))
+        except OSError as error:
+            missing.append(f"real-time scheduling: {error.strerror}")
+        try:
+            yield missing
+        finally:
+            # Only a privileged process may clear reset-on-fork again, so it stays.
+            os.sched_setscheduler(0, before | os.SCHED_RESET_ON_FORK, parameters)
+            libc.munlockall()
+            libc.prctl(_PR_SET_TIMERSLACK, 0, 0, 0, 0)
+    else:
+        yield ["real-time scheduling, locked memory and timer slack: only on Linux", *_coarse_clock()]

@@ -19,7 +19,7 @@ from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.devices.synthetic.trace_format import COLUMNS, read_rows, row_text
 from simconsole.hud.banner import ALERT_LABELS, alert_of
 from simconsole.hud.view import HudMemory, HudSettings, view
-from simconsole.profiles.device import CockpitProfile
+from simconsole.profiles.device import CockpitProfile, DeviceKey
 from simconsole.profiles.faults import AxisName, Fault, Freeze, Invalid, Stuck, TwoGears, Unplug
 from simconsole.profiles.files.loader import load, parse
 from simconsole.profiles.scenario import ScenarioProfile
@@ -317,7 +317,7 @@ def test_d10_burst_of_100_000_events_leaves_the_newest_value_and_no_queue(events
     polls = 100_000 // events
     took_s: list[float] = []
     try:
-        device = plugged._devices[0x044F, 0xB65E]
+        device = plugged._devices[DeviceKey(0x044F, 0xB65E)]
         for tick in range(1, polls + 1):
             for event in range(events // 2):
                 device.set_axis(0, (event % 200 - 100) / 100.0)

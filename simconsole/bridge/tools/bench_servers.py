@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Final, Literal, NamedTuple
+from typing import Any, Final, Literal, NamedTuple
 
 import orjson
 from websockets.asyncio.server import ServerConnection
@@ -71,7 +71,8 @@ def server_process(
         BridgeError: it does not start.
     """
     context = multiprocessing.get_context("spawn")
-    ours, theirs = context.Pipe()
+    ours: Any
+    ours, theirs = context.Pipe()  # another class on Windows
     process = context.Process(target=attached, args=(program, theirs), daemon=True)
     process.start()
     try:

@@ -10,6 +10,7 @@ import ctypes
 import select
 import socket
 import struct
+import sys
 import time
 from collections.abc import Callable
 from typing import Any, Final
@@ -57,8 +58,8 @@ class LoopbackBus:
         """Return the next message of another sender, None when none came within `timeout` s."""
         deadline_s = None if timeout is None else time.monotonic() + timeout
         while True:
-            wait_ms = None if deadline_s is None else max(0.0, 1000.0 * (deadline_s - time.monotonic()))
-            if not self._poll.poll(wait_ms):
+            wait_s = None if deadline_s is None else max(0.0, deadline_s - time.monotonic())
+            if not select.select([self._in], [], [], wait_s)[0]:
                 return None
             data, sender = self._in.recvfrom(_MAX_BYTES)
             if sender[1] == self._own_port:
@@ -88,13 +89,11 @@ class LoopbackBus:
         if hasattr(socket, "SO_REUSEPORT"):
             self._in.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
         drop_from(self._in, self._own_port)
-        with contextlib.suppress(OSError):  # not Linux: other systems deliver only groups that this socket has joined
+        if sys.platform == "linux":  # other systems deliver only groups that this socket has joined
             self._in.setsockopt(socket.IPPROTO_IP, _IP_MULTICAST_ALL, 0)
         self._in.bind(("", port))
         self._in.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, socket.inet_aton(group) + loopback)
         self._in.setblocking(False)
-        self._poll = select.poll()
-        self._poll.register(self._in, select.POLLIN)
 
 
 def drop_from(receiver: socket.socket, port: int) -> bool:
@@ -103,6 +102,8 @@ def drop_from(receiver: socket.socket, port: int) -> bool:
     A classic BPF program of four instructions: the source port is the first word of the UDP header.
     """
     program = ((0x28, 0, 0, 0), (0x15, 0, 1, port), (0x06, 0, 0, 0), (0x06, 0, 0, _MAX_BYTES))
+    if sys.platform != "linux":
+        return False
     code = ctypes.create_string_buffer(b"".join(struct.pack("HBBI", *step) for step in program))
     try:
         receiver.setsockopt(

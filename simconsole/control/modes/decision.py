@@ -20,7 +20,7 @@ from simconsole.control.requests.control_settings import ControlSettings
 from simconsole.control.requests.person import Person
 from simconsole.control.requests.tick_context import TickContext
 from simconsole.values.kernels import kernel
-from simconsole.values.signals import Mode, Reason
+from simconsole.values.signals import Link, Mode, Reason
 
 
 class Decision(NamedTuple):
@@ -83,6 +83,14 @@ def decide(now: TickContext, person: Person, controllers: Controllers, steering:
             refusal_ticks=0.0,
             wait_begins=1.0,
         )
+    return _unchanged(now, person, asked, link, lost, refusal)
+
+
+@kernel
+def _unchanged(now: TickContext, person: Person, asked: Asked, link: Link, lost: bool, refusal: float) -> Decision:
+    """Return the mode as it was, with its reason, and the refusal of this tick or the one that is still shown."""
+    mode = now.before.mode
+    settings = now.settings
     reason = now.before.reason
     wait_begins = 1.0 if lost and person.trusted == 0.0 else 0.0  # until the cockpit is back for good
     if mode == Mode.TAKEOVER_REQUESTED and asked.takeover > 0.0 and reason == Reason.DEVICE_LOST:

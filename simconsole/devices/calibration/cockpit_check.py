@@ -3,7 +3,7 @@
 from typing import Any, Final
 
 from simconsole.devices.calibration.calibrator import calibrate, travel
-from simconsole.devices.calibration.cockpit_settings import NOBODY, CockpitSettings, cockpit_settings
+from simconsole.devices.calibration.cockpit_settings import NOBODY, CockpitSettings, button_bits, cockpit_settings
 from simconsole.profiles.device import CockpitProfile, PedalAxis
 from simconsole.values.signals import NO_SAMPLE, Button, DeviceSample, DriverInput
 from simconsole.values.units import DEG_PER_RAD
@@ -38,7 +38,8 @@ class CockpitCheck:
         self.driver = calibrate(sample, self._before, self.driver, 0.0, self._settings, self._tick_s)
         self._before = sample
         for name, pedal in self._pedals():
-            share = travel(getattr(sample, f"{name}_axis"), pedal.rest_raw, pedal.full_raw)
+            raw = getattr(sample, f"{name}_axis")
+            share = max(0.0, travel(raw, pedal.rest_raw, pedal.full_raw))  # below: the other one of combined pedals
             self._least[name] = min(self._least[name], share)
             self._most[name] = max(self._most[name], share)
         angle_deg = self.driver.hand_wheel_rad * DEG_PER_RAD
@@ -95,7 +96,8 @@ class CockpitCheck:
             "gears": sorted(self._gears),
             "buttons": sorted(self._buttons),
             "raw_buttons": {
-                role: [number for number in range(24) if mask >> number & 1] for role, mask in self._raw_buttons.items()
+                role: sorted(number for number, bit in button_bits(self._profile, role).items() if mask >> bit & 1)
+                for role, mask in self._raw_buttons.items()
             },
         }
 

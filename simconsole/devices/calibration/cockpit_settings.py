@@ -83,7 +83,8 @@ def cockpit_settings(profile: CockpitProfile, tick_hz: int) -> CockpitSettings:
     """Return the profile as plain numbers; limits in time become whole ticks, never longer than stated."""
     pedals, shifter, wheel = profile.pedals, profile.shifter, profile.wheel
     sign = -1.0 if wheel.grows_to == "right" else 1.0
-    gears = [_mask(shifter.on, button) for button in shifter.gears]
+    bits = {on: button_bits(profile, on) for on in ("wheel", "shifter")}
+    gears = [_mask(shifter.on, bits[shifter.on][button]) for button in shifter.gears]
     gears += [0.0] * (GEARS - len(gears))
     sequential = shifter.pattern == "sequential"
     return CockpitSettings(
@@ -102,10 +103,31 @@ def cockpit_settings(profile: CockpitProfile, tick_hz: int) -> CockpitSettings:
         neutral_dwell_ticks=round(shifter.neutral_dwell_s * tick_hz) * 1.0,
         sequential=1.0 if sequential else 0.0,
         top_gear=float(shifter.top_gear if sequential else len(shifter.gears)),
-        gear_reverse_mask=0.0 if shifter.reverse is None else _mask(shifter.on, shifter.reverse),
+        gear_reverse_mask=0.0 if shifter.reverse is None else _mask(shifter.on, bits[shifter.on][shifter.reverse]),
         **{f"gear_{gear}_mask": mask for gear, mask in enumerate(gears, start=1)},
-        **{f"{role}_mask": _role_mask(getattr(profile.buttons, role)) for role in Buttons.__struct_fields__},
+        **{f"{role}_mask": _role_mask(getattr(profile.buttons, role), bits) for role in Buttons.__struct_fields__},
     )
+
+
+def button_bits(profile: CockpitProfile, on: str) -> dict[int, int]:
+    """Return which bit of a device's mask in a sample holds which of its buttons, by the button's number.
+
+    A mask has SHIFTER_SHIFT bits. Button n is bit n; one beyond takes the bit of the last button without a meaning.
+    There always is one: a profile gives meaning to 24 buttons at most.
+
+    Args:
+        profile: The cockpit.
+        on: The role, wheel or shifter.
+    """
+    buttons = (getattr(profile.buttons, name) for name in Buttons.__struct_fields__)
+    used = {bound.button for bound in buttons if bound is not None and bound.on == on and bound.button is not None}
+    if profile.shifter.on == on:
+        used |= {button for button in (*profile.shifter.gears, profile.shifter.reverse) if button is not None}
+    bits = {button: button for button in range(SHIFTER_SHIFT)}
+    unused = [button for button in bits if button not in used]
+    for button in sorted(used - set(bits)):
+        bits[button] = bits.pop(unused.pop())
+    return bits
 
 
 def _travel(name: str, pedal: PedalAxis | None) -> dict[str, float]:
@@ -120,13 +142,13 @@ def _travel(name: str, pedal: PedalAxis | None) -> dict[str, float]:
     }
 
 
-def _role_mask(binding: ButtonBinding | None) -> float:
+def _role_mask(binding: ButtonBinding | None, bits: dict[str, dict[int, int]]) -> float:
     if binding is None:
         return 0.0
     if binding.button is not None:
-        return _mask(binding.on, binding.button)
+        return _mask(binding.on, bits[binding.on][binding.button])
     return float(HATS[str(binding.hat)] << HAT_SHIFT)
 
 
-def _mask(on: str, button: int) -> float:
-    return float(1 << (button + (SHIFTER_SHIFT if on == "shifter" else 0)))
+def _mask(on: str, bit: int) -> float:
+    return float(1 << (bit + (SHIFTER_SHIFT if on == "shifter" else 0)))

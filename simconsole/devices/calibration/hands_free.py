@@ -3,7 +3,8 @@
 from collections import deque
 from typing import Final
 
-from simconsole.devices.calibration.input_detection import DeviceKey, Reading
+from simconsole.devices.calibration.input_detection import Reading
+from simconsole.profiles.device import DeviceKey
 
 HELD_S: Final = 1.0
 APART_RAW: Final = 0.2

@@ -7,11 +7,8 @@ import math
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
-from simconsole.profiles.device import MIN_TRAVEL_RAW, PedalAxis, WheelAxis
+from simconsole.profiles.device import MAX_BUTTONS, MIN_TRAVEL_RAW, DeviceKey, PedalAxis, WheelAxis
 from simconsole.values.errors import DeviceError
-
-DeviceKey = tuple[int, int]
-"""USB vendor and product id."""
 
 MOVED_RAW: Final = MIN_TRAVEL_RAW
 """An axis that is held further than this from its rest is the one that the person moves."""
@@ -19,7 +16,7 @@ CLEAR: Final = 2.0
 """The axis that the person moves goes this many times as far as any other."""
 LEAST_DEAD_ZONE: Final = 0.02
 MOST_DEAD_ZONE: Final = 0.3
-BUTTONS: Final = 24
+BUTTONS: Final = MAX_BUTTONS
 """How many buttons of a device are looked at; the four directions of its hat follow them (cockpit_settings.py)."""
 HATS: Final = ("left", "right", "up", "down")
 END_MARGIN: Final = 0.01

@@ -14,7 +14,6 @@ from simconsole.devices.calibration.input_detection import (
     HATS,
     AxisAt,
     ButtonAt,
-    DeviceKey,
     SteadyReadings,
     moved_axis,
     pedal_axis_of,
@@ -25,6 +24,7 @@ from simconsole.profiles.device import (
     ButtonBinding,
     Buttons,
     CockpitProfile,
+    DeviceKey,
     PedalAxis,
     Pedals,
     Provenance,
@@ -119,12 +119,12 @@ class Wizard:
         if handbrake_key not in (None, pedals_key):
             keys["handbrake"] = handbrake_key
         known = [(role.vendor_id, role.product_id) for role in self._base.roles if role.role == "wheel"]
-        force = self._base.force_feedback if known == [wheel_key] else None
+        force = self._base.force_feedback if known == [wheel_key[:2]] else None
         return CockpitProfile(
             schema=1,
             title=f"{self._entries[wheel_key].name}, calibrated",
             roles=[self._role(role, key) for role, key in keys.items()],
-            boot_modes=self._base.boot_modes if known == [wheel_key] else [],
+            boot_modes=self._base.boot_modes if known == [wheel_key[:2]] else [],
             wheel=wheel,
             pedals=pedals,
             shifter=shifter,
@@ -150,7 +150,7 @@ class Wizard:
     def _profile_of(self, key: DeviceKey) -> CockpitProfile:
         """Return the profile that knows this wheel, the base itself where none does."""
         for profile in (self._base, *self._known):
-            if any(role.role == "wheel" and (role.vendor_id, role.product_id) == key for role in profile.roles):
+            if any(role.role == "wheel" and role.key[:2] == key[:2] for role in profile.roles):
                 return profile
         return self._base
 
@@ -174,10 +174,15 @@ class Wizard:
 
             def learn(name: str = name) -> tuple[AxisAt, PedalAxis]:
                 skip = "" if name in NEEDED else f" ({SKIP}: there is none)"
-                at = self._moved(name, f"Press the {name.upper()} fully and hold it{skip}.", name not in NEEDED)
+                # The last one learnt is the throttle's, to whose other side the brake may be.
+                taken = self._axes[:-1] if name == "brake" else self._axes
+                at = self._moved(name, f"Press the {name.upper()} fully and hold it{skip}.", name not in NEEDED, taken)
                 if name != "handbrake" and at.device != keys.get("throttle", at.device):
                     raise DeviceError(f"{name}: value on another device: all pedals on one device")
-                return at, pedal_axis_of(self._rest, at)
+                pedal = pedal_axis_of(self._rest, at)
+                if name == "brake":
+                    _refuse_one_side(found["throttle"], pedal)
+                return at, pedal
 
             try:
                 at, found[name] = self._tried(name, tuple[AxisAt, PedalAxis], learn)
@@ -256,9 +261,11 @@ class Wizard:
                 found[name] = ButtonBinding(on=on, hat=HATS[at.button - BUTTONS])
         return shifters[0], Buttons(**found)
 
-    def _moved(self, step: str, text: str, optional: bool = False) -> AxisAt:
+    def _moved(
+        self, step: str, text: str, optional: bool = False, taken: Sequence[tuple[DeviceKey, int]] = ()
+    ) -> AxisAt:
         self._question(step, text, optional)
-        return moved_axis(self._rest, self._look(), self._axes)
+        return moved_axis(self._rest, self._look(), taken)
 
     def _button(self, step: str, text: str, optional: bool) -> ButtonAt:
         self._question(step, text, optional)
@@ -309,14 +316,15 @@ class Wizard:
 
     def _role(self, role: Any, key: DeviceKey) -> RoleBinding:
         entry = self._entries[key]
-        same = [known for known in self._base.roles if (known.vendor_id, known.product_id) == key]
+        same = [known for known in self._base.roles if known.key[:2] == key[:2]]
         return RoleBinding(
             role=role,
             vendor_id=key[0],
             product_id=key[1],
             name=entry.name[:200],
+            port=key.port,
             axes=min(entry.axes, 32),
-            buttons=min(entry.buttons, 24),
+            buttons=min(entry.buttons, BUTTONS),
             hats=min(entry.hats, 4),
             button_labels=next((known.button_labels for known in same if known.role == role), []),
         )
@@ -329,3 +337,10 @@ class Wizard:
             kept = ("boot_modes", "force_feedback", "roles.0.button_labels")
             found |= {key: of for key, of in self._base.provenance.items() if key.startswith(kept)}
         return found
+
+
+def _refuse_one_side(throttle: PedalAxis, brake: PedalAxis) -> None:
+    try:
+        Pedals(throttle=throttle, brake=brake)
+    except ValueError:
+        raise DeviceError(f"brake: value axis {brake.axis}, as the throttle: another axis, or its other side") from None

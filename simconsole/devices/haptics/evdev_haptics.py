@@ -6,6 +6,7 @@ Documentation/input/ff.rst. The kernel erases a process's effects when it closes
 
 import os
 import struct
+import sys
 from typing import Final
 
 from simconsole.devices.force_feedback.motor import EFFECT_S, Capability, HapticPort, NoHaptics
@@ -153,7 +154,7 @@ class EvdevHaptics:
             raise _refused(error.strerror) from error
 
     def _call(self, number: int, argument: bytearray | int) -> None:
-        if self._descriptor is None:
+        if sys.platform != "linux" or self._descriptor is None:
             raise _refused("closed")
         import fcntl
 

@@ -1,4 +1,4 @@
-"""Force through SDL's haptics, by ctypes on the one SDL that pygame has mapped. All ctypes of SDL's haptics is here.
+"""Force through SDL's haptics, by ctypes on the one SDL that pygame has loaded. All ctypes of SDL's haptics is here.
 
 One constant effect of 200 ms in the direction of the steering axis, its level rewritten in place; the device's own
 damper where there is one. SDL_HapticOpenFromJoystick sets neither gain nor autocentre, so that both are set here and
@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from simconsole.devices.force_feedback.motor import EFFECT_S, Capability, HapticPort, NoHaptics
 from simconsole.devices.sources import sdl_runtime
-from simconsole.devices.sources.virtual_joystick import mapped_sdl
+from simconsole.devices.sources.sdl_library import loaded_sdl
 from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.values.errors import DeviceError
 
@@ -233,7 +233,7 @@ class SdlHaptics:
 
 @cache
 def _library() -> Any:
-    path = mapped_sdl()
+    path = loaded_sdl()
     library = ctypes.CDLL(path)
     pointer, integer, effect = ctypes.c_void_p, ctypes.c_int, ctypes.POINTER(_Effect)
     for name, result, arguments in (

@@ -4,6 +4,7 @@ import json
 import mmap
 import os
 import subprocess
+import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -103,11 +104,14 @@ class WatchdogPort:
 
 def open_watchdog(identity: tuple[int, int], say: Callable[[str], None]) -> Watchdog | None:
     """Start a watchdog; where none can be started, say so: effects still end by themselves."""
-    try:
-        return Watchdog(identity)
-    except DeviceError as error:
-        say(f"no watchdog: {error}; forces end by themselves after {EFFECT_S:g} s")
-        return None
+    reason: object = "only on Linux may another process stop a motor"
+    if sys.platform == "linux":
+        try:
+            return Watchdog(identity)
+        except DeviceError as error:
+            reason = error
+    say(f"no watchdog: {reason}; forces end by themselves after {EFFECT_S:g} s")
+    return None
 
 
 def with_watchdog(port: HapticPort, watchdog: Watchdog | None) -> HapticPort:

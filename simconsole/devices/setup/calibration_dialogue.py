@@ -10,13 +10,13 @@ import msgspec
 
 from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.calibration.hands_free import HeldStill, Readings
-from simconsole.devices.calibration.input_detection import DeviceKey, SteadyReadings, steady_readings
+from simconsole.devices.calibration.input_detection import SteadyReadings, steady_readings
 from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
 from simconsole.devices.calibration.wizard import QUIT, SKIP, Entry, Wizard
 from simconsole.devices.setup.device_commands import Pace, Say, answer, realtime
 from simconsole.devices.sources.raw_joysticks import RawJoysticks
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
-from simconsole.profiles.device import CockpitProfile
+from simconsole.profiles.device import CockpitProfile, DeviceKey
 from simconsole.profiles.strict_yaml import to_yaml
 from simconsole.values.errors import DeviceError
 from simconsole.values.host.files import write_atomically

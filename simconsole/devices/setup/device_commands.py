@@ -11,7 +11,7 @@ from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.calibration.cockpit_text import cockpit_lines
 from simconsole.devices.sources import kernel_limits, sdl_runtime
 from simconsole.devices.sources.kernel_limits import KernelLimits, wheel_limits
-from simconsole.devices.sources.sdl_source import SdlSource, connected_joysticks
+from simconsole.devices.sources.sdl_source import SdlSource, connected_joysticks, is_device
 from simconsole.devices.sources.trace_files import TraceWriter
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.devices.synthetic.script import ScriptSource
@@ -71,13 +71,13 @@ def list_devices(cockpit: CockpitProfile, *, say: Say, virtual: bool = False) ->
             roles = [
                 binding.role
                 for binding in cockpit.roles
-                if (binding.vendor_id, binding.product_id) == ids
-                or any((other.vendor_id, other.product_id) == ids for other in binding.others)
+                if any(is_device(entry, device) for device in binding.candidates)
             ]
             boots = [mode.cure for mode in cockpit.boot_modes if (mode.vendor_id, mode.product_id) == ids]
             usb_id = f"{entry.vendor_id:04x}:{entry.product_id:04x}"
             use = ", ".join(roles) or (f"in boot mode: {boots[0]}" if boots else "not used")
-            say(f"{usb_id}  {entry.name}: {entry.axes} axes, {entry.buttons} buttons, {entry.hats} hats: {use}")
+            at = f" at {entry.port}" if entry.port else ""
+            say(f"{usb_id}  {entry.name}{at}: {entry.axes} axes, {entry.buttons} buttons, {entry.hats} hats: {use}")
             devices.append({**entry._asdict(), "usb_id": usb_id, "roles": roles, "boot_mode": bool(boots)})
     missing = [
         binding.role for binding in cockpit.roles if not any(binding.role in entry["roles"] for entry in devices)

@@ -57,7 +57,7 @@ class KeyWatch:
         return os.read(sys.stdin.fileno(), 64).decode("utf-8", "replace")
 
     def _key_mode(self) -> None:
-        if not self._terminal or sys.platform == "win32":
+        if sys.platform == "win32" or not self._terminal:
             return
         import termios
 
@@ -67,7 +67,7 @@ class KeyWatch:
         termios.tcsetattr(sys.stdin, termios.TCSAFLUSH, keys)
 
     def _line_mode(self) -> None:
-        if self._before is not None:
+        if sys.platform != "win32" and self._before is not None:
             import termios
 
             termios.tcsetattr(sys.stdin, termios.TCSAFLUSH, self._before)

@@ -5,6 +5,7 @@ Layout and numbers: linux/input.h, of 64-bit machines. Loads nothing but the sta
 
 import os
 import struct
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
@@ -41,10 +42,10 @@ def find_node(identity: tuple[int, int], *, writable: bool) -> tuple[Path, int]:
     Raises:
         DeviceError: no such device, it may not be opened, or this is no Linux.
     """
-    try:
-        import fcntl
-    except ImportError:
-        raise DeviceError("wheel: event device: value none: Linux") from None
+    if sys.platform != "linux":
+        raise DeviceError("wheel: event device: value none: Linux")
+    import fcntl
+
     refused = "none"
     mode = (os.O_RDWR if writable else os.O_RDONLY) | os.O_NONBLOCK | os.O_CLOEXEC
     for node in _nodes():
@@ -68,6 +69,8 @@ def find_node(identity: tuple[int, int], *, writable: bool) -> tuple[Path, int]:
 
 def effect_slots(descriptor: int) -> int:
     """Return how many effects a device holds. Raises OSError where it holds none."""
+    if sys.platform != "linux":
+        return 0
     import fcntl
 
     slots = bytearray(4)

@@ -6,6 +6,7 @@ The steering range: the file `range` of the wheel's driver (hid-tmff2, new-lg4ff
 
 import os
 import struct
+import sys
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -97,6 +98,8 @@ def notes(limits: KernelLimits) -> list[str]:
 
 
 def _axes(descriptor: int) -> tuple[AxisLimits, ...]:
+    if sys.platform != "linux":
+        return ()
     import fcntl
 
     present = bytearray(_ABS_BYTES)

@@ -1,11 +1,12 @@
 """Raw readings of every joystick: what the calibration wizard reads before a cockpit has a profile."""
 
-from typing import Self
+from typing import Any, Self
 
-from simconsole.devices.calibration.input_detection import BUTTONS, DeviceKey, Reading
+from simconsole.devices.calibration.input_detection import BUTTONS, Reading
 from simconsole.devices.calibration.lever import hat_mask
 from simconsole.devices.sources import sdl_runtime
 from simconsole.devices.sources.sdl_source import JoystickInfo, connected_joysticks
+from simconsole.profiles.device import DeviceKey
 from simconsole.values.errors import DeviceError
 
 
@@ -16,21 +17,26 @@ class RawJoysticks:
         """Open them all.
 
         Raises:
-            DeviceError: there are none, or two of the same kind.
+            DeviceError: there are none, or two of the same kind that nothing tells apart.
         """
         self._pygame = sdl_runtime.acquire()
         try:
             self._pygame.event.get()
             pairs = connected_joysticks(self._pygame)
+            ids = [entry.key[:2] for entry, _ in pairs]
             self.entries: dict[DeviceKey, JoystickInfo] = {}
-            for entry, _ in pairs:
-                key = (entry.vendor_id, entry.product_id)
+            self._joysticks: dict[DeviceKey, Any] = {}
+            for entry, joystick in pairs:
+                # A port counts where it has to: a device that is the only one of its kind may move to another.
+                key = entry.key if ids.count(entry.key[:2]) > 1 else DeviceKey(*entry.key[:2])
                 if key in self.entries:
-                    raise DeviceError(f"{entry.name}: value two with one id {key[0]:04x}:{key[1]:04x}: unplug one")
-                self.entries[key] = entry
+                    raise DeviceError(
+                        f"{entry.name}: value two with one id {key[0]:04x}:{key[1]:04x} and no port to tell them "
+                        "apart: unplug one"
+                    )
+                self.entries[key], self._joysticks[key] = entry, joystick
             if not pairs:
                 raise DeviceError("devices: value none connected: a wheel or a gamepad")
-            self._joysticks = {(entry.vendor_id, entry.product_id): joystick for entry, joystick in pairs}
         except BaseException:
             sdl_runtime.release()
             raise

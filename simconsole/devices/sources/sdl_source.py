@@ -8,9 +8,10 @@ that rest at 1.0 reads as half throttle and half brake.
 from typing import Any, Final, NamedTuple
 
 from simconsole.devices.calibration.calibrator import travel
+from simconsole.devices.calibration.cockpit_settings import button_bits
 from simconsole.devices.sources import sdl_runtime
 from simconsole.devices.sources.usb_places import place_of
-from simconsole.profiles.device import CockpitProfile, OtherDevice, RoleBinding, RoleName
+from simconsole.profiles.device import CockpitProfile, DeviceKey, OtherDevice, RoleBinding, RoleName
 from simconsole.values.errors import DeviceError, DeviceModeError, DeviceNotFound
 from simconsole.values.protocols import DeviceIdentity
 from simconsole.values.signals import NEVER_TICKS, DeviceSample
@@ -32,17 +33,22 @@ class JoystickInfo(NamedTuple):
     axes: int
     buttons: int
     hats: int
+    port: str = ""  # where it is plugged in, empty where the system does not tell
+    serial: str = ""
+
+    @property
+    def key(self) -> DeviceKey:
+        """This very device."""
+        return DeviceKey(self.vendor_id, self.product_id, self.port)
 
 
 class _Bound:
     """A joystick that plays one or more roles."""
 
-    def __init__(self, joystick: Any) -> None:
+    def __init__(self, entry: JoystickInfo, joystick: Any) -> None:
+        self.entry = entry
         self.joystick = joystick
-        self.instance_id: int = joystick.get_instance_id()
-        self.usb_id = identity(joystick.get_guid())
-        self.buttons = min(joystick.get_numbuttons(), 24)
-        self.hats: int = joystick.get_numhats()
+        self.instance_id = entry.instance_id
         self.fresh = False  # SDL reads the first values at the first pump after opening
         self.clicks = 0  # presses since the last poll, also those already released
 
@@ -61,6 +67,7 @@ def connected_joysticks(pygame: Any) -> list[tuple[JoystickInfo, Any]]:
     for index in range(pygame.joystick.get_count()):
         joystick = pygame.joystick.Joystick(index)
         vendor_id, product_id = identity(joystick.get_guid())
+        place = place_of(joystick.get_instance_id())
         entry = JoystickInfo(
             vendor_id=vendor_id,
             product_id=product_id,
@@ -69,6 +76,8 @@ def connected_joysticks(pygame: Any) -> list[tuple[JoystickInfo, Any]]:
             axes=joystick.get_numaxes(),
             buttons=joystick.get_numbuttons(),
             hats=joystick.get_numhats(),
+            port=place.port,
+            serial=place.serial,
         )
         joysticks.append((entry, joystick))
     return joysticks
@@ -88,8 +97,9 @@ class SdlSource:
         if not cockpit.roles:
             raise DeviceError(f"{cockpit.title}: roles: value empty: a cockpit with devices")
         self._cockpit = cockpit
-        self._bound: dict[tuple[int, int], _Bound] = {}
-        self._keys = {binding.role: (binding.vendor_id, binding.product_id) for binding in cockpit.roles}
+        self._bound: dict[DeviceKey, _Bound] = {}
+        self._keys = {binding.role: binding.key for binding in cockpit.roles}
+        self._bits = {on: list(button_bits(cockpit, on).items()) for on in ("wheel", "shifter")}
         pedals = cockpit.pedals
         self._axes = tuple(
             None if pedal is None else pedal.axis for pedal in (pedals.throttle, pedals.brake, pedals.clutch)
@@ -124,7 +134,7 @@ class SdlSource:
             self._handbrake = hand.joystick.get_axis(self._cockpit.pedals.handbrake.axis)
         shifter = self._readable("shifter")
         if shifter is not None:
-            self._shifter = float(_held(shifter))
+            self._shifter = float(_held(shifter, self._bits["shifter"]))
         for bound in self._bound.values():
             bound.clicks = 0
         if arrived:
@@ -156,14 +166,14 @@ class SdlSource:
         """Return which devices play the cockpit's roles now, each once."""
         found = []
         for key, bound in self._bound.items():
-            name, place = bound.joystick.get_name(), place_of(bound.usb_id)
+            entry = bound.entry
             found.append(
                 DeviceIdentity(
                     roles=tuple(role for role, wanted in self._keys.items() if wanted == key),
-                    name=name,
-                    usb_id=f"{bound.usb_id[0]:04x}:{bound.usb_id[1]:04x}",
-                    port=place.port,
-                    serial=place.serial,
+                    name=entry.name,
+                    usb_id=f"{entry.vendor_id:04x}:{entry.product_id:04x}",
+                    port=entry.port,
+                    serial=entry.serial,
                 )
             )
         return tuple(found)
@@ -179,8 +189,9 @@ class SdlSource:
         self._pygame.event.get()
         self._bind()
         for binding in self._cockpit.roles:
-            if (binding.vendor_id, binding.product_id) not in self._bound:
+            if binding.key not in self._bound:
                 raise self._missing(binding)
+            self._refuse_two(binding)
         self._check_polarity(self.poll(0))
 
     def _take_events(self) -> bool:
@@ -206,29 +217,21 @@ class SdlSource:
         return arrived
 
     def _bind(self) -> None:
-        wanted = {(binding.vendor_id, binding.product_id): binding for binding in self._cockpit.roles}
-        for entry, joystick in connected_joysticks(self._pygame):
-            key = (entry.vendor_id, entry.product_id)
-            if key in wanted and key not in self._bound and _fits(entry, wanted[key]):
-                self._bound[key] = _Bound(joystick)
-        for key, binding in wanted.items():
-            for other in binding.others if key not in self._bound else ():
-                self._bind_other(key, other)
-
-    def _bind_other(self, key: tuple[int, int], other: OtherDevice) -> None:
-        for entry, joystick in connected_joysticks(self._pygame):
-            same = (entry.vendor_id, entry.product_id) == (other.vendor_id, other.product_id)
-            if same and key not in self._bound and _fits(entry, other):
-                self._bound[key] = _Bound(joystick)
+        connected = connected_joysticks(self._pygame)
+        for binding in self._cockpit.roles:
+            for device in binding.candidates:
+                for entry, joystick in connected:
+                    if binding.key not in self._bound and is_device(entry, device) and _fits(entry, device):
+                        self._bound[binding.key] = _Bound(entry, joystick)
 
     def _readable(self, role: RoleName) -> _Bound | None:
         bound = self._bound.get(self._keys[role])
         return bound if bound is not None and bound.fresh else None
 
     def _read_wheel(self, bound: _Bound) -> None:
-        hat_x, hat_y = bound.joystick.get_hat(0) if bound.hats else (0, 0)
+        hat_x, hat_y = bound.joystick.get_hat(0) if bound.entry.hats else (0, 0)
         axis = bound.joystick.get_axis(self._cockpit.wheel.axis)
-        self._wheel = [axis, float(_held(bound)), float(hat_x), float(hat_y)]
+        self._wheel = [axis, float(_held(bound, self._bits["wheel"])), float(hat_x), float(hat_y)]
 
     def _read_pedals(self, bound: _Bound) -> None:
         self._pedals = [0.0 if axis is None else bound.joystick.get_axis(axis) for axis in self._axes]
@@ -241,16 +244,32 @@ class SdlSource:
                 boot = f"{mode.vendor_id:04x}:{mode.product_id:04x}"
                 return DeviceModeError(f"{binding.name}: mode: value {boot} (boot mode): {wanted}; {mode.cure}")
         for entry in present:
-            if (entry.vendor_id, entry.product_id) == (binding.vendor_id, binding.product_id):
+            if is_device(entry, binding):
                 return DeviceModeError(
                     f"{binding.name} ({wanted}): axes and buttons: value {entry.axes} and {entry.buttons}: "
                     f"at least {binding.axes} and {binding.buttons}"
                 )
-        seen = ", ".join(f"{entry.vendor_id:04x}:{entry.product_id:04x} {entry.name}" for entry in present)
+        seen = ", ".join(
+            f"{entry.vendor_id:04x}:{entry.product_id:04x} {entry.name}{_at(entry.port)}" for entry in present
+        )
         return DeviceNotFound(
-            f"{self._cockpit.title}: role {binding.role}: value {wanted} ({binding.name}) not connected: "
+            f"{self._cockpit.title}: role {binding.role}: value {wanted} ({binding.name}){_at(binding.port)} "
+            "not connected: "
             f"{f'connected are {seen}' if seen else 'nothing is'}"
         )
+
+    def _refuse_two(self, binding: RoleBinding) -> None:
+        same = [
+            entry
+            for entry, _ in connected_joysticks(self._pygame)
+            if is_device(entry, binding) and _fits(entry, binding)
+        ]
+        if len(same) > 1:
+            ports = " or ".join(repr(entry.port) for entry in same)
+            raise DeviceError(
+                f"{self._cockpit.title}: role {binding.role}: value two devices "
+                f"{binding.vendor_id:04x}:{binding.product_id:04x}: one, or its port in the profile, {ports}"
+            )
 
     def _check_polarity(self, sample: DeviceSample) -> None:
         throttle = self._cockpit.pedals.throttle
@@ -266,9 +285,19 @@ def _fits(entry: JoystickInfo, binding: RoleBinding | OtherDevice) -> bool:
     return entry.axes >= binding.axes and entry.buttons >= binding.buttons
 
 
-def _held(bound: _Bound) -> int:
-    mask = bound.clicks
-    for button in range(bound.buttons):
-        if bound.joystick.get_button(button):
-            mask |= 1 << button
-    return mask & 0xFFFFFF
+def is_device(entry: JoystickInfo, device: RoleBinding | OtherDevice) -> bool:
+    """Return whether a joystick has this identity, and is where the profile says if it says where."""
+    port = device.port if isinstance(device, RoleBinding) else ""
+    return entry.key[:2] == (device.vendor_id, device.product_id) and port in ("", entry.port)
+
+
+def _at(port: str) -> str:
+    return f" at {port}" if port else ""
+
+
+def _held(bound: _Bound, bits: list[tuple[int, int]]) -> int:
+    mask = 0
+    for button, bit in bits:
+        if button < bound.entry.buttons and (bound.joystick.get_button(button) or bound.clicks >> button & 1):
+            mask |= 1 << bit
+    return mask

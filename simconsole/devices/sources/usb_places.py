@@ -1,9 +1,11 @@
-"""Where an input device is plugged in and which one of its kind it is: what Linux tells everyone in sysfs."""
+"""Where an input device is plugged in and which one of its kind it is."""
 
 from pathlib import Path
 from typing import Final, NamedTuple
 
-SYSFS: Final = Path("/sys/class/input")
+from simconsole.devices.sources.sdl_library import joystick_path
+
+SYSFS: Final = Path("/sys/class")
 
 
 class UsbPlace(NamedTuple):
@@ -13,26 +15,31 @@ class UsbPlace(NamedTuple):
     serial: str = ""
 
 
-def place_of(usb_id: tuple[int, int]) -> UsbPlace:
-    """Return where the device with this vendor and product id is. Never raises.
+VIRTUAL: Final[dict[int, UsbPlace]] = {}
+"""Where virtual joysticks claim to be, by SDL's instance id: the system knows nothing of them."""
 
-    Of two of one kind nothing is said: which of them SDL has opened cannot be known.
+
+def place_of(instance_id: int) -> UsbPlace:
+    """Return where the open joystick with SDL's number `instance_id` is. Never raises.
+
+    On Linux its event device is looked up in sysfs, for its own name changes whenever it is plugged in; elsewhere the
+    port is what the system calls the device.
     """
-    try:
-        nodes = sorted(node for node in SYSFS.iterdir() if node.name.startswith("event"))
-    except OSError:
-        return UsbPlace()
-    wanted = tuple(f"{number:04x}" for number in usb_id)
-    places = {
-        UsbPlace(_word(node, "phys"), _word(node, "uniq"))
-        for node in nodes
-        if (_word(node, "id/vendor"), _word(node, "id/product")) == wanted
-    }
-    return places.pop() if len(places) == 1 else UsbPlace()
+    if instance_id in VIRTUAL:
+        return VIRTUAL[instance_id]
+    path = joystick_path(instance_id)
+    if not path.startswith("/dev/"):
+        return UsbPlace(path)
+    name = Path(path).name
+    if name.startswith("hidraw"):
+        told = dict(line.partition("=")[::2] for line in _text(SYSFS / "hidraw" / name / "device/uevent").splitlines())
+        return UsbPlace(told.get("HID_PHYS", ""), told.get("HID_UNIQ", ""))
+    device = SYSFS / "input" / name / "device"
+    return UsbPlace(_text(device / "phys"), _text(device / "uniq"))
 
 
-def _word(node: Path, name: str) -> str:
+def _text(path: Path) -> str:
     try:
-        return (node / "device" / name).read_text("utf-8").strip()
+        return path.read_text("utf-8").strip()
     except (OSError, UnicodeDecodeError):
         return ""

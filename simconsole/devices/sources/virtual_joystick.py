@@ -1,17 +1,16 @@
 """Virtual joysticks inside SDL: the real ids, names, axes and polarity, with no hardware. All ctypes for them is here.
 
-SDL's virtual joysticks appear to pygame as any other. They live in the one copy of SDL that pygame has mapped, which
-is found in /proc/self/maps: loading a library by name would give a second, separate SDL.
+SDL's virtual joysticks appear to pygame as any other. They live in the one copy of SDL that pygame has loaded.
 Values take effect at the next pump of the event queue.
 """
 
 import ctypes
 from functools import cache
-from pathlib import Path
 from typing import Any, Final, NamedTuple
 
-from simconsole.devices.sources import sdl_runtime
-from simconsole.profiles.device import CockpitProfile, PedalAxis
+from simconsole.devices.sources import sdl_runtime, usb_places
+from simconsole.devices.sources.sdl_library import loaded_sdl
+from simconsole.profiles.device import CockpitProfile, DeviceKey, PedalAxis
 from simconsole.values.errors import DeviceError
 
 _WHEEL_TYPE: Final = 2
@@ -30,6 +29,12 @@ class VirtualSpec(NamedTuple):
     hats: int = 0
     rest: tuple[float, ...] = ()  # raw axes before anybody touches it; 0 where left out
     is_wheel: bool = True
+    port: str = ""  # where it claims to be plugged in
+
+    @property
+    def key(self) -> DeviceKey:
+        """The device."""
+        return DeviceKey(self.vendor_id, self.product_id, self.port)
 
 
 class _Desc(ctypes.Structure):
@@ -59,9 +64,9 @@ class _Desc(ctypes.Structure):
 
 def specs(profile: CockpitProfile) -> list[VirtualSpec]:
     """Return one virtual device per physical device of the profile, pedals at their rest."""
-    made: dict[tuple[int, int], VirtualSpec] = {}
+    made: dict[DeviceKey, VirtualSpec] = {}
     for binding in profile.roles:
-        key = (binding.vendor_id, binding.product_id)
+        key = binding.key
         rest = list(made[key].rest) if key in made else [0.0] * binding.axes
         for name in ("throttle", "brake", "clutch", "handbrake"):
             pedal: PedalAxis | None = getattr(profile.pedals, name)
@@ -77,6 +82,7 @@ def specs(profile: CockpitProfile) -> list[VirtualSpec]:
             hats=binding.hats,
             rest=tuple(rest),
             is_wheel=is_wheel,
+            port=binding.port,
         )
     return list(made.values())
 
@@ -115,6 +121,7 @@ class VirtualDevice:
             raise
         self._plugged = True
         self.instance_id = int(self._sdl.SDL_JoystickInstanceID(self._joystick))
+        usb_places.VIRTUAL[self.instance_id] = usb_places.UsbPlace(spec.port)
         for axis, value in enumerate(spec.rest):
             self.set_axis(axis, value)
         self._sdl.SDL_JoystickUpdate()
@@ -164,6 +171,7 @@ class VirtualDevice:
                 self._sdl.SDL_JoystickDetachVirtual(index)
                 break
         self._sdl.SDL_JoystickClose(self._joystick)
+        usb_places.VIRTUAL.pop(self.instance_id, None)
         sdl_runtime.release()
 
     close = detach
@@ -184,7 +192,7 @@ class VirtualDevice:
 
 @cache
 def _library() -> Any:
-    path = mapped_sdl()
+    path = loaded_sdl()
     library = ctypes.CDLL(path)
     joystick, integer, text = ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p
     for name, result, arguments in (
@@ -207,19 +215,3 @@ def _library() -> Any:
         function.restype = result
         function.argtypes = arguments
     return library
-
-
-def mapped_sdl() -> str:
-    """Return the path of the one SDL that this process has mapped: pygame's own.
-
-    Raises:
-        DeviceError: none is mapped, or this is no Linux.
-    """
-    maps = Path("/proc/self/maps")
-    if not maps.exists():
-        raise DeviceError("virtual devices: /proc/self/maps: value missing: Linux")
-    for line in maps.read_text().splitlines():
-        path = line.split(maxsplit=5)[-1]
-        if Path(path).name.startswith("libSDL2-2"):
-            return path
-    raise DeviceError("virtual devices: libSDL2: value not mapped: a pygame-ce that carries SDL 2")

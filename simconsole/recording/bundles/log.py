@@ -71,6 +71,8 @@ class LogWriter:
         try:
             flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_APPEND | getattr(os, "O_BINARY", 0)
             self._fd = os.open(path, flags, 0o644)
+            # Read through a descriptor of its own: the position of the other one belongs to the loop that writes.
+            self._reading = os.open(path, os.O_RDONLY | getattr(os, "O_BINARY", 0))
         except OSError as error:
             raise RecordingError(f"{path}: cannot be recorded to: {error.strerror}") from None
         self.path = path
@@ -87,7 +89,7 @@ class LogWriter:
         self._last_ticks = LAST_TICKS
         problem = self._problem(start)
         if problem is not None:
-            os.close(self._fd)
+            self._close_descriptors()
             raise RecordingError(f"{path}: cannot be recorded to: {problem}")
         self._closing = Event()
         self._syncer = Thread(target=self._sync, args=(sync_interval_s,), name="log sync", daemon=True)
@@ -155,7 +157,7 @@ class LogWriter:
         with suppress(OSError):
             self._hash()
             self.sha256 = self._hasher.hexdigest()
-        os.close(self._fd)
+        self._close_descriptors()
 
     def put_back(self) -> None:
         """Write the file again where it was removed while it was open: its content is still there. Raises OSError."""
@@ -198,9 +200,14 @@ class LogWriter:
     def _parts(self, start: int) -> Iterator[bytes]:
         """Yield the whole frames written so far as blocks of bytes, from byte `start` of the file on."""
         end = self.size_bytes
-        while start < end and (part := os.pread(self._fd, min(_READ_BYTES, end - start), start)):
+        os.lseek(self._reading, start, os.SEEK_SET)
+        while start < end and (part := os.read(self._reading, min(_READ_BYTES, end - start))):
             yield part
             start += len(part)
+
+    def _close_descriptors(self) -> None:
+        os.close(self._fd)
+        os.close(self._reading)
 
     def _hash(self) -> None:
         for part in self._parts(self._hashed_bytes):

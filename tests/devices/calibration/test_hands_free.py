@@ -4,9 +4,10 @@ import pytest
 
 from simconsole.devices.calibration.hands_free import HeldStill, Readings
 from simconsole.devices.calibration.input_detection import Reading
+from simconsole.profiles.device import DeviceKey
 
 RATE_HZ = 100
-PAD = (1, 2)
+PAD = DeviceKey(1, 2)
 
 
 def held(wheel: float = 0.0, throttle: float = 1.0, brake: float = 1.0, buttons: int = 0) -> Readings:

@@ -19,17 +19,17 @@ from simconsole.devices.calibration.input_detection import (
     steady_readings,
     wheel_axis_of,
 )
-from simconsole.profiles.device import MIN_TRAVEL_RAW
+from simconsole.profiles.device import MIN_TRAVEL_RAW, DeviceKey
 from simconsole.values.errors import DeviceError
 
-A, B = (1, 2), (3, 4)
+A, B = DeviceKey(1, 2), DeviceKey(3, 4)
 
 
 def held(*axes: float, buttons: int = 0, spread: float = 0.0) -> SteadyReading:
     return SteadyReading(axes, (spread,) * len(axes), buttons)
 
 
-def at(moment: SteadyReadings, key: tuple[int, int], axis: int) -> AxisAt:
+def at(moment: SteadyReadings, key: DeviceKey, axis: int) -> AxisAt:
     return AxisAt(key, axis, moment[key].mean[axis])
 
 

@@ -6,13 +6,13 @@ from typing import Any
 import msgspec
 import pytest
 
-from simconsole.devices.calibration.input_detection import DeviceKey, SteadyReading, SteadyReadings
+from simconsole.devices.calibration.input_detection import BUTTONS, SteadyReading, SteadyReadings
 from simconsole.devices.calibration.wizard import QUIT, SKIP, TRIES, Entry, Wizard
-from simconsole.profiles.device import CockpitProfile
+from simconsole.profiles.device import CockpitProfile, DeviceKey
 from simconsole.profiles.files.loader import load
 
-PAD: DeviceKey = (0x045E, 0x028E)
-LEVER: DeviceKey = (1, 2)
+PAD = DeviceKey(0x045E, 0x028E)
+LEVER = DeviceKey(1, 2)
 REST = ((0.0, 1.0, 1.0), 0)
 HELD = {  # by step: axes and buttons of the pad
     "left": ((-0.9, 1.0, 1.0), 0),
@@ -21,7 +21,7 @@ HELD = {  # by step: axes and buttons of the pad
     "brake": ((0.0, 1.0, -1.0), 0),
     "shift_up": (REST[0], 1 << 5),
     "shift_down": (REST[0], 1 << 4),
-    "mark": (REST[0], 1 << 26),  # up on the hat
+    "mark": (REST[0], 1 << BUTTONS + 2),  # up on the hat
 }
 
 

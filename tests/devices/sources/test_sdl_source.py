@@ -15,7 +15,7 @@ from simconsole.devices.sources import sdl_source as sdl_module
 from simconsole.devices.sources.sdl_source import SdlSource, identity
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.devices.sources.virtual_joystick import VirtualDevice, VirtualSpec, specs
-from simconsole.profiles.device import CockpitProfile
+from simconsole.profiles.device import CockpitProfile, DeviceKey
 from simconsole.profiles.files.loader import load
 from simconsole.values.errors import DeviceError, DeviceModeError, DeviceNotFound
 from simconsole.values.signals import NEVER_TICKS, Button, DriverInput
@@ -191,14 +191,14 @@ def test_shuffled_enumeration_gives_the_same_roles_in_1000_trials(sdl: None, t50
 
 
 def test_axes_of_the_shifter_steer_nothing(plug: Plug, t500: CockpitProfile, drive: Drive) -> None:
-    shifter = drive.plugged._devices[0x044F, 0xB660]
+    shifter = drive.plugged._devices[DeviceKey(0x044F, 0xB660)]
     shifter.set_axis(0, -1.0)
     shifter.set_axis(1, 1.0)
     assert drive.poll().hand_wheel_rad == pytest.approx(0.0)
 
 
 def test_hat_is_read(drive: Drive) -> None:
-    drive.plugged._devices[0x044F, 0xB65E].set_hat(0, 1, -1)
+    drive.plugged._devices[DeviceKey(0x044F, 0xB65E)].set_hat(0, 1, -1)
     sample = drive.source.poll(9)
     assert (sample.hat_x, sample.hat_y) == (1.0, -1.0)
 
@@ -314,7 +314,7 @@ def test_twin_of_a_bound_device_is_not_listened_to(drive: Drive, plug: Plug) -> 
 @pytest.mark.fault("D10")
 def test_burst_of_events_ends_at_the_newest_value(drive: Drive) -> None:
     """D10: 10^4 moves and 5,000 presses between two polls."""
-    wheel = drive.plugged._devices[0x044F, 0xB65E]
+    wheel = drive.plugged._devices[DeviceKey(0x044F, 0xB65E)]
     for step in range(5000):
         wheel.set_axis(0, step / 5000.0)
         wheel.set_button(12, step % 2 == 0)
@@ -324,7 +324,7 @@ def test_burst_of_events_ends_at_the_newest_value(drive: Drive) -> None:
 
 
 def test_press_shorter_than_a_tick_is_not_lost(drive: Drive) -> None:
-    wheel = drive.plugged._devices[0x044F, 0xB65E]
+    wheel = drive.plugged._devices[DeviceKey(0x044F, 0xB65E)]
     wheel.set_button(4, True)
     wheel._sdl.SDL_JoystickUpdate()
     wheel.set_button(4, False)
