@@ -8,23 +8,32 @@ from typing import Final, NamedTuple
 from simconsole.values.kernels import approach, clip, kernel
 from simconsole.values.signals import Request
 from simconsole.vehicle.car.axles import Axles, Contact
-from simconsole.vehicle.car.parameters import AidParameters, CarParameters
-from simconsole.vehicle.car.state import AidState, Car
+from simconsole.vehicle.car.parameters import AidParameters, AxleParameters, CarParameters
+from simconsole.vehicle.car.state import AidState, Car, Wheel
 
-RELEASE_SLIP: Final = 0.12
-HOLD_SLIP: Final = 0.07
-RELEASE_PER_S: Final = 14.0
+RELEASE_PEAKS: Final = 1.25
+RESUME_PEAKS: Final = 0.8
+"""Slips, as multiples of that at the peak of the force, above which ABS releases a brake, and below which it builds up
+fast. In between it builds up slowly: it feels its way to the peak again and again."""
+RELEASE_PER_S: Final = 8.0
 BUILD_PER_S: Final = 4.0
+FEEL_PER_S: Final = 0.5
+LEAST_SLIP_MPS: Final = 0.3
+"""Slip that is never too much: the tyre's deflection needs its way to build up."""
 SLOW_MPS: Final = 1.5
-"""Below this speed ABS and TCS leave the wheels alone: a lock at walking pace hurts nobody."""
-SPIN_SLIP: Final = 0.10
-SPIN_MPS: Final = 0.6
+"""Below this speed ABS leaves the wheels alone: a lock at walking pace hurts nobody."""
+TRACTION_GAIN: Final = 0.15
+TRACTION_PER_S: Final = 1.5
+"""Throttle per slip that is left to the peak, and its change per second: proportional and integral part of TCS."""
 DEAD_RADPS: Final = 0.035
 """Yaw rate by which a car may differ from the model before ESC acts: 2 deg/s."""
 STABILITY_FROM_MPS: Final = 4.0
 STABILITY_LAG_S: Final = 0.02
+SAME_NM: Final = 0.1
 HOLD_S: Final = 2.0
 HOLD_SLOPE: Final = 0.03
+HOT_HOLD_BRAKE: Final = 0.6
+"""Pedal with which the hill hold takes the car over from a clutch that must cool."""
 LEAVING_THROTTLE: Final = 0.02
 """Throttle beyond which the driver is about to drive off: the hill hold then waits for the drive, not for the time."""
 DOWNHILL_SHARE: Final = 0.1
@@ -32,7 +41,7 @@ DOWNHILL_SHARE: Final = 0.1
 
 
 class Brakes(NamedTuple):
-    """Torque capacity of each wheel's brake in N m, and what ABS leaves of the pedal."""
+    """Torque of each wheel's brake in N m under the pressure of now, and what ABS leaves of the pedal."""
 
     fl_nm: float
     fr_nm: float
@@ -43,32 +52,59 @@ class Brakes(NamedTuple):
     rear_share: float
 
 
+class Throttle(NamedTuple):
+    """What traction control leaves of the throttle, and the part of that which it remembers."""
+
+    share: float
+    kept_share: float
+
+
 @kernel
-def anti_lock(share: float, spin_mps: float, ground_mps: float, step_s: float) -> float:
-    """Return the share of the pedal one step later: release above one slip, hold, build up below another."""
-    speed = abs(ground_mps)
-    spin = spin_mps if ground_mps > 0.0 else -spin_mps
-    target = 1.0
-    rate = BUILD_PER_S
-    if spin < (1.0 - HOLD_SLIP) * speed:
-        target = share
-    if spin < (1.0 - RELEASE_SLIP) * speed:
-        target = 0.0
-        rate = RELEASE_PER_S
+def peak_slip_mps(axle: AxleParameters, force_n: float, load_n: float, speed_mps: float) -> float:
+    """Return the slip velocity at which a tyre that gives this force along its wheel would be at its peak.
+
+    At the peak of the force half of the stiffness at small slip is left, on any ground. So the peak lies at the
+    slip at which the force is half of what that stiffness would give: the friction in use tells where, and who goes
+    for that slip arrives at the peak from either side. A force to the side leaves less of the slip along the wheel.
+    """
+    return axle.peak_slip * abs(force_n) * speed_mps / (load_n if load_n > 1.0 else 1.0)
+
+
+@kernel
+def anti_lock(axle: AxleParameters, wheel: Wheel, on: Contact, step_s: float) -> float:
+    """Return the share of the pedal one step later: released beyond the peak, built up fast below it, else slowly."""
+    speed = abs(on.ground_mps)
     if speed < SLOW_MPS:
-        target = 1.0
-        rate = RELEASE_PER_S
-    return approach(share, target, rate * step_s)
+        return approach(wheel.brake_share, 1.0, RELEASE_PER_S * step_s)
+    rim = wheel.radps * axle.radius_m
+    slip = speed - (rim if on.ground_mps > 0.0 else -rim)
+    peak = peak_slip_mps(axle, on.tyre.force_x_n, on.load_n, speed)
+    rate = FEEL_PER_S
+    if slip < RESUME_PEAKS * peak or slip < LEAST_SLIP_MPS:
+        rate = BUILD_PER_S
+    elif slip > RELEASE_PEAKS * peak:
+        rate = -RELEASE_PER_S
+    return clip(wheel.brake_share + rate * step_s, 0.0, 1.0)
 
 
 @kernel
 def traction(
-    aids: AidParameters, share: float, driven: Contact, other: Contact, spin_mps: float, step_s: float
-) -> float:
-    """Return the share of the throttle one step later, by how much faster the driven wheels turn than they travel."""
-    speed = 0.5 * abs(driven.ground_mps + other.ground_mps)
-    spinning = aids.traction != 0.0 and abs(spin_mps) > (1.0 + SPIN_SLIP) * speed + SPIN_MPS
-    return approach(share, 0.0 if spinning else 1.0, (6.0 if spinning else 1.5) * step_s)
+    aids: AidParameters, axle: AxleParameters, kept: float, left: Contact, right: Contact, rim_mps: float, step_s: float
+) -> Throttle:
+    """Return what is left of the throttle: a PI control that holds the driven wheels at the slip of their peak.
+
+    `rim_mps` is the speed of their rims in the direction of the drive: of a car that rolls back on a hill, too.
+    """
+    if aids.traction == 0.0:
+        return Throttle(1.0, 1.0)
+    ground = 0.5 * (left.ground_mps + right.ground_mps)
+    force = left.tyre.force_x_n + right.tyre.force_x_n
+    peak = peak_slip_mps(axle, force, left.load_n + right.load_n, abs(ground))
+    peak = peak if peak > LEAST_SLIP_MPS else LEAST_SLIP_MPS
+    slip = abs(rim_mps - ground)
+    left_over = clip(1.0 - slip / peak, -4.0, 1.0)
+    now = clip(kept + TRACTION_PER_S * step_s * left_over, 0.0, 1.0)
+    return Throttle(clip(now + TRACTION_GAIN * left_over, 0.0, 1.0), now)
 
 
 @kernel
@@ -115,7 +151,11 @@ def hill_hold(car: Car, p: CarParameters, request: Request, axles: Axles, ratio:
     brake = s.hold_brake
     steep = abs(p.body.slope_x) + abs(p.body.slope_y) > HOLD_SLOPE
     drive_n = car.shafts.clutch_impulse_nms * ratio * (p.gears.per_wheel_radius_m * (1.0 / step_s))
-    if p.aids.hill_hold != 0.0 and steep and request.brake > 0.1 and abs(car.body.vx_mps) < 0.05:
+    standing = p.aids.hill_hold != 0.0 and steep and abs(car.body.vx_mps) < 0.05
+    if standing and car.shafts.clutch_hot != 0.0:
+        brake = HOT_HOLD_BRAKE
+        left = HOLD_S
+    elif standing and request.brake > 0.1:
         # A pedal that is released slowly must not lower the held pressure.
         if left == 0.0 or request.brake > brake:
             brake = request.brake
@@ -130,8 +170,15 @@ def hill_hold(car: Car, p: CarParameters, request: Request, axles: Axles, ratio:
 
 
 @kernel
+def pressed(axle: AxleParameters, wheel: Wheel, wanted_nm: float) -> float:
+    """Return the torque of a brake one step later: its pressure follows what is wanted with a lag of first order."""
+    now = wheel.brake_nm + (wanted_nm - wheel.brake_nm) * axle.brake_ease
+    return wanted_nm if abs(wanted_nm - now) < SAME_NM else now
+
+
+@kernel
 def brake_torques(car: Car, p: CarParameters, request: Request, axles: Axles, aids: AidState, step_s: float) -> Brakes:
-    """Return the capacity of each brake: pedal under ABS, hand brake on the rear, ESC on one wheel.
+    """Return the torque of each brake: pedal under ABS, and ESC on one wheel. The hand brake is a cable of its own.
 
     ESC brakes the rear wheel inside where the car turns too little, the front wheel outside where it turns too much.
     """
@@ -146,22 +193,23 @@ def brake_torques(car: Car, p: CarParameters, request: Request, axles: Axles, ai
     rl = approach(car.rl.brake_share, 1.0, released)
     rr = approach(car.rr.brake_share, 1.0, released)
     if p.aids.anti_lock != 0.0 and (pedal > 0.02 or abs(aids.stability_nm) > 1.0):
-        fl = anti_lock(car.fl.brake_share, car.fl.radps * front.radius_m, axles.fl.ground_mps, step_s)
-        fr = anti_lock(car.fr.brake_share, car.fr.radps * front.radius_m, axles.fr.ground_mps, step_s)
-        rl = anti_lock(car.rl.brake_share, car.rl.radps * rear.radius_m, axles.rl.ground_mps, step_s)
-        rr = anti_lock(car.rr.brake_share, car.rr.radps * rear.radius_m, axles.rr.ground_mps, step_s)
+        fl = anti_lock(front, car.fl, axles.fl, step_s)
+        fr = anti_lock(front, car.fr, axles.fr, step_s)
+        rl = anti_lock(rear, car.rl, axles.rl, step_s)
+        rr = anti_lock(rear, car.rr, axles.rr, step_s)
     low = rl if rl < rr else rr  # select-low: both rear wheels keep the side force of the better one
     turn = aids.stability_nm
     to_left = turn if turn > 0.0 else 0.0
     to_right = -turn if turn < 0.0 else 0.0
     inwards = turn * car.body.yaw_rate_radps > 0.0  # it turns too little
     front_share = 0.0 if inwards else 1.0
-    hand = request.handbrake * rear.handbrake_nm
+    left_nm = low * pedal * rear.brake_nm + (1.0 - front_share) * to_left * rl
+    right_nm = low * pedal * rear.brake_nm + (1.0 - front_share) * to_right * rr
     return Brakes(
-        fl_nm=fl * (pedal * front.brake_nm + front_share * to_left),
-        fr_nm=fr * (pedal * front.brake_nm + front_share * to_right),
-        rl_nm=low * pedal * rear.brake_nm + hand + (1.0 - front_share) * to_left * rl,
-        rr_nm=low * pedal * rear.brake_nm + hand + (1.0 - front_share) * to_right * rr,
+        fl_nm=pressed(front, car.fl, fl * (pedal * front.brake_nm + front_share * to_left)),
+        fr_nm=pressed(front, car.fr, fr * (pedal * front.brake_nm + front_share * to_right)),
+        rl_nm=pressed(rear, car.rl, left_nm),
+        rr_nm=pressed(rear, car.rr, right_nm),
         fl_share=fl,
         fr_share=fr,
         rear_share=low,
