@@ -190,7 +190,7 @@ class AutomaticProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown
     up_full_rpm: Rpm  # at full throttle
     down_rpm: Rpm
     down_full_rpm: Rpm
-    creep_nm: Torque = 25.0  # of the clutch, with released pedals
+    creep_nm: Torque = 30.0  # of the clutch, with released pedals
     launch_from_rpm: Rpm  # engine speed that the slipping clutch holds with hardly any throttle
     launch_to_rpm: Rpm  # and with all of it
     lock_from_rpm: Rpm  # gearbox speed at which it may begin to close

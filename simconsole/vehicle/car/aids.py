@@ -5,19 +5,22 @@ They use the true speed over ground, which a real car has to estimate from its w
 
 from typing import Final, NamedTuple
 
-from simconsole.values.kernels import approach, clip, kernel
+from simconsole.values.kernels import clip, kernel
 from simconsole.values.signals import Request
 from simconsole.vehicle.car.axles import Axles, Contact
 from simconsole.vehicle.car.parameters import AidParameters, AxleParameters, CarParameters
 from simconsole.vehicle.car.state import AidState, Car, Wheel
 
 RELEASE_PEAKS: Final = 1.25
-RESUME_PEAKS: Final = 0.8
-"""Slips, as multiples of that at the peak of the force, above which ABS releases a brake, and below which it builds up
-fast. In between it builds up slowly: it feels its way to the peak again and again."""
-RELEASE_PER_S: Final = 8.0
-BUILD_PER_S: Final = 4.0
-FEEL_PER_S: Final = 0.5
+RESUME_PEAKS: Final = 0.7
+"""Slips, as multiples of that at the peak of the force, above which ABS releases a brake, and below which it lets it
+build up fast. In between it lets it build up slowly: it feels its way to the peak again and again."""
+RELEASE_PER_S: Final = 6.0
+FEEL_PER_S: Final = 0.6
+LEAST_SHARE: Final = 0.1
+"""Rates of the torque in force, and of this share of the full torque: valves pass less at a lower pressure."""
+FREE_PER_S: Final = 1000.0
+"""Without ABS: nothing but the lag."""
 LEAST_SLIP_MPS: Final = 0.3
 """Slip that is never too much: the tyre's deflection needs its way to build up."""
 SLOW_MPS: Final = 1.5
@@ -41,15 +44,12 @@ DOWNHILL_SHARE: Final = 0.1
 
 
 class Brakes(NamedTuple):
-    """Torque of each wheel's brake in N m under the pressure of now, and what ABS leaves of the pedal."""
+    """Torque of each wheel's brake in N m, as the pressure of now gives it."""
 
     fl_nm: float
     fr_nm: float
     rl_nm: float
     rr_nm: float
-    fl_share: float
-    fr_share: float
-    rear_share: float
 
 
 class Throttle(NamedTuple):
@@ -71,20 +71,15 @@ def peak_slip_mps(axle: AxleParameters, force_n: float, load_n: float, speed_mps
 
 
 @kernel
-def anti_lock(axle: AxleParameters, wheel: Wheel, on: Contact, step_s: float) -> float:
-    """Return the share of the pedal one step later: released beyond the peak, built up fast below it, else slowly."""
+def anti_lock_rate(axle: AxleParameters, wheel: Wheel, on: Contact) -> float:
+    """Return how fast ABS lets a brake build up, as share of its torque per second; negative: it releases."""
     speed = abs(on.ground_mps)
-    if speed < SLOW_MPS:
-        return approach(wheel.brake_share, 1.0, RELEASE_PER_S * step_s)
     rim = wheel.radps * axle.radius_m
     slip = speed - (rim if on.ground_mps > 0.0 else -rim)
     peak = peak_slip_mps(axle, on.tyre.force_x_n, on.load_n, speed)
-    rate = FEEL_PER_S
-    if slip < RESUME_PEAKS * peak or slip < LEAST_SLIP_MPS:
-        rate = BUILD_PER_S
-    elif slip > RELEASE_PEAKS * peak:
-        rate = -RELEASE_PER_S
-    return clip(wheel.brake_share + rate * step_s, 0.0, 1.0)
+    if speed < SLOW_MPS or slip < RESUME_PEAKS * peak:
+        return FREE_PER_S
+    return -RELEASE_PER_S if slip > RELEASE_PEAKS * peak and slip > LEAST_SLIP_MPS else FEEL_PER_S
 
 
 @kernel
@@ -170,10 +165,12 @@ def hill_hold(car: Car, p: CarParameters, request: Request, axles: Axles, ratio:
 
 
 @kernel
-def pressed(axle: AxleParameters, wheel: Wheel, wanted_nm: float) -> float:
-    """Return the torque of a brake one step later: its pressure follows what is wanted with a lag of first order."""
-    now = wheel.brake_nm + (wanted_nm - wheel.brake_nm) * axle.brake_ease
-    return wanted_nm if abs(wanted_nm - now) < SAME_NM else now
+def pressed(axle: AxleParameters, wheel: Wheel, wanted_nm: float, rate_per_s: float, step_s: float) -> float:
+    """Return the torque of a brake one step later: its pressure follows with a lag, and as ABS lets it."""
+    way = (wanted_nm - wheel.brake_nm) * axle.brake_ease
+    allowed = rate_per_s * step_s * (wheel.brake_nm + LEAST_SHARE * axle.brake_nm)
+    now = wheel.brake_nm + (way if way < allowed else allowed)
+    return wanted_nm if abs(wanted_nm - now) < SAME_NM else (now if now > 0.0 else 0.0)
 
 
 @kernel
@@ -187,30 +184,24 @@ def brake_torques(car: Car, p: CarParameters, request: Request, axles: Axles, ai
         pedal = aids.hold_brake
     front = p.front
     rear = p.rear
-    released = RELEASE_PER_S * step_s
-    fl = approach(car.fl.brake_share, 1.0, released)
-    fr = approach(car.fr.brake_share, 1.0, released)
-    rl = approach(car.rl.brake_share, 1.0, released)
-    rr = approach(car.rr.brake_share, 1.0, released)
+    fl = FREE_PER_S
+    fr = FREE_PER_S
+    low = FREE_PER_S
     if p.aids.anti_lock != 0.0 and (pedal > 0.02 or abs(aids.stability_nm) > 1.0):
-        fl = anti_lock(front, car.fl, axles.fl, step_s)
-        fr = anti_lock(front, car.fr, axles.fr, step_s)
-        rl = anti_lock(rear, car.rl, axles.rl, step_s)
-        rr = anti_lock(rear, car.rr, axles.rr, step_s)
-    low = rl if rl < rr else rr  # select-low: both rear wheels keep the side force of the better one
+        fl = anti_lock_rate(front, car.fl, axles.fl)
+        fr = anti_lock_rate(front, car.fr, axles.fr)
+        rl = anti_lock_rate(rear, car.rl, axles.rl)
+        rr = anti_lock_rate(rear, car.rr, axles.rr)
+        low = rl if rl < rr else rr  # select-low: both rear wheels keep the side force of the better one
     turn = aids.stability_nm
     to_left = turn if turn > 0.0 else 0.0
     to_right = -turn if turn < 0.0 else 0.0
     inwards = turn * car.body.yaw_rate_radps > 0.0  # it turns too little
     front_share = 0.0 if inwards else 1.0
-    left_nm = low * pedal * rear.brake_nm + (1.0 - front_share) * to_left * rl
-    right_nm = low * pedal * rear.brake_nm + (1.0 - front_share) * to_right * rr
+    rear_share = 1.0 - front_share
     return Brakes(
-        fl_nm=pressed(front, car.fl, fl * (pedal * front.brake_nm + front_share * to_left)),
-        fr_nm=pressed(front, car.fr, fr * (pedal * front.brake_nm + front_share * to_right)),
-        rl_nm=pressed(rear, car.rl, left_nm),
-        rr_nm=pressed(rear, car.rr, right_nm),
-        fl_share=fl,
-        fr_share=fr,
-        rear_share=low,
+        fl_nm=pressed(front, car.fl, pedal * front.brake_nm + front_share * to_left, fl, step_s),
+        fr_nm=pressed(front, car.fr, pedal * front.brake_nm + front_share * to_right, fr, step_s),
+        rl_nm=pressed(rear, car.rl, pedal * rear.brake_nm + rear_share * to_left, low, step_s),
+        rr_nm=pressed(rear, car.rr, pedal * rear.brake_nm + rear_share * to_right, low, step_s),
     )

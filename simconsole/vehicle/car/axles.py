@@ -123,7 +123,6 @@ def steered_tyre(
         deflection_y_m=y,
         lift_m=wheel.lift_m,
         lift_mps=wheel.lift_mps,
-        brake_share=wheel.brake_share,
         brake_nm=wheel.brake_nm,
     )
     along = vx_mps * c + vy_mps * s

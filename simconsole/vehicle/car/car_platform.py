@@ -56,6 +56,9 @@ SYNC_SHARE: Final = 0.04
 CREEP_FADE: Final = 0.1
 """Gearbox speed above idle, as share of it, at which nothing is left of creeping."""
 
+LEAST_CREEP_NM: Final = 0.1
+"""Creeping torque below which any throttle lets the engine speed up: a car that does not creep."""
+
 RAMPS: Final = 8
 LIMIT_BAND_RPM: Final = 100.0
 """Band over which the limiter reduces the torque to 0; wide enough that it does not chatter at 1 ms."""
@@ -72,10 +75,6 @@ def build_car(profile: CarProfile, pose: Pose, ground: Ground) -> Platform:
         engine_running=1.0,
         lever_adopted=1.0,
         throttle_share=1.0,
-        fl_brake_share=1.0,
-        fr_brake_share=1.0,
-        rl_brake_share=1.0,
-        rr_brake_share=1.0,
     )
     body = profile.body
     parameters = np.empty(PARAMETERS.width)
@@ -327,6 +326,7 @@ def _gears(
 ) -> GearParameters:
     launch_nms = engine.inertia_kgm2 / LAUNCH_S
     governor_nms = engine.idle_gain_nm_per_rpm / RADPS_PER_RPM
+    held_nm = min(auto.creep_nm * governor_nms / (governor_nms + launch_nms), engine.idle_max_nm)
     forward = (*(ratio * box.final for ratio in box.forward), *(0.0,) * 7)
     return GearParameters(
         clutch_nm=box.clutch_nm,
@@ -363,7 +363,8 @@ def _gears(
         idle_radps=engine.idle_rpm * RADPS_PER_RPM,
         per_fade_radps=1.0 / (CREEP_FADE * engine.idle_rpm * RADPS_PER_RPM),
         creep_nm=auto.creep_nm,
-        creep_held_nm=min(auto.creep_nm * governor_nms / (governor_nms + launch_nms), engine.idle_max_nm),
+        creep_held_nm=held_nm,
+        per_creep_held_nm=1.0 / max(held_nm, LEAST_CREEP_NM),
         lock_from_radps=auto.lock_from_rpm * RADPS_PER_RPM,
         per_lock_radps=1.0 / ((auto.lock_to_rpm - auto.lock_from_rpm) * RADPS_PER_RPM),
         clutch_opening_per_s=1.0 / auto.clutch_opening_s,

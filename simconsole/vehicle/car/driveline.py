@@ -12,8 +12,8 @@ from simconsole.vehicle.car.parameters import AxleParameters, CarParameters
 from simconsole.vehicle.car.powertrain import Capacity, Inertia, Shafts, braked, solve_shafts
 from simconsole.vehicle.car.state import AidState, Car, Gearbox, ShaftState, Wheel
 
-ANTI_STALL_FROM: Final = 0.6
-ANTI_STALL_TO: Final = 0.9
+ANTI_STALL_FROM: Final = 0.55
+ANTI_STALL_TO: Final = 0.75
 """Shares of idle speed between which the automatic's clutch opens at once, however slow its actuator is."""
 
 

@@ -153,11 +153,17 @@ def held_speed(p: GearParameters, gearbox_radps: float, throttle: float) -> floa
 
 
 @kernel
-def creep_torque(p: GearParameters, engine_radps: float, gearbox_radps: float, request: Request) -> float:
-    """Return the clutch torque that lets the car creep, less where the engine falls below idle or somebody brakes."""
+def creep_torque(
+    p: GearParameters, engine_radps: float, gearbox_radps: float, push_nm: float, request: Request
+) -> float:
+    """Return the clutch torque that lets the car creep, less where the engine falls below idle or somebody brakes.
+
+    Where the throttle gives the engine more torque than it creeps with the clutch must let it speed up.
+    """
     pressed = request.brake if request.brake > request.handbrake else request.handbrake
     share = clip(1.0 - (gearbox_radps - p.idle_radps) * p.per_fade_radps, 0.0, 1.0)
     share = share * clip(1.0 - pressed * (1.0 / CREEP_BRAKE), 0.0, 1.0)
+    share = share * clip(2.0 - push_nm * p.per_creep_held_nm, 0.0, 1.0)
     return clip(share * p.creep_nm + p.launch_nms * (engine_radps - p.idle_radps), 0.0, share * p.creep_nm)
 
 
@@ -177,14 +183,14 @@ def automatic_torque(p: GearParameters, box: Gearbox, request: Request, turning:
         return ramp * abs(asked)
     gearbox = gear_ratio(p, box.gear) * turning.wheel_radps
     slip = turning.engine_radps - gearbox
+    push = asked if asked > 0.0 else 0.0
     if slip >= 0.0:
-        push = asked if asked > 0.0 else 0.0
         beyond = turning.engine_radps - held_speed(p, gearbox, request.throttle)
         torque = push + clip(p.launch_nms * beyond, -push, p.sync_nm)
     else:
-        torque = 0.0 if asked > 0.0 else p.sync_nm - asked
+        torque = 0.0 if push > 0.0 else p.sync_nm - asked
     if abs(box.gear) == 1.0:
-        creep = creep_torque(p, turning.engine_radps, gearbox, request)
+        creep = creep_torque(p, turning.engine_radps, gearbox, push, request)
         torque = creep if creep > torque else torque
     torque = ramp * torque
     if abs(slip) < LOCKED_RADPS:
@@ -263,7 +269,7 @@ def by_automatic(
         wanted_gear=target,
         shift_left_s=left,
         since_shift_s=since,
-        gear_fault=0.0,
+        gear_fault=GearFault.CLUTCH_HOT if turning.hot != 0.0 else 0.0,
     )
 
 
@@ -286,5 +292,5 @@ def gearbox_step(p: GearParameters, box: Gearbox, request: Request, turning: Tur
         wanted_gear=kept.wanted_gear,
         shift_left_s=kept.shift_left_s,
         since_shift_s=kept.since_shift_s,
-        gear_fault=0.0,
+        gear_fault=kept.gear_fault,
     )

@@ -125,6 +125,7 @@ class GearParameters(NamedTuple):
     per_fade_radps: float  # 1 / gearbox speed above idle at which nothing is left of creeping
     creep_nm: float  # clutch torque with released pedals
     creep_held_nm: float  # what of it the idle governor holds against a standing car
+    per_creep_held_nm: float
     lock_from_radps: float  # gearbox speed at which it may begin to close
     per_lock_radps: float
     clutch_opening_per_s: float

@@ -46,7 +46,6 @@ class Wheel(NamedTuple):
     deflection_y_m: float
     lift_m: float
     lift_mps: float
-    brake_share: float  # what ABS leaves of the pedal, 0..1
     brake_nm: float  # torque that the pressure at the wheel gives now
 
 
@@ -125,28 +124,24 @@ class CarState(NamedTuple):
     fl_deflection_y_m: float
     fl_lift_m: float
     fl_lift_mps: float
-    fl_brake_share: float
     fl_brake_nm: float
     fr_radps: float
     fr_deflection_x_m: float
     fr_deflection_y_m: float
     fr_lift_m: float
     fr_lift_mps: float
-    fr_brake_share: float
     fr_brake_nm: float
     rl_radps: float
     rl_deflection_x_m: float
     rl_deflection_y_m: float
     rl_lift_m: float
     rl_lift_mps: float
-    rl_brake_share: float
     rl_brake_nm: float
     rr_radps: float
     rr_deflection_x_m: float
     rr_deflection_y_m: float
     rr_lift_m: float
     rr_lift_mps: float
-    rr_brake_share: float
     rr_brake_nm: float
     engine_radps: float
     engine_running: float
