@@ -26,7 +26,7 @@ LEAST_SLIP_MPS: Final = 0.3
 SLOW_MPS: Final = 1.5
 """Below this speed ABS leaves the wheels alone: a lock at walking pace hurts nobody."""
 TRACTION_GAIN: Final = 0.15
-TRACTION_PER_S: Final = 1.5
+TRACTION_PER_S: Final = 2.0
 """Throttle per slip that is left to the peak, and its change per second: proportional and integral part of TCS."""
 DEAD_RADPS: Final = 0.035
 """Yaw rate by which a car may differ from the model before ESC acts: 2 deg/s."""
@@ -97,7 +97,7 @@ def traction(
     peak = peak_slip_mps(axle, force, left.load_n + right.load_n, abs(ground))
     peak = peak if peak > LEAST_SLIP_MPS else LEAST_SLIP_MPS
     slip = abs(rim_mps - ground)
-    left_over = clip(1.0 - slip / peak, -4.0, 1.0)
+    left_over = clip(1.0 - slip / peak, -2.0, 1.0)
     now = clip(kept + TRACTION_PER_S * step_s * left_over, 0.0, 1.0)
     return Throttle(clip(now + TRACTION_GAIN * left_over, 0.0, 1.0), now)
 
