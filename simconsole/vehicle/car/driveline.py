@@ -16,6 +16,9 @@ ANTI_STALL_FROM: Final = 0.55
 ANTI_STALL_TO: Final = 0.75
 """Shares of idle speed between which the automatic's clutch opens at once, however slow its actuator is."""
 
+BURNT: Final = 2.0
+"""Heat beyond which a clutch becomes no hotter: there is nothing left of it to wear."""
+
 
 class Driveline(NamedTuple):
     """Everything that turns, after one step."""
@@ -110,8 +113,9 @@ def driveline_step(car: Car, p: CarParameters, request: Request, axles: Axles, s
         rl = braked(rl, p.rear.per_wheel_inertia_kgm2, rl_nms)
         rr = braked(rr, p.rear.per_wheel_inertia_kgm2, rr_nms)
     slip = shafts.engine_radps - 0.5 * ratio * (shafts.left_radps + shafts.right_radps)
-    heat = before.clutch_heat
-    heat += p.gears.heat_per_j * abs(shafts.clutch_impulse_nms * slip) - step_s * p.gears.cooling_per_s * heat
+    worn_j = abs(shafts.clutch_impulse_nms * slip)
+    cooled = before.clutch_heat * (1.0 - step_s * p.gears.cooling_per_s)
+    heat = clip(cooled + p.gears.heat_per_j * worn_j, 0.0, BURNT)
     kept = ShaftState(
         engine_radps=shafts.engine_radps,
         engine_running=drive.running,
