@@ -60,14 +60,14 @@ class Throttle(NamedTuple):
 
 
 @kernel
-def peak_slip_mps(axle: AxleParameters, force_n: float, load_n: float, speed_mps: float) -> float:
-    """Return the slip velocity at which a tyre that gives this force along its wheel would be at its peak.
+def slip_at_peak(axle: AxleParameters, force_n: float, speed_mps: float) -> float:
+    """Return load times slip velocity, N m/s, at which a tyre that gives this force along its wheel were at its peak.
 
     At the peak of the force half of the stiffness at small slip is left, on any ground. So the peak lies at the
     slip at which the force is half of what that stiffness would give: the friction in use tells where, and who goes
     for that slip arrives at the peak from either side. A force to the side leaves less of the slip along the wheel.
     """
-    return axle.peak_slip * abs(force_n) * speed_mps / (load_n if load_n > 1.0 else 1.0)
+    return axle.peak_slip * abs(force_n) * speed_mps
 
 
 @kernel
@@ -76,10 +76,11 @@ def anti_lock_rate(axle: AxleParameters, wheel: Wheel, on: Contact) -> float:
     speed = abs(on.ground_mps)
     rim = wheel.radps * axle.radius_m
     slip = speed - (rim if on.ground_mps > 0.0 else -rim)
-    peak = peak_slip_mps(axle, on.tyre.force_x_n, on.load_n, speed)
-    if speed < SLOW_MPS or slip < RESUME_PEAKS * peak:
+    peak = slip_at_peak(axle, on.tyre.force_x_n, speed)
+    loaded = on.load_n * slip
+    if speed < SLOW_MPS or loaded < RESUME_PEAKS * peak:
         return FREE_PER_S
-    return -RELEASE_PER_S if slip > RELEASE_PEAKS * peak and slip > LEAST_SLIP_MPS else FEEL_PER_S
+    return -RELEASE_PER_S if loaded > RELEASE_PEAKS * peak and slip > LEAST_SLIP_MPS else FEEL_PER_S
 
 
 @kernel
@@ -94,10 +95,10 @@ def traction(
         return Throttle(1.0, 1.0)
     ground = 0.5 * (left.ground_mps + right.ground_mps)
     force = left.tyre.force_x_n + right.tyre.force_x_n
-    peak = peak_slip_mps(axle, force, left.load_n + right.load_n, abs(ground))
-    peak = peak if peak > LEAST_SLIP_MPS else LEAST_SLIP_MPS
-    slip = abs(rim_mps - ground)
-    left_over = clip(1.0 - slip / peak, -2.0, 1.0)
+    load = left.load_n + right.load_n + 1.0  # never 0
+    peak = slip_at_peak(axle, force, abs(ground))
+    least = LEAST_SLIP_MPS * load
+    left_over = clip(1.0 - abs(rim_mps - ground) * load / (peak if peak > least else least), -2.0, 1.0)
     now = clip(kept + TRACTION_PER_S * step_s * left_over, 0.0, 1.0)
     return Throttle(clip(now + TRACTION_GAIN * left_over, 0.0, 1.0), now)
 

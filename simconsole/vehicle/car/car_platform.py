@@ -56,6 +56,9 @@ SYNC_SHARE: Final = 0.04
 CREEP_FADE: Final = 0.1
 """Gearbox speed above idle, as share of it, at which nothing is left of creeping."""
 
+LEAST_CLUTCH_NM: Final = 0.1
+"""Of a clutch that transmits nothing."""
+
 LEAST_CREEP_NM: Final = 0.1
 """Creeping torque below which any throttle lets the engine speed up: a car that does not creep."""
 
@@ -330,6 +333,7 @@ def _gears(
     forward = (*(ratio * box.final for ratio in box.forward), *(0.0,) * 7)
     return GearParameters(
         clutch_nm=box.clutch_nm,
+        per_clutch_nm=1.0 / max(box.clutch_nm, LEAST_CLUTCH_NM),
         heat_per_j=0.001 / box.clutch_heat_kj,
         cooling_per_s=1.0 / box.clutch_cooling_s,
         loss_share=1.0 - box.efficiency,

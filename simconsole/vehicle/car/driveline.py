@@ -68,11 +68,14 @@ def driveline_step(car: Car, p: CarParameters, request: Request, axles: Axles, s
     right = axles.rr if at_rear else axles.fr
     grip = traction(p.aids, driven_axle, car.aids.throttle_share, left, right, mean * driven_axle.radius_m, step_s)
     asked = request.throttle * grip.share
+    automatic_nm = 0.0
+    if request.automatic != 0.0 or car.box.lever_adopted == 0.0:
+        automatic_nm = net_torque(p.engine, before.engine_radps, before.engine_running, asked)
     turning = Turning(
         engine_radps=before.engine_radps,
         wheel_radps=mean,
         vx_mps=car.body.vx_mps,
-        asked_nm=net_torque(p.engine, before.engine_radps, before.engine_running, asked),
+        asked_nm=automatic_nm,
         hot=before.clutch_hot,
     )
     box = gearbox_step(p.gears, car.box, request, turning, step_s)

@@ -91,6 +91,7 @@ class GearParameters(NamedTuple):
     """Clutch, gears and the automatic. Ratios are engine to wheel with the final drive; 0: there is no such gear."""
 
     clutch_nm: float
+    per_clutch_nm: float
     heat_per_j: float  # of the clutch, as share of the heat that it may have
     cooling_per_s: float
     loss_share: float  # of the torque at the wheels that the gears' friction takes
