@@ -58,7 +58,7 @@ def test_a_car_that_rolls_back_is_driven_up_again() -> None:
     """Its gear stays in: traction control counts the slip against the way that the car is to go."""
     drive = shipped("light_van", Ground(1.0, 0.20, 0.0), hill_hold=False)
     drive.hold(0.5, automatic=1, gear=1, brake=0.6)
-    assert drive.hold(2.0, automatic=1, gear=1).vx_mps < -2.0
+    assert drive.hold(2.0, automatic=1, gear=1).vx_mps < -1.5
     assert drive.hold(6.0, automatic=1, gear=1, throttle=1.0).vx_mps > 3.0
 
 
