@@ -146,7 +146,8 @@ def hill_hold(car: Car, p: CarParameters, request: Request, axles: Axles, ratio:
     left = s.hold_left_s
     brake = s.hold_brake
     steep = abs(p.body.slope_x) + abs(p.body.slope_y) > HOLD_SLOPE
-    kept = (1.0 - p.gears.loss_share) * p.gears.per_wheel_radius_m
+    # The gears take their loss of it; as much again is the margin by which the drive must be the stronger.
+    kept = (1.0 - 2.0 * p.gears.loss_share) * p.gears.per_wheel_radius_m
     drive_n = car.shafts.clutch_impulse_nms * ratio * (kept * (1.0 / step_s))
     standing = p.aids.hill_hold != 0.0 and steep and abs(car.body.vx_mps) < 0.05
     if standing and car.shafts.clutch_hot != 0.0:
