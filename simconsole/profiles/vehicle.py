@@ -79,6 +79,7 @@ class AxleProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     camber_per_roll: Annotated[float, msgspec.Meta(ge=-1.5, le=1.5)]  # camber gained per roll against the axle
     rolling_resistance: Annotated[float, msgspec.Meta(ge=0.0, le=0.1)]
     brake_nm: Torque
+    brake_lag_s: Seconds = 0.05  # time constant of the pressure
     handbrake_nm: Torque
 
 
@@ -163,6 +164,9 @@ class GearboxProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_f
     lock_nm: Torque  # limited slip: what the differential always keeps between its wheels; 0: open
     lock_share: Share  # and its share of the driving torque
     clutch_nm: Torque
+    clutch_heat_kj: Annotated[float, msgspec.Meta(ge=1.0, le=10000.0)] = 200.0  # that takes it from cold to its limit
+    clutch_cooling_s: Annotated[float, msgspec.Meta(ge=1.0, le=10000.0)] = 90.0  # time constant
+    efficiency: Annotated[float, msgspec.Meta(ge=0.5, le=1.0)] = 0.92  # from clutch to wheels
     bite_closed: Share  # pedal position below which the clutch transmits everything
     bite_open: Share  # pedal position above which it transmits nothing
 
@@ -186,9 +190,10 @@ class AutomaticProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown
     up_full_rpm: Rpm  # at full throttle
     down_rpm: Rpm
     down_full_rpm: Rpm
-    launch_from_rpm: Rpm  # engine speed at which the clutch begins to bite
-    launch_to_rpm: Rpm
-    lock_from_rpm: Rpm  # gearbox speed at which it begins to close
+    creep_nm: Torque = 30.0  # of the clutch, with released pedals
+    launch_from_rpm: Rpm  # engine speed that the slipping clutch holds with hardly any throttle
+    launch_to_rpm: Rpm  # and with all of it
+    lock_from_rpm: Rpm  # gearbox speed at which it may begin to close
     lock_to_rpm: Rpm
     clutch_opening_s: Seconds
     clutch_closing_s: Seconds

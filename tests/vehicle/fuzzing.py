@@ -63,16 +63,18 @@ BOUNDS: Final[dict[str, tuple[float, float]]] = {
     **dict.fromkeys([f"{wheel}_deflection_x_m" for wheel in WHEELS], (-0.0712, 0.0712)),
     **dict.fromkeys([f"{wheel}_deflection_y_m" for wheel in WHEELS], (-0.1281, 0.1281)),
     **dict.fromkeys([f"{wheel}_lift_mps" for wheel in WHEELS], (-50.0, 50.0)),  # 37 kg thrown by a stop over 0.5 m
-    **dict.fromkeys([f"{wheel}_brake_share" for wheel in WHEELS], (0.0, 1.0)),
+    **dict.fromkeys([f"{wheel}_brake_nm" for wheel in WHEELS], (0.0, 3550.0)),  # pedal 1650 N m and ESC 1900
     "engine_radps": (-4750.0, 4750.0),  # 330 rad/s at a wheel in first gear, clutch closed
     "engine_running": (0.0, 1.0),
     "engine_impulse_nms": (-0.27, 0.27),  # friction at that speed, in 1 ms
     "clutch_impulse_nms": (-0.28, 0.28),  # clutch_nm: 280
-    **dict.fromkeys(("left_impulse_nms", "right_impulse_nms"), (-3.7, 3.7)),  # pedal 1650 N m, ESC 1900, rolling
+    **dict.fromkeys(("left_impulse_nms", "right_impulse_nms"), (-3.9, 3.9)),  # pedal 1650 N m, ESC 1900, rolling, gears
+    "clutch_heat": (0.0, 2.0),  # burnt
+    "clutch_hot": (0.0, 1.0),
     "lock_impulse_nms": (0.0, 0.0),  # an open differential
     **dict.fromkeys(("gear", "wanted_gear"), (-1.0, 6.0)),
     **dict.fromkeys(("clutch", "lever_adopted", "throttle_share", "hold_brake"), (0.0, 1.0)),
-    "gear_fault": (0.0, 7.0),  # three bits
+    "gear_fault": (0.0, 8.0),  # three bits, and the automatic's own
     "shift_left_s": (0.0, 0.25),
     "since_shift_s": (0.0, 10.0),
     "stability_nm": (-1900.0, 1900.0),

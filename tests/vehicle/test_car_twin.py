@@ -21,7 +21,7 @@ from simconsole.values.state_vector import LAYOUT, PLATFORM_AT
 from simconsole.vehicle.car.state import CarState
 from tests.vehicle.driving import IDLE, Drive, platform
 
-SEED = 16
+SEED = 38
 FUSED = re.compile(r"\bv?f?n?m(?:add|sub)\d*[sp][sd]\b|\bfmadd\b|\bfmsub\b|\bfmla\b")
 
 

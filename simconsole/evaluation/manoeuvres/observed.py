@@ -1,11 +1,26 @@
 """Characteristic values of a scripted drive: launch, stall, hill start, reverse, parking."""
 
+from typing import Final
+
 import numpy as np
+from numpy.typing import NDArray
 
 from simconsole.evaluation.manoeuvres.attempt import Attempt, Driving, Result, part, traces
 from simconsole.profiles.manoeuvre import Observed
 from simconsole.values.platform import Platform
+from simconsole.values.signals import GearFault
 from simconsole.values.units import DEG_PER_RAD, KMH_PER_MPS, RPM_PER_RADPS
+
+JERK_WINDOW_S: Final = 0.05
+"""Over which accelerations are averaged before their change counts as a jerk: 20 Hz, more than a body feels."""
+
+
+def jerks(accel_mps2: NDArray[np.float64], tick_hz: float) -> NDArray[np.float64]:
+    """Return the changes of an averaged acceleration per second, m/s3; a single 0 where the drive is too short."""
+    count = max(1, round(JERK_WINDOW_S * tick_hz))
+    if len(accel_mps2) < count + 1:
+        return np.zeros(1)
+    return np.diff(np.convolve(accel_mps2, np.full(count, 1.0 / count), "valid")) * tick_hz
 
 
 def observed(spec: Observed, car: Platform, duration_s: float) -> Driving:
@@ -31,10 +46,12 @@ def observed(spec: Observed, car: Platform, duration_s: float) -> Driving:
         ),
         "highest_acceleration_mps2": float(ax.max()),
         "lowest_acceleration_mps2": float(ax.min()),
+        "highest_jerk_mps3": float(np.abs(jerks(ax, driven.tick_hz)).max()),
         "lowest_engine_speed_rpm": float(engine.min()),
         "highest_engine_speed_rpm": float(engine.max()),
         "engine_stalled": float((running == 0.0).any()),
         "end_engine_running": float(running[-1]),
+        "clutch_overheated": float((seen.column("vehicle.gear_fault") >= GearFault.CLUTCH_HOT).any()),
     }
     panels = (
         traces("Speed", "speed / km/h", {"": (seen, speed * KMH_PER_MPS)}),

@@ -148,11 +148,12 @@ class Button(IntFlag):
 
 
 class GearFault(IntFlag):
-    """Why a gear does not go in: the bits of `VehicleState.gear_fault`, set for as long as the lever asks for it."""
+    """Why a gear does not go in or does not drive: the bits of `VehicleState.gear_fault`, set while it is so."""
 
     GRIND = 1  # the speeds do not match and the clutch is not pressed: it grates
     MONEY_SHIFT = 2  # the wheels would turn the engine beyond its limit
     MISSED = 4  # no such gear, or one of the other direction
+    CLUTCH_HOT = 8  # it is in, but the automatic keeps the clutch open until it has cooled
 
 
 class GateLimit(IntFlag):

@@ -5,26 +5,38 @@ They use the true speed over ground, which a real car has to estimate from its w
 
 from typing import Final, NamedTuple
 
-from simconsole.values.kernels import approach, clip, kernel
+from simconsole.values.kernels import clip, kernel
 from simconsole.values.signals import Request
 from simconsole.vehicle.car.axles import Axles, Contact
-from simconsole.vehicle.car.parameters import AidParameters, CarParameters
-from simconsole.vehicle.car.state import AidState, Car
+from simconsole.vehicle.car.parameters import AidParameters, AxleParameters, CarParameters
+from simconsole.vehicle.car.state import AidState, Car, Wheel
 
-RELEASE_SLIP: Final = 0.12
-HOLD_SLIP: Final = 0.07
-RELEASE_PER_S: Final = 14.0
-BUILD_PER_S: Final = 4.0
+RELEASE_PEAKS: Final = 1.25
+RESUME_PEAKS: Final = 0.7
+"""Slips, as multiples of that at the peak of the force, above which ABS releases a brake, and below which it lets it
+build up fast. In between it lets it build up slowly: it feels its way to the peak again and again."""
+RELEASE_PER_S: Final = 6.0
+FEEL_PER_S: Final = 0.6
+LEAST_SHARE: Final = 0.1
+"""Rates of the torque in force, and of this share of the full torque: valves pass less at a lower pressure."""
+FREE_PER_S: Final = 1000.0
+"""Without ABS: nothing but the lag."""
+LEAST_SLIP_MPS: Final = 0.3
+"""Slip that is never too much: the tyre's deflection needs its way to build up."""
 SLOW_MPS: Final = 1.5
-"""Below this speed ABS and TCS leave the wheels alone: a lock at walking pace hurts nobody."""
-SPIN_SLIP: Final = 0.10
-SPIN_MPS: Final = 0.6
+"""Below this speed ABS leaves the wheels alone: a lock at walking pace hurts nobody."""
+TRACTION_GAIN: Final = 0.15
+TRACTION_PER_S: Final = 2.0
+"""Throttle per slip that is left to the peak, and its change per second: proportional and integral part of TCS."""
 DEAD_RADPS: Final = 0.035
 """Yaw rate by which a car may differ from the model before ESC acts: 2 deg/s."""
 STABILITY_FROM_MPS: Final = 4.0
 STABILITY_LAG_S: Final = 0.02
+SAME_NM: Final = 0.1
 HOLD_S: Final = 2.0
 HOLD_SLOPE: Final = 0.03
+HOT_HOLD_BRAKE: Final = 0.6
+"""Pedal with which the hill hold takes the car over from a clutch that must cool."""
 LEAVING_THROTTLE: Final = 0.02
 """Throttle beyond which the driver is about to drive off: the hill hold then waits for the drive, not for the time."""
 DOWNHILL_SHARE: Final = 0.1
@@ -32,43 +44,63 @@ DOWNHILL_SHARE: Final = 0.1
 
 
 class Brakes(NamedTuple):
-    """Torque capacity of each wheel's brake in N m, and what ABS leaves of the pedal."""
+    """Torque of each wheel's brake in N m, as the pressure of now gives it."""
 
     fl_nm: float
     fr_nm: float
     rl_nm: float
     rr_nm: float
-    fl_share: float
-    fr_share: float
-    rear_share: float
+
+
+class Throttle(NamedTuple):
+    """What traction control leaves of the throttle, and the part of that which it remembers."""
+
+    share: float
+    kept_share: float
 
 
 @kernel
-def anti_lock(share: float, spin_mps: float, ground_mps: float, step_s: float) -> float:
-    """Return the share of the pedal one step later: release above one slip, hold, build up below another."""
-    speed = abs(ground_mps)
-    spin = spin_mps if ground_mps > 0.0 else -spin_mps
-    target = 1.0
-    rate = BUILD_PER_S
-    if spin < (1.0 - HOLD_SLIP) * speed:
-        target = share
-    if spin < (1.0 - RELEASE_SLIP) * speed:
-        target = 0.0
-        rate = RELEASE_PER_S
-    if speed < SLOW_MPS:
-        target = 1.0
-        rate = RELEASE_PER_S
-    return approach(share, target, rate * step_s)
+def slip_at_peak(axle: AxleParameters, force_n: float, speed_mps: float) -> float:
+    """Return load times slip velocity, N m/s, at which a tyre that gives this force along its wheel were at its peak.
+
+    At the peak of the force half of the stiffness at small slip is left, on any ground. So the peak lies at the
+    slip at which the force is half of what that stiffness would give: the friction in use tells where, and who goes
+    for that slip arrives at the peak from either side. A force to the side leaves less of the slip along the wheel.
+    """
+    return axle.peak_slip * abs(force_n) * speed_mps
+
+
+@kernel
+def anti_lock_rate(axle: AxleParameters, wheel: Wheel, on: Contact) -> float:
+    """Return how fast ABS lets a brake build up, as share of its torque per second; negative: it releases."""
+    speed = abs(on.ground_mps)
+    rim = wheel.radps * axle.radius_m
+    slip = speed - (rim if on.ground_mps > 0.0 else -rim)
+    peak = slip_at_peak(axle, on.tyre.force_x_n, speed)
+    loaded = on.load_n * slip
+    if speed < SLOW_MPS or loaded < RESUME_PEAKS * peak:
+        return FREE_PER_S
+    return -RELEASE_PER_S if loaded > RELEASE_PEAKS * peak and slip > LEAST_SLIP_MPS else FEEL_PER_S
 
 
 @kernel
 def traction(
-    aids: AidParameters, share: float, driven: Contact, other: Contact, spin_mps: float, step_s: float
-) -> float:
-    """Return the share of the throttle one step later, by how much faster the driven wheels turn than they travel."""
-    speed = 0.5 * abs(driven.ground_mps + other.ground_mps)
-    spinning = aids.traction != 0.0 and abs(spin_mps) > (1.0 + SPIN_SLIP) * speed + SPIN_MPS
-    return approach(share, 0.0 if spinning else 1.0, (6.0 if spinning else 1.5) * step_s)
+    aids: AidParameters, axle: AxleParameters, kept: float, left: Contact, right: Contact, rim_mps: float, step_s: float
+) -> Throttle:
+    """Return what is left of the throttle: a PI control that holds the driven wheels at the slip of their peak.
+
+    `rim_mps` is the speed of their rims in the direction of the drive: of a car that rolls back on a hill, too.
+    """
+    if aids.traction == 0.0:
+        return Throttle(1.0, 1.0)
+    ground = 0.5 * (left.ground_mps + right.ground_mps)
+    force = left.tyre.force_x_n + right.tyre.force_x_n
+    load = left.load_n + right.load_n + 1.0  # never 0
+    peak = slip_at_peak(axle, force, abs(ground))
+    least = LEAST_SLIP_MPS * load
+    left_over = clip(1.0 - abs(rim_mps - ground) * load / (peak if peak > least else least), -2.0, 1.0)
+    now = clip(kept + TRACTION_PER_S * step_s * left_over, 0.0, 1.0)
+    return Throttle(clip(now + TRACTION_GAIN * left_over, 0.0, 1.0), now)
 
 
 @kernel
@@ -114,8 +146,14 @@ def hill_hold(car: Car, p: CarParameters, request: Request, axles: Axles, ratio:
     left = s.hold_left_s
     brake = s.hold_brake
     steep = abs(p.body.slope_x) + abs(p.body.slope_y) > HOLD_SLOPE
-    drive_n = car.shafts.clutch_impulse_nms * ratio * (p.gears.per_wheel_radius_m * (1.0 / step_s))
-    if p.aids.hill_hold != 0.0 and steep and request.brake > 0.1 and abs(car.body.vx_mps) < 0.05:
+    # The gears take their loss of it; as much again is the margin by which the drive must be the stronger.
+    kept = (1.0 - 2.0 * p.gears.loss_share) * p.gears.per_wheel_radius_m
+    drive_n = car.shafts.clutch_impulse_nms * ratio * (kept * (1.0 / step_s))
+    standing = p.aids.hill_hold != 0.0 and steep and abs(car.body.vx_mps) < 0.05
+    if standing and car.shafts.clutch_hot != 0.0:
+        brake = HOT_HOLD_BRAKE
+        left = HOLD_S
+    elif standing and request.brake > 0.1:
         # A pedal that is released slowly must not lower the held pressure.
         if left == 0.0 or request.brake > brake:
             brake = request.brake
@@ -130,8 +168,17 @@ def hill_hold(car: Car, p: CarParameters, request: Request, axles: Axles, ratio:
 
 
 @kernel
+def pressed(axle: AxleParameters, wheel: Wheel, wanted_nm: float, rate_per_s: float, step_s: float) -> float:
+    """Return the torque of a brake one step later: its pressure follows with a lag, and as ABS lets it."""
+    way = (wanted_nm - wheel.brake_nm) * axle.brake_ease
+    allowed = rate_per_s * step_s * (wheel.brake_nm + LEAST_SHARE * axle.brake_nm)
+    now = wheel.brake_nm + (way if way < allowed else allowed)
+    return wanted_nm if abs(wanted_nm - now) < SAME_NM else (now if now > 0.0 else 0.0)
+
+
+@kernel
 def brake_torques(car: Car, p: CarParameters, request: Request, axles: Axles, aids: AidState, step_s: float) -> Brakes:
-    """Return the capacity of each brake: pedal under ABS, hand brake on the rear, ESC on one wheel.
+    """Return the torque of each brake: pedal under ABS, and ESC on one wheel. The hand brake is a cable of its own.
 
     ESC brakes the rear wheel inside where the car turns too little, the front wheel outside where it turns too much.
     """
@@ -140,29 +187,24 @@ def brake_torques(car: Car, p: CarParameters, request: Request, axles: Axles, ai
         pedal = aids.hold_brake
     front = p.front
     rear = p.rear
-    released = RELEASE_PER_S * step_s
-    fl = approach(car.fl.brake_share, 1.0, released)
-    fr = approach(car.fr.brake_share, 1.0, released)
-    rl = approach(car.rl.brake_share, 1.0, released)
-    rr = approach(car.rr.brake_share, 1.0, released)
+    fl = FREE_PER_S
+    fr = FREE_PER_S
+    low = FREE_PER_S
     if p.aids.anti_lock != 0.0 and (pedal > 0.02 or abs(aids.stability_nm) > 1.0):
-        fl = anti_lock(car.fl.brake_share, car.fl.radps * front.radius_m, axles.fl.ground_mps, step_s)
-        fr = anti_lock(car.fr.brake_share, car.fr.radps * front.radius_m, axles.fr.ground_mps, step_s)
-        rl = anti_lock(car.rl.brake_share, car.rl.radps * rear.radius_m, axles.rl.ground_mps, step_s)
-        rr = anti_lock(car.rr.brake_share, car.rr.radps * rear.radius_m, axles.rr.ground_mps, step_s)
-    low = rl if rl < rr else rr  # select-low: both rear wheels keep the side force of the better one
+        fl = anti_lock_rate(front, car.fl, axles.fl)
+        fr = anti_lock_rate(front, car.fr, axles.fr)
+        rl = anti_lock_rate(rear, car.rl, axles.rl)
+        rr = anti_lock_rate(rear, car.rr, axles.rr)
+        low = rl if rl < rr else rr  # select-low: both rear wheels keep the side force of the better one
     turn = aids.stability_nm
     to_left = turn if turn > 0.0 else 0.0
     to_right = -turn if turn < 0.0 else 0.0
     inwards = turn * car.body.yaw_rate_radps > 0.0  # it turns too little
     front_share = 0.0 if inwards else 1.0
-    hand = request.handbrake * rear.handbrake_nm
+    rear_share = 1.0 - front_share
     return Brakes(
-        fl_nm=fl * (pedal * front.brake_nm + front_share * to_left),
-        fr_nm=fr * (pedal * front.brake_nm + front_share * to_right),
-        rl_nm=low * pedal * rear.brake_nm + hand + (1.0 - front_share) * to_left * rl,
-        rr_nm=low * pedal * rear.brake_nm + hand + (1.0 - front_share) * to_right * rr,
-        fl_share=fl,
-        fr_share=fr,
-        rear_share=low,
+        fl_nm=pressed(front, car.fl, pedal * front.brake_nm + front_share * to_left, fl, step_s),
+        fr_nm=pressed(front, car.fr, pedal * front.brake_nm + front_share * to_right, fr, step_s),
+        rl_nm=pressed(rear, car.rl, pedal * rear.brake_nm + rear_share * to_left, low, step_s),
+        rr_nm=pressed(rear, car.rr, pedal * rear.brake_nm + rear_share * to_right, low, step_s),
     )

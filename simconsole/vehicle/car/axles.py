@@ -123,7 +123,7 @@ def steered_tyre(
         deflection_y_m=y,
         lift_m=wheel.lift_m,
         lift_mps=wheel.lift_mps,
-        brake_share=wheel.brake_share,
+        brake_nm=wheel.brake_nm,
     )
     along = vx_mps * c + vy_mps * s
     on = unsteered_tyre(tyre, axle, friction, seen, along, vy_mps * c - vx_mps * s, camber_rad, side, step_s)

@@ -21,6 +21,7 @@ from simconsole.values.platform import MOST_PATCHES, Ground, Platform, Pose
 from simconsole.values.trigonometry import wrap_angle
 from simconsole.values.units import MPS_PER_KMH, RAD_PER_DEG, RADPS_PER_RPM, STANDARD_GRAVITY_MPS2
 from simconsole.vehicle.car.car_step import STEP_S, step
+from simconsole.vehicle.car.gearbox import SHIFT_RAMP_SHARE
 from simconsole.vehicle.car.outputs import vehicle_state
 from simconsole.vehicle.car.parameters import (
     NO_PATCH,
@@ -35,6 +36,7 @@ from simconsole.vehicle.car.parameters import (
     SteeringParameters,
 )
 from simconsole.vehicle.car.state import CAR, Car, CarState
+from simconsole.vehicle.car.tyre import PEAK_DEMAND
 
 AIR_KGPM3: Final = 1.225
 """Density of air, ISO 2533 standard atmosphere at sea level."""
@@ -44,6 +46,21 @@ LEAST_FRICTION: Final = 0.01
 
 TRAIL_END: Final = 1.7
 """Demand at which the pneumatic trail is gone: before the side force has its maximum, as measured tyres show."""
+
+LAUNCH_S: Final = 0.1
+"""Time constant with which the automatic's slipping clutch brings the engine to the speed that it shall have."""
+
+SYNC_SHARE: Final = 0.04
+"""Share of the clutch's torque, beyond the engine's, with which the automatic ends a slip: felt as 0.2 m/s2."""
+
+CREEP_FADE: Final = 0.1
+"""Gearbox speed above idle, as share of it, at which nothing is left of creeping."""
+
+LEAST_CLUTCH_NM: Final = 0.1
+"""Of a clutch that transmits nothing."""
+
+LEAST_CREEP_NM: Final = 0.1
+"""Creeping torque below which any throttle lets the engine speed up: a car that does not creep."""
 
 RAMPS: Final = 8
 LIMIT_BAND_RPM: Final = 100.0
@@ -61,10 +78,6 @@ def build_car(profile: CarProfile, pose: Pose, ground: Ground) -> Platform:
         engine_running=1.0,
         lever_adopted=1.0,
         throttle_share=1.0,
-        fl_brake_share=1.0,
-        fr_brake_share=1.0,
-        rl_brake_share=1.0,
-        rr_brake_share=1.0,
     )
     body = profile.body
     parameters = np.empty(PARAMETERS.width)
@@ -211,6 +224,12 @@ def _aids(aids: AidsProfile) -> AidParameters:
     )
 
 
+def slip_stiffness(profile: CarProfile, axle: AxleProfile) -> float:
+    """Return force per load and slip at small slip, of the tyre that the car has."""
+    given = {} if profile.tyre is None else profile.tyre.coefficients
+    return given.get("PKX1", axle.slip_stiffness) * given.get("LKX", 1.0)
+
+
 def _axle(profile: CarProfile, axle: AxleProfile, ground: Ground, at_front: bool) -> AxleParameters:
     """Return one axle.
 
@@ -261,7 +280,9 @@ def _axle(profile: CarProfile, axle: AxleProfile, ground: Ground, at_front: bool
         roll_arm_m=(sprung_height - axle.roll_centre_m) * sprung / body.mass_kg,
         link_arm_m=(axle.roll_centre_m * sprung + axle.wheel_radius_m * unsprung) / body.mass_kg,
         brake_nm=0.5 * axle.brake_nm,
+        brake_ease=STEP_S / (axle.brake_lag_s + STEP_S),
         handbrake_nm=0.5 * axle.handbrake_nm,
+        peak_slip=PEAK_DEMAND / slip_stiffness(profile, axle),
     )
 
 
@@ -306,9 +327,16 @@ def _ramps(engine: EngineProfile) -> dict[str, float]:
 def _gears(
     box: GearboxProfile, auto: AutomaticProfile, engine: EngineProfile, driven: AxleParameters
 ) -> GearParameters:
+    launch_nms = engine.inertia_kgm2 / LAUNCH_S
+    governor_nms = engine.idle_gain_nm_per_rpm / RADPS_PER_RPM
+    held_nm = min(auto.creep_nm * governor_nms / (governor_nms + launch_nms), engine.idle_max_nm)
     forward = (*(ratio * box.final for ratio in box.forward), *(0.0,) * 7)
     return GearParameters(
         clutch_nm=box.clutch_nm,
+        per_clutch_nm=1.0 / max(box.clutch_nm, LEAST_CLUTCH_NM),
+        heat_per_j=0.001 / box.clutch_heat_kj,
+        cooling_per_s=1.0 / box.clutch_cooling_s,
+        loss_share=1.0 - box.efficiency,
         bite_closed=box.bite_closed,
         bite_open=box.bite_open,
         per_bite=1.0 / (box.bite_open - box.bite_closed),
@@ -326,15 +354,22 @@ def _gears(
         per_wheel_radius_m=1.0 / driven.radius_m,
         shift_s=auto.shift_s,
         shift_pause_s=auto.shift_pause_s,
+        per_ramp_s=1.0 / (SHIFT_RAMP_SHARE * auto.shift_s),
         up_radps=auto.up_rpm * RADPS_PER_RPM,
         up_per_throttle_radps=(auto.up_full_rpm - auto.up_rpm) * RADPS_PER_RPM,
         down_radps=auto.down_rpm * RADPS_PER_RPM,
         down_per_throttle_radps=(auto.down_full_rpm - auto.down_rpm) * RADPS_PER_RPM,
         launch_from_radps=auto.launch_from_rpm * RADPS_PER_RPM,
         launch_to_radps=auto.launch_to_rpm * RADPS_PER_RPM,
-        per_launch_radps=1.0 / ((auto.launch_to_rpm - auto.launch_from_rpm) * RADPS_PER_RPM),
+        launch_per_throttle_radps=(auto.launch_to_rpm - auto.launch_from_rpm) * RADPS_PER_RPM,
+        launch_nms=launch_nms,
+        sync_nm=SYNC_SHARE * box.clutch_nm,
+        idle_radps=engine.idle_rpm * RADPS_PER_RPM,
+        per_fade_radps=1.0 / (CREEP_FADE * engine.idle_rpm * RADPS_PER_RPM),
+        creep_nm=auto.creep_nm,
+        creep_held_nm=held_nm,
+        per_creep_held_nm=1.0 / max(held_nm, LEAST_CREEP_NM),
         lock_from_radps=auto.lock_from_rpm * RADPS_PER_RPM,
-        lock_to_radps=auto.lock_to_rpm * RADPS_PER_RPM,
         per_lock_radps=1.0 / ((auto.lock_to_rpm - auto.lock_from_rpm) * RADPS_PER_RPM),
         clutch_opening_per_s=1.0 / auto.clutch_opening_s,
         clutch_closing_per_s=1.0 / auto.clutch_closing_s,

@@ -135,10 +135,10 @@ def substep(
     return Car(
         body=motion.body,
         steering=SteeringState(mean_rad, rate, torque),
-        fl=wheel(axles.fl, line.fl_radps, front.left_m, front.left_mps, brakes.fl_share),
-        fr=wheel(axles.fr, line.fr_radps, front.right_m, front.right_mps, brakes.fr_share),
-        rl=wheel(axles.rl, line.rl_radps, rear.left_m, rear.left_mps, brakes.rear_share),
-        rr=wheel(axles.rr, line.rr_radps, rear.right_m, rear.right_mps, brakes.rear_share),
+        fl=wheel(axles.fl, line.fl_radps, front.left_m, front.left_mps, brakes.fl_nm),
+        fr=wheel(axles.fr, line.fr_radps, front.right_m, front.right_mps, brakes.fr_nm),
+        rl=wheel(axles.rl, line.rl_radps, rear.left_m, rear.left_mps, brakes.rl_nm),
+        rr=wheel(axles.rr, line.rr_radps, rear.right_m, rear.right_mps, brakes.rr_nm),
         shafts=line.shafts,
         box=line.box,
         aids=line.aids,
@@ -146,7 +146,7 @@ def substep(
 
 
 @kernel
-def wheel(on_ground: Contact, radps: float, lift_m: float, lift_mps: float, brake_share: float) -> Wheel:
+def wheel(on_ground: Contact, radps: float, lift_m: float, lift_mps: float, brake_nm: float) -> Wheel:
     """Return a wheel after its step."""
     return Wheel(
         radps=radps,
@@ -154,7 +154,7 @@ def wheel(on_ground: Contact, radps: float, lift_m: float, lift_mps: float, brak
         deflection_y_m=on_ground.tyre.deflection_y_m,
         lift_m=lift_m,
         lift_mps=lift_mps,
-        brake_share=brake_share,
+        brake_nm=brake_nm,
     )
 
 

@@ -6,15 +6,18 @@ from simconsole.values.kernels import clip, kernel
 from simconsole.values.signals import Request
 from simconsole.vehicle.car.aids import Brakes, brake_torques, hill_hold, stability, traction
 from simconsole.vehicle.car.axles import Axles, Contact
-from simconsole.vehicle.car.engine import EngineDrive, engine_drive
-from simconsole.vehicle.car.gearbox import bite, gear_ratio, gearbox_step, matched_throttle
+from simconsole.vehicle.car.engine import EngineDrive, engine_drive, net_torque
+from simconsole.vehicle.car.gearbox import COOLED, Turning, bite, gear_ratio, gearbox_step, matched_throttle
 from simconsole.vehicle.car.parameters import AxleParameters, CarParameters
 from simconsole.vehicle.car.powertrain import Capacity, Inertia, Shafts, braked, solve_shafts
 from simconsole.vehicle.car.state import AidState, Car, Gearbox, ShaftState, Wheel
 
-ANTI_STALL_FROM: Final = 0.6
-ANTI_STALL_TO: Final = 0.9
+ANTI_STALL_FROM: Final = 0.55
+ANTI_STALL_TO: Final = 0.75
 """Shares of idle speed between which the automatic's clutch opens at once, however slow its actuator is."""
+
+BURNT: Final = 2.0
+"""Heat beyond which a clutch becomes no hotter: there is nothing left of it to wear."""
 
 
 class Driveline(NamedTuple):
@@ -60,31 +63,44 @@ def driveline_step(car: Car, p: CarParameters, request: Request, axles: Axles, s
     at_rear = p.gears.rear_driven != 0.0
     before = car.shafts
     mean = 0.5 * (car.rl.radps + car.rr.radps) if at_rear else 0.5 * (car.fl.radps + car.fr.radps)
-    box = gearbox_step(p.gears, car.box, request, before.engine_radps, mean, car.body.vx_mps, step_s)
-    clutch_nm = clutch_torque(before.engine_radps, p, box)
     driven_axle = p.rear if at_rear else p.front
     left = axles.rl if at_rear else axles.fl
     right = axles.rr if at_rear else axles.fr
-    share = traction(p.aids, car.aids.throttle_share, left, right, mean * driven_axle.radius_m, step_s)
+    grip = traction(p.aids, driven_axle, car.aids.throttle_share, left, right, mean * driven_axle.radius_m, step_s)
+    asked = request.throttle * grip.share
+    automatic_nm = 0.0
+    if request.automatic != 0.0 or car.box.lever_adopted == 0.0:
+        automatic_nm = net_torque(p.engine, before.engine_radps, before.engine_running, asked)
+    turning = Turning(
+        engine_radps=before.engine_radps,
+        wheel_radps=mean,
+        vx_mps=car.body.vx_mps,
+        asked_nm=automatic_nm,
+        hot=before.clutch_hot,
+    )
+    box = gearbox_step(p.gears, car.box, request, turning, step_s)
+    clutch_nm = clutch_torque(before.engine_radps, p, box)
     ratio = gear_ratio(p.gears, box.gear)
     held = hill_hold(car, p, request, axles, ratio, step_s)
-    aids = AidState(share, stability(car, p, request.handbrake, step_s), held.hold_left_s, held.hold_brake)
+    aids = AidState(grip.kept_share, stability(car, p, request.handbrake, step_s), held.hold_left_s, held.hold_brake)
     brakes = brake_torques(car, p, request, axles, aids, step_s)
-    throttle = matched_throttle(p.gears, box, request.throttle * share, before.engine_radps, mean)
+    throttle = matched_throttle(p.gears, box, asked, before.engine_radps, mean)
     drive = engine_drive(p.engine, before.engine_radps, before.engine_running, throttle, clutch_nm == 0.0)
     fl = spun(p.front, car.fl, axles.fl, step_s)
     fr = spun(p.front, car.fr, axles.fr, step_s)
     rl = spun(p.rear, car.rl, axles.rl, step_s)
     rr = spun(p.rear, car.rr, axles.rr, step_s)
+    hand_nm = request.handbrake * p.rear.handbrake_nm
     fl_nms = friction_nms(p.front, brakes.fl_nm, axles.fl, step_s)
     fr_nms = friction_nms(p.front, brakes.fr_nm, axles.fr, step_s)
-    rl_nms = friction_nms(p.rear, brakes.rl_nm, axles.rl, step_s)
-    rr_nms = friction_nms(p.rear, brakes.rr_nm, axles.rr, step_s)
+    rl_nms = friction_nms(p.rear, brakes.rl_nm + hand_nm, axles.rl, step_s)
+    rr_nms = friction_nms(p.rear, brakes.rr_nm + hand_nm, axles.rr, step_s)
+    gears_nms = 0.5 * p.gears.loss_share * abs(ratio * before.clutch_impulse_nms)
     most = Capacity(
         engine_nms=step_s * drive.friction_nm,
         clutch_nms=step_s * clutch_nm,
-        left_nms=rl_nms if at_rear else fl_nms,
-        right_nms=rr_nms if at_rear else fr_nms,
+        left_nms=(rl_nms if at_rear else fl_nms) + gears_nms,
+        right_nms=(rr_nms if at_rear else fr_nms) + gears_nms,
         lock_nms=step_s * p.gears.lock_nm,
         lock_share=p.gears.lock_share,
     )
@@ -99,6 +115,10 @@ def driveline_step(car: Car, p: CarParameters, request: Request, axles: Axles, s
         fr = shafts.right_radps
         rl = braked(rl, p.rear.per_wheel_inertia_kgm2, rl_nms)
         rr = braked(rr, p.rear.per_wheel_inertia_kgm2, rr_nms)
+    slip = shafts.engine_radps - 0.5 * ratio * (shafts.left_radps + shafts.right_radps)
+    worn_j = abs(shafts.clutch_impulse_nms * slip)
+    cooled = before.clutch_heat * (1.0 - step_s * p.gears.cooling_per_s)
+    heat = clip(cooled + p.gears.heat_per_j * worn_j, 0.0, BURNT)
     kept = ShaftState(
         engine_radps=shafts.engine_radps,
         engine_running=drive.running,
@@ -107,6 +127,8 @@ def driveline_step(car: Car, p: CarParameters, request: Request, axles: Axles, s
         left_impulse_nms=shafts.left_impulse_nms,
         right_impulse_nms=shafts.right_impulse_nms,
         lock_impulse_nms=shafts.lock_impulse_nms,
+        clutch_heat=heat,
+        clutch_hot=1.0 if heat >= 1.0 or (before.clutch_hot != 0.0 and heat > COOLED) else 0.0,
     )
     return Driveline(box=box, shafts=kept, brakes=brakes, aids=aids, fl_radps=fl, fr_radps=fr, rl_radps=rl, rr_radps=rr)
 

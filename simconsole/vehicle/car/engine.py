@@ -60,6 +60,16 @@ def idle_torque(p: EngineParameters, speed_radps: float, friction_nm: float) -> 
 
 
 @kernel
+def net_torque(p: EngineParameters, speed_radps: float, running: float, throttle: float) -> float:
+    """Return what the engine gives at its flywheel at this speed and throttle, friction taken off; 0 if it is off."""
+    if running == 0.0:
+        return 0.0
+    friction = engine_friction(p, speed_radps)
+    closed = idle_torque(p, speed_radps, friction)
+    return closed + throttle * (full_torque(p, speed_radps) + friction - closed) - friction
+
+
+@kernel
 def engine_drive(
     p: EngineParameters, speed_radps: float, running: float, throttle: float, driveline_open: bool
 ) -> EngineDrive:

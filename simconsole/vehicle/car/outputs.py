@@ -65,8 +65,11 @@ def pedals(car: Car, p: CarParameters, lie: RoadAndWind, automatic: float) -> Pe
     driven = above_idle(p.engine, shaft)
     launch = shaft if shaft > gears.launch_to_radps else gears.launch_to_radps
     burned = full_torque(p.engine, launch) if car.shafts.engine_running != 0.0 else 0.0
-    push = clip(burned, -held, held) * leverage
-    drag = clip(engine_friction(p.engine, shaft) * driven, 0.0, held) * leverage
+    push = clip(burned, -held, held) * leverage * (1.0 - gears.loss_share)
+    drag = clip(engine_friction(p.engine, shaft) * driven, 0.0, held) * leverage * (1.0 + gears.loss_share)
+    if automatic != 0.0 and abs(gear) == 1.0:
+        creep = clip((gears.idle_radps - shaft) * gears.per_fade_radps, 0.0, 1.0)
+        drag -= creep * gears.creep_held_nm * leverage * (1.0 - gears.loss_share)
     per_mass = 1.0 / (body.moving_kg + driven * grip * p.engine.inertia_kgm2 * leverage * leverage)
     load = body.mass_kg * body.gravity_plane_mps2
     air = speed - way * lie.wind_mps

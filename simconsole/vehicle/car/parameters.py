@@ -47,7 +47,9 @@ class AxleParameters(NamedTuple):
     roll_arm_m: float  # at which the side force rolls the body
     link_arm_m: float  # at which it loads the wheels directly: roll centre and the wheels' own mass
     brake_nm: float
+    brake_ease: float  # share of the way to the wanted brake torque that a step takes
     handbrake_nm: float
+    peak_slip: float  # slip at the peak of the force, per friction used: where half of the stiffness is left
 
 
 class EngineParameters(NamedTuple):
@@ -89,6 +91,10 @@ class GearParameters(NamedTuple):
     """Clutch, gears and the automatic. Ratios are engine to wheel with the final drive; 0: there is no such gear."""
 
     clutch_nm: float
+    per_clutch_nm: float
+    heat_per_j: float  # of the clutch, as share of the heat that it may have
+    cooling_per_s: float
+    loss_share: float  # of the torque at the wheels that the gears' friction takes
     bite_closed: float  # pedal position below which the clutch transmits everything
     bite_open: float  # pedal position above which it transmits nothing
     per_bite: float  # 1 / the way between them
@@ -106,15 +112,22 @@ class GearParameters(NamedTuple):
     per_wheel_radius_m: float
     shift_s: float
     shift_pause_s: float
+    per_ramp_s: float  # 1 / time in which a shift gives the torque away or back
     up_radps: float
     up_per_throttle_radps: float
     down_radps: float
     down_per_throttle_radps: float
-    launch_from_radps: float  # engine speed at which the automatic clutch begins to bite
-    launch_to_radps: float
-    per_launch_radps: float
-    lock_from_radps: float  # gearbox speed at which it begins to close
-    lock_to_radps: float
+    launch_from_radps: float  # engine speed that the automatic clutch holds while it slips, with hardly any throttle
+    launch_to_radps: float  # and with all of it
+    launch_per_throttle_radps: float
+    launch_nms: float  # clutch torque per engine speed beyond it
+    sync_nm: float  # clutch torque beyond the engine's by which a slip ends
+    idle_radps: float
+    per_fade_radps: float  # 1 / gearbox speed above idle at which nothing is left of creeping
+    creep_nm: float  # clutch torque with released pedals
+    creep_held_nm: float  # what of it the idle governor holds against a standing car
+    per_creep_held_nm: float
+    lock_from_radps: float  # gearbox speed at which it may begin to close
     per_lock_radps: float
     clutch_opening_per_s: float
     clutch_closing_per_s: float

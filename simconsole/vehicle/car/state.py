@@ -39,14 +39,14 @@ class SteeringState(NamedTuple):
 
 
 class Wheel(NamedTuple):
-    """One wheel: spin, deflection of its contact patch against the rim, lift from rest, its share of the brake."""
+    """One wheel: spin, deflection of its contact patch against the rim, lift from rest, its brake."""
 
     radps: float
     deflection_x_m: float
     deflection_y_m: float
     lift_m: float
     lift_mps: float
-    brake_share: float  # what ABS leaves of the pedal, 0..1
+    brake_nm: float  # torque that the pressure at the wheel gives now
 
 
 class ShaftState(NamedTuple):
@@ -59,6 +59,8 @@ class ShaftState(NamedTuple):
     left_impulse_nms: float  # brake of the left driven wheel
     right_impulse_nms: float
     lock_impulse_nms: float  # of the differential, positive drives the left wheel
+    clutch_heat: float  # 0 cold, 1 as hot as it may become
+    clutch_hot: float  # 1 while the automatic keeps it open to cool
 
 
 class Gearbox(NamedTuple):
@@ -122,25 +124,25 @@ class CarState(NamedTuple):
     fl_deflection_y_m: float
     fl_lift_m: float
     fl_lift_mps: float
-    fl_brake_share: float
+    fl_brake_nm: float
     fr_radps: float
     fr_deflection_x_m: float
     fr_deflection_y_m: float
     fr_lift_m: float
     fr_lift_mps: float
-    fr_brake_share: float
+    fr_brake_nm: float
     rl_radps: float
     rl_deflection_x_m: float
     rl_deflection_y_m: float
     rl_lift_m: float
     rl_lift_mps: float
-    rl_brake_share: float
+    rl_brake_nm: float
     rr_radps: float
     rr_deflection_x_m: float
     rr_deflection_y_m: float
     rr_lift_m: float
     rr_lift_mps: float
-    rr_brake_share: float
+    rr_brake_nm: float
     engine_radps: float
     engine_running: float
     engine_impulse_nms: float
@@ -148,6 +150,8 @@ class CarState(NamedTuple):
     left_impulse_nms: float
     right_impulse_nms: float
     lock_impulse_nms: float
+    clutch_heat: float
+    clutch_hot: float
     gear: float
     clutch: float
     lever_adopted: float

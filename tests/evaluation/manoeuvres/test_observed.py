@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from simconsole.evaluation.manoeuvres.attempt import Attempt
-from simconsole.evaluation.manoeuvres.observed import observed
+from simconsole.evaluation.manoeuvres.observed import JERK_WINDOW_S, jerks, observed
 from simconsole.profiles.manoeuvre import Observed
 from tests.evaluation.manoeuvres.driven import CAR, HZ, drive
 
@@ -24,6 +24,7 @@ def test_a_watched_drive_is_described() -> None:
         vehicle__engine_radps=100.0 * time_s,
         vehicle__engine_running=running,
         vehicle__distance_m=time_s,
+        vehicle__gear_fault=np.where(time_s > 3.5, 8.0, 1.0),
     )
     with pytest.raises(StopIteration) as end:
         at_work.send(seen)
@@ -32,3 +33,11 @@ def test_a_watched_drive_is_described() -> None:
     assert values["end_engine_running"] == 0.0
     assert values["rolled_back_m"] == pytest.approx(2.0, abs=0.01)
     assert values["lowest_engine_speed_rpm"] == pytest.approx(955.0, abs=5.0)
+    assert values["highest_jerk_mps3"] == pytest.approx(1.0), "the acceleration rises by 1 m/s2 in a second"
+    assert values["clutch_overheated"] == 0.0, "a grating gear, and the heat comes after the part that counts"
+
+
+def test_a_jerk_is_the_change_of_an_averaged_acceleration() -> None:
+    step = np.where(np.arange(HZ) < HZ // 2, 0.0, 0.5)
+    assert jerks(step, HZ).max() == pytest.approx(0.5 / JERK_WINDOW_S, rel=0.05)
+    assert jerks(step[:5], HZ).tolist() == [0.0], "shorter than the average"

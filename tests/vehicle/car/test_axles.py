@@ -31,7 +31,7 @@ def forces(body: BodyState, wheel: Wheel, turned_rad: float = 0.0) -> Axles:
         body=body,
         steering=SteeringState(turned_rad, 0.0, 0.0),
         **dict.fromkeys(("fl", "fr", "rl", "rr"), wheel),
-        shafts=ShaftState(*(0.0,) * 7),
+        shafts=ShaftState(*(0.0,) * 9),
         box=Gearbox(*(0.0,) * 7),
         aids=AidState(*(0.0,) * 4),
     )
