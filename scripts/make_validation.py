@@ -33,8 +33,7 @@ LIMITS = """## Known limits
 - Roll and pitch are small angles and end in stops: a car that turns over leans on them and comes back.
 - The ground is a plane with one slope, and x and y are measured along it; a wheel meets no kerb, no pothole and no
   loose surface.
-- Tyres have no temperature, wear, pressure or inflation; aligning torque acts on the rack, the turn-slip moment of a
-  tyre that is steered on the spot does not exist.
+- Tyres have no temperature, wear, pressure or inflation; turn slip exists at the steered wheels only.
 - Suspension is springs, dampers, bars and stops at each wheel; no compliance steer but the rack's, no bushings.
 - The driveline is stiff behind the clutch: no shunt, no half-shaft twist.
 - Driver aids know the true speed over ground, as a perfect estimator would tell it.

@@ -70,6 +70,22 @@ class CoastDown(Section, frozen=True, kw_only=True, tag_field="kind", tag="coast
     to_kmh: Kmh = 20.0
 
 
+class Weave(Section, frozen=True, kw_only=True, tag_field="kind", tag="weave"):
+    """ISO 13674-1: a slow sine of the hand wheel at constant speed; torque at the rim over lateral acceleration."""
+
+    speed_kmh: Kmh = 100.0
+    frequency_hz: Annotated[float, Meta(ge=0.05, le=1.0)] = 0.2
+    lateral_mps2: Annotated[float, Meta(ge=0.5, le=4.0)] = 2.0
+    cycles: Annotated[int, Meta(ge=1, le=20)] = 3
+
+
+class ParkingEffort(Section, frozen=True, kw_only=True, tag_field="kind", tag="parking_effort"):
+    """The hand wheel turned slowly to both sides on the spot, with the brake on: torque at the rim."""
+
+    hand_wheel_deg: HandDeg = 360.0
+    hand_wheel_degps: DegPerS = 90.0
+
+
 class Observed(Section, frozen=True, kw_only=True, tag_field="kind", tag="observed"):
     """The scenario's own script, observed from one time to another: launch, stall, hill start, reverse, parking."""
 
@@ -78,7 +94,15 @@ class Observed(Section, frozen=True, kw_only=True, tag_field="kind", tag="observ
 
 
 Manoeuvre: TypeAlias = (
-    SteadyCircle | StepSteer | SineWithDwell | DoubleLaneChange | StraightBraking | CoastDown | Observed
+    SteadyCircle
+    | StepSteer
+    | SineWithDwell
+    | DoubleLaneChange
+    | StraightBraking
+    | CoastDown
+    | Weave
+    | ParkingEffort
+    | Observed
 )
 
 

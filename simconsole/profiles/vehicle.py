@@ -94,8 +94,11 @@ class SteeringProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_
     ackermann_share: Share
     pneumatic_trail_m: Annotated[float, msgspec.Meta(ge=0.0, le=0.2)]
     caster_trail_m: Annotated[float, msgspec.Meta(ge=0.0, le=0.2)]
-    unassisted_share: Share  # of the tyres' torque that the power steering leaves to the hands, standing
+    # Moment of a wheel turned on the spot over friction and load: a third of the root of load over inflation (Gough).
+    turn_slip_arm_m: Annotated[float, msgspec.Meta(ge=0.0, le=0.15)] = 0.042
+    unassisted_share: Share  # of a large torque of the tyres that the power steering leaves to the hands, standing
     unassisted_share_at_100kmh: Share
+    assist_nm: Annotated[float, msgspec.Meta(ge=0.1, le=50.0)] = 4.0  # unassisted torque around which it comes in
     most_nm: Annotated[float, msgspec.Meta(ge=1.0, le=50.0)]  # towards which the assistance bends the torque
     damping_nms: Annotated[float, msgspec.Meta(ge=0.0, le=10.0)]
     rim_friction_nm: Annotated[float, msgspec.Meta(ge=0.0, le=3.0)]

@@ -22,7 +22,7 @@ KINDS = {
         "severe_double_lane_change",
     ),
     *("straight_braking", "split_friction_braking", "coast_down", "launch", "stall", "hill_start", "reverse"),
-    *("parking_creep", "parking_hold"),
+    *("parking_creep", "parking_hold", "parking_effort", "weave"),
 }
 
 

@@ -4,6 +4,7 @@ from simconsole.evaluation.manoeuvres.attempt import Driving
 from simconsole.evaluation.manoeuvres.braking import coast_down, straight_braking
 from simconsole.evaluation.manoeuvres.lane_change import lane_change
 from simconsole.evaluation.manoeuvres.observed import observed
+from simconsole.evaluation.manoeuvres.on_centre import parking_effort, weave
 from simconsole.evaluation.manoeuvres.sine_with_dwell import sine_with_dwell
 from simconsole.evaluation.manoeuvres.steering import steady_circle, step_steer
 from simconsole.profiles.manoeuvre import (
@@ -11,10 +12,12 @@ from simconsole.profiles.manoeuvre import (
     DoubleLaneChange,
     Manoeuvre,
     Observed,
+    ParkingEffort,
     SineWithDwell,
     SteadyCircle,
     StepSteer,
     StraightBraking,
+    Weave,
 )
 from simconsole.values.platform import Platform
 
@@ -40,5 +43,9 @@ def drive_manoeuvre(spec: Manoeuvre, car: Platform, duration_s: float) -> Drivin
             return straight_braking(spec, car)
         case CoastDown():
             return coast_down(spec, car)
+        case Weave():
+            return weave(spec, car)
+        case ParkingEffort():
+            return parking_effort(spec, car)
         case Observed():
             return observed(spec, car, duration_s)

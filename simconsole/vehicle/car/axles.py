@@ -6,7 +6,7 @@ from typing import Any, Final, NamedTuple
 from simconsole.values.kernels import kernel
 from simconsole.vehicle.car.parameters import AxleParameters, CarParameters, SteeringParameters
 from simconsole.vehicle.car.state import BodyState, Car, Wheel
-from simconsole.vehicle.car.steering import WheelDirections, aligning_moment
+from simconsole.vehicle.car.steering import WheelDirections, aligning_moment, patch_twist, turn_slip_moment
 from simconsole.vehicle.car.suspension import axle_roll, wheel_load
 from simconsole.vehicle.car.tyre import Tyre
 
@@ -51,6 +51,7 @@ class Axles(NamedTuple):
     rear_y_n: float
     moment_nm: float  # about the centre of gravity, left-positive
     aligning_nm: float  # about the kingpins, left-positive
+    patch_twist_rad: float
 
 
 @kernel
@@ -197,9 +198,14 @@ def tyre_forces(
     front_y = fl.force_y_n + fr.force_y_n
     rear_y = rl.force_y_n + rr.force_y_n
     steering = p.steering
-    aligning = kingpin_moment(steering, fl.tyre, car.fl.radps * front.radius_m) + kingpin_moment(
-        steering, fr.tyre, car.fr.radps * front.radius_m
-    )
+    left_mps = car.fl.radps * front.radius_m
+    right_mps = car.fr.radps * front.radius_m
+    rolled = 0.5 * step_s * abs(left_mps + right_mps)
+    twist = patch_twist(car.steering.patch_twist_rad, turned_rad + step_s * body.yaw_rate_radps, rolled)
+    aligning = rim_moment(steering, fl.tyre, left_mps) + rim_moment(steering, fr.tyre, right_mps)
+    aligning += turn_slip_moment(
+        steering, twist, front.friction_left * grips.fl * fl.load_n, fl.tyre.demand
+    ) + turn_slip_moment(steering, twist, front.friction_right * grips.fr * fr.load_n, fr.tyre.demand)
     return Axles(
         fl=fl,
         fr=fr,
@@ -211,4 +217,5 @@ def tyre_forces(
         moment_nm=(front.ahead_m * front_y + rear.ahead_m * rear_y)
         + (front.half_track_m * (fr.force_x_n - fl.force_x_n) + rear.half_track_m * (rr.force_x_n - rl.force_x_n)),
         aligning_nm=aligning,
+        patch_twist_rad=twist,
     )

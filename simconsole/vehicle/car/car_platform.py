@@ -45,6 +45,9 @@ LEAST_FRICTION: Final = 0.01
 TRAIL_END: Final = 1.7
 """Demand at which the pneumatic trail is gone: before the side force has its maximum, as measured tyres show."""
 
+FRICTION_DEG: Final = 3.0
+"""Angle of the hand wheel over which the steering's friction comes in: seals, mesh and column are elastic."""
+
 RAMPS: Final = 8
 LIMIT_BAND_RPM: Final = 100.0
 """Band over which the limiter reduces the torque to 0; wide enough that it does not chatter at 1 ms."""
@@ -190,11 +193,15 @@ def _steering(profile: CarProfile) -> SteeringParameters:
         pneumatic_trail_m=steering.pneumatic_trail_m,
         per_trail_end=1.0 / TRAIL_END,
         caster_trail_m=steering.caster_trail_m,
-        hand_torque_gain=share / steering.ratio,
-        hand_torque_gain_per_mps=per_mps / steering.ratio,
+        turn_slip_arm_m=steering.turn_slip_arm_m,
+        per_ratio=1.0 / steering.ratio,
+        unassisted_share=share,
+        unassisted_share_per_mps=per_mps,
+        per_assist_nm=1.0 / steering.assist_nm,
         per_hand_torque_most_nm=1.0 / steering.most_nm,
         hand_damping_nms=steering.damping_nms,
         hand_friction_nm=steering.rim_friction_nm,
+        per_friction_rad=steering.ratio / (FRICTION_DEG * RAD_PER_DEG),
     )
 
 

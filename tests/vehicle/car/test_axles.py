@@ -29,7 +29,7 @@ FULL = FrictionShares(1.0, 1.0, 1.0, 1.0)
 def forces(body: BodyState, wheel: Wheel, turned_rad: float = 0.0) -> Axles:
     rest = Car(
         body=body,
-        steering=SteeringState(turned_rad, 0.0, 0.0),
+        steering=SteeringState(turned_rad, 0.0, 0.0, 0.0, 0.0),
         **dict.fromkeys(("fl", "fr", "rl", "rr"), wheel),
         shafts=ShaftState(*(0.0,) * 7),
         box=Gearbox(*(0.0,) * 7),
