@@ -34,7 +34,8 @@ LIMITS = """## Known limits
 - The ground is a plane with one slope, and x and y are measured along it; a wheel meets no kerb, no pothole and no
   loose surface.
 - Tyres have no temperature, wear, pressure or inflation; turn slip exists at the steered wheels only.
-- Suspension is springs, dampers, bars and stops at each wheel; no compliance steer but the rack's, no bushings.
+- Suspension is springs, dampers, bars and stops at each wheel, with one slope of the links of each axle for braking and
+  driving alike; no compliance steer but the rack's, no bushings.
 - The driveline is stiff behind the clutch: no shunt, no half-shaft twist.
 - Driver aids know the true speed over ground, as a perfect estimator would tell it.
 - The hatchback is nobody's car. Its figures are typical or invented (each says which), so its agreement with a

@@ -7,7 +7,7 @@ from simconsole.values.kernels import kernel
 from simconsole.vehicle.car.parameters import AxleParameters, CarParameters, SteeringParameters
 from simconsole.vehicle.car.state import BodyState, Car, Wheel
 from simconsole.vehicle.car.steering import WheelDirections, aligning_moment, patch_twist, turn_slip_moment
-from simconsole.vehicle.car.suspension import axle_roll, wheel_load
+from simconsole.vehicle.car.suspension import axle_roll, compression_rate, wheel_load
 from simconsole.vehicle.car.tyre import Tyre
 
 TyreModel = Callable[..., Any]
@@ -152,9 +152,16 @@ def side_speed(axle: AxleParameters, body: BodyState, left: Wheel, right: Wheel)
 
 
 @kernel
-def along_speed(body: BodyState, cg_height_m: float) -> float:
-    """Return the velocity of the car's middle on the ground along the body: pitching moves it against the body."""
-    return body.vx_mps - cg_height_m * body.pitch_radps
+def along_speed(axle: AxleParameters, body: BodyState, left: Wheel, right: Wheel, cg_height_m: float) -> float:
+    """Return the velocity of an axle's middle on the ground along the body: pitching moves it against the body.
+
+    A wheel that the brake holds turns with its links: the slope of their pole moves its contact patch with the arm with
+    which braking pushes body and wheel apart. On a wheel that turns the brake gets that motion.
+    """
+    along = body.vx_mps - cg_height_m * body.pitch_radps
+    if left.radps == 0.0 and right.radps == 0.0:
+        along += axle.support_slope * compression_rate(axle, body, left.lift_mps, right.lift_mps)
+    return along
 
 
 @kernel
@@ -178,7 +185,7 @@ def tyre_forces(
     body = car.body
     front = p.front
     rear = p.rear
-    vx = along_speed(body, p.body.cg_height_m)
+    vx = along_speed(front, body, car.fl, car.fr, p.body.cg_height_m)
     vy = side_speed(front, body, car.fl, car.fr)
     side = front.half_track_m * body.yaw_rate_radps
     lean = inclination(front, body, car.fl, car.fr)
@@ -190,6 +197,7 @@ def tyre_forces(
     fr = steered_tyre(
         tyre, front, mu, car.fr, vx + side, vy, points.right_cos, points.right_sin, turned_rad, lean, -1.0, step_s
     )
+    vx = along_speed(rear, body, car.rl, car.rr, p.body.cg_height_m)
     vy = side_speed(rear, body, car.rl, car.rr)
     side = rear.half_track_m * body.yaw_rate_radps
     lean = inclination(rear, body, car.rl, car.rr)

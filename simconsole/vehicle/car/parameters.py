@@ -46,6 +46,7 @@ class AxleParameters(NamedTuple):
     carcass_nspm: float
     roll_arm_m: float  # at which the side force rolls the body
     link_arm_m: float  # at which it loads the wheels directly: roll centre and the wheels' own mass
+    support_slope: float  # way of the contact patches along the car per compression of the struts, positive forwards
     brake_nm: float
     handbrake_nm: float
 
