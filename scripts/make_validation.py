@@ -17,7 +17,8 @@ INTRODUCTION = """# Validation of the car
 
 Written by `scripts/make_validation.py`, which measures every number on this page; nobody types one. What the numbers
 must be is asserted by `tests/vehicle/test_validation.py` and, on fresh random inputs each time, by
-`tests/vehicle/test_car_commonroad.py`.
+`tests/vehicle/test_car_commonroad.py`. What the shipped cars do in test manoeuvres, beside the ranges of their
+classes, the torque at the rim among it, is in [driven_cars.md](driven_cars.md).
 
 ## Beside CommonRoad's models
 
