@@ -17,7 +17,8 @@ INTRODUCTION = """# Validation of the car
 
 Written by `scripts/make_validation.py`, which measures every number on this page; nobody types one. What the numbers
 must be is asserted by `tests/vehicle/test_validation.py` and, on fresh random inputs each time, by
-`tests/vehicle/test_car_commonroad.py`.
+`tests/vehicle/test_car_commonroad.py`. What the shipped cars do in test manoeuvres, beside the ranges of their
+classes, the torque at the rim among it, is in [driven_cars.md](driven_cars.md).
 
 ## Beside CommonRoad's models
 
@@ -33,9 +34,9 @@ LIMITS = """## Known limits
 - Roll and pitch are small angles and end in stops: a car that turns over leans on them and comes back.
 - The ground is a plane with one slope, and x and y are measured along it; a wheel meets no kerb, no pothole and no
   loose surface.
-- Tyres have no temperature, wear, pressure or inflation; aligning torque acts on the rack, the turn-slip moment of a
-  tyre that is steered on the spot does not exist.
-- Suspension is springs, dampers, bars and stops at each wheel; no compliance steer but the rack's, no bushings.
+- Tyres have no temperature, wear, pressure or inflation; turn slip exists at the steered wheels only.
+- Suspension is springs, dampers, bars and stops at each wheel, with one slope of the links of each axle for braking and
+  driving alike; no compliance steer but the rack's, no bushings.
 - The driveline is stiff behind the clutch: no shunt, no half-shaft twist.
 - Driver aids know the true speed over ground, as a perfect estimator would tell it.
 - The hatchback is nobody's car. Its figures are typical or invented (each says which), so its agreement with a

@@ -12,6 +12,10 @@ from simconsole.profiles.session import Section
 Kmh: TypeAlias = Annotated[float, Meta(ge=5.0, le=250.0)]
 HandDeg: TypeAlias = Annotated[float, Meta(ge=1.0, le=500.0)]
 DegPerS: TypeAlias = Annotated[float, Meta(ge=1.0, le=1500.0)]
+Frequency: TypeAlias = Annotated[float, Meta(ge=0.05, le=5.0)]
+
+SINES_HZ = (0.2, 0.4, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0)
+"""Frequencies of the sinusoidal input; ISO 7401 asks for 0.2 to 2 Hz."""
 
 
 class SteadyCircle(Section, frozen=True, kw_only=True, tag_field="kind", tag="steady_state_circle"):
@@ -70,6 +74,51 @@ class CoastDown(Section, frozen=True, kw_only=True, tag_field="kind", tag="coast
     to_kmh: Kmh = 20.0
 
 
+class Weave(Section, frozen=True, kw_only=True, tag_field="kind", tag="weave"):
+    """ISO 13674-1: a slow sine of the hand wheel at constant speed; torque at the rim over lateral acceleration."""
+
+    speed_kmh: Kmh = 100.0
+    frequency_hz: Annotated[float, Meta(ge=0.05, le=1.0)] = 0.2
+    lateral_mps2: Annotated[float, Meta(ge=0.5, le=4.0)] = 2.0
+    cycles: Annotated[int, Meta(ge=1, le=20)] = 3
+
+
+class ParkingEffort(Section, frozen=True, kw_only=True, tag_field="kind", tag="parking_effort"):
+    """The hand wheel turned slowly to both sides on the spot, with the brake on: torque at the rim."""
+
+    hand_wheel_deg: HandDeg = 360.0
+    hand_wheel_degps: DegPerS = 90.0
+
+
+class FrequencyResponse(Section, frozen=True, kw_only=True, tag_field="kind", tag="frequency_response"):
+    """ISO 7401, continuous sinusoidal input: a small sine of the hand wheel at each frequency, at constant speed."""
+
+    speed_kmh: Kmh = 100.0
+    hand_wheel_deg: HandDeg = 15.0
+    frequencies_hz: Annotated[tuple[Frequency, ...], Meta(min_length=2, max_length=20)] = SINES_HZ
+
+
+class BendBraking(Section, frozen=True, kw_only=True, tag_field="kind", tag="bend_braking"):
+    """ISO 7975, open loop: a steady circle, then braking with the steering held."""
+
+    radius_m: Annotated[float, Meta(ge=20.0, le=500.0)] = 100.0
+    lateral_mps2: Annotated[float, Meta(ge=1.0, le=8.0)] = 5.0
+    deceleration_mps2: Annotated[float, Meta(ge=1.0, le=8.0)] = 3.4
+
+
+class LiftOff(Section, frozen=True, kw_only=True, tag_field="kind", tag="lift_off"):
+    """ISO 9816: a steady circle, then the throttle released with the steering held."""
+
+    radius_m: Annotated[float, Meta(ge=20.0, le=500.0)] = 100.0
+    lateral_mps2: Annotated[float, Meta(ge=1.0, le=8.0)] = 5.0
+
+
+class Acceleration(Section, frozen=True, kw_only=True, tag_field="kind", tag="acceleration"):
+    """Full throttle from rest until the car gains no more."""
+
+    to_kmh: Kmh = 100.0
+
+
 class Observed(Section, frozen=True, kw_only=True, tag_field="kind", tag="observed"):
     """The scenario's own script, observed from one time to another: launch, stall, hill start, reverse, parking."""
 
@@ -78,7 +127,19 @@ class Observed(Section, frozen=True, kw_only=True, tag_field="kind", tag="observ
 
 
 Manoeuvre: TypeAlias = (
-    SteadyCircle | StepSteer | SineWithDwell | DoubleLaneChange | StraightBraking | CoastDown | Observed
+    SteadyCircle
+    | StepSteer
+    | SineWithDwell
+    | DoubleLaneChange
+    | StraightBraking
+    | CoastDown
+    | Weave
+    | ParkingEffort
+    | FrequencyResponse
+    | BendBraking
+    | LiftOff
+    | Acceleration
+    | Observed
 )
 
 

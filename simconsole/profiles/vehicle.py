@@ -78,6 +78,9 @@ class AxleProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     camber_offset_slip: Annotated[float, msgspec.Meta(ge=-0.01, le=0.01)]  # of any camber, however small
     camber_per_roll: Annotated[float, msgspec.Meta(ge=-1.5, le=1.5)]  # camber gained per roll against the axle
     rolling_resistance: Annotated[float, msgspec.Meta(ge=0.0, le=0.1)]
+    # Of the links seen from the side: slope of the line from contact patch to pole. Braking lifts the body in front
+    # and pulls it down at the rear by its tangent times the force.
+    support_deg: Annotated[float, msgspec.Meta(ge=-10.0, le=45.0)] = 0.0
     brake_nm: Torque
     brake_lag_s: Seconds = 0.05  # time constant of the pressure
     handbrake_nm: Torque
@@ -95,8 +98,11 @@ class SteeringProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_
     ackermann_share: Share
     pneumatic_trail_m: Annotated[float, msgspec.Meta(ge=0.0, le=0.2)]
     caster_trail_m: Annotated[float, msgspec.Meta(ge=0.0, le=0.2)]
-    unassisted_share: Share  # of the tyres' torque that the power steering leaves to the hands, standing
+    # Moment of a wheel turned on the spot over friction and load: a third of the root of load over inflation (Gough).
+    turn_slip_arm_m: Annotated[float, msgspec.Meta(ge=0.0, le=0.15)] = 0.042
+    unassisted_share: Share  # of a large torque of the tyres that the power steering leaves to the hands, standing
     unassisted_share_at_100kmh: Share
+    assist_nm: Annotated[float, msgspec.Meta(ge=0.1, le=50.0)] = 4.0  # unassisted torque around which it comes in
     most_nm: Annotated[float, msgspec.Meta(ge=1.0, le=50.0)]  # towards which the assistance bends the torque
     damping_nms: Annotated[float, msgspec.Meta(ge=0.0, le=10.0)]
     rim_friction_nm: Annotated[float, msgspec.Meta(ge=0.0, le=3.0)]
@@ -109,7 +115,8 @@ class AidsProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     traction_control: bool
     stability_control: bool
     hill_hold: bool
-    characteristic_speed_kmh: Annotated[float, msgspec.Meta(ge=20.0, le=500.0)]  # of the yaw rate that ESC expects
+    # Of the yaw rate that stability control expects; none: from the car's own tyres and steering.
+    characteristic_speed_kmh: Annotated[float, msgspec.Meta(ge=20.0, le=500.0)] | None = None
     stability_lateral_mps2: Annotated[float, msgspec.Meta(ge=1.0, le=15.0)]
     stability_nm_per_radps: Annotated[float, msgspec.Meta(ge=0.0, le=100000.0)]
     stability_nm: Torque

@@ -22,7 +22,16 @@ KINDS = {
         "severe_double_lane_change",
     ),
     *("straight_braking", "split_friction_braking", "coast_down", "launch", "stall", "hill_start", "reverse"),
-    *("parking_creep", "parking_hold", "creep", "upshift", "light_throttle", "clutch_protection"),
+    *(
+        "parking_creep",
+        "parking_hold",
+        "parking_effort",
+        "weave",
+        "creep",
+        "upshift",
+        "light_throttle",
+        "clutch_protection",
+    ),
     *("hill_van_20", "hill_van_25", "hill_slippery", "launch_slippery"),
     *("straight_braking_30", "straight_braking_60"),
 }

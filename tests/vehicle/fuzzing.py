@@ -57,11 +57,13 @@ BOUNDS: Final[dict[str, tuple[float, float]]] = {
     "distance_m": (0.0, 1e5),
     "road_wheel_rad": (-0.6284, 0.6284),  # max_road_wheel_deg: 36
     "road_wheel_radps": (-1.2218, 1.2218),  # max_road_wheel_degps: 70
-    "hand_wheel_torque_nm": (-14.7, 14.7),  # most_nm: 14, rim friction and damping of the fastest rack
+    "patch_twist_rad": (-0.2, 0.2),  # FULL_TWIST_RAD
+    "rim_friction_share": (-1.0, 1.0),
+    "hand_wheel_torque_nm": (-14.9, 14.9),  # most_nm: 14, rim friction and damping of the fastest rack
     **dict.fromkeys(("fl_radps", "fr_radps", "rl_radps", "rr_radps"), (-330.0, 330.0)),  # 100 m/s over 0.306 m
-    # slide_demand * grip / stiffness at four static loads, where they are longest (vehicle/car/tyre.py)
-    **dict.fromkeys([f"{wheel}_deflection_x_m" for wheel in WHEELS], (-0.0712, 0.0712)),
-    **dict.fromkeys([f"{wheel}_deflection_y_m" for wheel in WHEELS], (-0.1281, 0.1281)),
+    # slide_demand * grip / stiffness where a falling line leaves its least share, at three static loads (tyre.py)
+    **dict.fromkeys([f"{wheel}_deflection_x_m" for wheel in WHEELS], (-0.252, 0.252)),
+    **dict.fromkeys([f"{wheel}_deflection_y_m" for wheel in WHEELS], (-0.454, 0.454)),
     **dict.fromkeys([f"{wheel}_lift_mps" for wheel in WHEELS], (-50.0, 50.0)),  # 37 kg thrown by a stop over 0.5 m
     **dict.fromkeys([f"{wheel}_brake_nm" for wheel in WHEELS], (0.0, 3550.0)),  # pedal 1650 N m and ESC 1900
     "engine_radps": (-4750.0, 4750.0),  # 330 rad/s at a wheel in first gear, clutch closed

@@ -8,6 +8,7 @@ from simconsole.values.kernels import put
 from simconsole.values.platform import Ground, Pose
 from simconsole.values.state_vector import PLATFORM_AT
 from tests.samples import Sample
+from tests.vehicle.altered import HATCHBACK, altered, rolling_car
 from tests.vehicle.driving import Drive, platform
 from tests.vehicle.random_states import random_cars, settle, speeds_mps
 from tests.vehicle.rolling import rolling
@@ -64,7 +65,7 @@ def test_level_ground_needs_no_brake() -> None:
 
 
 def test_a_body_that_still_rocks_over_standing_wheels_has_no_speed_of_its_own() -> None:
-    drive = rolling(14.0)
+    drive = rolling_car(altered(front={"support_deg": 0.0}, rear={"support_deg": 0.0}), 14.0)
     rocking = told = 0.0
     drive.hold(2.5, brake=0.6, clutch=1.0)
     for _ in range(250):
@@ -73,6 +74,15 @@ def test_a_body_that_still_rocks_over_standing_wheels_has_no_speed_of_its_own() 
     print(f"centre of gravity {rocking:.3f} m/s, base_link {told:.3f} m/s: the tyres give a little")
     assert rocking > 0.05, "nothing rocked: nothing shown"
     assert told < 0.5 * rocking
+
+
+def test_links_that_hold_the_dive_leave_base_link_as_quiet_and_rock_the_body_less() -> None:
+    told = []
+    for deg in (0.0, HATCHBACK.rear.support_deg):
+        drive = rolling_car(altered(front={"support_deg": 0.2 * deg}, rear={"support_deg": deg}), 14.0)
+        drive.hold(2.5, brake=0.6, clutch=1.0)
+        told.append(max(abs(drive.hold(0.004, brake=0.6, clutch=1.0).vx_mps) for _ in range(250)))
+    assert told[1] < 1.5 * told[0] < 0.06
 
 
 def test_the_pose_moves_with_the_speed_that_is_told() -> None:

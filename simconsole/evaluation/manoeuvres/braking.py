@@ -9,7 +9,7 @@ from simconsole.evaluation.metrics.table import Array, Drive
 from simconsole.profiles.manoeuvre import CoastDown, StraightBraking
 from simconsole.values.platform import Platform
 from simconsole.values.state_vector import Snapshot
-from simconsole.values.units import DEG_PER_RAD, KMH_PER_MPS, MPS_PER_KMH
+from simconsole.values.units import DEG_PER_RAD, KMH_PER_MPS, MPS_PER_KMH, STANDARD_GRAVITY_MPS2
 
 STOPPED_MPS = 0.05
 WHEELS = ("fl", "fr", "rl", "rr")
@@ -57,10 +57,17 @@ def _stop(drive: Drive, speed_kmh: float) -> dict[str, float]:
         "stopping_distance_m": float(way[-1] * (nominal / speed[0]) ** 2),
         "stopping_time_s": drive.ticks / drive.tick_hz,
         "mean_fully_developed_deceleration_mps2": float(developed),
+        "pitch_angle_gradient_deg_per_g": _pitch_gradient(drive, at_80, at_10),
         "lowest_wheel_speed_share": _wheel_share(drive),
         "largest_offset_m": float(np.abs(drive.column("vehicle.y_m")).max()),
         "largest_yaw_angle_deg": float(np.abs(drive.column("vehicle.yaw_rad")).max() * DEG_PER_RAD),
     }
+
+
+def _pitch_gradient(drive: Drive, first: int, last: int) -> float:
+    """Return the mean pitch, positive nose down, over the mean deceleration between two ticks."""
+    pitch = drive.column("vehicle.pitch_rad")[first:last].mean() * DEG_PER_RAD
+    return float(-pitch / drive.column("vehicle.ax_mps2")[first:last].mean() * STANDARD_GRAVITY_MPS2)
 
 
 def _wheel_share(drive: Drive) -> float:

@@ -1,20 +1,30 @@
 """The manoeuvres by the kind of their description."""
 
+from simconsole.evaluation.manoeuvres.acceleration import acceleration
 from simconsole.evaluation.manoeuvres.attempt import Driving
+from simconsole.evaluation.manoeuvres.bend import bend_braking, lift_off
 from simconsole.evaluation.manoeuvres.braking import coast_down, straight_braking
+from simconsole.evaluation.manoeuvres.frequency import frequency_response
 from simconsole.evaluation.manoeuvres.lane_change import lane_change
 from simconsole.evaluation.manoeuvres.observed import observed
+from simconsole.evaluation.manoeuvres.on_centre import parking_effort, weave
 from simconsole.evaluation.manoeuvres.sine_with_dwell import sine_with_dwell
 from simconsole.evaluation.manoeuvres.steering import steady_circle, step_steer
 from simconsole.profiles.manoeuvre import (
+    Acceleration,
+    BendBraking,
     CoastDown,
     DoubleLaneChange,
+    FrequencyResponse,
+    LiftOff,
     Manoeuvre,
     Observed,
+    ParkingEffort,
     SineWithDwell,
     SteadyCircle,
     StepSteer,
     StraightBraking,
+    Weave,
 )
 from simconsole.values.platform import Platform
 
@@ -40,5 +50,17 @@ def drive_manoeuvre(spec: Manoeuvre, car: Platform, duration_s: float) -> Drivin
             return straight_braking(spec, car)
         case CoastDown():
             return coast_down(spec, car)
+        case Weave():
+            return weave(spec, car)
+        case ParkingEffort():
+            return parking_effort(spec, car)
+        case FrequencyResponse():
+            return frequency_response(spec, car)
+        case BendBraking():
+            return bend_braking(spec, car)
+        case LiftOff():
+            return lift_off(spec, car)
+        case Acceleration():
+            return acceleration(spec, car)
         case Observed():
             return observed(spec, car, duration_s)

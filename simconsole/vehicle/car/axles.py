@@ -6,8 +6,8 @@ from typing import Any, Final, NamedTuple
 from simconsole.values.kernels import kernel
 from simconsole.vehicle.car.parameters import AxleParameters, CarParameters, SteeringParameters
 from simconsole.vehicle.car.state import BodyState, Car, Wheel
-from simconsole.vehicle.car.steering import WheelDirections, aligning_moment
-from simconsole.vehicle.car.suspension import axle_roll, wheel_load
+from simconsole.vehicle.car.steering import WheelDirections, aligning_moment, patch_twist, turn_slip_moment
+from simconsole.vehicle.car.suspension import axle_roll, compression_rate, wheel_load
 from simconsole.vehicle.car.tyre import Tyre
 
 TyreModel = Callable[..., Any]
@@ -51,6 +51,7 @@ class Axles(NamedTuple):
     rear_y_n: float
     moment_nm: float  # about the centre of gravity, left-positive
     aligning_nm: float  # about the kingpins, left-positive
+    patch_twist_rad: float
 
 
 @kernel
@@ -151,9 +152,16 @@ def side_speed(axle: AxleParameters, body: BodyState, left: Wheel, right: Wheel)
 
 
 @kernel
-def along_speed(body: BodyState, cg_height_m: float) -> float:
-    """Return the velocity of the car's middle on the ground along the body: pitching moves it against the body."""
-    return body.vx_mps - cg_height_m * body.pitch_radps
+def along_speed(axle: AxleParameters, body: BodyState, left: Wheel, right: Wheel, cg_height_m: float) -> float:
+    """Return the velocity of an axle's middle on the ground along the body: pitching moves it against the body.
+
+    A wheel that the brake holds turns with its links: the slope of their pole moves its contact patch with the arm with
+    which braking pushes body and wheel apart. On a wheel that turns the brake gets that motion.
+    """
+    along = body.vx_mps - cg_height_m * body.pitch_radps
+    if left.radps == 0.0 and right.radps == 0.0:
+        along += axle.support_slope * compression_rate(axle, body, left.lift_mps, right.lift_mps)
+    return along
 
 
 @kernel
@@ -177,7 +185,7 @@ def tyre_forces(
     body = car.body
     front = p.front
     rear = p.rear
-    vx = along_speed(body, p.body.cg_height_m)
+    vx = along_speed(front, body, car.fl, car.fr, p.body.cg_height_m)
     vy = side_speed(front, body, car.fl, car.fr)
     side = front.half_track_m * body.yaw_rate_radps
     lean = inclination(front, body, car.fl, car.fr)
@@ -189,6 +197,7 @@ def tyre_forces(
     fr = steered_tyre(
         tyre, front, mu, car.fr, vx + side, vy, points.right_cos, points.right_sin, turned_rad, lean, -1.0, step_s
     )
+    vx = along_speed(rear, body, car.rl, car.rr, p.body.cg_height_m)
     vy = side_speed(rear, body, car.rl, car.rr)
     side = rear.half_track_m * body.yaw_rate_radps
     lean = inclination(rear, body, car.rl, car.rr)
@@ -197,9 +206,14 @@ def tyre_forces(
     front_y = fl.force_y_n + fr.force_y_n
     rear_y = rl.force_y_n + rr.force_y_n
     steering = p.steering
-    aligning = kingpin_moment(steering, fl.tyre, car.fl.radps * front.radius_m) + kingpin_moment(
-        steering, fr.tyre, car.fr.radps * front.radius_m
-    )
+    left_mps = car.fl.radps * front.radius_m
+    right_mps = car.fr.radps * front.radius_m
+    rolled = 0.5 * step_s * abs(left_mps + right_mps)
+    twist = patch_twist(car.steering.patch_twist_rad, turned_rad + step_s * body.yaw_rate_radps, rolled)
+    aligning = rim_moment(steering, fl.tyre, left_mps) + rim_moment(steering, fr.tyre, right_mps)
+    aligning += turn_slip_moment(
+        steering, twist, front.friction_left * grips.fl * fl.load_n, fl.tyre.demand
+    ) + turn_slip_moment(steering, twist, front.friction_right * grips.fr * fr.load_n, fr.tyre.demand)
     return Axles(
         fl=fl,
         fr=fr,
@@ -211,4 +225,5 @@ def tyre_forces(
         moment_nm=(front.ahead_m * front_y + rear.ahead_m * rear_y)
         + (front.half_track_m * (fr.force_x_n - fl.force_x_n) + rear.half_track_m * (rr.force_x_n - rl.force_x_n)),
         aligning_nm=aligning,
+        patch_twist_rad=twist,
     )

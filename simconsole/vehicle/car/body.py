@@ -8,7 +8,7 @@ from simconsole.values.trigonometry import direction, wrap_angle
 from simconsole.vehicle.car.axles import Axles, Contact
 from simconsole.vehicle.car.parameters import AxleParameters, CarParameters
 from simconsole.vehicle.car.state import BodyState, Car, Wheel
-from simconsole.vehicle.car.suspension import Travel, axle_roll, strut, travel
+from simconsole.vehicle.car.suspension import Travel, axle_roll, strut, support, travel
 
 MOST_LEAN_RAD = 0.5
 """Limit of the model of small angles and springs: the body leans and the wheels lift no further."""
@@ -49,8 +49,9 @@ def axle_step(
     axle: AxleParameters, struts: Travel, left: Wheel, right: Wheel, on_left: Contact, on_right: Contact, step_s: float
 ) -> AxleMotion:
     """Return the wheels' vertical motion one step later. The links load them with the side force directly."""
-    left_n = strut(axle, struts.left_m, struts.left_mps, struts.right_m)
-    right_n = strut(axle, struts.right_m, struts.right_mps, struts.left_m)
+    links_n = support(axle, on_left.force_x_n + on_right.force_x_n)
+    left_n = strut(axle, struts.left_m, struts.left_mps, struts.right_m) + links_n
+    right_n = strut(axle, struts.right_m, struts.right_mps, struts.left_m) + links_n
     lifted = (on_left.force_y_n + on_right.force_y_n) * (axle.link_arm_m * axle.roll_rad_per_m)
     share = step_s * axle.per_wheel_mass_kg
     left_mps = left.lift_mps + share * (on_left.load_n - axle.static_n - left_n + lifted)
@@ -110,6 +111,9 @@ def body_step(car: Car, p: CarParameters, axles: Axles, step_s: float) -> Motion
     pitch_radps = before.pitch_radps - pitching * (step_s * body.per_pitch_inertia_kgm2)
     # base_link lies on the ground: it does not go along when the body rocks above standing tyres.
     on_ground_x = vx - body.cg_height_m * pitch_radps
+    if car.rl.radps == 0.0 and car.rr.radps == 0.0:
+        compressed_mps = 0.5 * (rear.left_mps + rear.right_mps) - (heave_mps - p.rear.ahead_m * pitch_radps)
+        on_ground_x += p.rear.support_slope * compressed_mps
     rocking = p.rear.roll_arm_m * roll_radps + p.rear.link_arm_m * axle_roll(p.rear, rear.left_mps, rear.right_mps)
     on_ground_y = vy - body.cg_to_rear_m * yaw_rate + rocking
     heave = clip(before.heave_m + step_s * heave_mps, -MOST_LIFT_M, MOST_LIFT_M)

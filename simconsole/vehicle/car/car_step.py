@@ -15,7 +15,7 @@ from simconsole.vehicle.car.ground import friction_shares
 from simconsole.vehicle.car.outputs import vehicle_state
 from simconsole.vehicle.car.parameters import PARAMETERS, AidParameters, CarParameters
 from simconsole.vehicle.car.state import CAR, Car, SteeringState, Wheel
-from simconsole.vehicle.car.steering import hand_wheel_torque, rack_rate, wheel_directions
+from simconsole.vehicle.car.steering import hand_wheel_torque, rack_rate, rim_friction, wheel_directions
 from simconsole.vehicle.car.tyre import tyre
 
 STEP_S: Final = 0.001
@@ -41,7 +41,7 @@ def make_step(tyre: TyreModel, rim_moment: KingpinMoment) -> Callable[[Row, Row,
         grips = friction_shares(car, load_parameters(parameters))
         request = request_of(command, car)
         for _ in range(substeps):
-            car = substep(car, parameters, grips, request, command, tyre, kingpin_moment)
+            car = substep(car, parameters, grips, request, command, tyre, rim_moment)
         write(row, CAR, car)
         write(row, LAYOUT.vehicle, vehicle_state(car, load_parameters(parameters), command.automatic))
 
@@ -123,10 +123,17 @@ def substep(
     # The rack works against the tyres of the last step: their moment is part of the rack's torque.
     mean_rad = rack.road_wheel_rad + STEP_S * rack.road_wheel_radps
     points = wheel_directions(p.steering, mean_rad)
-    axles = tyre_forces(car, p, grips, points, mean_rad - rack.road_wheel_rad, STEP_S, tyre, kingpin_moment)
-    moved = SteeringState(mean_rad, rack.road_wheel_radps, rack.hand_wheel_torque_nm)
+    turned_rad = mean_rad - rack.road_wheel_rad
+    axles = tyre_forces(car, p, grips, points, turned_rad, STEP_S, tyre, rim_moment)
+    moved = SteeringState(
+        road_wheel_rad=mean_rad,
+        road_wheel_radps=rack.road_wheel_radps,
+        hand_wheel_torque_nm=rack.hand_wheel_torque_nm,
+        patch_twist_rad=axles.patch_twist_rad,
+        rim_friction_share=rim_friction(p.steering, rack.rim_friction_share, turned_rad),
+    )
     rate = rack_rate(p.steering, moved, request.road_wheel_rad, axles.aligning_nm)
-    torque = hand_wheel_torque(p.steering, axles.aligning_nm, rate, car.body.vx_mps)
+    torque = hand_wheel_torque(p.steering, axles.aligning_nm, rate, car.body.vx_mps, moved.rim_friction_share)
     line = driveline_step(car, with_aids(load_parameters(parameters), command), request, axles, STEP_S)
     motion = body_step(car, load_parameters(parameters), axles, STEP_S)
     front = motion.front
@@ -134,7 +141,13 @@ def substep(
     brakes = line.brakes
     return Car(
         body=motion.body,
-        steering=SteeringState(mean_rad, rate, torque),
+        steering=SteeringState(
+            road_wheel_rad=mean_rad,
+            road_wheel_radps=rate,
+            hand_wheel_torque_nm=torque,
+            patch_twist_rad=moved.patch_twist_rad,
+            rim_friction_share=moved.rim_friction_share,
+        ),
         fl=wheel(axles.fl, line.fl_radps, front.left_m, front.left_mps, brakes.fl_nm),
         fr=wheel(axles.fr, line.fr_radps, front.right_m, front.right_mps, brakes.fr_nm),
         rl=wheel(axles.rl, line.rl_radps, rear.left_m, rear.left_mps, brakes.rl_nm),

@@ -57,7 +57,7 @@ def pedals(car: Car, p: CarParameters, lie: RoadAndWind, automatic: float) -> Pe
     gears = p.gears
     gear = car.box.wanted_gear if automatic != 0.0 else car.box.gear
     way = -1.0 if gear < 0.0 else 1.0
-    speed = way * along_speed(car.body, body.cg_height_m)
+    speed = way * along_speed(p.rear, car.body, car.rl, car.rr, body.cg_height_m)
     leverage = way * gear_ratio(gears, gear) * gears.per_wheel_radius_m
     grip = 1.0 if automatic != 0.0 else bite(gears, car.box.clutch)
     held = grip * gears.clutch_nm
@@ -103,7 +103,7 @@ def vehicle_state(car: Car, p: CarParameters, automatic: float) -> VehicleState:
         # ISO 8855: pitch is positive nose down, roll is positive left side up.
         pitch_rad=now.pitch_rad - lie.up_rad,
         roll_rad=now.roll_rad + lie.left_up_rad,
-        vx_mps=along_speed(now, body.cg_height_m),
+        vx_mps=along_speed(p.rear, now, car.rl, car.rr, body.cg_height_m),
         vy_mps=side_speed(p.rear, now, car.rl, car.rr),
         yaw_rate_radps=now.yaw_rate_radps,
         ax_mps2=now.ax_mps2,

@@ -46,6 +46,7 @@ class AxleParameters(NamedTuple):
     carcass_nspm: float
     roll_arm_m: float  # at which the side force rolls the body
     link_arm_m: float  # at which it loads the wheels directly: roll centre and the wheels' own mass
+    support_slope: float  # way of the contact patches along the car per compression of the struts, positive forwards
     brake_nm: float
     brake_ease: float  # share of the way to the wanted brake torque that a step takes
     handbrake_nm: float
@@ -181,11 +182,15 @@ class SteeringParameters(NamedTuple):
     pneumatic_trail_m: float
     per_trail_end: float  # 1 / demand at which the pneumatic trail is gone
     caster_trail_m: float
-    hand_torque_gain: float  # share that the assistance leaves / ratio, standing
-    hand_torque_gain_per_mps: float  # more of it per speed
+    turn_slip_arm_m: float  # moment on the spot over friction and load
+    per_ratio: float
+    unassisted_share: float  # that the assistance leaves of a large torque, standing
+    unassisted_share_per_mps: float  # more of it per speed
+    per_assist_nm: float  # 1 / torque around which the assistance comes in
     per_hand_torque_most_nm: float  # 1 / torque towards which the assistance bends
     hand_damping_nms: float  # per road-wheel rate
     hand_friction_nm: float
+    per_friction_rad: float  # 1 / road-wheel angle over which the friction comes in
 
 
 class AidParameters(NamedTuple):

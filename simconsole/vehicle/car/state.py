@@ -36,6 +36,8 @@ class SteeringState(NamedTuple):
     road_wheel_rad: float
     road_wheel_radps: float
     hand_wheel_torque_nm: float
+    patch_twist_rad: float  # of the front wheels against their contact patches, left-positive
+    rim_friction_share: float  # of the steering's dry friction that acts, left-positive
 
 
 class Wheel(NamedTuple):
@@ -119,6 +121,8 @@ class CarState(NamedTuple):
     road_wheel_rad: float
     road_wheel_radps: float
     hand_wheel_torque_nm: float
+    patch_twist_rad: float
+    rim_friction_share: float
     fl_radps: float
     fl_deflection_x_m: float
     fl_deflection_y_m: float

@@ -32,6 +32,22 @@ def travel(axle: AxleParameters, body: BodyState, left: Wheel, right: Wheel) -> 
 
 
 @kernel
+def compression_rate(axle: AxleParameters, body: BodyState, left_mps: float, right_mps: float) -> float:
+    """Return how fast both struts of an axle are compressed in the mean, from the rates of its wheels' lifts."""
+    return 0.5 * (left_mps + right_mps) - (body.heave_mps - axle.ahead_m * body.pitch_radps)
+
+
+@kernel
+def support(axle: AxleParameters, force_x_n: float) -> float:
+    """Return the force with which an axle's links push body and one wheel apart, by the force along both its tyres.
+
+    Seen from the side a wheel moves about a pole: braking at the ground, with the brakes at the wheels, its links carry
+    the slope of the line from contact patch to pole of the force (Reimpell, The Automotive Chassis, anti-dive).
+    """
+    return -0.5 * axle.support_slope * force_x_n
+
+
+@kernel
 def strut(axle: AxleParameters, compressed_m: float, compressed_mps: float, other_m: float) -> float:
     """Return by how much the force of one strut differs from that at rest: positive pushes body and wheel apart."""
     force = axle.spring_npm * compressed_m + axle.damper_nspm * compressed_mps

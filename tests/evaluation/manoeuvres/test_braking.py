@@ -24,6 +24,8 @@ def test_braking_at_eight_metres_per_second_squared() -> None:
         vehicle__x_m=time_s,
         vehicle__y_m=0.1 * time_s,
         vehicle__yaw_rad=-0.01 * time_s,
+        vehicle__pitch_rad=np.radians(1.2),
+        vehicle__ax_mps2=np.array(-8.0),
         platform__rr_radps=speed / 0.306,
         **spin,
     )
@@ -34,3 +36,4 @@ def test_braking_at_eight_metres_per_second_squared() -> None:
     assert values["mean_fully_developed_deceleration_mps2"] == pytest.approx(8.0, rel=1e-3)
     assert values["lowest_wheel_speed_share"] == pytest.approx(0.9, rel=1e-3)
     assert values["largest_yaw_angle_deg"] == pytest.approx(1.72, abs=0.01)
+    assert values["pitch_angle_gradient_deg_per_g"] == pytest.approx(1.2 * 9.80665 / 8.0)

@@ -17,7 +17,7 @@ from simconsole.vehicle.car.axles import (
 )
 from simconsole.vehicle.car.state import AidState, BodyState, Car, Gearbox, ShaftState, SteeringState, Wheel
 from simconsole.vehicle.car.steering import wheel_directions
-from simconsole.vehicle.car.suspension import wheel_load
+from simconsole.vehicle.car.suspension import support, wheel_load
 from simconsole.vehicle.car.tyre import tyre
 from tests.vehicle.parts import CAR, STEP_S
 
@@ -29,7 +29,7 @@ FULL = FrictionShares(1.0, 1.0, 1.0, 1.0)
 def forces(body: BodyState, wheel: Wheel, turned_rad: float = 0.0) -> Axles:
     rest = Car(
         body=body,
-        steering=SteeringState(turned_rad, 0.0, 0.0),
+        steering=SteeringState(turned_rad, 0.0, 0.0, 0.0, 0.0),
         **dict.fromkeys(("fl", "fr", "rl", "rr"), wheel),
         shafts=ShaftState(*(0.0,) * 9),
         box=Gearbox(*(0.0,) * 7),
@@ -74,7 +74,22 @@ def test_a_turning_body_moves_its_axles_sideways_by_their_distance_apart() -> No
     assert front - rear == pytest.approx(0.5 * (CAR.front.ahead_m - CAR.rear.ahead_m))
     assert rear < 0.7 < front
     nodding = BODY._replace(vx_mps=3.0, pitch_radps=0.2)
-    assert along_speed(nodding, 0.55) == pytest.approx(3.0 - 0.11)
+    straight = CAR.front._replace(support_slope=0.0)
+    assert along_speed(straight, nodding, WHEEL, WHEEL, 0.55) == pytest.approx(3.0 - 0.11)
+
+
+def test_compressed_struts_move_the_patches_along_the_slope_of_their_links() -> None:
+    """Forwards in front, backwards at the rear: with the arm with which braking pushes body and wheels apart."""
+    sinking = BODY._replace(vx_mps=3.0, heave_mps=-0.1)
+    held = WHEEL._replace(radps=0.0)
+    lifted = held._replace(lift_mps=0.3)
+    for axle, sign in ((CAR.front, 1.0), (CAR.rear, -1.0)):
+        assert sign * axle.support_slope > 0.0
+        assert along_speed(axle, sinking, held, lifted, 0.55) == pytest.approx(3.0 + axle.support_slope * 0.25)
+        assert along_speed(axle, sinking, held, lifted._replace(radps=9.0), 0.55) == 3.0, "it rolls"
+        gained = -1000.0 * (along_speed(axle, sinking, held, lifted, 0.55) - 3.0)
+        # Apart: against the compression, at both wheels. What the struts get is what the ground gave.
+        assert -2.0 * support(axle, -1000.0) * 0.25 == pytest.approx(gained)
 
 
 def test_rolling_moves_the_patches_with_the_arms_that_the_forces_have() -> None:

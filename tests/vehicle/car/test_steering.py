@@ -1,17 +1,28 @@
 """The rack by itself, and the torque at the rim: what the hands are told of the tyres, on the whole car."""
 
 import math
+from itertools import pairwise
 
 import pytest
 
+from simconsole.profiles.files.loader import load
+from simconsole.profiles.vehicle import CarProfile
 from simconsole.values.platform import Ground
 from simconsole.values.units import KMH_PER_MPS
 from simconsole.vehicle.car.car_platform import car_parameters
 from simconsole.vehicle.car.state import SteeringState
-from simconsole.vehicle.car.steering import aligning_moment, hand_wheel_torque, rack_rate, wheel_directions
+from simconsole.vehicle.car.steering import (
+    aligning_moment,
+    hand_wheel_torque,
+    patch_twist,
+    rack_rate,
+    rim_friction,
+    turn_slip_moment,
+    wheel_directions,
+)
 from tests.vehicle.altered import HATCHBACK
 from tests.vehicle.driving import LEVEL, TICK_S, Drive, platform
-from tests.vehicle.parts import CAR, STEP_S, settled
+from tests.vehicle.parts import CAR, LOAD_N, STEP_S, settled
 from tests.vehicle.rolling import rolling
 
 
@@ -72,11 +83,12 @@ def test_it_stays_light_when_parking_and_in_town() -> None:
 
 def turned(command: float, ticks: int, start: float = 0.0, moment: float = 0.0, friction: float = 0.0) -> float:
     """Return the rack's angle after `ticks` of 1 ms."""
-    rack = SteeringState(start, 0.0, 0.0)
+    rack = SteeringState(start, 0.0, 0.0, 0.0, 0.0)
     settings = CAR.steering._replace(friction_rad=friction)
     for _ in range(ticks):
         angle = rack.road_wheel_rad + STEP_S * rack.road_wheel_radps
-        rack = SteeringState(angle, rack_rate(settings, rack._replace(road_wheel_rad=angle), command, moment), 0.0)
+        moved = rack._replace(road_wheel_rad=angle)
+        rack = moved._replace(road_wheel_radps=rack_rate(settings, moved, command, moment))
     return rack.road_wheel_rad
 
 
@@ -114,16 +126,84 @@ def test_moment_of_the_tyres_centres_and_fades_before_the_force_does() -> None:
 
 def test_torque_at_the_rim_is_odd_and_bends_towards_its_most() -> None:
     for moment in (10.0, 100.0, 1000.0):
-        torque = hand_wheel_torque(CAR.steering, moment, 0.0, 20.0)
+        torque = hand_wheel_torque(CAR.steering, moment, 0.0, 20.0, 0.0)
         assert 0.0 < torque < 1.0 / CAR.steering.per_hand_torque_most_nm
-        assert torque == -hand_wheel_torque(CAR.steering, -moment, 0.0, 20.0)
-        assert torque > hand_wheel_torque(CAR.steering, moment, 0.0, 0.0)
-        assert torque > hand_wheel_torque(CAR.steering, moment, 0.1, 20.0), "friction and damping oppose the turning"
+        assert torque == -hand_wheel_torque(CAR.steering, -moment, 0.0, 20.0, 0.0)
+        assert torque > hand_wheel_torque(CAR.steering, moment, 0.0, 0.0, 0.0)
+        assert torque > hand_wheel_torque(CAR.steering, moment, 0.1, 20.0, 0.0), "damping opposes the turning"
+        assert torque - hand_wheel_torque(CAR.steering, moment, 0.0, 20.0, -1.0) == pytest.approx(0.5), "friction too"
 
 
 def test_assistance_leaves_more_to_the_hands_at_speed() -> None:
     p = car_parameters(HATCHBACK, LEVEL).steering
-    torques = [abs(hand_wheel_torque(p, -60.0, 0.0, speed / KMH_PER_MPS)) for speed in (0.0, 50.0, 100.0)]
+    torques = [abs(hand_wheel_torque(p, -60.0, 0.0, speed / KMH_PER_MPS, 0.0)) for speed in (0.0, 50.0, 100.0)]
     assert torques[0] < torques[1] < torques[2] < HATCHBACK.steering.most_nm
-    share = HATCHBACK.steering.unassisted_share / HATCHBACK.steering.ratio
-    assert torques[0] == pytest.approx(share * 60.0 / (1.0 + share * 60.0 / HATCHBACK.steering.most_nm))
+
+
+@pytest.mark.parametrize("speed_mps", [0.0, 28.0])
+def test_about_the_centre_the_assistance_leaves_all_and_of_much_its_share(speed_mps: float) -> None:
+    s = HATCHBACK.steering
+    p = car_parameters(HATCHBACK, LEVEL).steering._replace(per_hand_torque_most_nm=0.0)
+    slopes = [
+        (hand_wheel_torque(p, moment + 1.0, 0.0, speed_mps, 0.0) - hand_wheel_torque(p, moment, 0.0, speed_mps, 0.0))
+        * s.ratio
+        for moment in (0.0, 1e5)
+    ]
+    left = s.unassisted_share + (s.unassisted_share_at_100kmh - s.unassisted_share) * speed_mps * KMH_PER_MPS / 100.0
+    assert slopes[0] == pytest.approx(1.0, rel=0.02)
+    assert slopes[1] == pytest.approx(left, rel=0.02)
+
+
+def turned_on_the_spot(angles_rad: list[float], name: str = "hatchback", friction: float = 1.0) -> list[float]:
+    """Return the moment of both front tyres about their kingpins at each angle, wheels held by the brake."""
+    p = car_parameters(load("vehicles", name, CarProfile), Ground(friction, 0.0, 0.0))
+    moments, twist, before = [], 0.0, 0.0
+    for angle in angles_rad:
+        twist, before = patch_twist(twist, angle - before, 0.0), angle
+        moments.append(2.0 * turn_slip_moment(p.steering, twist, p.front.friction_left * p.front.static_n, 0.0))
+    return moments
+
+
+def test_on_the_spot_the_moment_grows_to_that_of_gough_and_keeps_its_side_until_turned_back() -> None:
+    there = [0.01 * n for n in range(40)]
+    moments = turned_on_the_spot(there + there[::-1])
+    load, inflation = 0.5 * 0.6 * 1300.0 * 9.80665, 220e3
+    gough = 2.0 * load**1.5 / (3.0 * math.sqrt(inflation))
+    assert moments[39] == pytest.approx(-gough, rel=0.02)
+    assert moments[-1] == pytest.approx(gough, rel=0.02), "back at the centre it pushes the other way: hysteresis"
+    assert all(after <= before for before, after in pairwise(moments[:40]))
+    assert min(turned_on_the_spot(there, friction=0.5)) == pytest.approx(0.5 * min(moments))
+    assert turned_on_the_spot([-angle for angle in there]) == [-moment for moment in moments[:40]]
+
+
+def test_rolling_and_sliding_patches_have_little_to_twist_against() -> None:
+    p = CAR.steering
+    twist = 0.0
+    for _ in range(1000):  # a circle of 8 m
+        twist = patch_twist(twist, 0.001 / 8.0, 0.001)
+    assert twist == pytest.approx(0.06 / 8.0, rel=0.02)
+    assert turn_slip_moment(p, 0.2, LOAD_N, 2.0) == 0.0
+    assert abs(turn_slip_moment(p, twist, LOAD_N, 0.3)) < 0.15 * abs(turn_slip_moment(p, 0.2, LOAD_N, 0.0))
+
+
+def test_friction_at_the_rim_is_hysteresis_at_any_rate_and_stays_at_rest() -> None:
+    p = CAR.steering
+    for step_rad in (1e-6, 1e-4):
+        share = 0.0
+        for _ in range(round(0.03 / step_rad)):
+            share = rim_friction(p, share, step_rad)
+        assert share == pytest.approx(-1.0, abs=0.01)
+        assert rim_friction(p, share, 0.0) == share
+        for _ in range(round(0.03 / step_rad)):
+            share = rim_friction(p, share, -step_rad)
+        assert share == pytest.approx(1.0, abs=0.01)
+
+
+def test_parked_the_rim_is_as_heavy_as_with_assistance_and_light_without_friction() -> None:
+    torques = {}
+    for friction in (1.0, 0.1):
+        drive = Drive(platform(ground=Ground(friction, 0.0, 0.0)))
+        drive.hold(3.0, brake=0.4, road_wheel_rad=0.3)
+        torques[friction] = -drive.seen.hand_wheel_torque_nm
+    assert 2.0 < torques[1.0] < 5.0
+    assert torques[0.1] < 0.6 * torques[1.0]

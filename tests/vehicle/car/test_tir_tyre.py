@@ -266,3 +266,13 @@ def test_launches_turns_and_brakes_as_a_car_does() -> None:
     assert 7.0 < mean < 10.5
     assert abs(drive.hold(12.0, brake=1.0).vx_mps) < 1e-6
     assert np.all(np.isfinite(drive.row))
+
+
+def test_the_rim_feels_the_moment_of_the_file() -> None:
+    """Twice the aligning moment (scale factor LTR) is felt, at the same side force."""
+    torques = []
+    for scale in (1.0, 2.0):
+        drive = rolling(car(values={**EXAMPLE, "LTR": scale}), 15.0)
+        drive.hold(0.5, clutch=1.0, road_wheel_rad=0.02)
+        torques.append(-drive.seen.hand_wheel_torque_nm)
+    assert 0.0 < 1.1 * torques[0] < torques[1]

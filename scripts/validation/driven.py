@@ -1,0 +1,165 @@
+"""The driven cars: their test manoeuvres, and the figures with the range that their class has."""
+
+from typing import Any, NamedTuple
+
+import msgspec
+
+from simconsole.evaluation.checks.manoeuvre_check import drive
+from simconsole.profiles.files.loader import load
+from simconsole.profiles.scenario import ScenarioProfile
+from simconsole.profiles.vehicle import CarProfile
+
+CARS = ("hatchback", "light_van", "commonroad_bmw320i")
+
+NORMAN = "assisted cars; the test is that of Norman, SAE 840069, the range general knowledge"
+SHARP = "Sharp and Granger, Proc. IMechE D 217, 2003: with assistance"
+ADAC = "about 500 brake tests of ADAC: mean 36.4 m, 31.3 to 47.8 m"
+GENERAL = "usual of the class; general knowledge, no table was at hand"
+ZOMOTOR = "Zomotor, Fahrwerktechnik: Fahrverhalten; not looked up"
+
+
+class Figure(NamedTuple):
+    """A characteristic value, how it is driven, and the range of each class: cars, vans."""
+
+    label: str
+    manoeuvre: str
+    value: str
+    unit: str
+    car: tuple[float, float]
+    van: tuple[float, float]
+    source: str
+    factor: float = 1.0
+
+
+FIGURES = (
+    Figure("0 to 100 km/h", "acceleration", "time_s", "s", (8.5, 12.5), (11.0, 17.0), GENERAL),
+    Figure("Top speed", "acceleration", "top_speed_kmh", "km/h", (175.0, 200.0), (150.0, 175.0), GENERAL),
+    Figure("Braking 100 to 0 km/h", "straight_braking", "stopping_distance_m", "m", (33.0, 42.0), (36.0, 47.8), ADAC),
+    Figure("Dive", "brake_gently", "pitch_angle_gradient_deg_per_g", "deg/g", (1.0, 1.7), (1.0, 1.7), GENERAL),
+    Figure(
+        "Understeer gradient",
+        "steady_state_circle",
+        "understeer_gradient_deg_per_mps2",
+        "deg/g",
+        (1.0, 4.0),
+        (1.0, 4.0),
+        GENERAL,
+        9.80665,
+    ),
+    Figure(
+        "Characteristic speed",
+        "steady_state_circle",
+        "characteristic_speed_kmh",
+        "km/h",
+        (65.0, 120.0),
+        (65.0, 120.0),
+        ZOMOTOR,
+    ),
+    Figure(
+        "Limit", "steady_state_circle", "highest_lateral_acceleration_mps2", "m/s²", (7.5, 9.5), (6.5, 8.5), GENERAL
+    ),
+    Figure(
+        "Roll gradient",
+        "steady_state_circle",
+        "roll_angle_gradient_deg_per_mps2",
+        "deg/g",
+        (3.0, 6.0),
+        (4.0, 7.5),
+        GENERAL,
+        9.80665,
+    ),
+    Figure(
+        "Step: yaw rate response", "step_steer", "yaw_rate_response_time_s", "s", (0.08, 0.25), (0.08, 0.30), ZOMOTOR
+    ),
+    Figure("Step: overshoot", "step_steer", "yaw_rate_overshoot_percent", "%", (0.0, 30.0), (0.0, 40.0), ZOMOTOR),
+    Figure(
+        "Sine: frequency of the peak",
+        "frequency_response",
+        "yaw_rate_peak_frequency_hz",
+        "Hz",
+        (0.6, 1.5),
+        (0.5, 1.5),
+        ZOMOTOR,
+    ),
+    Figure("Sine: gain at the peak", "frequency_response", "yaw_rate_peak_ratio", "", (1.0, 1.8), (1.0, 2.0), ZOMOTOR),
+    Figure(
+        "Sine: lag at 1 Hz",
+        "frequency_response",
+        "yaw_rate_lag_at_1_hz_deg",
+        "deg",
+        (15.0, 60.0),
+        (20.0, 70.0),
+        ZOMOTOR,
+    ),
+    Figure(
+        "Braking in a bend: yaw rate after 1 s",
+        "bend_braking",
+        "yaw_rate_ratio_at_1_s",
+        "",
+        (1.0, 1.3),
+        (1.0, 1.3),
+        ZOMOTOR,
+    ),
+    Figure("Lift-off: yaw rate after 1 s", "lift_off", "yaw_rate_ratio_at_1_s", "", (1.0, 1.2), (1.0, 1.2), ZOMOTOR),
+    Figure(
+        "Weave: gradient at 0 g",
+        "weave",
+        "steering_torque_gradient_at_0_g_nm_per_g",
+        "N m/g",
+        (15.0, 30.0),
+        (15.0, 30.0),
+        NORMAN,
+    ),
+    Figure("Weave: torque at 0.1 g", "weave", "steering_torque_at_01_g_nm", "N m", (1.5, 2.5), (1.5, 3.0), NORMAN),
+    Figure("Weave: friction at 0 g", "weave", "steering_torque_at_0_g_nm", "N m", (0.5, 1.5), (0.5, 2.0), NORMAN),
+    Figure(
+        "Weave: lateral acceleration at 0 N m",
+        "weave",
+        "lateral_acceleration_at_0_nm_g",
+        "g",
+        (0.02, 0.08),
+        (0.02, 0.08),
+        NORMAN,
+    ),
+    Figure("Parking torque", "parking_effort", "parking_torque_nm", "N m", (2.0, 5.0), (2.0, 5.0), SHARP),
+)
+
+MANOEUVRES: dict[str, dict[str, Any]] = {
+    "acceleration": {"kind": "acceleration"},
+    "straight_braking": {"kind": "straight_braking", "without": False},
+    "brake_gently": {"kind": "straight_braking", "without": False, "brake": 0.35},
+    "steady_state_circle": {"kind": "steady_state_circle"},
+    "step_steer": {"kind": "step_steer"},
+    "frequency_response": {"kind": "frequency_response"},
+    "bend_braking": {"kind": "bend_braking"},
+    "lift_off": {"kind": "lift_off"},
+    "weave": {"kind": "weave"},
+    "parking_effort": {"kind": "parking_effort"},
+}
+
+NOT_MODELLED = {("commonroad_bmw320i", figure.value) for figure in FIGURES if figure.source in (NORMAN, SHARP)}
+"""CommonRoad's models have no trail and no turn slip: there is nothing at the rim to measure."""
+
+
+def measured(car: str) -> dict[str, dict[str, float]]:
+    """Return the values of each manoeuvre of one car; without any where it could not be driven."""
+    found = {}
+    for name, manoeuvre in MANOEUVRES.items():
+        aids = {"features": {"aids": {"stability_control": False}}} if name == "steady_state_circle" else {}
+        session = {"schema": 1, "scenario": {"vehicle": car}, "devices": {"driver": "none"}} | aids
+        raw = {"schema": 1, "title": name, "duration_s": 240, "session": session, "manoeuvre": manoeuvre, "limits": []}
+        scenario = msgspec.convert(raw, ScenarioProfile)
+        assert scenario.manoeuvre is not None
+        found[name] = dict(drive(scenario, scenario.manoeuvre).result.values)
+    gradient = found["steady_state_circle"].get("understeer_gradient_deg_per_mps2", 0.0)
+    if gradient > 0.0:
+        wheelbase_m = load("vehicles", car, CarProfile).body.wheelbase_m
+        speed_mps = (wheelbase_m / gradient * 57.29577951308232) ** 0.5
+        found["steady_state_circle"]["characteristic_speed_kmh"] = 3.6 * speed_mps
+    return found
+
+
+def inside(figure: Figure, car: str, value: float | None) -> bool:
+    """Return whether a value lies in the range of the car's class."""
+    low, high = figure.van if car == "light_van" else figure.car
+    return value is not None and low <= value <= high

@@ -1,0 +1,57 @@
+"""The page of the driven cars: how its script marks figures, and that the published one is red only where known."""
+
+import importlib
+import re
+import sys
+from typing import Any
+
+import pytest
+
+from tests.paths import ROOT
+
+KNOWN = {"Top speed", "Braking 100 to 0 km/h"}
+"""Figures of hatchback and van that may be out of range: the driveline's losses and the anti-lock brakes'."""
+
+
+@pytest.fixture
+def script(monkeypatch: pytest.MonkeyPatch) -> Any:
+    monkeypatch.syspath_prepend(ROOT / "scripts")
+    module = importlib.import_module("make_driven_cars")
+    yield module
+    sys.modules.pop("make_driven_cars", None)
+
+
+def found(script: Any, place: float) -> dict[str, dict[str, dict[str, float]]]:
+    """Return figures at a place of their range: 0 its low end, 1 its high end."""
+    cars: dict[str, dict[str, dict[str, float]]] = {}
+    for car in script.CARS:
+        for figure in script.FIGURES:
+            low, high = figure.van if car == "light_van" else figure.car
+            value = (low + place * (high - low)) / figure.factor
+            cars.setdefault(car, {}).setdefault(figure.manoeuvre, {})[figure.value] = value
+    return cars
+
+
+def test_figures_inside_are_plain_and_those_outside_are_red_and_said(script: Any) -> None:
+    assert "🔴" not in script.page(found(script, 0.5)).partition("| ---")[2]
+    page = script.page(found(script, 1.2))
+    rows = [line for line in page.splitlines() if line.startswith("| ") and "🔴" in line]
+    assert len(rows) == len(script.FIGURES)
+    assert "n/a" in next(row for row in rows if row.startswith("| Parking torque"))
+    assert "Out of range, hatchback: 0 to 100 km/h 13.3 s; Top speed 205 km/h" in page
+
+
+def test_a_manoeuvre_that_could_not_be_driven_is_red(script: Any) -> None:
+    given = found(script, 0.5)
+    given["light_van"]["acceleration"] = {}
+    assert "- Out of range, light van: 0 to 100 km/h none; Top speed none." in script.page(given)
+
+
+def test_the_published_page_has_all_figures_and_none_unexpectedly_red(script: Any) -> None:
+    rows = re.findall(
+        r"^\| ([^-].*?) \| (.+?) \| (.+?) \| (.+?) \|", (ROOT / "docs" / "driven_cars.md").read_text(), re.M
+    )
+    labels = [row[0] for row in rows[1:]]
+    assert labels == [figure.label for figure in script.FIGURES]
+    red = {label for label, hatchback, van, _ in rows[1:] if "🔴" in hatchback + van}
+    assert red <= KNOWN
