@@ -135,7 +135,9 @@ def advance_vector(previous: Row, inputs: Row | tuple[float, ...], console: Cons
     row = np.empty(console.width)
     row[:INPUT_WIDTH] = inputs
     tick = in_order(console.decide, console.step, console.force_feedback, mark)
-    tick(previous, row, console.settings, console.platform.parameters, console.initial, console.tick_s, console.substeps)
+    tick(
+        previous, row, console.settings, console.platform.parameters, console.initial, console.tick_s, console.substeps
+    )
     return row
 
 

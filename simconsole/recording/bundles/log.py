@@ -17,7 +17,15 @@ from typing import Final
 
 import numpy as np
 
-from simconsole.recording.framing import MAX_FRAME_BYTES, START_OF_CHAIN, Message, Record, seal, seal_message
+from simconsole.recording.framing import (
+    MAX_FRAME_BYTES,
+    START_OF_CHAIN,
+    Message,
+    Record,
+    seal,
+    seal_block,
+    seal_message,
+)
 from simconsole.recording.log_header import LogHeader, encode_header, stream_index
 from simconsole.recording.reading import BLOCK_TICKS, Block, LogTable, gathered, places
 from simconsole.recording.scan import Break, Scan
@@ -129,6 +137,32 @@ class LogWriter:
             if digests:
                 self._message_digests.update(digests)
 
+    def append_block(self, tick: int, vectors: Row) -> int:
+        """Write ticks in which no message arrived, all at once; return how many, at least one.
+
+        Where recording fails or has failed these are the ticks up to the failure, as `append` leaves them.
+
+        Args:
+            tick: the number of the first.
+            vectors: their state vectors, float64 [ticks, columns].
+
+        Raises:
+            ValueError: state vectors of another width, which is a bug.
+        """
+        if 8 * vectors.shape[1] != self._vector_bytes:
+            raise ValueError(f"state vectors of {8 * vectors.shape[1]} bytes in a log of {self._vector_bytes}")
+        if self.failure is None:
+            frames, digest = seal_block(self.digest, tick, vectors)
+            if self._problem(frames.data.cast("B")) is None:
+                self.ticks += len(vectors)
+                self.digest = digest
+                return len(vectors)
+        for count, vector in enumerate(vectors, start=1):  # finds the tick that does not fit
+            self.append(tick + count - 1, vector)
+            if self.failure is not None:
+                return count
+        return len(vectors)
+
     def _sealed(self, tick: int, messages: Sequence[tuple[str, bytes]]) -> tuple[bytes, dict[int, bytes]]:
         """Return the messages of a tick as they lie in its frame, and the chained hashes of their streams after it."""
         digests: dict[int, bytes] = {}
@@ -177,8 +211,8 @@ class LogWriter:
     ) -> None:
         self.close()
 
-    def _problem(self, frame: bytes) -> str | None:
-        """Write a frame; return why it is not in the file, None if it is. A frame written in part is truncated away."""
+    def _problem(self, frame: bytes | memoryview) -> str | None:
+        """Write frames; return why they are not in the file, None if they are. What is written in part is truncated."""
         try:
             written = os.write(self._fd, frame)
             if 0 < written < len(frame):
