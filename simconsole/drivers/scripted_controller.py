@@ -7,8 +7,9 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from simconsole.profiles.scenario import EventStep, RemoteStep
+from simconsole.values.input_table import InputTable
 from simconsole.values.kernels import Row
-from simconsole.values.signals import NEVER_TICKS, NO_COMMAND, Event, EventInput, RemoteCommand, RemoteKind
+from simconsole.values.signals import NO_COMMAND, Event, EventInput, RemoteCommand, RemoteKind
 from simconsole.values.units import RAD_PER_DEG
 
 _AGE_AT: Final = RemoteCommand._fields.index("age_ticks")
@@ -17,7 +18,7 @@ _AGE_AT: Final = RemoteCommand._fields.index("age_ticks")
 class ScriptedCommands:
     """Plays `RemoteStep`s and `EventStep`s; a command repeats every period and ages in between, as over a network.
 
-    Time only goes forward, tick by tick; a tick may be asked for again.
+    Time only goes forward, tick by tick; one that has been asked for may be asked for again.
     """
 
     def __init__(self, remote: Sequence[RemoteStep], events: Sequence[EventStep], tick_hz: int) -> None:
@@ -29,28 +30,29 @@ class ScriptedCommands:
         self._sequence = 0
         self._received_tick: int | None = None
         self._command = NO_COMMAND
-        self._tick = 0  # up to which everything has been sent
+        self._table = InputTable(len(NO_COMMAND), self._fill)
 
     def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
         """Return the command in force at `tick`, its age, and this tick's edges."""
-        if tick > self._tick:
-            self._send(tick)
-            self._tick = tick
-        return self._command._replace(age_ticks=self._age(tick)), EventInput(float(self._edges.get(tick, 0)))
+        return RemoteCommand(*self._table.values(tick)), EventInput(float(self._edges.get(tick, 0)))
 
     def foresee(self, tick: int, commands: Row) -> int:
-        """Write the command in force at `tick` into as many rows as it, and nothing else, comes; return how many."""
-        if tick in self._edges:
-            return 0
-        changes = (*(edge for edge in self._edges if edge > tick), *(step.next(tick + 1) for step in self._steps))
-        count = int(min((len(commands), *(change - tick for change in changes))))
-        commands[:count] = self.take(tick)[0]
-        if self._received_tick is not None:
-            commands[:count, _AGE_AT] += np.arange(count)
-        return count
+        """Write the commands in force from `tick` on into rows, up to the next edge; return how many."""
+        if self._edges:
+            quiet = min((edge - tick for edge in self._edges if edge >= tick), default=len(commands))
+            commands = commands[:quiet]
+        return self._table.foresee(tick, commands) if len(commands) else 0
 
-    def _age(self, tick: int) -> float:
-        return NEVER_TICKS if self._received_tick is None else float(tick - self._received_tick)
+    def _fill(self, tick: int, rows: Row) -> None:
+        end = tick + len(rows)
+        while tick < end:
+            self._send(tick)
+            until = int(min((end, *(step.next(tick + 1) for step in self._steps))))
+            some = rows[tick - end : until - end or None]
+            some[:] = self._command
+            if self._received_tick is not None:
+                some[:, _AGE_AT] = np.arange(tick - self._received_tick, until - self._received_tick)
+            tick = until
 
     def _send(self, tick: int) -> None:
         for step in self._steps:

@@ -5,7 +5,6 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO
 
-from simconsole.devices.synthetic.sample_table import SampleTable
 from simconsole.devices.synthetic.trace_format import (
     MAX_LINE,
     TraceHeader,
@@ -16,6 +15,7 @@ from simconsole.devices.synthetic.trace_format import (
     row_text,
 )
 from simconsole.values.errors import DeviceError, ProfileError
+from simconsole.values.input_table import InputTable
 from simconsole.values.kernels import Row
 from simconsole.values.signals import DeviceSample
 
@@ -86,12 +86,12 @@ class TraceSource:
         lines = _lines(self._file, path)
         read_header(lines, str(path))
         self._player = TracePlayer(read_rows(lines, str(path)))
-        self._table = SampleTable(self._fill)
+        self._table = InputTable(len(DeviceSample._fields), self._fill)
         self.foresee = self._table.foresee
 
     def poll(self, tick: int) -> DeviceSample:
         """Return the sample of this tick; after the last one the devices go stale."""
-        return self._table.sample(tick)
+        return DeviceSample(*self._table.values(tick))
 
     def _fill(self, tick: int, rows: Row) -> None:
         for at in range(len(rows)):

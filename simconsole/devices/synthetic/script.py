@@ -7,9 +7,9 @@ from typing import Final
 
 from simconsole.devices.calibration.cockpit_settings import CockpitSettings
 from simconsole.devices.calibration.inverse_calibration import Intent, pedal_raw, raw_sample, wheel_raw
-from simconsole.devices.synthetic.sample_table import SampleTable
 from simconsole.profiles.device import ScriptProfile
 from simconsole.values.errors import ProfileError
+from simconsole.values.input_table import InputTable
 from simconsole.values.kernels import Row
 from simconsole.values.signals import Button, DeviceSample
 from simconsole.values.units import RAD_PER_DEG
@@ -77,12 +77,12 @@ class ScriptSource:
         ]
         edges = {tick for start, end, _ in self._presses for tick in (start, end)}
         self._changes = sorted(edges.union(tick for tick, _ in self._gears))
-        self._table = SampleTable(self._fill)
+        self._table = InputTable(len(DeviceSample._fields), self._fill)
         self.foresee = self._table.foresee
 
     def poll(self, tick: int) -> DeviceSample:
         """Return the raw sample of this tick, age 0."""
-        return self._table.sample(tick)
+        return DeviceSample(*self._table.values(tick))
 
     def _fill(self, tick: int, rows: Row) -> None:
         end, at = tick + len(rows), tick
