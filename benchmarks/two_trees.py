@@ -33,7 +33,8 @@ def main() -> None:
     given = words.parse_args()
     for tree in (given.old, given.new):  # compiles, and fills the caches of the disk
         measured(tree, given.command, given.figure)
-    olds, news = [], []
+    olds: list[float] = []
+    news: list[float] = []
     for pair in range(given.pairs):
         order = (olds, given.old), (news, given.new)
         for times, tree in order if pair % 2 else reversed(order):
