@@ -1,8 +1,8 @@
-"""The append log as a file: one write() per tick, a thread that only syncs, and a reader.
+"""The append log as a file: one write() per tick or block of ticks, a thread that only syncs, and a reader.
 
-A frame reaches the kernel whole with its write(), so a killed process loses at most the tick it was working on; a
-power cut loses at most the time between two syncs. The thread also keeps the file's checksum up to date, so that the
-end of a long drive does not wait for one.
+A frame reaches the kernel whole with its write(), so a killed process loses at most the tick it was working on, or the
+block of ticks that were made at once (docs/decisions/0017-ticks-at-once.md); a power cut loses at most the time between
+two syncs. The thread also keeps the file's checksum up to date, so that the end of a long drive does not wait for one.
 """
 
 import os
@@ -153,11 +153,15 @@ class LogWriter:
             raise ValueError(f"state vectors of {8 * vectors.shape[1]} bytes in a log of {self._vector_bytes}")
         if self.failure is None:
             frames, digest = seal_block(self.digest, tick, vectors)
-            if self._problem(frames.data.cast("B")) is None:
+            problem = self._problem(frames.data.cast("B"))
+            if problem is None:
                 self.ticks += len(vectors)
                 self.digest = digest
                 return len(vectors)
-        for count, vector in enumerate(vectors, start=1):  # finds the tick that does not fit
+            if os.fstat(self._fd).st_size != self.size_bytes:  # ticks that cannot be taken back must not come twice
+                self._fail(tick, problem)
+                self._last_ticks = 0
+        for count, vector in enumerate(vectors, start=1):  # finds the tick with which it fails
             self.append(tick + count - 1, vector)
             if self.failure is not None:
                 return count
