@@ -1,7 +1,10 @@
 """The same command on two checkouts in alternation: processor time of whole processes, new over old.
 
-Run: python benchmarks/two_trees.py OLD NEW [--pairs N] -- ARGUMENTS OF PYTHON
+Run: python benchmarks/two_trees.py OLD NEW [--pairs N] [--figure PATTERN] -- ARGUMENTS OF PYTHON
 For example: python benchmarks/two_trees.py ../before . -- benchmarks/headless_drive.py --rounds 1 --seconds 600
+
+With --figure the number that a command prints is compared in the place of its processor time: the first group of the
+regular expression. That leaves out what a process needs to start.
 
 Each command runs in its checkout, which is also what it imports. Counted is user and system time of the process and of
 the children it waited for, so that neither a busy machine nor a changing clock of the processor decides. The interval
@@ -11,9 +14,11 @@ is that of the median's order statistics: 95 % of all samples of such pairs have
 import argparse
 import math
 import os
+import re
 import statistics
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 
@@ -23,38 +28,49 @@ def main() -> None:
     words.add_argument("old", type=Path)
     words.add_argument("new", type=Path)
     words.add_argument("--pairs", type=int, default=30)
+    words.add_argument("--figure", help="regular expression; its first group is the number to compare")
     words.add_argument("command", nargs="+")
     given = words.parse_args()
     for tree in (given.old, given.new):  # compiles, and fills the caches of the disk
-        cpu_s(tree, given.command)
-    olds, news = [], []
+        measured(tree, given.command, given.figure)
+    olds: list[float] = []
+    news: list[float] = []
     for pair in range(given.pairs):
         order = (olds, given.old), (news, given.new)
         for times, tree in order if pair % 2 else reversed(order):
-            times.append(cpu_s(tree, given.command))
+            times.append(measured(tree, given.command, given.figure))
     ratios = sorted(new / old for new, old in zip(news, olds, strict=True))
     low, high = interval(len(ratios))
     print(" ".join(given.command))
-    print(f"  old {statistics.median(olds):.2f} s, new {statistics.median(news):.2f} s of CPU time, medians")
+    what = "s of CPU time" if given.figure is None else given.figure
+    print(f"  old {statistics.median(olds):.2f}, new {statistics.median(news):.2f} {what}, medians")
     print(
         f"  new over old, median of {len(ratios)} pairs: {statistics.median(ratios):.3f} "
         f"(95 % interval {ratios[low]:.3f} to {ratios[high]:.3f})"
     )
 
 
-def cpu_s(tree: Path, command: list[str]) -> float:
-    """Return the processor time (s) of one run.
+def measured(tree: Path, command: list[str], figure: str | None) -> float:
+    """Return the processor time (s) of one run, or the figure that it prints.
 
     Raises:
-        SystemExit: it failed.
+        SystemExit: it failed, or prints no such figure.
     """
     environment = {**os.environ, "PYTHONPATH": str(tree.resolve())}
-    process = subprocess.Popen([sys.executable, *command], cwd=tree, env=environment, stdout=subprocess.DEVNULL)
-    _, status, usage = os.wait4(process.pid, 0)
+    with tempfile.TemporaryFile("w+") as printed:
+        process = subprocess.Popen([sys.executable, *command], cwd=tree, env=environment, stdout=printed)
+        _, status, usage = os.wait4(process.pid, 0)
+        printed.seek(0)
+        text = printed.read()
     process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode:
         raise SystemExit(f"{tree}: {' '.join(command)} ended with {process.returncode}")
-    return usage.ru_utime + usage.ru_stime
+    if figure is None:
+        return usage.ru_utime + usage.ru_stime
+    found = re.search(figure, text)
+    if found is None:
+        raise SystemExit(f"{tree}: {' '.join(command)} prints no {figure}")
+    return float(found[1])
 
 
 def interval(count: int) -> tuple[int, int]:

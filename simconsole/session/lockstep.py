@@ -3,15 +3,19 @@
 import os
 import subprocess
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any, Final, Protocol
+
+import numpy as np
 
 from simconsole.processes.lifetimes import ATTACHED, DRIVE_VARIABLE, spawn
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import BridgeError
+from simconsole.values.kernels import Row
 from simconsole.values.latency import Hop
-from simconsole.values.signals import Event, EventInput, RemoteCommand
+from simconsole.values.signals import NEVER_TICKS, Event, EventInput, RemoteCommand
 from simconsole.values.state_vector import Snapshot
 
+_AGE_AT: Final = RemoteCommand._fields.index("age_ticks")
 STAND_S = 0.02
 TOKEN_VARIABLE = "SIMCONSOLE_TOKEN"
 """Environment variable with the token that commands show to the server they connect to."""
@@ -84,6 +88,10 @@ class LockstepLink:
             self._silent_at = self._sequence
             self._raised = int(Event.NO_ANSWER)
 
+    def unseen(self, tick: int) -> int:
+        """Return how many ticks, from `tick` on, do not end a control period."""
+        return -tick % self._period_ticks
+
     def stand(self, snapshot: Snapshot) -> None:
         """Serve the clients while simulated time stands."""
         self._bridge.stand(STAND_S)
@@ -98,10 +106,27 @@ class LockstepLink:
 
     def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
         """Return the newest command, its age in ticks, and the edges, a missing answer among them."""
+        remote = self._look(tick)
+        raised, self._raised = self._raised, 0
+        return remote, EventInput(events=float(raised))
+
+    def foresee(self, tick: int, commands: Row) -> int:
+        """Write the newest command, growing older, into the rows of this control period, if no edge has come."""
+        remote = self._look(tick)
+        if self._raised:
+            return 0
+        count = min(len(commands), self.unseen(tick) + 1)
+        commands[:count] = remote
+        if remote.age_ticks < NEVER_TICKS:
+            commands[:count, _AGE_AT] += np.arange(count)
+        return count
+
+    def _look(self, tick: int) -> RemoteCommand:
+        """Return the newest command and keep the edges until a tick takes them."""
         remote, events = self._bridge.take(tick)
         self._sequence = remote.sequence
-        raised, self._raised = self._raised, 0
-        return remote, EventInput(events=float(int(events.events) | raised))
+        self._raised |= int(events.events)
+        return remote
 
 
 def start_autopilot(

@@ -42,8 +42,8 @@ from simconsole.values.protocols import CommandSource, DeviceIdentity, NobodyCom
 from simconsole.values.state_vector import Snapshot
 from simconsole.world.route import route_of
 
-LOOKED_AT = 16
-"""In a drive that is not paced, hops are timed in each 16th tick."""
+LOOKED_AT = 64
+"""In a drive that is not paced, hops are timed in each 64th tick."""
 LOOK_S = 0.2
 """How often a wait for another process checks whether it was cancelled."""
 PROGRAM_END_S = 0.3

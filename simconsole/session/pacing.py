@@ -102,6 +102,8 @@ class Pacer:
 class UnpacedPacer:
     """No deadlines: the next tick is always due."""
 
+    never_waits = True
+
     def wait(self) -> int:
         """Return at once, without events."""
         return 0

@@ -37,6 +37,9 @@ class SettingsLayout(NamedTuple):
 
 
 SETTINGS: Final = lay_out(SettingsLayout)
+Stage = Callable[..., None]
+_DECIDE, _STEP, _FORCE_FEEDBACK = Hop.DECIDE, Hop.STEP, Hop.FORCE_FEEDBACK
+_TORQUE_AT: Final = LAYOUT.torque.start
 _ROS_AGE_AT: Final = LAYOUT.ros.at("age_ticks")
 _ECU_AGE_AT: Final = LAYOUT.ecu.at("age_ticks")
 _RESTARTED_AT: Final = LAYOUT.arbitration.at("restarted")
@@ -53,9 +56,11 @@ class Console(NamedTuple):
     width: int
     settings: Row  # CockpitSettings, ControlSettings, ForceSettings
     platform: Platform
+    initial: Row  # the state vector before the first tick
     decide: Callable[[Row, Row, Row, float], None]
     step: Callable[[Row, Row, Row, int], None]
     force_feedback: Callable[[Row, Row, Row, float], None] | None  # None: the wheel has no motor
+    block: Callable[[Row, Row, Row, Row, Row, float, int], None]  # see `advance_block`
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -85,6 +90,7 @@ def build_console(
     """
     if PHYSICS_HZ % tick_hz:
         raise ValueError(f"tick_hz {tick_hz} does not divide {PHYSICS_HZ}")
+    feel = force_feedback if force.max_torque_nm > 0.0 else None
     return Console(
         tick_hz=tick_hz,
         tick_s=1.0 / tick_hz,
@@ -92,21 +98,27 @@ def build_console(
         width=PLATFORM_AT + len(platform.initial_state),
         settings=np.array((*cockpit, *control, *force), dtype=np.float64),
         platform=platform,
+        initial=_initial(platform),
         decide=execution(decide),
         step=execution(platform.step),
-        force_feedback=execution(force_feedback) if force.max_torque_nm > 0.0 else None,
+        force_feedback=None if feel is None else execution(feel),
+        block=execution(_block_of(in_order(decide, platform.step, feel, None))),
     )
+
+
+def _initial(platform: Platform) -> Row:
+    row = np.zeros(PLATFORM_AT + len(platform.initial_state), dtype=np.float64)
+    write(row, LAYOUT.sample, NO_SAMPLE)
+    write(row, LAYOUT.ros, NO_COMMAND)
+    write(row, LAYOUT.ecu, NO_COMMAND)
+    write(row, LAYOUT.vehicle, platform.initial_vehicle)
+    put(row, PLATFORM_AT, platform.initial_state)
+    return row
 
 
 def initial_state(console: Console) -> ConsoleState:
     """Return the state before the first tick: vehicle in place, nobody armed, parked."""
-    row = np.zeros(console.width, dtype=np.float64)
-    write(row, LAYOUT.sample, NO_SAMPLE)
-    write(row, LAYOUT.ros, NO_COMMAND)
-    write(row, LAYOUT.ecu, NO_COMMAND)
-    write(row, LAYOUT.vehicle, console.platform.initial_vehicle)
-    put(row, PLATFORM_AT, console.platform.initial_state)
-    return ConsoleState(0, row)
+    return ConsoleState(0, console.initial.copy())
 
 
 def advance(
@@ -122,27 +134,78 @@ def advance_vector(previous: Row, inputs: Row | tuple[float, ...], console: Cons
     """Return the state vector after `previous` for the INPUT_WIDTH values `inputs`, as a replay needs it."""
     row = np.empty(console.width)
     row[:INPUT_WIDTH] = inputs
-    console.decide(previous, row, console.settings, console.tick_s)
-    if row[_RESTARTED_AT] > 0.0:
-        previous = _start_again(previous, console)
-        console.decide(previous, row, console.settings, console.tick_s)
-        row[_RESTARTED_AT] = 1.0
-    mark(Hop.DECIDE)
-    console.step(previous, row, console.platform.parameters, console.substeps)
-    mark(Hop.STEP)
-    if console.force_feedback is None:
-        row[LAYOUT.torque.start : PLATFORM_AT] = 0.0
-    else:
-        console.force_feedback(previous, row, console.settings, console.tick_s)
-        mark(Hop.FORCE_FEEDBACK)
+    tick = in_order(console.decide, console.step, console.force_feedback, mark)
+    tick(
+        previous, row, console.settings, console.platform.parameters, console.initial, console.tick_s, console.substeps
+    )
     return row
 
 
-def _start_again(previous: Row, console: Console) -> Row:
+def advance_block(previous: Row, rows: Row, console: Console) -> None:
+    """Make as many ticks as there are `rows`, in one compiled call.
+
+    Args:
+        previous: the state vector before the first of them.
+        rows: float64 [ticks, columns], the inputs in the first INPUT_WIDTH columns; the others are written.
+        console: which console.
+    """
+    parameters = console.platform.parameters
+    console.block(previous, rows, console.settings, parameters, console.initial, console.tick_s, console.substeps)
+
+
+def in_order(decide: Stage, step: Stage, force_feedback: Stage | None, mark: Mark | None) -> Stage:
+    """Return one tick: its stages in their order. Nowhere else do they stand.
+
+    One text, two executions: of compiled stages, called one by one, with a `mark` that hears the end of each; and of
+    the kernels themselves, without a mark, compiled as a whole (`advance_block`).
+    """
+
+    @kernel
+    def tick(
+        previous: Row, row: Row, settings: Row, parameters: Row, initial: Row, tick_s: float, substeps: int
+    ) -> None:
+        """Write the state vector after `previous` into `row`, whose first columns hold the inputs."""
+        decide(previous, row, settings, tick_s)
+        if row[_RESTARTED_AT] > 0.0:
+            previous = start_again(previous, initial)
+            decide(previous, row, settings, tick_s)
+            row[_RESTARTED_AT] = 1.0
+        if mark is not None:
+            mark(_DECIDE)
+        step(previous, row, parameters, substeps)
+        if mark is not None:
+            mark(_STEP)
+        if force_feedback is None:
+            row[_TORQUE_AT:PLATFORM_AT] = 0.0
+        else:
+            force_feedback(previous, row, settings, tick_s)
+            if mark is not None:
+                mark(_FORCE_FEEDBACK)
+
+    return tick
+
+
+def _block_of(tick: Stage) -> Stage:
+    """Return the kernel that makes one tick after the other."""
+
+    @kernel
+    def block(
+        previous: Row, rows: Row, settings: Row, parameters: Row, initial: Row, tick_s: float, substeps: int
+    ) -> None:
+        for index in range(len(rows)):
+            row = rows[index]
+            tick(previous, row, settings, parameters, initial, tick_s, substeps)
+            previous = row
+
+    return block
+
+
+@kernel
+def start_again(previous: Row, initial: Row) -> Row:
     """Return the state vector before the first tick, with the devices as they are."""
-    row = initial_state(console).vector
-    row[LAYOUT.sample.slice] = previous[LAYOUT.sample.slice]
-    row[LAYOUT.driver.slice] = previous[LAYOUT.driver.slice]
+    row = initial.copy()
+    write(row, LAYOUT.sample, read(previous, LAYOUT.sample))
+    write(row, LAYOUT.driver, read(previous, LAYOUT.driver))
     return row
 
 

@@ -9,7 +9,9 @@ import contextlib
 import sys
 from collections.abc import Callable
 
+from simconsole.tick.foresight import BlockRecorder, ForeseeingCommands, ForeseeingDevices, PatientOutput
 from simconsole.tick.loop import Components, Pace, Recorder, Standby
+from simconsole.values.kernels import Row
 from simconsole.values.protocols import CommandSource, DeviceSource, Output, Seat
 from simconsole.values.signals import NO_COMMAND, NO_SAMPLE, DeviceSample, Event, EventInput, RemoteCommand
 from simconsole.values.state_vector import Snapshot
@@ -28,6 +30,18 @@ def isolated(components: Components, spare: Callable[[], Pace]) -> Components:
         ecu=IsolatedCommands(components.ecu, "CAN"),
         standby=[IsolatedStandby(standby) for standby in components.standby],
     )
+
+
+def _without_raising(foresee: Callable[[int, Row], int]) -> Callable[[int, Row], int]:
+    """Return a `foresee` that foresees nothing where it would raise: `poll` or `take` will tell."""
+
+    def safely(tick: int, rows: Row) -> int:
+        try:
+            return foresee(tick, rows)
+        except Exception:  # noqa: BLE001  told by the call for the single tick, which comes next
+            return 0
+
+    return safely
 
 
 class Told:
@@ -52,6 +66,8 @@ class IsolatedDevices:
         self._devices = devices
         self._seat = seat
         self._told = Told("the cockpit")
+        if isinstance(devices, ForeseeingDevices):
+            self.foresee = _without_raising(devices.foresee)
 
     def poll(self, tick: int) -> DeviceSample:
         """Return the newest sample."""
@@ -96,6 +112,7 @@ class IsolatedPace:
     def __init__(self, pace: Pace, spare: Callable[[], Pace]) -> None:
         self._pace = pace
         self._spare = spare
+        self.never_waits = getattr(pace, "never_waits", False)
         self._told = Told("the pace")
 
     def wait(self) -> int:
@@ -114,6 +131,9 @@ class IsolatedRecorder:
     def __init__(self, recorder: Recorder) -> None:
         self._recorder = recorder
         self._told = Told("the recorder")
+        if isinstance(recorder, BlockRecorder):
+            self._write_block = recorder.write_block
+            self.write_block = self._isolated_block
 
     def write(self, snapshot: Snapshot) -> int:
         """Keep one tick and return the events of the next one."""
@@ -123,6 +143,14 @@ class IsolatedRecorder:
             except Exception as error:  # noqa: BLE001  recording may end, driving must not
                 self._told.tell(error)
         return int(Event.RECORDING_FAILED)
+
+    def _isolated_block(self, tick: int, vectors: Row) -> tuple[int, int]:
+        if not self._told.failed:
+            try:
+                return self._write_block(tick, vectors)
+            except Exception as error:  # noqa: BLE001  recording may end, driving must not
+                self._told.tell(error)
+        return len(vectors), int(Event.RECORDING_FAILED)
 
 
 class IsolatedStandby:
@@ -148,6 +176,8 @@ class IsolatedCommands:
     def __init__(self, source: CommandSource, name: str) -> None:
         self._source = source
         self._told = Told(f"the {name} side")
+        if isinstance(source, ForeseeingCommands):
+            self.foresee = _without_raising(source.foresee)
 
     def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
         """Return the newest command and the edges."""
@@ -168,6 +198,8 @@ class IsolatedOutput:
         self._told = Told(type(output).__name__)
         if hasattr(output, "hop"):
             self.hop = output.hop
+        if isinstance(output, PatientOutput):
+            self.unseen = output.unseen
 
     def publish(self, snapshot: Snapshot) -> None:
         """Show it one tick."""

@@ -108,6 +108,10 @@ class LatencyStatistics:
         self._last_ns = self._clock_ns()
         return self.mark
 
+    def unseen(self, tick: int) -> int:
+        """Return how many ticks, from `tick` on, are not looked at."""
+        return -tick % self._every
+
     def mark(self, hop: Hop) -> None:
         """Count the time since the last hop ended."""
         now_ns = self._clock_ns()

@@ -1,9 +1,15 @@
 """What the drive loop needs of the world outside: four small protocols and their empty forms."""
 
-from typing import NamedTuple, Protocol
+from typing import Final, NamedTuple, Protocol
 
+import numpy as np
+
+from simconsole.values.kernels import Row
 from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE, DeviceSample, EventInput, RemoteCommand
 from simconsole.values.state_vector import Snapshot
+
+_NO_SAMPLE: Final = np.array(NO_SAMPLE)
+_NO_COMMAND: Final = np.array(NO_COMMAND)
 
 
 class DeviceSource(Protocol):
@@ -58,6 +64,11 @@ class NobodySeated:
         """Return a sample in which every device is gone."""
         return NO_SAMPLE
 
+    def foresee(self, tick: int, samples: Row) -> int:
+        """Write the same into all rows, and return how many there are."""
+        samples[:] = _NO_SAMPLE
+        return len(samples)
+
     def close(self) -> None:
         """Nothing to release."""
 
@@ -68,3 +79,8 @@ class NobodyCommands:
     def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
         """Return the absence of a command."""
         return NO_COMMAND, NO_EVENTS
+
+    def foresee(self, tick: int, commands: Row) -> int:
+        """Write the same into all rows, and return how many there are."""
+        commands[:] = _NO_COMMAND
+        return len(commands)

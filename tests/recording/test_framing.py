@@ -12,6 +12,7 @@ from simconsole.recording.framing import (
     plausible,
     promised_size,
     seal,
+    seal_block,
     seal_message,
     unseal,
 )
@@ -29,6 +30,20 @@ def test_a_frame_of_the_first_schema_is_what_it_was(header: LogHeader) -> None:
     record = unseal(frame, header)
     assert isinstance(record, Record)
     assert (record.tick, record.vector.tobytes(), record.digest, record.messages) == (9, ROW.tobytes(), digest, ())
+
+
+@pytest.mark.parametrize("ticks", [1, 2, 65])
+def test_a_block_of_frames_is_the_frames_one_by_one(ticks: int) -> None:
+    vectors = np.random.default_rng(ticks).normal(size=(ticks, 7))
+    vectors[0, :4] = ROW
+    digest, expected = bytes(range(8)), b""
+    for tick, vector in enumerate(vectors, start=9):
+        frame, digest = seal(digest, tick, vector.tobytes())
+        expected += frame
+    frames, last = seal_block(bytes(range(8)), 9, vectors)
+    assert frames.tobytes() == expected
+    assert last == digest
+    assert frames.shape == (ticks, frame_size(7))
 
 
 def test_the_hash_chains_over_tick_and_content() -> None:

@@ -68,6 +68,34 @@ def test_the_drive_waits_once_in_each_period_and_never_in_between(server: Server
     assert link.counters() == {"exchanges": 4, "unanswered": 0, "bridge": {"sent": 0}}
 
 
+def test_the_ticks_of_a_period_are_foreseen_as_they_are_taken(server: Server) -> None:
+    link, taken = LockstepLink(server, PERIOD_TICKS, 1.0), LockstepLink(server, PERIOD_TICKS, 1.0)
+    commands = np.zeros((64, len(NO_COMMAND)))
+    for tick, count in ((1, 5), (3, 3), (5, 1), (6, 5)):
+        assert link.foresee(tick, commands) == count
+        assert link.unseen(tick) + 1 == count, "a block ends with the exchange"
+        expected = [list(taken.take(tick + at)[0]) for at in range(count)]
+        assert commands[:count].tolist() == expected
+    assert link.foresee(1, commands[:2]) == 2
+
+
+def test_a_command_grows_older_in_foreseen_ticks(server: Server, monkeypatch: pytest.MonkeyPatch) -> None:
+    newest = NO_COMMAND._replace(sequence=1.0, age_ticks=2.0)
+    monkeypatch.setattr(server, "take", lambda tick: (newest, EventInput(0.0)))
+    commands = np.zeros((64, len(NO_COMMAND)))
+    assert LockstepLink(server, PERIOD_TICKS, 1.0).foresee(6, commands) == 5
+    assert commands[:5, NO_COMMAND._fields.index("age_ticks")].tolist() == [2.0, 3.0, 4.0, 5.0, 6.0]
+
+
+def test_no_tick_is_foreseen_while_an_edge_waits_and_none_is_lost(server: Server) -> None:
+    link = LockstepLink(server, PERIOD_TICKS, 1.0)
+    server.raised = int(Event.MARK)
+    assert link.foresee(1, np.zeros((64, len(NO_COMMAND)))) == 0
+    assert link.foresee(1, np.zeros((64, len(NO_COMMAND)))) == 0
+    assert link.take(1)[1].events == Event.MARK
+    assert link.foresee(2, np.zeros((64, len(NO_COMMAND)))) == 4
+
+
 def test_a_missing_answer_is_one_event_in_the_next_tick_and_is_not_waited_for_again(server: Server) -> None:
     server.answers = False
     link = LockstepLink(server, PERIOD_TICKS, 1.0)

@@ -266,7 +266,12 @@ def test_a_log_that_raises_is_a_recording_that_failed(tmp_path: Path, monkeypatc
             raise RuntimeError("broken")
         append(log, tick, row, messages)
 
+    def one_by_one(log: LogWriter, tick: int, vectors: Row) -> int:
+        log.append(tick, vectors[0])
+        return 1
+
     monkeypatch.setattr(LogWriter, "append", broken)
+    monkeypatch.setattr(LogWriter, "append_block", one_by_one)
     session = override(parse(SESSION, SessionProfile, "session"), scenario={"duration_s": 1.0})
     session = override(session, outputs={"hud": None}, mode={"pacing": "free"})
     result = drive(resolve(session), tmp_path / "bundle")

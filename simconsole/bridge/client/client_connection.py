@@ -17,6 +17,7 @@ from simconsole.bridge.protocol.frames import CLOSE, MessageAssembler
 from simconsole.bridge.protocol.handshake import DRIVE_HEADER
 from simconsole.bridge.protocol.message_decoding import Binary
 from simconsole.bridge.transport.sockets import RECEIVE_BYTES
+from simconsole.bridge.transport.whole_frames import masked_frame, take_whole
 from simconsole.values.errors import BridgeError, OtherDriveError
 
 MAX_MESSAGE_BYTES: Final = 16_777_216
@@ -125,6 +126,10 @@ class ClientConnection:
         """
         if self._web is None or self._web.state is not State.OPEN:
             raise BridgeError(f"{self.url}: not connected")
+        frame = masked_frame(message)
+        if frame is not None:
+            self._send(frame)
+            return
         if isinstance(message, Binary):
             self._web.send_binary(message)
         else:
@@ -154,17 +159,20 @@ class ClientConnection:
         except OSError as error:
             self.abort()
             raise BridgeError(f"{self.url}: connection lost: {error}") from None
+        messages: list[bytes] = []
         if data:
             self.heard_s = time.monotonic()
+            frames, data = take_whole(web, data)
+            for frame in frames:
+                self._add(frame.opcode, frame.data, True, messages)
+            if not data:
+                return messages
             web.receive_data(data)
         else:
             web.receive_eof()
-        messages = []
         for event in web.events_received():
             if isinstance(event, Frame) and event.opcode < CLOSE:
-                whole = self._messages.add(event.opcode, bytes(event.data), event.fin, 0)
-                if whole is not None:
-                    messages.append(whole)
+                self._add(event.opcode, bytes(event.data), event.fin, messages)
         if web.close_rcvd is not None:
             self.close_code = web.close_rcvd.code
         self._flush()
@@ -173,6 +181,11 @@ class ClientConnection:
             if not messages:
                 raise BridgeError(f"{self.url}: connection closed by the server ({self.close_code or ABNORMAL})")
         return messages
+
+    def _add(self, opcode: int, data: bytes, fin: bool, messages: list[bytes]) -> None:
+        whole = self._messages.add(opcode, data, fin, 0)
+        if whole is not None:
+            messages.append(whole)
 
     def close(self) -> None:
         """Send a close frame and close; harmless when not connected."""
@@ -193,16 +206,19 @@ class ClientConnection:
 
     def _flush(self) -> None:
         assert self._web is not None
-        assert self._socket is not None
         for data in self._web.data_to_send():
-            try:
-                if data is SEND_EOF and self._tls is not None:
-                    continue  # half a TLS connection cannot be closed; the whole one is, in a moment
-                if data is SEND_EOF:
-                    self._socket.shutdown(socket.SHUT_WR)
-                else:
-                    self._socket.settimeout(self._timeout_s)
-                    self._socket.sendall(data)
-            except OSError as error:
-                self.abort()
-                raise BridgeError(f"{self.url}: connection lost: {error}") from None
+            if data is SEND_EOF and self._tls is not None:
+                continue  # half a TLS connection cannot be closed; the whole one is, in a moment
+            self._send(data)
+
+    def _send(self, data: bytes) -> None:
+        assert self._socket is not None
+        try:
+            if data is SEND_EOF:
+                self._socket.shutdown(socket.SHUT_WR)
+            else:
+                self._socket.settimeout(self._timeout_s)
+                self._socket.sendall(data)
+        except OSError as error:
+            self.abort()
+            raise BridgeError(f"{self.url}: connection lost: {error}") from None

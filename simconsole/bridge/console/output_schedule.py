@@ -19,7 +19,6 @@ class ScheduledOutput:
         self.latched = output.rate_hz == ONCE
         self.rate_hz = rate_hz
         self.build: Callable[[PublishedTick], Any] = output.build
-        self.last_tick: int | None = None
 
 
 class OutputSchedule:
@@ -34,13 +33,16 @@ class OutputSchedule:
         _check_known("rates_hz", profile.rates_hz, [output.name for output in outputs])
         rated = [(output, profile.rates_hz.get(output.name, output.rate_hz)) for output in outputs]
         self.outputs = tuple(ScheduledOutput(output, names[output.name], rate) for output, rate in rated if rate)
+        self._rates_hz = {output.rate_hz for output in self.outputs}
+        self._last_tick: int | None = None  # that was asked about
 
     def due(self, snapshot: Snapshot, *, odometry: bool = False) -> Iterator[ScheduledOutput]:
         """Yield the topics that are due in this tick, in the table's order; with `odometry`, that in any case."""
+        tick, last, tick_hz = snapshot.tick, self._last_tick, snapshot.tick_hz
+        self._last_tick = tick
+        rates = {rate_hz for rate_hz in self._rates_hz if is_due(tick, last, tick_hz, rate_hz)}
         for output in self.outputs:
-            due = is_due(snapshot.tick, output.last_tick, snapshot.tick_hz, output.rate_hz)
-            if due or (odometry and output.standard == ODOMETRY):
-                output.last_tick = snapshot.tick
+            if output.rate_hz in rates or (odometry and output.standard == ODOMETRY):
                 yield output
 
 

@@ -319,7 +319,7 @@ class Outputs:
 
     def _arbitration(self, tick: PublishedTick) -> Any:
         snapshot = tick.snapshot
-        decided = snapshot.arbitration
+        decided, notice = snapshot.arbitration, snapshot.notice
         return self._types["Arbitration"](
             header=tick.header(BASE_FRAME),
             mode=int(decided.mode),
@@ -328,8 +328,8 @@ class Outputs:
             reason_words=reason_label(decided.reason),
             refusal=int(decided.refusal),
             refusal_words=reason_label(decided.refusal) if decided.refusal else "",
-            notice=int(snapshot.notice),
-            notice_words=notice_label(snapshot.notice),
+            notice=int(notice),
+            notice_words=notice_label(notice),
             remote_lateral=decided.remote_lateral,
             remote_longitudinal=decided.remote_longitudinal,
             person_road_wheel=decided.person_road_wheel_rad,

@@ -25,6 +25,10 @@ class LateCommands:
     def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
         """Return the newest command that has arrived, aged since then, and all edges since the last call."""
         newest, events = self._source.take(tick)
+        return self._heard(newest, tick), events
+
+    def _heard(self, newest: RemoteCommand, tick: int) -> RemoteCommand:
+        """Return what has arrived, where `newest` is the newest command that was sent."""
         if newest.sequence != self._seen:
             self._seen = newest.sequence
             if not self._is_lost(newest):
@@ -34,7 +38,7 @@ class LateCommands:
             arrival, command = here[-1]  # what was sent before it and comes later is out of order
             self._under_way = [entry for entry in self._under_way if entry[1].sequence > command.sequence]
             self._arrived, self._arrival = command, arrival
-        return self._now(newest, tick), events
+        return self._now(newest, tick)
 
     def _is_lost(self, command: RemoteCommand) -> bool:
         share = self._link.loss_share

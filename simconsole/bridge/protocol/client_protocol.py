@@ -14,7 +14,7 @@ import orjson
 from simconsole.bridge.messages import Registry, standard_registry
 from simconsole.bridge.messages.definition_text import two_parts
 from simconsole.bridge.protocol.fragments import FragmentAssembler
-from simconsole.bridge.protocol.message_decoding import decode
+from simconsole.bridge.protocol.message_decoding import Binary, decode
 from simconsole.bridge.protocol.message_encoding import Dialect, to_plain
 from simconsole.bridge.protocol.operations import (
     ABORTED,
@@ -30,11 +30,13 @@ from simconsole.bridge.protocol.operations import (
     SendActionGoal,
     ServiceResponse,
     Status,
+    publish_head,
     read_operation,
     write_publish,
 )
 from simconsole.values.errors import BridgeError, LocalProtocolError, RemoteProtocolError
 
+_PUBLISHED, _, _MESSAGE = publish_head("\0").partition(orjson.dumps("\0")[1:-1])
 MAX_STATUS: Final = 100
 MAX_WHOLE: Final = 16_777_216
 MAX_PIECES: Final = 65_536
@@ -116,6 +118,7 @@ class ClientProtocol:
         self._registrations: dict[tuple[str, str], bytes] = {}
         self._advertised: dict[str, str] = {}
         self._subscriptions: dict[str, _Subscription] = {}
+        self._readers: dict[bytes, tuple[str, msgspec.json.Decoder[Any]]] = {}
         self._services: dict[str, Handler] = {}
         self._actions: dict[str, Callable[[Goal], None]] = {}
         self._calls: dict[str, _Call] = {}
@@ -181,6 +184,7 @@ class ClientProtocol:
         """
         full = self.registry.resolve(type_name)
         self._subscriptions[topic] = _Subscription(full, callback)
+        self._readers[topic.encode()] = (topic, msgspec.json.Decoder(self.registry.struct(full)))
         asked = {"throttle_rate": throttle_rate, "queue_length": queue_length}
         more = {name: value for name, value in asked.items() if value}
         return self._register("subscribe", topic=topic, type=two_parts(full), **more)
@@ -188,6 +192,7 @@ class ClientProtocol:
     def unsubscribe(self, topic: str) -> bytes:
         """Return the text that ends a subscription."""
         self._subscriptions.pop(topic, None)
+        self._readers.pop(topic.encode(), None)
         return self._withdraw("subscribe", topic=topic)
 
     def advertise_service(self, service: str, type_name: str, handler: Handler) -> bytes:
@@ -248,6 +253,9 @@ class ClientProtocol:
         What cannot be used is counted in `refused`: a server's mistake must not end a drive. An exception of a
         callback is the program's own and goes through.
         """
+        known = self._published(text)
+        if known is not None:
+            return self._deliver(*known)
         try:
             operation: Operation | None = read_operation(decode(text).fields)
             if isinstance(operation, Fragment):
@@ -262,6 +270,23 @@ class ClientProtocol:
         if operation is not None:
             self._react(operation)
         return None
+
+    def _published(self, text: bytes) -> tuple[str, Any] | None:
+        """Return topic and message of a text that is what servers nearly always send, None of any other.
+
+        That is a subscribed topic's message, complete and in its type, behind the operation as `publish_head` writes
+        it: decoded at once, without a table of its fields in between. What does not fit goes the long way.
+        """
+        if self.dialect is None or not text.startswith(_PUBLISHED) or isinstance(text, Binary):
+            return None
+        end = text.find(b'"', len(_PUBLISHED))
+        reader = self._readers.get(text[len(_PUBLISHED) : end])
+        if reader is None or not text.startswith(_MESSAGE, end) or not text.endswith(b"}"):
+            return None
+        try:
+            return reader[0], reader[1].decode(memoryview(text)[end + len(_MESSAGE) : -1])
+        except msgspec.DecodeError:
+            return None
 
     def _typed(self, operation: Publish) -> Any:
         """Return a subscribed topic's message in its type, None for another topic's."""

@@ -17,6 +17,7 @@ from simconsole.bridge.protocol.frames import CLOSE, FrameWriter
 from simconsole.bridge.protocol.handshake import Admission, Places, Refusal, admit, handshake_request
 from simconsole.bridge.transport.connection_checks import ConnectionChecks
 from simconsole.bridge.transport.sockets import RECEIVE_BYTES
+from simconsole.bridge.transport.whole_frames import take_whole
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import FrameError
 from simconsole.values.units import NS_PER_S
@@ -93,6 +94,12 @@ class LockstepConnection:
             return
         if data:
             self._checks.heard(time.monotonic_ns())
+            frames, data = take_whole(self._web, data)
+            for frame in frames:
+                if self.session is not None and self._web.state is State.OPEN:
+                    self._take(frame.opcode, frame.data, True, self.session)
+            if not data and self._web.state is State.OPEN:
+                return
             self._web.receive_data(data)
         else:
             self._web.receive_eof()
@@ -104,7 +111,7 @@ class LockstepConnection:
             if isinstance(event, Request):
                 self._answer(event)
             elif isinstance(event, Frame) and event.opcode < CLOSE and self.session is not None:
-                self._take(event, self.session)
+                self._take(event.opcode, bytes(event.data), event.fin, self.session)
         if not data or self._web.state is State.CLOSED:
             self.close()
 
@@ -164,9 +171,9 @@ class LockstepConnection:
             self.session = self._owner.connected(self.peer, decision)
             self._limit_messages(self.session)
 
-    def _take(self, frame: Frame, session: ClientSession) -> None:
+    def _take(self, opcode: int, data: bytes, fin: bool, session: ClientSession) -> None:
         try:
-            message = self._checks.assembler.add(frame.opcode, bytes(frame.data), frame.fin, time.monotonic_ns())
+            message = self._checks.assembler.add(opcode, data, fin, time.monotonic_ns())
         except FrameError as error:
             self._web.fail(error.code, str(error))
             return

@@ -15,6 +15,8 @@ from simconsole.devices.synthetic.trace_format import (
     row_text,
 )
 from simconsole.values.errors import DeviceError, ProfileError
+from simconsole.values.input_table import InputTable
+from simconsole.values.kernels import Row
 from simconsole.values.signals import DeviceSample
 
 
@@ -84,10 +86,16 @@ class TraceSource:
         lines = _lines(self._file, path)
         read_header(lines, str(path))
         self._player = TracePlayer(read_rows(lines, str(path)))
+        self._table = InputTable(len(DeviceSample._fields), self._fill)
+        self.foresee = self._table.foresee
 
     def poll(self, tick: int) -> DeviceSample:
         """Return the sample of this tick; after the last one the devices go stale."""
-        return self._player.poll(tick)
+        return DeviceSample(*self._table.values(tick))
+
+    def _fill(self, tick: int, rows: Row) -> None:
+        for at in range(len(rows)):
+            rows[at] = self._player.poll(tick + at)
 
     def close(self) -> None:
         """Close the file."""

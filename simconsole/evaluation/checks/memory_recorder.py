@@ -28,11 +28,17 @@ class MemoryRecorder:
 
     def write(self, snapshot: Snapshot) -> int:
         """Keep one tick."""
-        if self.ticks == len(self._room):
-            larger = np.empty((min(self._most, 2 * self.ticks), self._room.shape[1]))
-            larger[: self.ticks] = self._room
+        return self.write_block(snapshot.tick, snapshot.vector[np.newaxis])[1]
+
+    def write_block(self, tick: int, vectors: Row) -> tuple[int, int]:
+        """Keep the ticks from `tick` on, all of them."""
+        ticks = self.ticks + len(vectors)
+        if ticks > len(self._room):
+            larger = np.empty((min(self._most, max(2 * self.ticks, ticks)), self._room.shape[1]))
+            larger[: self.ticks] = self.vectors
             self._room = larger
-        self._room[self.ticks] = snapshot.vector
-        self.ticks += 1
-        self.digest = chain(self.digest, snapshot.tick, snapshot.vector.tobytes())
-        return 0
+        self._room[self.ticks : ticks] = vectors
+        self.ticks = ticks
+        for number, vector in enumerate(vectors, start=tick):
+            self.digest = chain(self.digest, number, vector.tobytes())
+        return len(vectors), 0

@@ -144,6 +144,12 @@ class Watch:
             self.samples.see(snapshot.tick, snapshot.vector)
         return 0
 
+    def write_block(self, tick: int, vectors: Row) -> tuple[int, int]:
+        """Look at the ticks from `tick` on, all of them."""
+        for number, vector in enumerate(vectors, start=tick):
+            self.write(Snapshot(number, 0, vector))
+        return len(vectors), 0
+
 
 class Bound:
     """One bound on a column, over some of a drive's ticks."""

@@ -1,8 +1,8 @@
-"""The append log as a file: one write() per tick, a thread that only syncs, and a reader.
+"""The append log as a file: one write() per tick or block of ticks, a thread that only syncs, and a reader.
 
-A frame reaches the kernel whole with its write(), so a killed process loses at most the tick it was working on; a
-power cut loses at most the time between two syncs. The thread also keeps the file's checksum up to date, so that the
-end of a long drive does not wait for one.
+A frame reaches the kernel whole with its write(), so a killed process loses at most the tick it was working on, or the
+block of ticks that were made at once (docs/decisions/0017-ticks-at-once.md); a power cut loses at most the time between
+two syncs. The thread also keeps the file's checksum up to date, so that the end of a long drive does not wait for one.
 """
 
 import os
@@ -17,7 +17,15 @@ from typing import Final
 
 import numpy as np
 
-from simconsole.recording.framing import MAX_FRAME_BYTES, START_OF_CHAIN, Message, Record, seal, seal_message
+from simconsole.recording.framing import (
+    MAX_FRAME_BYTES,
+    START_OF_CHAIN,
+    Message,
+    Record,
+    seal,
+    seal_block,
+    seal_message,
+)
 from simconsole.recording.log_header import LogHeader, encode_header, stream_index
 from simconsole.recording.reading import BLOCK_TICKS, Block, LogTable, gathered, places
 from simconsole.recording.scan import Break, Scan
@@ -129,6 +137,36 @@ class LogWriter:
             if digests:
                 self._message_digests.update(digests)
 
+    def append_block(self, tick: int, vectors: Row) -> int:
+        """Write ticks in which no message arrived, all at once; return how many, at least one.
+
+        Where recording fails or has failed these are the ticks up to the failure, as `append` leaves them.
+
+        Args:
+            tick: the number of the first.
+            vectors: their state vectors, float64 [ticks, columns].
+
+        Raises:
+            ValueError: state vectors of another width, which is a bug.
+        """
+        if 8 * vectors.shape[1] != self._vector_bytes:
+            raise ValueError(f"state vectors of {8 * vectors.shape[1]} bytes in a log of {self._vector_bytes}")
+        if self.failure is None:
+            frames, digest = seal_block(self.digest, tick, vectors)
+            problem = self._problem(frames.data.cast("B"))
+            if problem is None:
+                self.ticks += len(vectors)
+                self.digest = digest
+                return len(vectors)
+            if os.fstat(self._fd).st_size != self.size_bytes:  # ticks that cannot be taken back must not come twice
+                self._fail(tick, problem)
+                self._last_ticks = 0
+        for count, vector in enumerate(vectors, start=1):  # finds the tick with which it fails
+            self.append(tick + count - 1, vector)
+            if self.failure is not None:
+                return count
+        return len(vectors)
+
     def _sealed(self, tick: int, messages: Sequence[tuple[str, bytes]]) -> tuple[bytes, dict[int, bytes]]:
         """Return the messages of a tick as they lie in its frame, and the chained hashes of their streams after it."""
         digests: dict[int, bytes] = {}
@@ -177,8 +215,8 @@ class LogWriter:
     ) -> None:
         self.close()
 
-    def _problem(self, frame: bytes) -> str | None:
-        """Write a frame; return why it is not in the file, None if it is. A frame written in part is truncated away."""
+    def _problem(self, frame: bytes | memoryview) -> str | None:
+        """Write frames; return why they are not in the file, None if they are. What is written in part is truncated."""
         try:
             written = os.write(self._fd, frame)
             if 0 < written < len(frame):

@@ -104,6 +104,61 @@ def test_equal_drives_make_equal_files(tmp_path: Path, header: LogHeader, rows: 
     assert (tmp_path / "first").read_bytes() == (tmp_path / "second").read_bytes()
 
 
+def test_ticks_written_at_once_are_one_write_and_the_same_file(
+    tmp_path: Path, header: LogHeader, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    vectors, write, writes = np.random.default_rng(1).normal(size=(50, 4)), os.write, list[int]()
+
+    def counted(fd: int, data: bytes) -> int:
+        writes.append(len(data))
+        return write(fd, data)
+
+    with LogWriter(tmp_path / "one by one", header) as log:
+        for tick, vector in enumerate(vectors, start=1):
+            log.append(tick, vector)
+        expected = log.digest
+    with LogWriter(tmp_path / "at once", header) as log:
+        monkeypatch.setattr(os, "write", counted)
+        log.append(1, vectors[0])
+        assert log.append_block(2, vectors[1:40]) == 39
+        log.append_block(41, vectors[40:])
+        assert (log.ticks, log.digest) == (50, expected)
+    assert writes == [frame_size(4), 39 * frame_size(4), 10 * frame_size(4)]
+    assert (tmp_path / "at once").read_bytes() == (tmp_path / "one by one").read_bytes()
+    assert [record.tick for record in LogReader(tmp_path / "at once")] == list(range(1, 51))
+
+
+@pytest.mark.fault("P01")
+@pytest.mark.parametrize("cut_fails", [False, True])
+def test_p01_a_block_that_does_not_fit_is_kept_up_to_the_tick_that_does_not(
+    tmp_path: Path, header: LogHeader, monkeypatch: pytest.MonkeyPatch, cut_fails: bool
+) -> None:
+    write, path = os.write, tmp_path / "drive.log"
+
+    def full(*_: object) -> int:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with LogWriter(path, header) as log:
+        log.append(1, np.zeros(4))
+        room = os.fstat(log._fd).st_size + 7 * frame_size(4) + 11
+
+        def limited(fd: int, data: bytes) -> int:
+            free = room - os.fstat(fd).st_size
+            return write(fd, data[:free]) if free else full()
+
+        with monkeypatch.context() as patch:
+            patch.setattr(os, "write", limited)
+            if cut_fails:
+                patch.setattr(os, "ftruncate", full)
+            kept = log.append_block(2, np.zeros((20, 4)))
+        assert log.failure is not None
+        assert log.failure.endswith(f"recording stopped at tick {2 if cut_fails else 9}: No space left on device")
+        assert kept == (1 if cut_fails else 8)
+        log.append_block(2 + kept, np.zeros((20, 4)))
+    ticks = [record.tick for record in LogReader(path)]
+    assert ticks == list(range(1, 9)), "each once, and none after the failure"
+
+
 def test_the_table_is_the_log_in_columns(tmp_path: Path, header: LogHeader, log_bytes: bytes) -> None:
     (tmp_path / "drive.log").write_bytes(log_bytes[:-3])
     table = LogReader(tmp_path / "drive.log").table()

@@ -1,0 +1,151 @@
+"""Ticks made at once: those whose inputs are all known already, and at which nobody looks in between.
+
+A script, a trace or the pause between two answers of a controller in lockstep: several ticks are then one compiled
+call, one block in the log and one look of each output. What comes out is the same to the bit.
+"""
+
+from collections.abc import Sequence
+from typing import Final, NamedTuple, Protocol, Self, runtime_checkable
+
+import numpy as np
+
+from simconsole.tick.advance import Console, ConsoleState, advance_block
+from simconsole.values.kernels import Row
+from simconsole.values.latency import LatencyStatistics
+from simconsole.values.protocols import Output
+from simconsole.values.signals import Button, Event
+from simconsole.values.state_vector import LAYOUT
+
+BLOCK_TICKS: Final = 64
+"""At most so many ticks are made at once: more would save next to nothing, and a killed program loses them."""
+
+_EDGES_AT: Final = LAYOUT.driver.at("edges")
+_BUTTON_PAUSE: Final = int(Button.PAUSE)
+_PAUSE: Final = int(Event.PAUSE)
+
+
+@runtime_checkable
+class ForeseeingDevices(Protocol):
+    """A cockpit whose coming samples are known, like a script's."""
+
+    def foresee(self, tick: int, samples: Row) -> int:
+        """Write what `poll` will return for `tick` and the ticks after it into the rows of `samples`.
+
+        It may be asked again for the same ticks. Return for how many it is known; 0: poll.
+        """
+
+
+@runtime_checkable
+class ForeseeingCommands(Protocol):
+    """A controller whose coming commands are known, like a script's."""
+
+    def foresee(self, tick: int, commands: Row) -> int:
+        """Write the commands that `take` will return for `tick` and the ticks after it into the rows of `commands`.
+
+        It may be asked again for the same ticks. Return for how many they are known and no edge comes; 0: take.
+        """
+
+
+@runtime_checkable
+class BlockRecorder(Protocol):
+    """A recorder that takes several ticks at once."""
+
+    def write_block(self, tick: int, vectors: Row) -> tuple[int, int]:
+        """Keep the ticks from `tick` on; return how many, at least one, and the events that the next one brings.
+
+        Those that are not kept, because recording fails, are made again from these events on.
+        """
+
+
+@runtime_checkable
+class PatientOutput(Protocol):
+    """An output that looks at some ticks only."""
+
+    def unseen(self, tick: int) -> int:
+        """Return how many ticks, from `tick` on, it does not look at: `publish` ignores them."""
+
+
+class _Parts(NamedTuple):
+    """The parts of a drive, as far as they foresee."""
+
+    devices: ForeseeingDevices
+    ros: ForeseeingCommands
+    ecu: ForeseeingCommands
+    recorder: BlockRecorder
+    outputs: Sequence[PatientOutput]
+
+
+class Foresight:
+    """Makes blocks of ticks in one drive."""
+
+    def __init__(self, console: Console, parts: _Parts, latencies: LatencyStatistics | None) -> None:
+        self._console = console
+        self._parts = parts
+        self._latencies = latencies
+        self._rows = np.zeros((BLOCK_TICKS, console.width))
+
+    @classmethod
+    def of(
+        cls,
+        console: Console,
+        sources: tuple[object, object, object],
+        recorder: object,
+        outputs: Sequence[Output],
+        latencies: LatencyStatistics | None,
+    ) -> Self | None:
+        """Return the foresight of a drive with these devices, commands of ROS side and ECU; None if a part has none."""
+        devices, ros, ecu = sources
+        if not (
+            isinstance(devices, ForeseeingDevices)
+            and isinstance(ros, ForeseeingCommands)
+            and isinstance(ecu, ForeseeingCommands)
+            and isinstance(recorder, BlockRecorder)
+        ):
+            return None
+        patient = [output for output in outputs if isinstance(output, PatientOutput)]
+        if len(patient) < len(outputs):
+            return None
+        return cls(console, _Parts(devices, ros, ecu, recorder, patient), latencies)
+
+    def advance(self, state: ConsoleState, end: int) -> tuple[ConsoleState, int]:
+        """Make the coming ticks that are foreseen, up to `end`, and record them.
+
+        Returns: the state after them, `state` itself if there are none, and the events that the next tick brings.
+        """
+        count = self._foreseen(state.tick + 1, end)
+        if count < 1:
+            return state, 0
+        rows = self._rows[:count]
+        rows[:, LAYOUT.events.slice] = 0.0
+        advance_block(state.vector, rows, self._console)
+        count = _up_to_pause(rows)
+        kept, events = self._parts.recorder.write_block(state.tick + 1, rows[:count])
+        last = rows[kept - 1].copy()
+        if int(last[_EDGES_AT]) & _BUTTON_PAUSE:
+            events |= _PAUSE
+        return ConsoleState(state.tick + kept, last), events
+
+    def _foreseen(self, tick: int, end: int) -> int:
+        """Return how many ticks from `tick` on are foreseen, their inputs being in the rows."""
+        parts, rows = self._parts, self._rows
+        count = min(end - tick + 1, BLOCK_TICKS)
+        if self._latencies is not None:
+            count = min(count, self._latencies.unseen(tick))
+        for output in parts.outputs:
+            count = min(count, output.unseen(tick) + 1)  # the last tick of a block is published
+        if count > 0:
+            count = parts.devices.foresee(tick, rows[:count, LAYOUT.sample.slice])
+        if count > 0:
+            count = parts.ros.foresee(tick, rows[:count, LAYOUT.ros.slice])
+        if count > 0:
+            count = parts.ecu.foresee(tick, rows[:count, LAYOUT.ecu.slice])
+        return count
+
+
+def _up_to_pause(rows: Row) -> int:
+    """Return how many of these ticks there are up to the first in which the button for a pause is pressed."""
+    edges = rows[:, _EDGES_AT]
+    if not edges.any():
+        return len(rows)
+    pressed = np.flatnonzero(edges.astype(np.int64) & _BUTTON_PAUSE)
+    return int(pressed[0]) + 1 if len(pressed) else len(rows)
