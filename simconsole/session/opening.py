@@ -9,6 +9,7 @@ from subprocess import Popen
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from simconsole.bridge.link.delay import over_link
+from simconsole.control.requests.refusals import steering_limit
 from simconsole.faults.schedule import with_faults
 from simconsole.processes.lifetimes import Interrupt, end, tell_to_end, undone
 from simconsole.processes.shared_memory import make_run_folder, remove_run_folder
@@ -295,7 +296,12 @@ def _open_lockstep(
     token, drive = _own_token(session), new_nonce()
     odometry_hz = console.tick_hz / period_ticks
     bridge = LockstepBridge(
-        session.outputs.bridge, odometry_hz=odometry_hz, folder=folder, drive=drive, route=route_of(resolved.world)
+        session.outputs.bridge,
+        odometry_hz=odometry_hz,
+        folder=folder,
+        drive=drive,
+        route=route_of(resolved.world),
+        steering=steering_limit(session.features.control, console.platform.wheelbase_m),
     )
     course = session.features.autopilot
     program = None

@@ -52,7 +52,7 @@ _REASONS: Final[dict[float, str]] = {
     Reason.REFUSED_NOT_COMMANDER: "refused: the ECU does not command",
     Reason.REFUSED_WHEEL_NOT_CENTRED: "refused: wheel is not centred",
     Reason.REFUSED_PEDAL_PRESSED: "refused: a pedal is pressed",
-    Reason.REFUSED_IMPLAUSIBLE: "refused: autopilot steers too hard",
+    Reason.REFUSED_IMPLAUSIBLE: "refused: too much lateral acceleration",
     Reason.REFUSED_OVERRULED: "refused: something stronger came first",
 }
 

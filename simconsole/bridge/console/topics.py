@@ -190,16 +190,23 @@ class Outputs:
             ),
         )
 
-    def happening(self, tick: PublishedTick) -> Any:
-        """Return mode, reason and notice of a tick as a message of /rosout."""
+    def happening(self, tick: PublishedTick, broken: str = "") -> Any:
+        """Return mode, reason, refusal and notice of a tick as a message of /rosout.
+
+        `broken` is the limit that a refused command has broken, in words.
+        """
         arbitration, notice = tick.snapshot.arbitration, tick.snapshot.notice
-        text = f"{mode_label(arbitration.mode)}: {reason_label(arbitration.reason)}"
+        parts = [f"{mode_label(arbitration.mode)}: {reason_label(arbitration.reason)}"]
+        if arbitration.refusal:
+            parts.append(reason_label(arbitration.refusal) + (f" ({broken})" if broken else ""))
+        if notice:
+            parts.append(notice_label(notice))
         log = self._types["Log"]
         return log(
             stamp=tick.stamp,
-            level=log.WARN if notice else log.INFO,
+            level=log.WARN if notice or arbitration.refusal else log.INFO,
             name="simconsole",
-            msg=f"{text}; {notice_label(notice)}" if notice else text,
+            msg="; ".join(parts),
         )
 
     def published_tick(self, snapshot: Snapshot) -> PublishedTick:
