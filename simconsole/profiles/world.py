@@ -57,8 +57,9 @@ class Roundabout(WorldSection, frozen=True, kw_only=True):
 
 
 class WorldProfile(WorldSection, frozen=True, kw_only=True):
-    """One course, driven on the right; the primitives are the centre of the driven lane. It is a loop where its end meets
-    its start, else it is open: an autopilot stops at its end.
+    """One course, driven on the right; the primitives are the centre of the driven lane.
+
+    It is a loop where its end meets its start, else it is open: an autopilot stops at its end.
     """
 
     schema: Literal[1]
