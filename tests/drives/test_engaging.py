@@ -17,7 +17,10 @@ from simconsole.world.tools.generate import to_text
 
 LINK = "{delay_ms: 40, localisation: {position_noise_m: 0.02, yaw_noise_deg: 0.2}}"
 NAMES = ("x_m", "y_m", "yaw_rad", "vx_mps", "distance_m")
-PERSON = "points: [{time_s: 0.0, throttle: 0, brake: 0, clutch: 0, hand_wheel_deg: 0, gear: 0}, {time_s: 2.0, press: [autonomous]}]"
+PERSON = """points:
+  - {time_s: 0.0, throttle: 0, brake: 0, clutch: 0, hand_wheel_deg: 0, gear: 0}
+  - {time_s: 2.0, press: [autonomous]}
+"""
 OPEN = CoursePlan(
     schema=1,
     title="open",

@@ -18,6 +18,7 @@ STEP_M: Final = 0.5
 _PASSES: Final = 2  # the second lap starts at the speed with which the first ended
 _STOP_MPS2: Final = 1.2
 _STOP_JERK_MPS3: Final = 0.8
+_SLOWEST_MPS: Final = 1.0  # that is smoothed over time; slower than this the car is about to stop
 _STOPPED_S: Final = 0.3
 """So long before a stop the deceleration fades no more: what is asked of a standing car is to brake."""
 
@@ -82,6 +83,9 @@ def plan_speed(course: Course, comfort: Comfort, top_mps: float | None = None) -
     # The smoothing below averages over a bend's neighbourhood: there, too, no speed may exceed the bend's own.
     reach = max(1, round(0.25 * comfort.smoothing_s * float(speed.min()) / step))
     speed = np.min([_shifted(speed, shift, closed) for shift in range(-reach, reach + 1)], axis=0)
+    if not closed:
+        ends = [stopping(course.length_m - index * step)[0] for index in range(count)]
+        speed = np.minimum(speed, np.maximum(ends, _SLOWEST_MPS))
     speed = _limited(speed, comfort.accelerate_mps2, step, closed)
     speed = _limited(speed[::-1], comfort.brake_mps2, step, closed)[::-1]
     speed = _smoothed(speed, comfort.smoothing_s, step, closed)
