@@ -5,9 +5,10 @@ from typing import Any
 import pytest
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.control.requests.refusals import SteeringLimit
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import ProfileError
-from simconsole.values.signals import Event, Link, LinkState, Notice
+from simconsole.values.signals import Event, Link, LinkState, Notice, Reason
 from simconsole.values.state_vector import LAYOUT
 
 MS = 1_000_000
@@ -160,3 +161,28 @@ def test_route_is_there_for_whoever_comes_later(join: Callable[..., Any], snapsh
         (1, 4),
     ]
     assert path["poses"][1]["pose"]["orientation"]["z"] == pytest.approx(math.sqrt(0.5))
+
+
+def test_the_commander_and_rosout_are_told_which_limit_a_command_has_broken(
+    join: Callable[..., Any], snapshot: Callable[..., Any], control: Callable[..., Any]
+) -> None:
+    bridge = ConsoleBridge(BridgeProfile(port=0), steering=SteeringLimit(10.0, 2.5))
+    driver, listener = join(bridge), join(bridge)
+    listener.send(op="subscribe", topic="/rosout")
+    driver.publish(CONTROL, control(0.5))
+    seen = {"mode": 3.0, "kind": 1.0, "road_wheel_rad": 0.5, "vx_mps": 10.0, "sequence": 1.0}
+    refused_at = LAYOUT.ros_link.start + Link._fields.index("implausible")
+    for tick, count, refusal in ((1, 0.0, 0.0), (2, 1.0, float(Reason.REFUSED_IMPLAUSIBLE)), (3, 1.0, 0.0)):
+        state = snapshot(tick, **seen, refusal=refusal)
+        state.vector[refused_at] = count
+        bridge.publish(state, 0)
+    broken = "lateral acceleration of 21.9 m/s2 at 10.0 m/s, at most 10 m/s2"
+    assert driver.statuses() == [f"command not followed: {broken}"]
+    told = [
+        (message["msg"]["level"], message["msg"]["msg"]) for message in listener.heard() if message["op"] == "publish"
+    ]
+    assert told == [
+        (20, "AUTONOMOUS: drive started"),
+        (30, f"AUTONOMOUS: drive started; refused: too much lateral acceleration ({broken})"),
+        (20, "AUTONOMOUS: drive started"),
+    ]
