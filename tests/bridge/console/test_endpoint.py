@@ -8,7 +8,7 @@ from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.control.requests.refusals import SteeringLimit
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import ProfileError
-from simconsole.values.signals import Event, Link, LinkState, Notice, Reason
+from simconsole.values.signals import Event, Link, LinkState, Notice, Reason, RemoteCommand
 from simconsole.values.state_vector import LAYOUT
 
 MS = 1_000_000
@@ -170,18 +170,17 @@ def test_the_commander_and_rosout_are_told_which_limit_a_command_has_broken(
     driver, listener = join(bridge), join(bridge)
     listener.send(op="subscribe", topic="/rosout")
     driver.publish(CONTROL, control(0.5))
-    seen = {"mode": 3.0, "kind": 1.0, "road_wheel_rad": 0.5, "vx_mps": 10.0, "sequence": 1.0}
+    seen = {"mode": 3.0, "kind": 1.0, "vx_mps": 10.0, "sequence": 1.0}
     refused_at = LAYOUT.ros_link.start + Link._fields.index("implausible")
+    angle_at = LAYOUT.ros.start + RemoteCommand._fields.index("road_wheel_rad")
     for tick, count, refusal in ((1, 0.0, 0.0), (2, 1.0, float(Reason.REFUSED_IMPLAUSIBLE)), (3, 1.0, 0.0)):
         state = snapshot(tick, **seen, refusal=refusal)
-        state.vector[refused_at] = count
+        state.vector[refused_at], state.vector[angle_at] = count, 0.5
         bridge.publish(state, 0)
     broken = "lateral acceleration of 21.9 m/s2 at 10.0 m/s, at most 10 m/s2"
     assert driver.statuses() == [f"command not followed: {broken}"]
-    told = [
-        (message["msg"]["level"], message["msg"]["msg"]) for message in listener.heard() if message["op"] == "publish"
-    ]
-    assert told == [
+    told = [message["msg"] for message in listener.heard()]
+    assert [(said["level"], said["msg"]) for said in told] == [
         (20, "AUTONOMOUS: drive started"),
         (30, f"AUTONOMOUS: drive started; refused: too much lateral acceleration ({broken})"),
         (20, "AUTONOMOUS: drive started"),
