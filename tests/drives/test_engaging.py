@@ -1,6 +1,7 @@
 """The autopilot takes over from wherever the car stands, or says why not; at the end of an open course it stops."""
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from simconsole.profiles.course_plan import CoursePlan, Curve, Straight
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.session.lifecycle import drive
 from simconsole.session.resolution import load_session, resolve
+from simconsole.values.labels import reason_label
 from simconsole.values.signals import Mode, Reason
 from simconsole.world.course import Course
 from simconsole.world.planning import solve
@@ -30,13 +32,13 @@ OPEN = CoursePlan(
 )
 
 
-def parked(folder: Path, start: str, vehicle: str = "hatchback", duration_s: float = 25.0) -> Path:
+def parked(folder: Path, start: str, vehicle: str = "hatchback", duration_s: float = 25.0, faults: str = "[]") -> Path:
     """Drive from `start` (YAML) with an autopilot that is asked for while the car stands; return the bundle."""
     world = solve(OPEN, "open")
     (folder / "course.yaml").write_text(to_text(world, "open"))
     (folder / "session.yaml").write_text(
         "schema: 1\nenvironment: {world: course.yaml}\n"
-        f"scenario: {{vehicle: {vehicle}, duration_s: {duration_s}, start: {start}}}\n"
+        f"scenario: {{vehicle: {vehicle}, duration_s: {duration_s}, start: {start}, faults: {faults}}}\n"
         "features: {autopilot: course.yaml}\n"
         f"outputs: {{hud: null, scene: null, report: false, bridge: {{port: 0, link: {LINK}}}}}\n"
         f"devices: {{driver: 'script:{folder / 'person.yaml'}'}}\nmode: {{pacing: lockstep}}\n"
@@ -108,3 +110,17 @@ def test_at_the_end_of_an_open_course_the_car_stands(tmp_path: Path, capfd: pyte
     assert asked.min() > -2.0
     assert table.column("vehicle.ax_mps2")[slows].min() > -2.5
     assert capfd.readouterr().err.count("stands at the end of the course") == 1
+
+
+def test_a_refused_command_names_the_limit_that_it_broke(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """What steers too hard to be meant is told to its sender, which tells people; the log names the limit, too."""
+    faults = "[{kind: astray, at_s: 8.0, for_s: 0.1, road_wheel_deg: 34}]"
+    bundle = parked(tmp_path, "{x_m: 0.0, y_m: 0.0}", duration_s=9.0, faults=faults)
+    told = [one for one in capfd.readouterr().err.splitlines() if "command not followed" in one]
+    assert re.fullmatch(
+        r"autopilot: the console says \(1\): error: command not followed: "
+        r"lateral acceleration of \d+\.\d m/s2 at \d+\.\d m/s, at most 10 m/s2",
+        told[0],
+    )
+    shown = {reason_label(code) for code in open_bundle(bundle).log.table().column("arbitration.refusal")}
+    assert "refused: too much lateral acceleration" in shown
