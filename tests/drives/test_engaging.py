@@ -101,14 +101,13 @@ def test_at_the_end_of_an_open_course_the_car_stands(tmp_path: Path, capfd: pyte
     course = Course(solve(OPEN, "open"))
     s_m, lateral = course.project_all(table.column("vehicle.x_m"), table.column("vehicle.y_m"), 0.0)
     speed, asked = table.column("vehicle.vx_mps"), table.column("ros.accel_mps2")
-    slows = (table.column("arbitration.mode") == Mode.AUTONOMOUS) & (speed > 0.5)
     print(f"measured: the car stands {course.length_m - s_m[-1]:.2f} m before the end")
     assert modes(bundle) - {Mode.PARKED} == {Mode.MANUAL, Mode.AUTONOMOUS}, "no safe stop"
     assert math.isclose(s_m[-1], course.length_m, abs_tol=0.3)
     assert abs(lateral[-1]) < 0.05
     assert np.abs(speed[-500:]).max() < 1e-3
     assert asked.min() > -2.0
-    assert table.column("vehicle.ax_mps2")[slows].min() > -2.5
+    assert np.abs(np.diff(asked)).max() <= 3.0 * 0.02
     assert capfd.readouterr().err.count("stands at the end of the course") == 1
 
 
