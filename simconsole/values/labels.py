@@ -109,6 +109,19 @@ def notice_label(notice: float) -> str:
     return _NOTICES.get(notice, f"notice {notice:g}")
 
 
+def arbitration_label(mode: float, reason: float, refusal: float, notice: float, broken: str = "") -> str:
+    """Return mode and reason, what was refused and what is noticed in one line.
+
+    `broken` is the limit that a refused command has broken, in words.
+    """
+    parts = [f"{mode_label(mode)}: {reason_label(reason)}"]
+    if refusal:
+        parts.append(reason_label(refusal) + (f" ({broken})" if broken else ""))
+    if notice:
+        parts.append(notice_label(notice))
+    return "; ".join(parts)
+
+
 def commander_label(commander: float) -> str:
     """Return whose commands are the remote side's: ROS, CAN or none."""
     return _COMMANDERS.get(commander, f"commander {commander:g}")

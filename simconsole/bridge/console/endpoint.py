@@ -16,6 +16,7 @@ from simconsole.bridge.protocol.server_protocol import Outcome, Router
 from simconsole.bridge.protocol.topic_registry import Origin
 from simconsole.control.requests.refusals import SteeringLimit, broken_limit
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.values.labels import arbitration_label
 from simconsole.values.signals import Event
 from simconsole.values.state_vector import Snapshot
 
@@ -69,7 +70,7 @@ class ConsoleBridge:
         for output in self._schedule.outputs:
             self.router.add_output(output.name, output.type, latch=output.latched)
         self.router.add_shared(ROSOUT, ROSOUT_TYPE)
-        self._happened: tuple[float, ...] = ()
+        self._happened: tuple[float, float, float, float] | None = None
         self._steering = steering
         self._implausible = 0.0  # as many commands have been refused by the arbiter so far
         for command in commands:
@@ -117,12 +118,12 @@ class ConsoleBridge:
         if not self.router.has_subscribers(ROSOUT):
             return None
         decided = snapshot.arbitration
-        happened = (decided.mode, decided.reason, snapshot.notice, decided.refusal)
+        happened = (decided.mode, decided.reason, decided.refusal, snapshot.notice)
         if happened == self._happened:
             return None
         self._happened = happened
         tick = self._out.published_tick(snapshot)
-        self.router.publish(ROSOUT, self._out.happening(tick, broken), now_ns)
+        self.router.publish(ROSOUT, self._out.happening(tick, arbitration_label(*happened, broken)), now_ns)
         return tick
 
     def counts(self) -> dict[str, int]:

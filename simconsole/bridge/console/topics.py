@@ -190,24 +190,10 @@ class Outputs:
             ),
         )
 
-    def happening(self, tick: PublishedTick, broken: str = "") -> Any:
-        """Return mode, reason, refusal and notice of a tick as a message of /rosout.
-
-        `broken` is the limit that a refused command has broken, in words.
-        """
-        arbitration, notice = tick.snapshot.arbitration, tick.snapshot.notice
-        parts = [f"{mode_label(arbitration.mode)}: {reason_label(arbitration.reason)}"]
-        if arbitration.refusal:
-            parts.append(reason_label(arbitration.refusal) + (f" ({broken})" if broken else ""))
-        if notice:
-            parts.append(notice_label(notice))
-        log = self._types["Log"]
-        return log(
-            stamp=tick.stamp,
-            level=log.WARN if notice or arbitration.refusal else log.INFO,
-            name="simconsole",
-            msg="; ".join(parts),
-        )
+    def happening(self, tick: PublishedTick, text: str) -> Any:
+        """Return `text`, what a tick decided, as a message of /rosout; a warning where it refuses or notices."""
+        log, warns = self._types["Log"], tick.snapshot.notice or tick.snapshot.arbitration.refusal
+        return log(stamp=tick.stamp, level=log.WARN if warns else log.INFO, name="simconsole", msg=text)
 
     def published_tick(self, snapshot: Snapshot) -> PublishedTick:
         """Return the tick of `snapshot` as published."""
