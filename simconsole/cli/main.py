@@ -12,6 +12,7 @@ from importlib import import_module
 from typing import Any, TextIO
 
 from simconsole import __version__
+from simconsole.drivers.path_tracker.tracker_settings import TRACKERS
 from simconsole.processes.lifetimes import (
     ATTACHED,
     INTERRUPTED,
@@ -181,6 +182,7 @@ def _beside_a_drive(commands: Any) -> None:
     autopilot.add_argument(
         "--delay-ms", type=_delay_ms, default=10.0, metavar="MS", help="from a state's stamp to its command's effect"
     )
+    autopilot.add_argument("--tracker", choices=TRACKERS, default=TRACKERS[0], help="how it steers")
     autopilot.add_argument("--wait", type=float, default=10.0, metavar="S", help="how long to wait for the server")
     autopilot.add_argument("--namespace", default="", metavar="NS", help="of the console's topics")
     autopilot.add_argument("--rename", action="append", default=[], metavar="/TOPIC=/NAME", help="what one is called")

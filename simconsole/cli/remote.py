@@ -39,6 +39,7 @@ def autopilot(options: Namespace) -> Outcome:
         drive=os.environ.pop(DRIVE_VARIABLE, None),
         vehicle=options.vehicle,
         delay_s=options.delay_ms / 1000.0,
+        tracker=options.tracker,
     )
     return Outcome(0, results, table([(name, str(value)) for name, value in results.items()]))
 

@@ -28,7 +28,7 @@ class PlannedIntersection(PlanSection, frozen=True, kw_only=True, tag_field="fea
 
 
 class Straight(PlanSection, frozen=True, kw_only=True, tag_field="element", tag="straight"):
-    """A straight. Exactly three straights of a plan are `free`: their lengths close the loop at its total length."""
+    """A straight. Exactly three straights of a loop are `free`: their lengths close it at its total length."""
 
     length_m: Length | Literal["free"]
     features: tuple[PlannedCrossing | PlannedIntersection, ...] = ()
@@ -53,11 +53,11 @@ class PlannedRoundabout(PlanSection, frozen=True, kw_only=True, tag_field="eleme
 
 
 class CoursePlan(PlanSection, frozen=True, kw_only=True):
-    """A closed course from the map's origin along +x."""
+    """A course from the map's origin along +x: a loop of `length_m`, or open, where that is left out."""
 
     schema: Literal[1]
     title: str
     lane_width_m: Annotated[float, Meta(ge=2.0, le=6.0)]
     speed_limit_kmh: Annotated[float, Meta(ge=5.0, le=200.0)]
-    length_m: Annotated[float, Meta(ge=100.0, le=1e5)]
-    elements: Annotated[tuple[Straight | Curve | PlannedRoundabout, ...], Meta(min_length=3, max_length=1000)]
+    length_m: Annotated[float, Meta(ge=100.0, le=1e5)] | None = None
+    elements: Annotated[tuple[Straight | Curve | PlannedRoundabout, ...], Meta(min_length=1, max_length=1000)]

@@ -80,6 +80,8 @@ class Features(Section, frozen=True, kw_only=True):
     """bag:FILE or bag:FILE:/TOPIC plays recorded commands in place of a controller's, where `mode.pacing` is free."""
     autopilot: ProfileName | None = None
     """Start `simconsole autopilot` on this course, as a program of its own that only speaks rosbridge."""
+    tracker: Literal["preview", "pure_pursuit", "stanley"] = "preview"
+    """How that program steers."""
 
 
 class Outputs(Section, frozen=True, kw_only=True):

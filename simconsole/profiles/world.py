@@ -1,4 +1,4 @@
-"""The world profile: a closed course as exact path primitives, and what stands on it.
+"""The world profile: a course as exact path primitives, and what stands on it.
 
 Written by `python -m simconsole.world.tools.generate` from a readable plan (profiles/course_plan.py); nothing here is
 meant to be edited by hand. Positions along the course (`s_m`) count from its start.
@@ -57,7 +57,10 @@ class Roundabout(WorldSection, frozen=True, kw_only=True):
 
 
 class WorldProfile(WorldSection, frozen=True, kw_only=True):
-    """One closed course, driven on the right; the primitives are the centre of the driven lane."""
+    """One course, driven on the right; the primitives are the centre of the driven lane.
+
+    It is a loop where its end meets its start, else it is open: an autopilot stops at its end.
+    """
 
     schema: Literal[1]
     title: str

@@ -9,6 +9,7 @@ import numpy as np
 
 from simconsole.processes.lifetimes import ATTACHED, DRIVE_VARIABLE, spawn
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.profiles.session import SessionProfile
 from simconsole.values.errors import BridgeError
 from simconsole.values.kernels import Row
 from simconsole.values.latency import Hop
@@ -130,17 +131,16 @@ class LockstepLink:
 
 
 def start_autopilot(
-    url: str, course: str, bridge: BridgeProfile, drive: str, token: str | None, vehicle: str
+    url: str, session: SessionProfile, bridge: BridgeProfile, drive: str, token: str | None
 ) -> "subprocess.Popen[bytes]":
     """Start `simconsole autopilot` as a program of its own, which ends with this process.
 
     Args:
         url: the console's own server.
-        course: what to follow.
+        session: what to follow, how, and in which car.
         bridge: what its topics are called, its certificate, and how late its commands act.
         drive: the drive's nonce, without which the program would take the next drive at this address for this one.
         token: what the server asks for; both go by the environment, for everyone can read a program's arguments.
-        vehicle: the name or file of the car that it drives.
 
     Raises:
         BridgeError: it cannot be started.
@@ -153,9 +153,11 @@ def start_autopilot(
         "--url",
         _here(url),
         "--course",
-        course,
+        session.features.autopilot or "",
+        "--tracker",
+        session.features.tracker,
         "--vehicle",
-        vehicle,
+        session.scenario.vehicle,
     ]
     if late_ms := bridge.link.delay_ms + 0.5 * bridge.link.jitter_ms:
         arguments += ["--delay-ms", f"{late_ms:g}"]

@@ -9,6 +9,7 @@ from subprocess import Popen
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from simconsole.bridge.link.delay import over_link
+from simconsole.control.requests.refusals import steering_limit
 from simconsole.faults.schedule import with_faults
 from simconsole.processes.lifetimes import Interrupt, end, tell_to_end, undone
 from simconsole.processes.shared_memory import make_run_folder, remove_run_folder
@@ -244,8 +245,7 @@ def _await_workers(
     if bridge is not None:
         address = bridge_address(folder, alive)
         if session.features.autopilot is not None:
-            vehicle = session.scenario.vehicle
-            programs.append(start_autopilot(address, session.features.autopilot, bridge, *credentials, vehicle))
+            programs.append(start_autopilot(address, session, bridge, *credentials))
     if session.outputs.can is not None:
         wait_for_can(folder, lambda: alive() and not supervisor.counters().get("canbus"))
     return address
@@ -295,12 +295,16 @@ def _open_lockstep(
     token, drive = _own_token(session), new_nonce()
     odometry_hz = console.tick_hz / period_ticks
     bridge = LockstepBridge(
-        session.outputs.bridge, odometry_hz=odometry_hz, folder=folder, drive=drive, route=route_of(resolved.world)
+        session.outputs.bridge,
+        odometry_hz=odometry_hz,
+        folder=folder,
+        drive=drive,
+        route=route_of(resolved.world),
+        steering=steering_limit(session.features.control, console.platform.wheelbase_m),
     )
-    course = session.features.autopilot
     program = None
-    if course is not None:
-        program = start_autopilot(bridge.url, course, session.outputs.bridge, drive, token, session.scenario.vehicle)
+    if session.features.autopilot is not None:
+        program = start_autopilot(bridge.url, session, session.outputs.bridge, drive, token)
         stack.callback(end, [program], PROGRAM_END_S)
     stack.callback(bridge.close)  # closes its clients' connections before the program's end is waited for
     if program is not None:

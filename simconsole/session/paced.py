@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import msgspec
 
 from simconsole.bridge.console.operator_acts import ACT_BYTES, ACTS_MAX
+from simconsole.control.requests.refusals import steering_limit
 from simconsole.hud.view import HudSettings, settings_of
 from simconsole.processes.shared_memory import EventCounters, Ring, TextQueue
 from simconsole.processes.worker import Worker, WorkerSpec
@@ -183,6 +184,7 @@ def worker_specs(
             drive=drive,
             bundle=str(bundle.absolute()),
             route=route_of(resolved.world),
+            steering=steering_limit(resolved.session.features.control, console.platform.wheelbase_m),
         )
     if outputs.can is not None:
         from simconsole.canbus.messages import wheel_columns

@@ -12,6 +12,7 @@ from typing import Any, Final
 import msgspec
 import numpy as np
 
+from simconsole.control.requests.refusals import SteeringLimit
 from simconsole.hud.view import HudSettings
 from simconsole.processes.shared_memory import EventCounters, Record, Ring, TextQueue
 from simconsole.processes.worker import Worker
@@ -55,6 +56,8 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
     """The bundle's folder, for recorded topics."""
     route: tuple[tuple[float, float, float], ...] = ()
     """What /route shows."""
+    steering: SteeringLimit | None = None
+    """Beyond it the arbiter refuses a command."""
 
     def run(self, folder: Path, stop: Callable[[], bool]) -> None:
         """Serve until `stop`."""
@@ -85,7 +88,7 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
         serve(
             profile, snapshots, command_writer(folder / COMMAND), events.raise_events, stop,
             on_ready=ready, on_act=keep_act, on_counts=write_counts, on_link_state=write_link_state,
-            folder=Path(self.bundle), drive=self.drive, route=self.route,
+            folder=Path(self.bundle), drive=self.drive, route=self.route, steering=self.steering,
         )  # fmt: skip
 
 

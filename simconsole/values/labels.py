@@ -52,7 +52,7 @@ _REASONS: Final[dict[float, str]] = {
     Reason.REFUSED_NOT_COMMANDER: "refused: the ECU does not command",
     Reason.REFUSED_WHEEL_NOT_CENTRED: "refused: wheel is not centred",
     Reason.REFUSED_PEDAL_PRESSED: "refused: a pedal is pressed",
-    Reason.REFUSED_IMPLAUSIBLE: "refused: autopilot steers too hard",
+    Reason.REFUSED_IMPLAUSIBLE: "refused: too much lateral acceleration",
     Reason.REFUSED_OVERRULED: "refused: something stronger came first",
 }
 
@@ -107,6 +107,19 @@ def reason_label(reason: float) -> str:
 def notice_label(notice: float) -> str:
     """Return the text of a notice, in at most seven words; empty for NONE."""
     return _NOTICES.get(notice, f"notice {notice:g}")
+
+
+def arbitration_label(mode: float, reason: float, refusal: float, notice: float, broken: str = "") -> str:
+    """Return mode and reason, what was refused and what is noticed in one line.
+
+    `broken` is the limit that a refused command has broken, in words.
+    """
+    parts = [f"{mode_label(mode)}: {reason_label(reason)}"]
+    if refusal:
+        parts.append(reason_label(refusal) + (f" ({broken})" if broken else ""))
+    if notice:
+        parts.append(notice_label(notice))
+    return "; ".join(parts)
 
 
 def commander_label(commander: float) -> str:

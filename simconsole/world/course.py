@@ -1,4 +1,4 @@
-"""The theoretical path: a closed lane centre with exact evaluation, and where a point lies beside it.
+"""The theoretical path: a lane centre with exact evaluation, and where a point lies beside it.
 
 The path is cut into cells of at most half a metre that never straddle two primitives, so curvature is exactly linear
 in each cell and position is a short power series from the cell's start (error below 1e-8 m at radius 12 m).
@@ -26,6 +26,10 @@ _STRETCH: Final = 0.3  # bound of the Newton step for points near the centre of 
 _STRIDE: Final = 20
 _AT_ONCE: Final = 8192  # places: some twenty arrays of this length are in memory at once
 _LOST_M: Final = 30.0  # further than this from the hinted place, look at the whole course
+_MET_M: Final = 1e-3
+_MET_RAD: Final = 1e-6
+_BEYOND_M: Final = 1e5
+"""An open course goes on straight for this far before its start; behind its end without bound."""
 
 
 class PathPoint(NamedTuple):
@@ -46,18 +50,26 @@ class Projection(NamedTuple):
 
 
 class Course:
-    """A closed course. Arrays hold the cells' starts: `s`, `x`, `y`, `yaw` (continuous), `curvature`, all float64 [N].
+    """A course. Arrays hold the cells' starts: `s`, `x`, `y`, `yaw` (continuous), `curvature`, all float64 [N].
 
-    Distances along the path (`s_m`) may run on over laps: 2610 is 10 m into the second lap of a course of 2600 m.
+    It is `closed` where its end meets its start: then distances along the path (`s_m`) may run on over laps, 2610 is
+    10 m into the second lap of a course of 2600 m. An open course has a start (0) and an end (`length_m`), and is
+    taken as straight beyond both.
     """
 
     def __init__(self, world: WorldProfile) -> None:
         self.world = world
         self.length_m = world.path[-1].s_m + world.path[-1].length_m
         self.speed_limit_mps = world.speed_limit_kmh * MPS_PER_KMH
+        first, last = _pose(world.path[0]), world.path[-1]
+        end = travel(_pose(last), _piece(last), last.length_m)
+        self.closed = _meet(first, end)
         cells = [
             cell for primitive in world.path for cell in _cells(primitive.s_m, _pose(primitive), _piece(primitive))
         ]
+        if not self.closed:
+            before = travel(first, Piece(_BEYOND_M, 0.0, 0.0), -_BEYOND_M)
+            cells = [(-_BEYOND_M, *before, 0.0, 0.0), *cells, (self.length_m, *end, 0.0, 0.0)]
         columns = np.array(cells).T
         self.s, self.x, self.y, self.yaw, self.curvature, self.curvature_rate = (np.array(column) for column in columns)
         self._s: list[float] = self.s.tolist()
@@ -67,7 +79,7 @@ class Course:
 
     def at(self, s_m: float) -> PathPoint:
         """Return the path at `s_m` (any lap)."""
-        s = s_m % self.length_m
+        s = self._within(s_m)
         index = bisect_right(self._s, s) - 1
         x, y, yaw, cosine, sine, curvature, rate = self._cells[index]
         u = s - self._s[index]
@@ -81,7 +93,7 @@ class Course:
 
     def curvature_at(self, s_m: float) -> float:
         """Return the path's curvature at `s_m` (any lap), in 1/m."""
-        s = s_m % self.length_m
+        s = self._within(s_m)
         index = bisect_right(self._s, s) - 1
         cell = self._cells[index]
         return cell[5] + cell[6] * (s - self._s[index])
@@ -154,7 +166,7 @@ class Course:
         return places, lateral
 
     def _at_all(self, s_m: Array) -> tuple[Array, Array, Array, Array]:
-        s = s_m % self.length_m
+        s = s_m % self.length_m if self.closed else np.maximum(s_m, -_BEYOND_M)
         cell = np.searchsorted(self.s, s, side="right") - 1
         u, yaw, curvature, rate = s - self.s[cell], self.yaw[cell], self.curvature[cell], self.curvature_rate[cell]
         forward, left = _series(u, curvature, rate)
@@ -167,7 +179,9 @@ class Course:
         )
 
     def unwrap(self, s_m: float, near_m: float) -> float:
-        """Return `s_m` plus the whole laps that bring it nearest to `near_m`."""
+        """Return `s_m` plus the whole laps that bring it nearest to `near_m`; an open course has none."""
+        if not self.closed:
+            return s_m
         return s_m + round((near_m - s_m) / self.length_m) * self.length_m
 
     def offset(self, lateral_m: float, s_from_m: float, s_to_m: float, step_m: float = 1.0) -> Array:
@@ -178,8 +192,16 @@ class Course:
             [(p.x_m - lateral_m * math.sin(p.yaw_rad), p.y_m + lateral_m * math.cos(p.yaw_rad)) for p in points]
         )
 
+    def _within(self, s_m: float) -> float:
+        return s_m % self.length_m if self.closed else max(s_m, -_BEYOND_M)
+
     def _nearest(self, x_m: float, y_m: float) -> float:
         return self._s[int(np.argmin((self.x - x_m) ** 2 + (self.y - y_m) ** 2))]
+
+
+def _meet(start: Pose, end: Pose) -> bool:
+    turned_rad = math.remainder(end.yaw_rad - start.yaw_rad, math.tau)
+    return math.hypot(end.x_m - start.x_m, end.y_m - start.y_m) < _MET_M and abs(turned_rad) < _MET_RAD
 
 
 def _pose(primitive: Primitive) -> Pose:

@@ -30,10 +30,15 @@ class Solved(NamedTuple):
 def solve(plan: CoursePlan, name: str) -> WorldProfile:
     """Return the world of `plan`; `name` is the file that errors name.
 
-    Raises ProfileError when the plan does not turn once round, has not three free straights in independent
-    directions, a curve is too short for its ramps, or the loop cannot close with straights of positive length.
+    Raises ProfileError when a loop does not turn once round, has not three free straights in independent directions,
+    or cannot close with straights of positive length; when an open course has free straights; when a curve is too
+    short for its ramps.
     """
-    solved = _close(plan, name)
+    solved = [Solved(element, _pieces(element, plan.lane_width_m, name)) for element in plan.elements]
+    if plan.length_m is not None:
+        solved = _close(solved, plan.length_m, name)
+    elif any(_is_free(element) for element in plan.elements):
+        raise ProfileError(f"{name}: length_m: value missing: the length of the loop that free straights close")
     path: list[Primitive] = []
     crossings: list[Crossing] = []
     intersections: list[Intersection] = []
@@ -70,9 +75,8 @@ def solve(plan: CoursePlan, name: str) -> WorldProfile:
     )
 
 
-def _close(plan: CoursePlan, name: str) -> list[Solved]:
+def _close(solved: list[Solved], length_m: float, name: str) -> list[Solved]:
     """Give the free straights the lengths that bring the path back to its start after `length_m`."""
-    solved = [Solved(element, _pieces(element, plan.lane_width_m, name)) for element in plan.elements]
     yaw, directions = 0.0, []
     for element, pieces in solved:
         if _is_free(element):
@@ -89,7 +93,7 @@ def _close(plan: CoursePlan, name: str) -> list[Solved]:
         raise ProfileError(f"{name}: elements: the three free straights must point in different directions")
     end = travel_all(ORIGIN, tuple(piece for part in solved for piece in part.pieces))
     fixed = sum(piece.length_m for part in solved for piece in part.pieces)
-    lengths = np.linalg.solve(matrix, np.array((-end.x_m, -end.y_m, plan.length_m - fixed))).tolist()
+    lengths = np.linalg.solve(matrix, np.array((-end.x_m, -end.y_m, length_m - fixed))).tolist()
     if min(lengths) <= 0.0:
         shown = ", ".join(f"{length:.1f}" for length in lengths)
         raise ProfileError(f"{name}: elements: free straights would be {shown} m long, must be above 0")

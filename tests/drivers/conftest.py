@@ -44,14 +44,16 @@ def axle_n(stiffness: float, slip: float, limit: float) -> float:
     return limit * math.tanh(stiffness * slip / limit)
 
 
-def drive(tracker: Tracker, plant: Plant, distance_m: float, start: VehicleMotion | None = None) -> Trace:
+def drive(
+    tracker: Tracker, plant: Plant, distance_m: float, start: VehicleMotion | None = None, time_s: float = 400.0
+) -> Trace:
     car, h = plant.car, STEP_S
     x, y, yaw, vx, vy, r = start or (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     wheel = accel = wanted_wheel = wanted_accel = 0.0
     grip = plant.friction * car.mass_kg * 9.81 / car.wheelbase_m
     pending: list[tuple[int, float, float]] = []
     rows: list[tuple[float, ...]] = []
-    for t_ms in range(0, 400_000, round(1000 * h)):
+    for t_ms in range(0, round(1000 * time_s), round(1000 * h)):
         if t_ms % 20 == 0:
             answer = tracker.step(VehicleMotion(x, y, yaw, vx, vy, r))
             pending.append((t_ms + plant.delay_ms, answer.road_wheel_rad, answer.accel_mps2))

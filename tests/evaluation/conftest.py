@@ -48,12 +48,7 @@ def known(course: Course) -> Known:
         row[at["vehicle.ay_mps2"]] = -1.5 if tick == 700 else 0.1
         row[at["arbitration.mode"]] = Mode.AUTONOMOUS if 5.0 <= time_s < 25.0 else Mode.MANUAL
         row[at["arbitration.reason"]] = (
-            Reason.START
-            if time_s < 4.0
-            else Reason.REFUSED_BRAKE_PRESSED
-            if time_s < 5.0
-            else Reason.PERSON_ASKED
-            if time_s < 25.0
-            else Reason.STEERING_OVERRIDE
+            Reason.START if time_s < 5.0 else Reason.PERSON_ASKED if time_s < 25.0 else Reason.STEERING_OVERRIDE
         )
+        row[at["arbitration.refusal"]] = Reason.REFUSED_BRAKE_PRESSED if 4.0 <= time_s < 6.0 else 0.0
     return Known(rows, names, TICK_HZ)

@@ -22,7 +22,6 @@ def test_each_element_is_of_the_kind_that_it_names() -> None:
 @pytest.mark.parametrize(
     ("last", "told"),
     [
-        ("", "elements: "),
         ("- {element: straight, length_m: long}\n", "elements[2].length_m: "),
         ("- {element: straight, length_m: 0}\n", "elements[2].length_m: value 0: "),
         ("- {element: curve, radius_m: 7, angle_deg: 90}\n", "elements[2].radius_m: value 7: "),
@@ -35,3 +34,12 @@ def test_each_element_is_of_the_kind_that_it_names() -> None:
 )
 def test_what_cannot_be_meant_is_refused(last: str, told: str) -> None:
     assert told in refusal(HEAD + FREE + CURVE + last, CoursePlan)
+
+
+def test_a_plan_has_elements() -> None:
+    assert "elements: " in refusal(HEAD.replace("elements:", "elements: []"), CoursePlan)
+
+
+def test_an_open_course_has_no_length_of_its_own() -> None:
+    plan = parse(HEAD.replace("length_m: 600\n", "") + CURVE, CoursePlan, "f.yaml")
+    assert plan.length_m is None

@@ -5,12 +5,18 @@ import pytest
 
 from simconsole.processes.lifetimes import DRIVE_VARIABLE, close_pipe, end
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.profiles.session import Features, Scenario, SessionProfile
 from simconsole.session.lockstep import TOKEN_VARIABLE, LockstepLink, start_autopilot
 from simconsole.values.signals import NO_COMMAND, Event, EventInput, RemoteCommand
 from simconsole.values.state_vector import Snapshot
 from tests.patience import PATIENCE_S
 
 PERIOD_TICKS = 5
+SESSION = SessionProfile(
+    schema=1,
+    scenario=Scenario(vehicle="light_van"),
+    features=Features(autopilot="urban", tracker="stanley"),
+)
 
 
 class Server:
@@ -134,14 +140,14 @@ def test_a_missing_answer_does_not_hide_other_events(server: Server) -> None:
 
 
 def test_an_autopilot_whose_console_is_gone_ends_by_itself() -> None:
-    program = start_autopilot("ws://127.0.0.1:9", "urban", BridgeProfile(), "0" * 32, None, "hatchback")
+    program = start_autopilot("ws://127.0.0.1:9", SESSION, BridgeProfile(), "0" * 32, None)
     assert program.poll() is None
     close_pipe(program)
     assert program.wait(PATIENCE_S) == 1, "not by giving up a server that is not there (2)"
 
 
 def test_an_autopilot_with_nobody_to_drive_for_is_ended() -> None:
-    program = start_autopilot("ws://127.0.0.1:9", "urban", BridgeProfile(), "0" * 32, None, "hatchback")
+    program = start_autopilot("ws://127.0.0.1:9", SESSION, BridgeProfile(), "0" * 32, None)
     end([program], 60.0)
     assert program.returncode == 1
 
@@ -157,11 +163,11 @@ def test_a_token_goes_by_the_environment_and_a_server_on_all_addresses_is_reache
     monkeypatch.setattr("simconsole.session.lockstep.spawn", spawn)
     monkeypatch.delenv(TOKEN_VARIABLE, raising=False)
     named = BridgeProfile(certificate="b.pem", namespace="/ego", rename={"/odom": "/here"})
-    start_autopilot("wss://0.0.0.0:9", "urban", named, "nonce", "secret", "hatchback")
-    start_autopilot("ws://[::]:9", "urban", BridgeProfile(), "nonce", None, "hatchback")
+    start_autopilot("wss://0.0.0.0:9", SESSION, named, "nonce", "secret")
+    start_autopilot("ws://[::]:9", SESSION, BridgeProfile(), "nonce", None)
     (words, environment), (plain, without) = started
     names = ["--namespace", "/ego", "--rename", "/odom=/here"]
-    drives = ["--course", "urban", "--vehicle", "hatchback"]
+    drives = ["--course", "urban", "--tracker", "stanley", "--vehicle", "light_van"]
     assert words[4:] == ["--url", "wss://127.0.0.1:9", *drives, *names, "--certificate", "b.pem"]
     assert environment[TOKEN_VARIABLE] == "secret"
     assert {"secret", "nonce"}.isdisjoint(words)

@@ -1,4 +1,12 @@
-from simconsole.values.labels import gear_label, indicator_label, mode_label, notice_label, reason_label, validity_label
+from simconsole.values.labels import (
+    arbitration_label,
+    gear_label,
+    indicator_label,
+    mode_label,
+    notice_label,
+    reason_label,
+    validity_label,
+)
 from simconsole.values.signals import Mode, Notice, Reason, Validity
 
 
@@ -40,3 +48,13 @@ def test_the_lever_reads_as_its_knob() -> None:
 
 def test_indicators_are_named_by_their_side() -> None:
     assert [indicator_label(side) for side in (-1.0, 0.0, 1.0)] == ["right", "off", "left"]
+
+
+def test_one_line_tells_what_was_decided_refused_and_noticed() -> None:
+    plain = arbitration_label(Mode.MANUAL, Reason.ARMED, 0.0, Notice.NONE)
+    assert plain == "MANUAL: controls ready"
+    refused = arbitration_label(Mode.AUTONOMOUS, Reason.PERSON_ASKED, Reason.REFUSED_IMPLAUSIBLE, 1.0, "12 m/s2")
+    assert refused == (
+        "AUTONOMOUS: driver asked; refused: too much lateral acceleration (12 m/s2); "
+        "throttle is held: autopilot only steers"
+    )

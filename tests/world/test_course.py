@@ -4,10 +4,12 @@ import random
 import numpy as np
 import pytest
 
+from simconsole.profiles.course_plan import CoursePlan, Curve, Straight
 from simconsole.profiles.world import WorldProfile
 from simconsole.values.platform import Pose
 from simconsole.world.course import CELL_M, Course
 from simconsole.world.path_geometry import Piece, travel
+from simconsole.world.planning import solve
 from tests.samples import Sample
 
 
@@ -95,3 +97,26 @@ def test_a_way_with_a_jump_is_projected_before_and_after_it(course: Course) -> N
     y = np.array([before.y_m] * 7 + [after.y_m] * 50)
     _, lateral = course.project_all(x, y)
     assert np.abs(lateral).max() < 1e-6
+
+
+def test_an_open_course_has_two_ends_and_goes_on_straight() -> None:
+    curve = Curve(radius_m=20.0, angle_deg=90.0, ramp_m=5.0)
+    elements = (Straight(length_m=50.0), curve, Straight(length_m=10.0))
+    plan = CoursePlan(schema=1, title="t", lane_width_m=3.5, speed_limit_kmh=50.0, elements=elements)
+    course = Course(solve(plan, "t"))
+    assert not course.closed
+    end = course.at(course.length_m)
+    assert end.yaw_rad == pytest.approx(0.5 * math.pi)
+    assert course.at(course.length_m + 7.0) == pytest.approx((end.x_m, end.y_m + 7.0, end.yaw_rad, 0.0))
+    assert course.at(-30.0) == pytest.approx((-30.0, 0.0, 0.0, 0.0), abs=1e-9)
+    assert course.curvature_at(course.length_m + 1.0) == course.curvature_at(-1.0) == 0.0
+    assert course.unwrap(10.0, 900.0) == 10.0
+    found = course.project(end.x_m - 0.5, end.y_m + 3.0, 20.0, 0.5 * math.pi)
+    assert found == pytest.approx((course.length_m + 3.0, 0.5, 0.0), abs=1e-6)
+    s_m, lateral = course.project_all(np.array((-2.0, 10.0)), np.array((0.3, -0.2)), 0.0)
+    assert s_m == pytest.approx((-2.0, 10.0))
+    assert lateral == pytest.approx((0.3, -0.2))
+
+
+def test_the_urban_course_is_closed(course: Course) -> None:
+    assert course.closed

@@ -79,3 +79,14 @@ def test_impossible_plan_is_refused_by_name(changes: dict[str, Any], words: str)
         solve(square(**changes), "plan.yaml")
     assert str(caught.value).startswith("plan.yaml: ")
     assert "\n" not in str(caught.value)
+
+
+def test_a_plan_without_a_length_is_an_open_course() -> None:
+    world = solve(square(length_m=None, elements=[{"element": "straight", "length_m": 30}, CORNER]), "open")
+    assert world.length_m == pytest.approx(30.0 + world.path[1].length_m * 2 + world.path[2].length_m)
+    assert [part.kind for part in world.path] == ["line", "clothoid", "arc", "clothoid"]
+
+
+def test_free_straights_need_a_length_to_close() -> None:
+    with pytest.raises(ProfileError, match="open: length_m: value missing"):
+        solve(square(length_m=None), "open")

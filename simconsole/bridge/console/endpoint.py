@@ -14,7 +14,9 @@ from simconsole.bridge.protocol.client_session import ClientSession
 from simconsole.bridge.protocol.rosapi import RosApi
 from simconsole.bridge.protocol.server_protocol import Outcome, Router
 from simconsole.bridge.protocol.topic_registry import Origin
+from simconsole.control.requests.refusals import SteeringLimit, broken_limit
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.values.labels import arbitration_label
 from simconsole.values.signals import Event
 from simconsole.values.state_vector import Snapshot
 
@@ -30,6 +32,7 @@ class ConsoleBridge:
         on_events: OnEvents | None = None,
         on_act: OnAct | None = None,
         route: Route = (),
+        steering: SteeringLimit | None = None,
     ) -> None:
         """Build the topics of `profile`.
 
@@ -40,6 +43,7 @@ class ConsoleBridge:
             on_events: sees each event at once.
             on_act: sees each act of an operator at once; without, they are kept until `take_acts`.
             route: what /route shows.
+            steering: beyond it the arbiter refuses a command, and its sender is told so; without, nobody is.
 
         Raises:
             ProfileError: the profile renames or rates a topic that does not exist, or gives two topics one name.
@@ -66,14 +70,19 @@ class ConsoleBridge:
         for output in self._schedule.outputs:
             self.router.add_output(output.name, output.type, latch=output.latched)
         self.router.add_shared(ROSOUT, ROSOUT_TYPE)
-        self._happened: tuple[float, ...] = ()
+        self._happened: tuple[float, float, float, float] | None = None
+        self._steering = steering
+        self._implausible = 0.0  # as many commands have been refused by the arbiter so far
         for command in commands:
             self.router.add_command(self.names[command.name], command.type, command.accept, command.leased)
 
     def publish(self, snapshot: Snapshot, now_ns: int, *, odometry: bool = False) -> None:
         """Queue every message of `snapshot` that is due and wanted; with `odometry`, that in any case."""
         self.keep_time(snapshot, now_ns)
-        tick = self._tell(snapshot, now_ns)
+        broken = self._broken_limit(snapshot)
+        if broken:
+            self.router.tell_commander("error", f"command not followed: {broken}", now_ns)
+        tick = self._tell(snapshot, broken, now_ns)
         for output in self._schedule.due(snapshot, odometry=odometry):
             if self.router.has_subscribers(output.name):
                 tick = tick or self._out.published_tick(snapshot)
@@ -97,16 +106,24 @@ class ConsoleBridge:
             self._acts.append(act)
         return room
 
-    def _tell(self, snapshot: Snapshot, now_ns: int) -> PublishedTick | None:
+    def _broken_limit(self, snapshot: Snapshot) -> str:
+        """Return why the arbiter has refused the ROS side's newest command since the last tick; empty: it has not."""
+        before, self._implausible = self._implausible, snapshot.ros_link.implausible
+        if self._steering is None or self._implausible <= before:
+            return ""
+        return broken_limit(snapshot.ros, snapshot.vehicle, self._steering)
+
+    def _tell(self, snapshot: Snapshot, broken: str, now_ns: int) -> PublishedTick | None:
         """Tell on /rosout what has changed; return the tick as published if anything has, and somebody listens."""
         if not self.router.has_subscribers(ROSOUT):
             return None
-        happened = (snapshot.arbitration.mode, snapshot.arbitration.reason, snapshot.notice)
+        decided = snapshot.arbitration
+        happened = (decided.mode, decided.reason, decided.refusal, snapshot.notice)
         if happened == self._happened:
             return None
         self._happened = happened
         tick = self._out.published_tick(snapshot)
-        self.router.publish(ROSOUT, self._out.happening(tick), now_ns)
+        self.router.publish(ROSOUT, self._out.happening(tick, arbitration_label(*happened, broken)), now_ns)
         return tick
 
     def counts(self) -> dict[str, int]:

@@ -190,17 +190,10 @@ class Outputs:
             ),
         )
 
-    def happening(self, tick: PublishedTick) -> Any:
-        """Return mode, reason and notice of a tick as a message of /rosout."""
-        arbitration, notice = tick.snapshot.arbitration, tick.snapshot.notice
-        text = f"{mode_label(arbitration.mode)}: {reason_label(arbitration.reason)}"
-        log = self._types["Log"]
-        return log(
-            stamp=tick.stamp,
-            level=log.WARN if notice else log.INFO,
-            name="simconsole",
-            msg=f"{text}; {notice_label(notice)}" if notice else text,
-        )
+    def happening(self, tick: PublishedTick, text: str) -> Any:
+        """Return `text`, what a tick decided, as a message of /rosout; a warning where it refuses or notices."""
+        log, warns = self._types["Log"], tick.snapshot.notice or tick.snapshot.arbitration.refusal
+        return log(stamp=tick.stamp, level=log.WARN if warns else log.INFO, name="simconsole", msg=text)
 
     def published_tick(self, snapshot: Snapshot) -> PublishedTick:
         """Return the tick of `snapshot` as published."""

@@ -225,6 +225,13 @@ class Router:
         session.send_status("error", f"{place[:300]}: {reason}" if place else reason, id_of(fields))
         return Outcome("refused", name, reason)
 
+    def tell_commander(self, level: str, text: str, now_ns: int) -> None:
+        """Send a status message to the client that holds the lease, if one does."""
+        holder = self.lease.holder(now_ns)
+        for session in self.sessions:
+            if session.number == holder:
+                session.send_status(level, text)
+
     def _apply(self, session: ClientSession, operation: Operation, fields: dict[str, Any], now_ns: int) -> Outcome:
         if isinstance(operation, Status):
             return Outcome("remark", "", f"{operation.level}: {operation.msg[:1000]}")

@@ -29,6 +29,7 @@ from simconsole.bridge.transport.lockstep_connection import LockstepConnection
 from simconsole.bridge.transport.message_files import load_registry
 from simconsole.bridge.transport.sockets import RECEIVE_BYTES, address_url, listen
 from simconsole.bridge.transport.topic_recorder import open_recorder
+from simconsole.control.requests.refusals import SteeringLimit
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.signals import EventInput, RemoteCommand
@@ -56,6 +57,7 @@ class LockstepBridge:
         folder: Path | None = None,
         drive: str | None = None,
         route: Route = (),
+        steering: SteeringLimit | None = None,
     ) -> None:
         """Listen on the profile's host and port.
 
@@ -65,6 +67,7 @@ class LockstepBridge:
             folder: where topics are recorded if the profile says so.
             drive: the nonce of the drive whose bridge it is.
             route: what /route shows.
+            steering: as `ConsoleBridge`.
             odometry_hz: rate of /odom in place of the profile's: the control rate, so that every answer is waited for.
 
         Raises:
@@ -76,7 +79,8 @@ class LockstepBridge:
             limits = msgspec.structs.replace(profile.limits, commands_hz=commands_hz)
             rates_hz = {**profile.rates_hz, ODOMETRY: odometry_hz}
             profile = msgspec.structs.replace(profile, rates_hz=rates_hz, limits=limits)
-        self.console = ConsoleBridge(profile, load_registry(profile) if registry is None else registry, route=route)
+        registry = load_registry(profile) if registry is None else registry
+        self.console = ConsoleBridge(profile, registry, route=route, steering=steering)
         self.console.router.access = load_access(profile)
         if profile.upstream is not None:
             raise ProfileError("outputs.bridge.upstream: a drive in lockstep waits for its own clients only")

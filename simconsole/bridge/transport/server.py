@@ -28,6 +28,7 @@ from simconsole.bridge.transport.sockets import CLOSE_S, address_url, listen
 from simconsole.bridge.transport.topic_recorder import TopicRecorder, open_recorder
 from simconsole.bridge.transport.transport_registry import load_transport
 from simconsole.bridge.transport.upstream_client import UpstreamClient
+from simconsole.control.requests.refusals import SteeringLimit
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.state_vector import Snapshot
 from simconsole.values.units import NS_PER_S
@@ -58,6 +59,7 @@ class BridgeServer:
         folder: Path | None = None,
         drive: str | None = None,
         route: Route = (),
+        steering: SteeringLimit | None = None,
     ) -> None:
         """Build the bridge; `start` opens it.
 
@@ -65,7 +67,7 @@ class BridgeServer:
         the nonce of the drive whose bridge it is.
         """
         registry = load_registry(profile) if registry is None else registry
-        self.console = ConsoleBridge(profile, registry, on_command, on_events, on_act, route)
+        self.console = ConsoleBridge(profile, registry, on_command, on_events, on_act, route, steering)
         self._folder = folder
         self._drive = drive
         self._recorder: TopicRecorder | None = None
@@ -233,6 +235,7 @@ def serve(
     folder: Path | None = None,
     drive: str | None = None,
     route: Route = (),
+    steering: SteeringLimit | None = None,
 ) -> None:
     """Run a bridge server until `stop()` says so; for a process of its own.
 
@@ -250,6 +253,7 @@ def serve(
         folder: where topics are recorded if the profile says so.
         drive: the nonce of the drive whose bridge it is.
         route: what /route shows.
+        steering: as `ConsoleBridge`.
 
     Raises:
         BridgeError: the address cannot be listened on.
@@ -267,6 +271,7 @@ def serve(
             folder=folder,
             drive=drive,
             route=route,
+            steering=steering,
         )
         await server.start()
         on_ready(server.port)

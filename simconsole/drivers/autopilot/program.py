@@ -1,20 +1,23 @@
 """The driver on the ROS side: a program that uses only rosbridge and follows a course (shell).
 
 It answers every odometry with one command that carries the odometry's own stamp, so that a console in lockstep knows
-which state the command was made for; also while a person drives, so that engagement finds a fresh command.
+which state the command was made for; also while a person drives, so that engagement finds a fresh command. What people
+must know is logged: why it gives no commands (`answers`), and why the console refused one.
 """
 
+import logging
 import math
 import time
 from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 from simconsole.bridge.client.bridge_client import BridgeClient
+from simconsole.drivers.autopilot.answers import Answers, make_tracker
+from simconsole.drivers.autopilot.remarks import Remarks
 from simconsole.drivers.path_tracker.car_model import car_model
 from simconsole.drivers.path_tracker.state_estimator import VehicleMotion
-from simconsole.drivers.path_tracker.tracker import Tracker, TrackerCommand
-from simconsole.drivers.path_tracker.tracker_settings import TIMING
-from simconsole.drivers.path_tracker.tracking_statistics import TrackingStatistics
+from simconsole.drivers.path_tracker.tracker import TrackerCommand
+from simconsole.drivers.path_tracker.tracker_settings import TIMING, TRACKERS
 from simconsole.profiles.files.loader import MAX_DATA_BYTES, load
 from simconsole.profiles.files.vehicle_files import load_vehicle
 from simconsole.profiles.world import WorldProfile
@@ -32,6 +35,8 @@ _DRIVING: Final = (Mode.AUTONOMOUS, Mode.SHARED, Mode.TAKEOVER_REQUESTED)
 _PATIENCE_S: Final = 10.0  # for the console to open its port
 _WAIT_S: Final = 0.25  # how often `stop` is checked while no message comes
 
+_logger = logging.getLogger("simconsole.drivers.autopilot.program")
+
 
 def run(
     url: str,
@@ -46,6 +51,7 @@ def run(
     drive: str | None = None,
     vehicle: str = "hatchback",
     delay_s: float = TIMING.delay_s,
+    tracker: str = TRACKERS[0],
 ) -> dict[str, Any]:
     """Drive until the server ends the session, is gone for `patience_s`, or `stop()` is true; return statistics.
 
@@ -61,6 +67,7 @@ def run(
         drive: the nonce of the drive that has started this program, if one has; shown to the server, too.
         vehicle: the profile of the car, by name or path.
         delay_s: from an odometry's stamp to the moment at which the command that answers it acts.
+        tracker: how it steers, one of `tracker_settings.TRACKERS`.
 
     Raises:
         ProfileError: the course cannot be read.
@@ -68,8 +75,7 @@ def run(
         OtherDriveError: the server there belongs to another drive.
     """
     course = Course(load("worlds", course_name, WorldProfile, max_bytes=MAX_DATA_BYTES))
-    tracker = Tracker(course, car_model(load_vehicle(vehicle)), timing=TIMING._replace(delay_s=delay_s))
-    statistics = TrackingStatistics()
+    answers = Answers(make_tracker(tracker, course, car_model(load_vehicle(vehicle)), delay_s), _say)
     with BridgeClient(url, token=token, certificate=certificate, drive=drive, until_good_bye=True) as client:
         odometry, arbitration, command = (
             (rename or {}).get(topic, namespace + topic) for topic in (ODOMETRY, ARBITRATION, COMMAND)
@@ -79,19 +85,18 @@ def run(
         client.subscribe(arbitration, "simconsole_msgs/Arbitration")
         client.connect(patience_s)
         try:
-            ended = _answer(client, tracker, statistics, (odometry, command), stop or _never, patience_s)
+            ended = _answer(client, answers, (odometry, command), stop or _never, patience_s)
         except OtherDriveError:
             raise
         except BridgeError as error:
             ended = str(error)
         results = {"url": url, "course": course_name, "ended": ended, "connections": client.connections}
-    return {**results, **statistics.results()}
+    return {**results, **answers.statistics.results()}
 
 
 def _answer(
     client: BridgeClient,
-    tracker: Tracker,
-    statistics: TrackingStatistics,
+    answers: Answers,
     topics: tuple[str, str],
     stop: Callable[[], bool],
     patience_s: float,
@@ -104,12 +109,14 @@ def _answer(
         BridgeError: the server has ended the session.
     """
     command = client.registry.struct(CONTROL)()
+    remarks = Remarks(_say)
     odometry_topic, command_topic = topics
     # A console publishes who drives; with a server that does not, this program drives from the start.
     engaged = True
     heard_s = time.monotonic()
     while not stop():
         received = client.receive(_WAIT_S)
+        remarks.tell(client.statuses)
         if client.connected:
             heard_s = time.monotonic()
         elif time.monotonic() - heard_s > patience_s:
@@ -122,13 +129,13 @@ def _answer(
             continue
         seen = motion_of(message)
         if seen is None:
-            statistics.skipped += 1
+            answers.statistics.skipped += 1
             continue
         stamp = message.header.stamp
-        answer = tracker.step(seen, engaged, stamp.sec + stamp.nanosec * 1e-9)
-        fill_command(command, stamp, answer)
-        client.publish(command_topic, command)
-        statistics.add(engaged, tracker.s_m or 0.0, tracker.lateral_m, seen.vx_mps)
+        answer = answers.answer(seen, engaged, stamp.sec + stamp.nanosec * 1e-9)
+        if answer is not None:
+            fill_command(command, stamp, answer)
+            client.publish(command_topic, command)
     return "stopped"
 
 
@@ -161,6 +168,10 @@ def fill_command(command: Any, stamp: Any, answer: TrackerCommand) -> None:
     longitudinal.jerk = answer.jerk_mps3
     longitudinal.is_defined_acceleration = True
     longitudinal.is_defined_jerk = True
+
+
+def _say(what: str) -> None:
+    _logger.warning("autopilot: %s", what)
 
 
 def _never() -> bool:

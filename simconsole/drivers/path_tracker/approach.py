@@ -1,4 +1,7 @@
-"""The way back to the path: from an offset that is too large to correct at once, a smooth line that ends on it."""
+"""The way back to the path: from an offset that is too large to correct at once, a smooth line that ends on it.
+
+Where it would lead too far from the path, or the car heads elsewhere, no command is given (`why_not`).
+"""
 
 import math
 from typing import Final, NamedTuple
@@ -7,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simconsole.values.kernels import clip
+from simconsole.values.units import RAD_PER_DEG
 
 Array = NDArray[np.float64]
 
@@ -17,6 +21,13 @@ _LATERAL_JERK_MPS3: Final = 2.0
 _STEEPEST: Final = 0.5
 _STANDING_MPS: Final = 2.0
 """Slower than this the wheels turn faster than the car moves: the line need not begin with the car's own curvature."""
+FURTHEST_M: Final = 1.3
+"""No way back is begun that leads further than this from the path."""
+MOST_HEADING_RAD: Final = 25.0 * RAD_PER_DEG
+"""Nor one that begins with a larger angle: from a standstill the car could not keep to it."""
+LEFT_M: Final = 3.0
+"""A car that is driven and finds itself further away than this has not been brought there by its own commands."""
+_LOOK_LENGTHS: Final = tuple(0.25 * part for part in range(1, 17))
 
 
 class Approach(NamedTuple):
@@ -37,6 +48,12 @@ class Approach(NamedTuple):
         decay = math.exp(-x / self.length_m)
         bracket = self.offset_m + (self.rate + self.bend_1pm * x) * x
         return bracket * decay, (self.rate + 2.0 * self.bend_1pm * x - bracket / self.length_m) * decay
+
+    @property
+    def furthest_m(self) -> float:
+        """How far the line gets from the path (m)."""
+        places = (self.start_m + self.length_m * lengths for lengths in _LOOK_LENGTHS)
+        return max(abs(self.offset_m), *(abs(self.at(place)[0]) for place in places))
 
     def curvature(self, s_m: Array) -> Array:
         """Return the curvature (1/m) that the line adds to the path's at `s_m` [N], small slopes assumed."""
@@ -66,3 +83,25 @@ def approach_from(
         return Approach(s_m, length, offset_m, rate)
     curved = 0.5 * (curvature_1pm + 2.0 * rate / length - offset_m / length**2)
     return Approach(s_m, length, offset_m, rate, curved)
+
+
+def why_not(offset_m: float, heading_rad: float, speed_mps: float, engaged: bool) -> str:
+    """Return why the car is not to be led back to the path from here, in words; empty where it is.
+
+    Args:
+        offset_m: left of the path.
+        heading_rad: turned left of the path.
+        speed_mps: forward.
+        engaged: whether the car is being driven already: then it is on its way back.
+    """
+    if engaged:
+        if abs(offset_m) > LEFT_M:
+            return f"the car is {abs(offset_m):.1f} m beside the course, at most {LEFT_M:g} m"
+        return ""
+    if abs(heading_rad) > MOST_HEADING_RAD:
+        turned_deg, most_deg = abs(heading_rad) / RAD_PER_DEG, MOST_HEADING_RAD / RAD_PER_DEG
+        return f"the car is turned {turned_deg:.0f} deg from the course, at most {most_deg:g} deg"
+    furthest_m = approach_from(0.0, offset_m, heading_rad, max(speed_mps, 0.0)).furthest_m
+    if furthest_m > FURTHEST_M:
+        return f"the way back leads {furthest_m:.1f} m from the course, at most {FURTHEST_M:g} m"
+    return ""

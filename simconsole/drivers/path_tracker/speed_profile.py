@@ -1,5 +1,9 @@
-"""How fast to drive where: speed limit, lateral acceleration, acceleration and braking, smoothed against jerk."""
+"""How fast to drive where: speed limit, lateral acceleration, acceleration and braking, smoothed against jerk.
 
+An open course ends with a stop: the speed from which its end is reached with a deceleration that fades out.
+"""
+
+import math
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -12,6 +16,11 @@ Array = NDArray[np.float64]
 
 STEP_M: Final = 0.5
 _PASSES: Final = 2  # the second lap starts at the speed with which the first ended
+_STOP_MPS2: Final = 1.2
+_STOP_JERK_MPS3: Final = 0.8
+_SLOWEST_MPS: Final = 1.0  # that is smoothed over time; slower than this the car is about to stop
+_STOPPED_S: Final = 0.3
+"""So long before a stop the deceleration fades no more: what is asked of a standing car is to brake."""
 
 
 class SpeedProfile(NamedTuple):
@@ -20,16 +29,22 @@ class SpeedProfile(NamedTuple):
     step_m: float
     speed_mps: Array
     accel_mps2: Array
+    end_m: float | None = None  # where to stop; None: the course is a loop
 
     def at(self, s_m: float) -> tuple[float, float]:
         """Return (speed in m/s, acceleration in m/s2) at `s_m` of any lap, linear between the points."""
         place = s_m / self.step_m
         index = int(place // 1.0)
         share, count = place - index, len(self.speed_mps)
-        here, there = index % count, (index + 1) % count
+        if self.end_m is None:
+            here, there = index % count, (index + 1) % count
+        else:
+            here, there = min(max(index, 0), count - 1), min(max(index + 1, 0), count - 1)
         speed = float(self.speed_mps[here]) * (1.0 - share) + float(self.speed_mps[there]) * share
         accel = float(self.accel_mps2[here]) * (1.0 - share) + float(self.accel_mps2[there]) * share
-        return speed, accel
+        if self.end_m is None:
+            return speed, accel
+        return min((speed, accel), stopping(self.end_m - s_m))
 
     @property
     def lap_s(self) -> float:
@@ -37,41 +52,72 @@ class SpeedProfile(NamedTuple):
         return float(np.sum(self.step_m / self.speed_mps))
 
 
+def stopping(left_m: float) -> tuple[float, float]:
+    """Return (speed in m/s, acceleration in m/s2) with `left_m` to go to a stop.
+
+    A deceleration of _STOP_MPS2 that fades out with _STOP_JERK_MPS3 in the last part: s = j t^3 / 6 before the end.
+    """
+    if left_m <= 0.0:
+        return 0.0, -_STOP_JERK_MPS3 * _STOPPED_S
+    fade_s = _STOP_MPS2 / _STOP_JERK_MPS3
+    fade_m, fade_mps = _STOP_JERK_MPS3 * fade_s**3 / 6.0, 0.5 * _STOP_MPS2 * fade_s
+    if left_m >= fade_m:
+        return math.sqrt(fade_mps**2 + 2.0 * _STOP_MPS2 * (left_m - fade_m)), -_STOP_MPS2
+    left_s = math.cbrt(6.0 * left_m / _STOP_JERK_MPS3)
+    return 0.5 * _STOP_JERK_MPS3 * left_s**2, -_STOP_JERK_MPS3 * max(left_s, _STOPPED_S)
+
+
 def plan_speed(course: Course, comfort: Comfort, top_mps: float | None = None) -> SpeedProfile:
-    """Return the profile of a flying lap: never above the limits of `comfort` and of the course (or `top_mps`)."""
+    """Return the profile of a flying lap: never above the limits of `comfort` and of the course (or `top_mps`).
+
+    An open course is entered at any speed that the profile has, and ends with a stop.
+    """
     count = round(course.length_m / STEP_M)
-    step = course.length_m / count
+    step, closed = course.length_m / count, course.closed
     curvature = np.array([course.curvature_at((index + 0.5) * step) for index in range(count)])
     top = (course.speed_limit_mps if top_mps is None else top_mps) - comfort.margin_mps
     bend = np.sqrt(comfort.lateral_mps2 / np.maximum(np.abs(curvature), 1e-9))
-    bending = np.abs(np.roll(curvature, -1) - np.roll(curvature, 1)) / (2.0 * step)
+    bending = np.abs(_shifted(curvature, -1, closed) - _shifted(curvature, 1, closed)) / (2.0 * step)
     ramp = np.cbrt(comfort.lateral_jerk_mps3 / np.maximum(bending, 1e-9))
     speed = np.minimum(top, np.minimum(bend, ramp))
     # The smoothing below averages over a bend's neighbourhood: there, too, no speed may exceed the bend's own.
     reach = max(1, round(0.25 * comfort.smoothing_s * float(speed.min()) / step))
-    speed = np.min([np.roll(speed, shift) for shift in range(-reach, reach + 1)], axis=0)
-    speed = _limited(speed, comfort.accelerate_mps2, step)
-    speed = _limited(speed[::-1], comfort.brake_mps2, step)[::-1]
-    speed = _smoothed(speed, comfort.smoothing_s, step)
-    accel = (np.roll(speed, -1) ** 2 - np.roll(speed, 1) ** 2) / (4.0 * step)
-    return SpeedProfile(step, speed, accel)
+    speed = np.min([_shifted(speed, shift, closed) for shift in range(-reach, reach + 1)], axis=0)
+    if not closed:
+        ends = [stopping(course.length_m - index * step)[0] for index in range(count)]
+        speed = np.minimum(speed, np.maximum(ends, _SLOWEST_MPS))
+    speed = _limited(speed, comfort.accelerate_mps2, step, closed)
+    speed = _limited(speed[::-1], comfort.brake_mps2, step, closed)[::-1]
+    speed = _smoothed(speed, comfort.smoothing_s, step, closed)
+    accel = (_shifted(speed, -1, closed) ** 2 - _shifted(speed, 1, closed) ** 2) / (4.0 * step)
+    return SpeedProfile(step, speed, accel, None if closed else course.length_m)
 
 
-def _limited(speed: Array, accel_mps2: float, step_m: float) -> Array:
-    """Cut the speed so that it never rises faster than `accel_mps2` in the direction of the array, round the loop."""
+def _shifted(values: Array, by: int, closed: bool) -> Array:
+    """Return the values `by` places on, round the loop or, of an open course, with those at its ends repeated."""
+    if closed:
+        return np.roll(values, by)
+    return np.asarray(values[np.clip(np.arange(len(values)) - by, 0, len(values) - 1)])
+
+
+def _limited(speed: Array, accel_mps2: float, step_m: float, closed: bool) -> Array:
+    """Cut the speed so that it never rises faster than `accel_mps2` in the direction of the array, round a loop."""
     result = speed.tolist()
     rise = 2.0 * accel_mps2 * step_m
     for _ in range(_PASSES):
-        before = result[-1]
+        before = result[-1] if closed else result[0]
         for index, value in enumerate(result):
             reachable = (before * before + rise) ** 0.5
             before = result[index] = reachable if reachable < value else value
     return np.array(result)
 
 
-def _smoothed(speed: Array, window_s: float, step_m: float) -> Array:
+def _smoothed(speed: Array, window_s: float, step_m: float, closed: bool) -> Array:
     """Average the speed over a window of time, centred: the acceleration's steps become ramps."""
-    laps = np.concatenate((speed, speed, speed))
+    if closed:
+        laps = np.concatenate((speed, speed, speed))
+    else:
+        laps = np.concatenate((np.full_like(speed, speed[0]), speed, np.full_like(speed, speed[-1])))
     time = np.concatenate(((0.0,), np.cumsum(step_m / laps)))
     way = np.arange(len(time)) * step_m
     middle = time[len(speed) : 2 * len(speed)]

@@ -1,7 +1,9 @@
 """Where the car will be when the next command takes effect: noisy, late odometry made smooth and brought forward.
 
 Two steps. A complementary filter: between two measurements the pose moves by the measured velocities, which are smooth;
-the measured pose, which is noisy, corrects it by a small share. And a prediction by the controller's own linear
+the measured pose, which is noisy, corrects it by a small share. Where the measured positions keep going to one side of
+where the measured yaw points, the yaw is wrong: its bias is integrated, so that a drifting localisation is followed
+without a lag. And a prediction by the controller's own linear
 single-track car through the delay, with the commands that are under way (Smith, Chem. Eng. Progress 53(5), 1957).
 """
 
@@ -9,6 +11,7 @@ import math
 from typing import Final, NamedTuple
 
 from simconsole.drivers.path_tracker.tracker_settings import CarModel, Timing
+from simconsole.values.kernels import clip
 
 _SUBSTEP_S: Final = 0.005
 _KINEMATIC_MPS: Final = 1.5
@@ -17,6 +20,7 @@ _LOST_M: Final = 0.5
 _LOST_RAD: Final = 0.2
 _LONGEST_S: Final = 0.5
 """A longer silence is not integrated: the pose after it is believed."""
+_MOST_BIAS_RAD: Final = 0.05
 _ROUNDING_S: Final = 1e-9
 """A pose further off than this from the expected one is not noise: the car was put there, or the filter is new."""
 
@@ -45,7 +49,8 @@ class StateEstimator:
     def __init__(self, car: CarModel, timing: Timing) -> None:
         self._car, self._timing = car, timing
         self._time_s = 0.0  # stamp of the newest measurement; pose, velocity, wheel and acting are of this moment
-        self._pose: tuple[float, float, float] | None = None
+        self._pose: tuple[float, float, float] | None = None  # its yaw is as measured
+        self._bias = 0.0  # to be added to that yaw: the direction in which the positions go
         self._velocity = (0.0, 0.0, 0.0)
         self._wheel = 0.0
         self._acting = 0.0
@@ -96,20 +101,25 @@ class StateEstimator:
         x, y, yaw = self._pose
         vx, vy, rate = self._velocity
         turned = 0.5 * passed_s * (rate + seen.yaw_rate_radps)
-        x, y = _moved(
-            x, y, yaw + 0.5 * turned, 0.5 * passed_s * (vx + seen.vx_mps), 0.5 * passed_s * (vy + seen.vy_mps)
-        )
+        forward = 0.5 * passed_s * (vx + seen.vx_mps)
+        x, y = _moved(x, y, yaw + self._bias + 0.5 * turned, forward, 0.5 * passed_s * (vy + seen.vy_mps))
         yaw += turned
         off_yaw = math.remainder(seen.yaw_rad - yaw, math.tau)
         if math.hypot(seen.x_m - x, seen.y_m - y) > _LOST_M or abs(off_yaw) > _LOST_RAD:
+            self._bias = 0.0
             return seen.x_m, seen.y_m, seen.yaw_rad
         share = self._timing.pose_share
+        if forward > passed_s * _KINEMATIC_MPS:
+            left_m = (seen.y_m - y) * math.cos(yaw) - (seen.x_m - x) * math.sin(yaw)
+            learned = self._bias + 0.25 * share * share * left_m / forward  # a quarter: two equal poles
+            self._bias = clip(learned, -_MOST_BIAS_RAD, _MOST_BIAS_RAD)
         return x + share * (seen.x_m - x), y + share * (seen.y_m - y), yaw + self._timing.yaw_share * off_yaw
 
     def _predicted(self, seen: VehicleMotion, accel_mps2: float) -> Predicted:
         """Drive the model from the newest measurement through the delay."""
         assert self._pose is not None
         x, y, yaw = self._pose
+        yaw += self._bias
         vx, vy, rate = max(seen.vx_mps, 0.0), seen.vy_mps, seen.yaw_rate_radps
         wheel, command, time = self._wheel, self._acting, self._time_s
         coming, end = list(self._under_way), self._time_s + self._timing.delay_s

@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 
 from simconsole.drivers.path_tracker.approach import ON_PATH, approach_from
 from simconsole.drivers.path_tracker.riccati import Gains, design, discretised
-from simconsole.drivers.path_tracker.speed_profile import plan_speed
+from simconsole.drivers.path_tracker.speed_control import SpeedControl
+from simconsole.drivers.path_tracker.speed_profile import SpeedProfile
 from simconsole.drivers.path_tracker.state_estimator import StateEstimator, VehicleMotion
 from simconsole.drivers.path_tracker.tracker_settings import (
     COMFORT,
@@ -30,7 +31,7 @@ from simconsole.drivers.path_tracker.tracker_settings import (
     Timing,
     Weights,
 )
-from simconsole.values.kernels import approach, clip
+from simconsole.values.kernels import clip
 from simconsole.world.course import Course
 
 Array = NDArray[np.float64]
@@ -38,9 +39,6 @@ Array = NDArray[np.float64]
 _SPEEDS_MPS: Final = (1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5, 8.5, 10.0, 11.5, 13.0, 14.5, 17.0, 20.0)
 _CURVATURE_STEP_M: Final = 0.1
 _PUSHED_OFF_M: Final = 0.3
-_SPEED_GAIN_1PS: Final = 1.2
-_SPEED_LEAD_S: Final = 0.15
-_JERK_MPS3: Final = 2.8
 _STEERING_RATE_RADPS: Final = 0.8
 _LATERAL_JERK_MPS3: Final = 6.0
 _LATERAL_MPS2: Final = 4.5
@@ -68,29 +66,32 @@ class Tracker:
         weights: Weights = WEIGHTS,
     ) -> None:
         self.course = course
-        self.profile = plan_speed(course, comfort)
         self.s_m: float | None = None
         self.lateral_m = 0.0
-        self._car, self._comfort, self._timing = car, comfort, timing
+        self.heading_error_rad = 0.0
+        self._car, self._timing = car, timing
+        self._along = SpeedControl(course, comfort, timing.period_s)
         designs = [_design(car, timing, weights, speed) for speed in _SPEEDS_MPS]
         self._feedback = np.array([gains.feedback for gains in designs])
         self._preview = np.array([gains.preview for gains in designs])
         self._ahead_s = (np.arange(timing.preview_steps) + 0.5) * timing.period_s
-        count = round(course.length_m / _CURVATURE_STEP_M)
-        self._curvature_step_m = course.length_m / count
-        self._curvature = np.array([course.curvature_at((i + 0.5) * self._curvature_step_m) for i in range(count)])
+        self._curvature_step_m, self._curvature = _curvatures(course)
         self._command = 0.0  # the last command, as the tangent of the road-wheel angle
         self._wheel = 0.0  # where the wheels will be when the next command takes effect, by the model; a tangent too
         self._estimator = StateEstimator(car, timing)
-        self._accel = 0.0
         self._line = ON_PATH
 
     def __copy__(self) -> "Tracker":
         """Return a tracker that goes on from here by itself; course, plan and gains are shared, they never change."""
         other = Tracker.__new__(Tracker)
         other.__dict__.update(self.__dict__)
-        other._estimator = copy(self._estimator)
+        other._estimator, other._along = copy(self._estimator), copy(self._along)
         return other
+
+    @property
+    def profile(self) -> SpeedProfile:
+        """The planned speed."""
+        return self._along.profile
 
     def step(self, seen: VehicleMotion, engaged: bool = True, time_s: float | None = None) -> TrackerCommand:
         """Return the command for the coming period.
@@ -102,9 +103,9 @@ class Tracker:
         found = self.s_m is not None
         if not (engaged and found):  # at its first sight of the car, too: somebody has steered it so far
             self._follow(seen, max(seen.vx_mps, 0.0))
-        now, self._wheel = self._estimator.observe(seen, time_s, self._accel if engaged else 0.0)
+        now, self._wheel = self._estimator.observe(seen, time_s, self._along.accel_mps2 if engaged else 0.0)
         place = self.course.project(now.x_m, now.y_m, self.s_m, now.yaw_rad)
-        self.s_m, self.lateral_m = place.s_m, place.lateral_m
+        self.s_m, self.lateral_m, self.heading_error_rad = place
         speed = now.vx_mps
         offset, slope = self._line.at(place.s_m)
         if not (engaged and found) or abs(place.lateral_m - offset) > _PUSHED_OFF_M:
@@ -117,11 +118,8 @@ class Tracker:
         change = self._change(now, place.s_m, place.lateral_m - offset, heading)
         self._command = self._limited(change, speed, engaged)
         self._estimator.sent(self._command)
-        target, accel = self._accelerate(place.s_m, speed)
-        period = self._timing.period_s
-        turned = (math.atan(self._command) - math.atan(before)) / period
-        jerk, self._accel = (accel - self._accel) / period, accel
-        return TrackerCommand(math.atan(self._command), turned, target, accel, jerk)
+        turned = (math.atan(self._command) - math.atan(before)) / self._timing.period_s
+        return TrackerCommand(math.atan(self._command), turned, *self._along.step(place.s_m, speed))
 
     def _change(self, seen: VehicleMotion, s_m: float, lateral_m: float, heading_rad: float) -> float:
         """Return by how much the command's tangent should change in the coming period."""
@@ -129,8 +127,9 @@ class Tracker:
         index, share = _between(speed)
         feedback = self._feedback[index] * (1.0 - share) + self._feedback[index + 1] * share
         preview = self._preview[index] * (1.0 - share) + self._preview[index + 1] * share
-        way = s_m + self._ahead_s * (speed + 0.5 * self._accel * self._ahead_s)
-        cells = (way / self._curvature_step_m).astype(np.int64) % len(self._curvature)
+        way = s_m + self._ahead_s * (speed + 0.5 * self._along.accel_mps2 * self._ahead_s)
+        cells, last = (way / self._curvature_step_m).astype(np.int64), len(self._curvature) - 1
+        cells = cells % (last + 1) if self.course.closed else np.clip(cells, 0, last)
         ahead = self._curvature[cells] + self._line.curvature(way)
         state = (lateral_m, heading_rad, seen.vy_mps, seen.yaw_rate_radps, self._wheel, self._command)
         return -float(feedback @ state) - float(preview @ ahead)
@@ -152,14 +151,14 @@ class Tracker:
         else:
             self._wheel = self._command = 0.0
         self._estimator.reset(self._command)
-        self._accel = 0.0
+        self._along.accel_mps2 = 0.0
 
-    def _accelerate(self, s_m: float, speed: float) -> tuple[float, float]:
-        target, _ = self.profile.at(s_m)
-        _, planned = self.profile.at(s_m + speed * _SPEED_LEAD_S)
-        wanted = planned + _SPEED_GAIN_1PS * (target - speed)
-        wanted = clip(wanted, -self._comfort.brake_most_mps2, self._comfort.accelerate_mps2)
-        return target, approach(self._accel, wanted, _JERK_MPS3 * self._timing.period_s)
+
+def _curvatures(course: Course) -> tuple[float, Array]:
+    """Return (distance in m, curvatures in 1/m in the middle of each such part); an open course ends with one of 0."""
+    count = round(course.length_m / _CURVATURE_STEP_M)
+    step = course.length_m / count
+    return step, np.array([course.curvature_at((i + 0.5) * step) for i in range(count + (not course.closed))])
 
 
 def _between(speed: float) -> tuple[int, float]:

@@ -2,6 +2,9 @@
 
 from typing import Final, NamedTuple
 
+TRACKERS: Final = ("preview", "pure_pursuit", "stanley")
+"""Ways to steer by their names: the path tracker with preview, and two plain ones to compare with."""
+
 
 class CarModel(NamedTuple):
     """The controller's linear single-track model, by default of the car in profiles/vehicles/hatchback.yaml.

@@ -11,6 +11,8 @@ class TrackingStatistics:
 
     commands: int = 0
     skipped: int = 0  # odometry with a value that is not finite
+    withheld: int = 0  # odometry that was not answered: the car is too far from the course
+    at_end: bool = False  # the car has come to the end of an open course and stands there
     engaged: int = 0
     squares_m2: float = 0.0
     worst_m: float = 0.0
@@ -36,6 +38,8 @@ class TrackingStatistics:
         return {
             "commands": self.commands,
             "skipped": self.skipped,
+            "withheld": self.withheld,
+            "at_end": self.at_end,
             "engaged_commands": count,
             "engaged_distance_m": self.last_m - self.first_m if self.first_m is not None else None,
             "lateral_rms_m": math.sqrt(self.squares_m2 / count) if count else None,

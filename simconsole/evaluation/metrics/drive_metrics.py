@@ -14,14 +14,11 @@ from simconsole.values.labels import mode_label, reason_label
 from simconsole.values.units import KMH_PER_MPS
 from simconsole.world.course import Course
 
-REFUSED_FROM: Final = 20
-"""Reasons from this number on tell why a change was refused (signals.Reason)."""
-
 _PERCENT: Final = 95.0
 
 
 class ModeChange(NamedTuple):
-    """One change of the mode, or one refused request (then `mode` is the mode that stayed)."""
+    """One change of the mode, or one refused request or command (then `mode` is the mode that stayed)."""
 
     tick: int
     t_s: float
@@ -43,20 +40,21 @@ class LateralErrors(NamedTuple):
 
 
 def mode_changes(drive: Drive, way: Track) -> list[ModeChange]:
-    """Return every change of mode and every refused request, in order; the first tick's mode opens the list."""
+    """Return every change of mode and every refusal that was shown, in order; the first tick's mode opens the list."""
     found: list[ModeChange] = []
-    start, last_mode, last_reason = 0, -1.0, math.nan
-    for block in drive.read(("arbitration.mode", "arbitration.reason", "vehicle.x_m", "vehicle.y_m")):
-        mode, reason, x, y = block.T
+    start, last_mode, last_refusal = 0, -1.0, 0.0
+    for block in drive.read(
+        ("arbitration.mode", "arbitration.reason", "arbitration.refusal", "vehicle.x_m", "vehicle.y_m")
+    ):
+        mode, reason, refusal, x, y = block.T
         changed = np.diff(mode, prepend=last_mode) != 0.0
-        told = np.diff(reason, prepend=last_reason if start else reason[0]) != 0.0
-        refused = told & (reason >= REFUSED_FROM) & ~changed
+        refused = (np.diff(refusal, prepend=last_refusal) != 0.0) & (refusal != 0.0) & ~changed
         found += [
             ModeChange(
                 tick=drive.first_tick + start + at,
                 t_s=(drive.first_tick + start + at) / drive.tick_hz,
                 mode=int(mode[at]),
-                reason=int(reason[at]),
+                reason=int(refusal[at] if refused[at] else reason[at]),
                 refused=bool(refused[at]),
                 x_m=float(x[at]),
                 y_m=float(y[at]),
@@ -64,7 +62,7 @@ def mode_changes(drive: Drive, way: Track) -> list[ModeChange]:
             )
             for at in np.flatnonzero(changed | refused).tolist()
         ]
-        start, last_mode, last_reason = start + len(block), float(mode[-1]), float(reason[-1])
+        start, last_mode, last_refusal = start + len(block), float(mode[-1]), float(refusal[-1])
     return found
 
 

@@ -5,9 +5,10 @@ from typing import Any
 import pytest
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.control.requests.refusals import SteeringLimit
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import ProfileError
-from simconsole.values.signals import Event, Link, LinkState, Notice
+from simconsole.values.signals import Event, Link, LinkState, Notice, Reason, RemoteCommand
 from simconsole.values.state_vector import LAYOUT
 
 MS = 1_000_000
@@ -160,3 +161,27 @@ def test_route_is_there_for_whoever_comes_later(join: Callable[..., Any], snapsh
         (1, 4),
     ]
     assert path["poses"][1]["pose"]["orientation"]["z"] == pytest.approx(math.sqrt(0.5))
+
+
+def test_the_commander_and_rosout_are_told_which_limit_a_command_has_broken(
+    join: Callable[..., Any], snapshot: Callable[..., Any], control: Callable[..., Any]
+) -> None:
+    bridge = ConsoleBridge(BridgeProfile(port=0), steering=SteeringLimit(10.0, 2.5))
+    driver, listener = join(bridge), join(bridge)
+    listener.send(op="subscribe", topic="/rosout")
+    driver.publish(CONTROL, control(0.5))
+    seen = {"mode": 3.0, "kind": 1.0, "vx_mps": 10.0, "sequence": 1.0}
+    refused_at = LAYOUT.ros_link.start + Link._fields.index("implausible")
+    angle_at = LAYOUT.ros.start + RemoteCommand._fields.index("road_wheel_rad")
+    for tick, count, refusal in ((1, 0.0, 0.0), (2, 1.0, float(Reason.REFUSED_IMPLAUSIBLE)), (3, 1.0, 0.0)):
+        state = snapshot(tick, **seen, refusal=refusal)
+        state.vector[refused_at], state.vector[angle_at] = count, 0.5
+        bridge.publish(state, 0)
+    broken = "lateral acceleration of 21.9 m/s2 at 10.0 m/s, at most 10 m/s2"
+    assert driver.statuses() == [f"command not followed: {broken}"]
+    told = [message["msg"] for message in listener.heard()]
+    assert [(said["level"], said["msg"]) for said in told] == [
+        (20, "AUTONOMOUS: drive started"),
+        (30, f"AUTONOMOUS: drive started; refused: too much lateral acceleration ({broken})"),
+        (20, "AUTONOMOUS: drive started"),
+    ]

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from simconsole.drivers.path_tracker.approach import ON_PATH, approach_from
+from simconsole.drivers.path_tracker.approach import ON_PATH, approach_from, why_not
 
 
 @pytest.mark.parametrize(("offset", "heading", "speed"), [(0.5, 0.0, 10.0), (-2.0, 0.1, 14.0), (1.0, -0.2, 0.0)])
@@ -33,3 +33,34 @@ def test_steep_heading_is_bounded_and_nothing_happens_on_the_path() -> None:
     assert approach_from(0.0, 0.0, 3.0, 5.0).at(0.0)[1] == pytest.approx(math.tan(0.5))
     assert ON_PATH.at(50.0) == (0.0, 0.0)
     assert ON_PATH.curvature(np.array((1.0, 50.0))).tolist() == [0.0, 0.0]
+
+
+def test_how_far_a_way_back_leads() -> None:
+    """Towards the path it never leads further than it begins; away from it, the furthest is where the slope is 0."""
+    assert approach_from(0.0, 1.0, -0.3, 0.0).furthest_m == pytest.approx(1.0)
+    away = approach_from(0.0, 1.0, math.radians(20.0), 0.0)
+    exact = max(abs(away.at(x)[0]) for x in np.linspace(0.0, 60.0, 6001).tolist())
+    assert away.furthest_m == pytest.approx(exact, abs=0.01)
+    assert 1.2 < away.furthest_m < 1.3
+
+
+@pytest.mark.parametrize(
+    ("offset_m", "heading_deg", "speed_mps", "engaged", "told"),
+    [
+        (1.0, 20.0, 0.0, False, ""),
+        (1.0, 20.0, 0.0, True, ""),
+        (-1.29, 0.0, 10.0, False, ""),
+        (1.31, 0.0, 10.0, False, "the way back leads 1.3 m from the course, at most 1.3 m"),
+        (-0.2, -15.0, 14.0, False, "the way back leads 2.4 m"),
+        (0.0, 26.0, 0.0, False, "the car is turned 26 deg from the course, at most 25 deg"),
+        (0.0, -180.0, 0.0, False, "the car is turned 180 deg"),
+        (2.9, 60.0, 5.0, True, ""),
+        (-3.1, 0.0, 5.0, True, "the car is 3.1 m beside the course, at most 3 m"),
+    ],
+)
+def test_where_a_car_is_not_led_back_from(
+    offset_m: float, heading_deg: float, speed_mps: float, engaged: bool, told: str
+) -> None:
+    reason = why_not(offset_m, math.radians(heading_deg), speed_mps, engaged)
+    assert reason.startswith(told)
+    assert bool(reason) == bool(told)

@@ -96,3 +96,25 @@ def test_a_lost_measurement_is_bridged_and_a_jump_believed() -> None:
         assert (found.x_m, found.y_m) == pytest.approx((true.x_m, true.y_m), abs=1e-3)
     elsewhere = on_circle(3.0)
     assert estimator.observe(elsewhere, 0.18, 0.0).motion[:3] == elsewhere[:3]
+
+
+def test_drifting_positions_are_followed_although_the_yaw_is_wrong(sample: Sample) -> None:
+    """The estimate goes where the measured positions go: what is to be driven to lies among them."""
+    rng = np.random.default_rng(sample.seed)
+    estimator, errors = StateEstimator(HATCHBACK, Timing(delay_s=0.0)), []
+    wrong = math.radians(0.5)
+    for step in range(1, 3000):
+        true = on_circle(step * PERIOD_S)
+        drift_m = 0.03 * step * PERIOD_S
+        noise = rng.normal(size=2)
+        seen = true._replace(
+            x_m=true.x_m + drift_m + 0.02 * noise[0],
+            y_m=true.y_m + 0.02 * noise[1],
+            yaw_rad=true.yaw_rad + wrong,
+        )
+        found = estimator.observe(seen, step * PERIOD_S, 0.0).motion
+        estimator.sent(0.0)
+        errors.append((found.x_m - true.x_m - drift_m, found.y_m - true.y_m, found.yaw_rad - true.yaw_rad))
+    x, y, yaw = np.array(errors[500:]).T
+    assert np.hypot(x, y).max() < 0.025  # 0.05 m and more where the yaw is believed
+    assert abs(yaw.mean()) < 0.1 * wrong

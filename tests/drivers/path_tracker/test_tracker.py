@@ -8,7 +8,9 @@ import pytest
 from simconsole.drivers.path_tracker.state_estimator import VehicleMotion
 from simconsole.drivers.path_tracker.tracker import Tracker
 from simconsole.drivers.path_tracker.tracker_settings import COMFORT, HATCHBACK
+from simconsole.profiles.course_plan import CoursePlan, Curve, Straight
 from simconsole.world.course import Course
+from simconsole.world.planning import solve
 
 Drive = Callable[..., Any]
 
@@ -114,3 +116,14 @@ def test_two_trackers_answer_equally(course: Course, laps: Drive, nominal: Any) 
     first = laps(Tracker(course), nominal, 60.0)
     second = laps(Tracker(course), nominal, 60.0)
     assert all(np.array_equal(a, b) for a, b in zip(first, second, strict=True))
+
+
+def test_the_end_of_an_open_course_is_no_bend(laps: Drive, nominal: Any) -> None:
+    """A course that ends within a curve: beyond its end the way is straight, and the car stops there."""
+    elements = (Straight(length_m=60.0), Curve(radius_m=20.0, angle_deg=60.0, ramp_m=5.0), Straight(length_m=0.5))
+    plan = CoursePlan(schema=1, title="t", lane_width_m=3.5, speed_limit_kmh=40.0, elements=elements)
+    course = Course(solve(plan, "t"))
+    trace = laps(Tracker(course), nominal, 1000.0, VehicleMotion(0.0, 0.0, 0.0, 5.0, 0.0, 0.0), 40.0)
+    assert trace.s_m[-1] == pytest.approx(course.length_m, abs=0.3)
+    assert trace.speed_mps[-1] < 0.05
+    assert np.abs(trace.lateral_m).max() < 0.03

@@ -32,5 +32,6 @@ def test_without_an_engaged_autopilot_there_are_no_figures_and_no_division() -> 
     kept.add(False, 1.0, 1.0, 1.0)
     found = kept.results()
     assert found.pop("commands") == 1
-    assert (found.pop("skipped"), found.pop("engaged_commands")) == (0, 0)
+    assert (found.pop("skipped"), found.pop("engaged_commands"), found.pop("withheld")) == (0, 0, 0)
+    assert found.pop("at_end") is False
     assert set(found.values()) == {None}

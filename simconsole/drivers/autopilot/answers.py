@@ -1,0 +1,59 @@
+"""What the autopilot answers to an odometry: a command, or nothing, and then why. Pure."""
+
+from collections.abc import Callable
+from typing import Final
+
+from simconsole.drivers.path_tracker.approach import why_not
+from simconsole.drivers.path_tracker.geometric import GeometricTracker, pure_pursuit, stanley
+from simconsole.drivers.path_tracker.state_estimator import VehicleMotion
+from simconsole.drivers.path_tracker.tracker import Tracker, TrackerCommand
+from simconsole.drivers.path_tracker.tracker_settings import TIMING, CarModel
+from simconsole.drivers.path_tracker.tracking_statistics import TrackingStatistics
+from simconsole.world.course import Course
+
+_LAWS: Final = {"pure_pursuit": pure_pursuit, "stanley": stanley}
+_END_M: Final = 0.5
+_STANDING_MPS: Final = 0.05
+
+
+def make_tracker(name: str, course: Course, car: CarModel, delay_s: float) -> Tracker | GeometricTracker:
+    """Return the tracker `name`, one of TRACKERS; the plain ones do not know `delay_s`."""
+    if name in _LAWS:
+        return GeometricTracker(_LAWS[name], course, car)
+    return Tracker(course, car, timing=TIMING._replace(delay_s=delay_s))
+
+
+class Answers:
+    """Answers one odometry after the other; what people must know is said once, when it begins."""
+
+    def __init__(self, tracker: Tracker | GeometricTracker, say: Callable[[str], None]) -> None:
+        """Ask `tracker`, tell people by `say`."""
+        self._tracker, self._say = tracker, say
+        self.statistics = TrackingStatistics()
+        self._withholds = False
+
+    def answer(self, seen: VehicleMotion, engaged: bool, stamp_s: float) -> TrackerCommand | None:
+        """Return the command that answers what was seen at `stamp_s`; None: none is given."""
+        tracker, statistics = self._tracker, self.statistics
+        command = tracker.step(seen, engaged, stamp_s)
+        reason = why_not(tracker.lateral_m, tracker.heading_error_rad, seen.vx_mps, engaged)
+        if reason:
+            if not self._withholds:
+                self._say(f"gives no commands: {reason}")
+            self._withholds = True
+            statistics.withheld += 1
+            return None
+        if self._withholds:
+            self._withholds = False
+            self._say("gives commands again")
+        s_m = tracker.s_m or 0.0
+        statistics.add(engaged, s_m, tracker.lateral_m, seen.vx_mps)
+        self._look_for_the_end(s_m, engaged and abs(seen.vx_mps) < _STANDING_MPS)
+        return command
+
+    def _look_for_the_end(self, s_m: float, stands: bool) -> None:
+        course = self._tracker.course
+        if course.closed or self.statistics.at_end or not stands or s_m < course.length_m - _END_M:
+            return
+        self.statistics.at_end = True
+        self._say("stands at the end of the course")

@@ -1,0 +1,31 @@
+"""The acceleration asked for: towards the plan, within comfort, without jerk."""
+
+import numpy as np
+import pytest
+
+from simconsole.drivers.path_tracker.speed_control import SpeedControl
+from simconsole.drivers.path_tracker.tracker_settings import COMFORT
+from simconsole.world.course import Course
+
+PERIOD_S = 0.02
+
+
+@pytest.mark.parametrize("speed_mps", [0.0, 8.0, 30.0])
+def test_acceleration_and_jerk_are_limited_however_wrong_the_speed(course: Course, speed_mps: float) -> None:
+    control = SpeedControl(course, COMFORT, PERIOD_S)
+    asked = [control.step(30.0 + 0.1 * step, speed_mps) for step in range(200)]
+    accel = np.array([0.0, *(one.accel_mps2 for one in asked)])
+    assert accel.min() >= -COMFORT.brake_most_mps2
+    assert accel.max() <= COMFORT.accelerate_mps2
+    assert np.abs(np.diff(accel) / PERIOD_S).max() <= 2.8 + 1e-9
+    assert [one.jerk_mps3 for one in asked] == pytest.approx((np.diff(accel) / PERIOD_S).tolist())
+
+
+def test_at_the_planned_speed_it_asks_for_the_planned_acceleration(course: Course) -> None:
+    control = SpeedControl(course, COMFORT, PERIOD_S)
+    s_m = 300.0
+    for _ in range(200):
+        speed, _ = control.profile.at(s_m)
+        answer = control.step(s_m, speed)
+    assert answer.accel_mps2 == pytest.approx(control.profile.at(s_m + 0.15 * speed)[1])
+    assert answer.speed_mps == speed
