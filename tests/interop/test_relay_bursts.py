@@ -1,13 +1,10 @@
 """Nothing is lost in a burst of calls or goals through the relay, and each has its end; against a real rclpy."""
 
-from collections.abc import Iterator
 from typing import Any
 
-import pytest
-
-from tests.interop.programs import Client, client
-from tests.interop.puppets import Puppet, Served, puppet, served
-from tests.interop.ros2 import domain, needs_ros2
+from tests.interop.programs import Client
+from tests.interop.puppets import Puppet, Served
+from tests.interop.ros2 import needs_ros2
 from tests.patience import pause, wait_until
 
 pytestmark = needs_ros2
@@ -20,24 +17,6 @@ CALLS_HZ = 200.0
 GOALS = 50
 CANCELED = 5
 ABORTED = 6
-
-
-@pytest.fixture(scope="module")
-def sides() -> Iterator[tuple[Served, Puppet]]:
-    around = domain()
-    with served(around) as console, puppet(around) as node:
-        yield console, node
-
-
-@pytest.fixture
-def web(sides: tuple[Served, Puppet]) -> Iterator[Client]:
-    with client(sides[0].url) as made:
-        yield made
-
-
-@pytest.fixture
-def node(sides: tuple[Served, Puppet]) -> Puppet:
-    return sides[1]
 
 
 def wait_for(web: Client, service: str, key: str, name: str) -> None:

@@ -73,6 +73,7 @@ def get_parameter(name: str, default: str) -> Forward:
     node, parameter = _split(name)
 
     def read(values: dict[str, Any]) -> dict[str, Any]:
+        """Return the value as JSON text."""
         found = next(iter(values["values"]), {"type": _NOT_SET})
         field = _VALUES.get(found["type"])
         return {"value": default or "null" if field is None else orjson.dumps(found[field]).decode()}
@@ -85,6 +86,7 @@ def has_parameter(name: str) -> Forward:
     node, parameter = _split(name)
 
     def read(values: dict[str, Any]) -> dict[str, Any]:
+        """Return whether any type is that of a set parameter."""
         return {"exists": any(kind != _NOT_SET for kind in values["types"])}
 
     return Forward(_request(node, "GetParameterTypes", names=[parameter]), read)
@@ -99,6 +101,7 @@ def set_parameter(name: str, value: str | None) -> Forward:
     node, parameter = _split(name)
 
     def read(values: dict[str, Any]) -> dict[str, Any]:
+        """Raise RemoteProtocolError with the reason of the node that has refused."""
         for result in values["results"]:
             if not result["successful"]:
                 raise RemoteProtocolError(result["reason"] or "the node has refused it")
@@ -114,6 +117,7 @@ def list_parameters(nodes: Iterable[str], known: Iterable[str]) -> Survey:
     services = {request.service: node for node, request in requests.items()}
 
     def read(answers: dict[str, Any]) -> dict[str, Any]:
+        """Return the names, those of a node behind the node's own."""
         found = [
             f"{services[service]}:{name}"
             for service, values in sorted(answers.items())

@@ -167,6 +167,7 @@ class GraphTopics:
         )
 
         def take(data: bytes, info: Any) -> None:
+            """Take a message as it comes from rclpy, with what is known of its publisher."""
             # Where ROS does not name the publisher (before Kilted), the whole graph counts as one node.
             identity = (info.get("publisher_gid") or {}).get("data")
             if identity is None:

@@ -207,6 +207,7 @@ async def _closed_loop(
     until_s = began_s + seconds
 
     def again() -> None:
+        """Send the next message until the time is over; note when it is."""
         nonlocal count, ended_s
         now_s = time.monotonic()
         if now_s < until_s:
@@ -231,6 +232,7 @@ async def _paced(publisher: Peer, deliveries: _Deliveries, text: bytes, seconds:
     deliveries.forget()
 
     def note() -> None:
+        """Note how long the message took."""
         latencies_ms.append(1000.0 * (time.monotonic() - sent_s))
 
     deliveries.on_round = note
