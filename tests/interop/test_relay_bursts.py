@@ -132,3 +132,23 @@ def test_a_burst_of_goals_that_are_cancelled(web: Client, node: Puppet) -> None:
         heard = web.hear(lambda heard: heard["op"] == "action_result")
         ends[heard["id"]] = heard["status"]
     assert set(ends.values()) == {CANCELED}
+
+
+def test_messages_of_a_node(web: Client, node: Puppet) -> None:
+    node.do("burst", name="/ros/burst", count=1)
+    web.say(op="subscribe", topic="/ros/burst", type="std_msgs/String", queue_length=1000)
+
+    def arrives() -> bool:
+        node.do("burst", name="/ros/burst", count=1)
+        try:
+            return "/ros/burst" in str(web.web.recv(timeout=0.2))
+        except TimeoutError:
+            return False
+
+    wait_until(arrives, "a message")
+    for count in range(90, 100):  # each another number: what comes late of the attempts before is passed over
+        node.do("burst", name="/ros/burst", count=count)
+        seen: list[str] = []
+        while seen[-count:] != [str(number) for number in range(count)]:
+            seen.append(web.message("/ros/burst")["data"])
+        assert set(seen[:-count]) <= {"0"}
