@@ -230,9 +230,7 @@ def main() -> None:
     for (name, way), several in found.items():
         rate_hz, under_way, p50_ms, p99_ms = (median(column) for column in zip(*several, strict=True))
         figures = f"{rate_hz:8.0f} /s with {under_way:.0f} under way; p50 {p50_ms:.2f}, p99 {p99_ms:.2f} ms"
-        print(
-            f"{name:12s} {ways}: {rate_hz:8.0f} /s with {under_way:.0f} under way; p50 {p50_ms:.2f}, p99 {p99_ms:.2f} ms"
-        )
+        print(f"{name:12s} {WAYS[way]}: {figures}")
     if args.peer:
         for way in args.ways:
             ratios = [a[0] / b[0] for a, b in zip(found["simconsole", way], found["peer", way], strict=True)]
