@@ -2,11 +2,12 @@
 
 Run: python benchmarks/bridge_rates.py [TREE:]TRANSPORT [TREE:]TRANSPORT [--pairs N] [--subscribers N ...]
 For example: python benchmarks/bridge_rates.py websockets picows
-             python benchmarks/bridge_rates.py ../before:websockets .:websockets --subscribers 1 10
+             python benchmarks/bridge_rates.py ../before:websockets .:websockets
 
-Both servers run all the time, each from its own checkout; the clients are this checkout's. An Odometry goes round in a
-closed loop with 20 under way. Counted is the server's own time on the processor, so that the clients and a busy machine
-do not decide. The interval is that of the median's order statistics (`two_trees.py`).
+Each server runs in a process of its own, from its own checkout, its clients with it in one event loop: how many
+messages are read or written in one piece then hangs on no other process, and a busy machine does not decide. The
+clients (picows, which count messages and no more) are part of the time, equal for both. An Odometry goes round in a
+closed loop with 20 under way. The interval is that of the median's order statistics (`two_trees.py`).
 """
 
 import argparse
@@ -15,95 +16,120 @@ import os
 import statistics
 import subprocess
 import sys
-from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+import time
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING
 
+import orjson
 from two_trees import interval
 
-from simconsole.bridge.tools import bench
-from simconsole.bridge.tools.bench_servers import RunningServer
+if TYPE_CHECKING:
+    from simconsole.bridge.transport.server import BridgeServer
 
-SERVE = """
-import sys
-from simconsole.bridge.transport.server import serve
-from simconsole.profiles.bridge import BridgeLimits, BridgeProfile
-
-profile = BridgeProfile(port=0, transport=sys.argv[1], limits=BridgeLimits(clients=200))
-ready = lambda port: print(port, flush=True)
-serve(profile, lambda: None, lambda *_: None, lambda _: None, lambda: False, on_ready=ready)
-"""
+UNDER_WAY = 20
+DELIVERIES = 4000
+"""Messages to subscribers in one round."""
 
 
-class Server(NamedTuple):
-    """One that runs; counts in ns instead of the hundredths of a second of /proc/PID/stat."""
-
-    running: RunningServer
-
-    @property
-    def url(self) -> str:
-        return self.running.url
-
-    def cpu_s(self) -> float:
-        return sum(
-            int((task / "schedstat").read_text().split()[0]) / 1e9
-            for task in Path(f"/proc/{self.running.process}/task").iterdir()
-        )
+CONTENT = {
+    "header": {"stamp": {"sec": 1, "nanosec": 2}, "frame_id": "map"},
+    "pose": {"pose": {"position": {"x": 1.5, "y": 2.5, "z": 0.0}}, "covariance": [0.0] * 36},
+    "twist": {"twist": {"linear": {"x": 13.9, "y": 0.1, "z": 0.0}}, "covariance": [0.0] * 36},
+}
 
 
-@contextmanager
-def serving(what: str) -> Iterator[Server]:
+async def work(transport: str) -> None:
+    """Serve; for each number of subscribers on standard input, say what a message to one of them costs, in us."""
+    from simconsole.bridge.transport.server import BridgeServer
+    from simconsole.profiles.bridge import BridgeLimits, BridgeProfile
+
+    server = BridgeServer(BridgeProfile(port=0, transport=transport, limits=BridgeLimits(clients=200)))
+    await server.start()
+    while line := await asyncio.to_thread(sys.stdin.readline):
+        print(await one_round(server, int(line)), flush=True)
+
+
+async def one_round(server: "BridgeServer", subscribers: int) -> float:
+    from simconsole.bridge.tools.bench_peers import connect
+
+    received, done = 0, asyncio.Event()
+    wanted = max(2 * UNDER_WAY, DELIVERIES // subscribers) * subscribers
+    topic = f"/bench/t{time.monotonic_ns()}"
+    text = orjson.dumps({"op": "publish", "topic": topic, "msg": CONTENT})
+
+    def hear() -> None:
+        nonlocal received
+        received += 1
+        if received == wanted:
+            done.set()
+        elif received % subscribers == 0 and received <= wanted - UNDER_WAY * subscribers:
+            publisher.send(text)
+
+    peers = [await connect(server.url, hear) for _ in range(subscribers)]
+    for peer in peers:
+        wish = {"op": "subscribe", "topic": topic, "type": "nav_msgs/Odometry", "queue_length": 1000}
+        peer.send(orjson.dumps(wish))
+    publisher = await connect(server.url, lambda: None)
+    publisher.send(orjson.dumps({"op": "advertise", "topic": topic, "type": "nav_msgs/Odometry"}))
+    while sum(len(found.subscribers) for found in server.console.router.topics.values()) < subscribers:
+        await asyncio.sleep(0.01)
+    before_s = time.process_time()
+    for _ in range(UNDER_WAY):
+        publisher.send(text)
+    await done.wait()
+    cost_us = 1e6 * (time.process_time() - before_s) / wanted
+    for peer in (*peers, publisher):
+        await peer.close()
+    return cost_us
+
+
+def start(what: str) -> "subprocess.Popen[str]":
     tree, _, transport = what.rpartition(":")
     around = {**os.environ, "PYTHONPATH": str(Path(tree or ".").resolve())}
-    words = [sys.executable, "-c", SERVE, transport]
-    with subprocess.Popen(words, env=around, stdout=subprocess.PIPE, text=True) as process:
-        try:
-            assert process.stdout is not None
-            port = process.stdout.readline().strip()
-            if not port:
-                raise SystemExit(f"{what}: does not start")
-            yield Server(RunningServer(what, transport, f"ws://127.0.0.1:{port}", process.pid))
-        finally:
-            process.terminate()
+    words = [sys.executable, __file__, "--worker", transport]
+    return subprocess.Popen(words, env=around, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+
+
+def cost_us(server: "subprocess.Popen[str]", subscribers: int) -> float:
+    assert server.stdin is not None
+    assert server.stdout is not None
+    server.stdin.write(f"{subscribers}\n")
+    server.stdin.flush()
+    return float(server.stdout.readline())
 
 
 def main() -> None:
     """Print, for each number of subscribers, both times and their ratio."""
     words = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    words.add_argument("servers", nargs=2, metavar="[TREE:]TRANSPORT")
+    words.add_argument("servers", nargs="*", metavar="[TREE:]TRANSPORT", default=["websockets", "picows"])
     words.add_argument("--pairs", type=int, default=30)
-    words.add_argument("--seconds", type=float, default=0.5)
     words.add_argument("--subscribers", type=int, nargs="+", default=[1, 10, 100])
+    words.add_argument("--worker", help=argparse.SUPPRESS)
     given = words.parse_args()
-    with ExitStack() as stack:
-        servers = [stack.enter_context(serving(what)) for what in given.servers]
-        for subscribers in given.subscribers:
-            found: list[list[bench.Measurement]] = [[], []]
-            for pair in range(given.pairs + 1):
-                for number in (0, 1) if pair % 2 else (1, 0):
-                    figures = asyncio.run(bench.measure_once(servers[number], "odometry", subscribers, given.seconds))
-                    if pair:  # the first pair fills caches
-                        found[number].append(figures)
-            tell(given.servers, subscribers, found)
-
-
-def tell(servers: list[str], subscribers: int, found: list[list[bench.Measurement]]) -> None:
-    times_us = [[float(figures.cpu_us or 0.0) for figures in several] for several in found]
-    ratios = sorted(second / first for first, second in zip(*times_us, strict=True))
-    low, high = interval(len(ratios))
-    print(f"to {subscribers}:")
-    for name, times, several in zip(servers, times_us, found, strict=True):
-        rate_hz = statistics.median(figures.rate_hz for figures in several)
-        p50_ms = statistics.median(figures.p50_ms for figures in several)
-        cpu_us = statistics.median(times)
-        print(f"  {name:24s} {cpu_us:6.1f} us each; {rate_hz:7.0f} /s to each, at 100 Hz p50 {p50_ms:.2f} ms")
-    median = statistics.median(ratios)
-    print(
-        f"  second over first, median of {len(ratios)} pairs: {median:.3f} "
-        f"(95 % interval {ratios[low]:.3f} to {ratios[high]:.3f})",
-        flush=True,
-    )
+    if given.worker:
+        asyncio.run(work(given.worker))
+        return
+    servers = [start(what) for what in given.servers]
+    for subscribers in given.subscribers:
+        for server in servers:
+            cost_us(server, subscribers)  # fills caches
+        pairs = []
+        for number in range(given.pairs):
+            order = servers if number % 2 else servers[::-1]
+            costs = {server.pid: cost_us(server, subscribers) for server in order}
+            pairs.append([costs[server.pid] for server in servers])
+        first_us, second_us = (statistics.median(column) for column in zip(*pairs, strict=True))
+        ratios = sorted(second / first for first, second in pairs)
+        low, high = interval(len(ratios))
+        print(f"to {subscribers}: {given.servers[0]} {first_us:.1f} us, {given.servers[1]} {second_us:.1f} us each")
+        print(
+            f"  second over first, median of {len(ratios)} pairs: {statistics.median(ratios):.3f} "
+            f"(95 % interval {ratios[low]:.3f} to {ratios[high]:.3f})",
+            flush=True,
+        )
+    for server in servers:
+        server.kill()
+        server.wait()
 
 
 if __name__ == "__main__":
