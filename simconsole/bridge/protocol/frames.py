@@ -160,8 +160,7 @@ def _in_frames(message: bytes) -> Iterator[bytes]:
 
 def _header(message: bytes) -> bytes:
     """Return the header of a server's frame for a whole message: final, unmasked, binary or text (5.2)."""
-    opcode, length = 0x80 | (BINARY if isinstance(message, Binary) else TEXT), len(message)
-    return _MEDIUM.pack(opcode, 126, length) if 126 <= length < 65_536 else _head(opcode, length)
+    return _head(0x80 | (BINARY if isinstance(message, Binary) else TEXT), len(message))
 
 
 def _head(opcode: int, length: int) -> bytes:
