@@ -49,6 +49,11 @@ class Puppet(Node):  # type: ignore[misc]  # rclpy has no types here
         publisher = self._keep("publisher", name, lambda: self.create_publisher(TYPES[kind], name, qos))
         publisher.publish(TYPES[kind](data=data))
 
+    def _do_burst(self, name: str, count: int) -> None:
+        publisher = self._keep("publisher", name, lambda: self.create_publisher(String, name, QUEUE))
+        for number in range(count):
+            publisher.publish(String(data=str(number)))
+
     def _do_subscribe(self, name: str, kind: str = "String") -> None:
         def hear(message: Any) -> None:
             say(heard=name, data=message.data)

@@ -1,5 +1,6 @@
 """rosapi says what there is in a real graph, and does to it what it says."""
 
+import signal
 from typing import Any
 
 from tests.interop.programs import Client, client
@@ -40,6 +41,9 @@ def test_nodes_topics_and_parameters_of_the_graph() -> None:
         assert ask(web, "/rosapi/get_param", name="/talker:rate")["values"]["value"] == "3"
         assert ask(web, "/rosapi/has_param", name="/talker:rate")["values"]["exists"] is True
         assert ask(web, "/rosapi/has_param", name="/talker:none")["values"]["exists"] is False
+        names = ask(web, "/rosapi/get_param_names")["values"]["names"]
+        assert "/talker:rate" in names
+        assert "/talker:use_sim_time" in names
         assert ask(web, "/rosapi/set_param", name="/talker:rate", value="5")["result"] is True
         node.do("parameter", name="rate")
         assert node.hear(lambda said: said.get("parameter") == "rate")["value"] == 5
@@ -60,3 +64,24 @@ def test_what_is_not_relayed_is_named() -> None:
         wait_until(lambda: "/tf: this ROS 2 has no type tf2_msgs/msg/TFMessage" in console.text, "the same in the log")
         node.do("subscribe", name="/console/mode")
         assert node.hear(lambda said: said.get("heard") == "/console/mode")["data"] == "PARKED"
+
+
+def test_a_node_that_does_not_answer_costs_the_names_of_its_own_parameters_only() -> None:
+    around = domain()
+    with (
+        served(around) as console,
+        puppet(around, "talker"),
+        puppet(around, "stopped") as stopped,
+        client(console.url) as web,
+    ):
+
+        def names() -> set[str]:
+            found = ask(web, "/rosapi/get_param_names")["values"]["names"]
+            return {name.partition(":")[0] for name in found}
+
+        wait_until(lambda: names() == {"/talker", "/stopped"}, "both nodes")
+        stopped.process.send_signal(signal.SIGSTOP)
+        try:
+            assert names() == {"/talker"}
+        finally:
+            stopped.process.send_signal(signal.SIGCONT)

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 import pytest
 
 from tests.interop.programs import Client, client
-from tests.interop.puppets import Puppet, Served, puppet, served
-from tests.interop.ros2 import domain, needs_ros2
+from tests.interop.puppets import Puppet, Served
+from tests.interop.ros2 import needs_ros2
 from tests.patience import wait_until
 
 pytestmark = needs_ros2
@@ -14,24 +14,6 @@ pytestmark = needs_ros2
 FLIP = "std_srvs/srv/SetBool"
 FIBONACCI = "test_msgs/action/Fibonacci"
 ABORTED = 6
-
-
-@pytest.fixture(scope="module")
-def sides() -> Iterator[tuple[Served, Puppet]]:
-    around = domain()
-    with served(around) as console, puppet(around) as node:
-        yield console, node
-
-
-@pytest.fixture
-def web(sides: tuple[Served, Puppet]) -> Iterator[Client]:
-    with client(sides[0].url) as made:
-        yield made
-
-
-@pytest.fixture
-def node(sides: tuple[Served, Puppet]) -> Puppet:
-    return sides[1]
 
 
 @pytest.fixture(autouse=True)

@@ -172,6 +172,8 @@ def test_the_node_in_the_documentation_drives(tmp_path: Path) -> None:
     ):
         watcher.say(op="subscribe", topic="/cmd_vel")  # accepted commands go to who watches them
         assert watcher.message("/cmd_vel")["linear"]["x"] == 5.0
+        watcher.say(op="subscribe", topic="/odom")
+        watcher.hear(lambda heard: heard["topic"] == "/odom" and heard["msg"]["twist"]["twist"]["linear"]["x"] > 4.5)
 
 
 def test_without_rclpy_it_says_so_at_once(capsys: pytest.CaptureFixture[str]) -> None:

@@ -360,14 +360,15 @@ class Outputs:
 
 
 def is_due(tick: int, last_tick: int | None, tick_hz: int, rate_hz: float) -> bool:
-    """Return whether a topic of `rate_hz`, last considered at `last_tick`, is due at `tick`.
+    """Return whether a topic of `rate_hz` is due at `tick`, `last_tick` being the last one that was published.
 
     The phase hangs on the tick's number alone, not on when the first client came: drift-free, and equal in every run.
+    What became due in a tick that is not published is due in the next one that is.
     """
     if rate_hz == ONCE:
         return last_tick is None
-    if last_tick is None or tick <= last_tick:
-        last_tick = tick - 1
+    if last_tick is None or tick <= last_tick:  # at the start, or after it has begun anew
+        last_tick = 0
     return int(tick * rate_hz / tick_hz) > int(last_tick * rate_hz / tick_hz)
 
 

@@ -144,7 +144,7 @@ class Registry:
             RemoteProtocolError: the value does not fit; names the path of the field.
             BridgeError: the type is not known.
         """
-        struct = self.struct(name)
+        struct = self._structs.get(name) or self.struct(name)
         if isinstance(value, struct):
             return value
         try:

@@ -82,6 +82,7 @@ class Access:
         shown = f"{auth.client}{auth.dest}{auth.rand}{auth.t}{auth.level}{auth.end}"
 
         def fits(known: str) -> bool:
+            """Return whether the mac is that of a token."""
             digest = hashlib.sha512(f"{known}{shown}".encode("utf-8", "replace")).hexdigest()
             return hmac.compare_digest(digest.encode(), mac.encode("utf-8", "replace"))
 

@@ -5,12 +5,12 @@ never waits for another, so that one slow provider holds up nobody else.
 """
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from functools import partial
+from typing import Any
 
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.client_session import ClientSession, resolve_topic
-from simconsole.bridge.protocol.message_encoding import Dialect, to_plain
 from simconsole.bridge.protocol.operations import (
     ABORTED,
     ActionFeedback,
@@ -26,38 +26,26 @@ from simconsole.bridge.protocol.operations import (
     UnadvertiseAction,
     UnadvertiseService,
 )
-from simconsole.bridge.protocol.pending_calls import NOBODY, Caller, Forward, HeldCalls, send
+from simconsole.bridge.protocol.pending_calls import (
+    NOBODY,
+    Builtin,
+    Caller,
+    Forward,
+    Handler,
+    HeldCalls,
+    NodeRequest,
+    OpenCall,
+    Provider,
+    Survey,
+    SurveyAnswers,
+    answer_forwarded,
+    arguments_by_name,
+    checked_values,
+    send,
+)
 from simconsole.profiles.bridge import BridgeLimits
 from simconsole.values.errors import BridgeError, RemoteProtocolError
 from simconsole.values.units import NS_PER_S
-
-Handler = Callable[[dict[str, Any], Dialect], dict[str, Any] | Forward]
-"""A service of the console: takes arguments and the caller's dialect, returns values; raises BridgeError to fail."""
-
-
-class _Builtin(NamedTuple):
-    type: str
-    handler: Handler
-    role: Role
-
-
-class _Provider(NamedTuple):
-    session: ClientSession
-    type: str
-
-
-class _Call(NamedTuple):
-    """A request or goal that is with its provider."""
-
-    caller: Caller
-    provider: ClientSession
-    name: str
-    type: str
-    deadline_ns: int | None
-    feedback: bool
-    is_goal: bool
-    read: Callable[[Any], Any] | None = None
-    """Makes a console's answer of the provider's."""
 
 
 class Calls:
@@ -67,10 +55,10 @@ class Calls:
         """Start without any."""
         self._registry = registry
         self._limits = limits
-        self._builtins: dict[str, _Builtin] = {}
-        self._services: dict[str, _Provider] = {}
-        self._actions: dict[str, _Provider] = {}
-        self._calls: dict[str, _Call] = {}
+        self._builtins: dict[str, Builtin] = {}
+        self._services: dict[str, Provider] = {}
+        self._actions: dict[str, Provider] = {}
+        self._calls: dict[str, OpenCall] = {}
         self.held = HeldCalls(limits)
         self._numbers = 0
         self._next_deadline_ns: int | None = None
@@ -82,11 +70,11 @@ class Calls:
 
     def add_builtin(self, name: str, type_name: str, handler: Handler, role: Role = Role.VIEW) -> None:
         """Add a service of the console, for clients of at least `role`."""
-        self._builtins[name] = _Builtin(type_name, handler, role)
+        self._builtins[name] = Builtin(type_name, handler, role)
 
     def services(self) -> dict[str, str]:
         """Return the type of every service by name."""
-        everything: dict[str, _Builtin | _Provider] = {**self._builtins, **self._services}
+        everything: dict[str, Builtin | Provider] = {**self._builtins, **self._services}
         return {name: entry.type for name, entry in sorted(everything.items())}
 
     def actions(self) -> dict[str, str]:
@@ -175,7 +163,7 @@ class Calls:
         count = sum(not each.session.in_graph for each in (*self._services.values(), *self._actions.values()))
         if known is None and not session.in_graph and count >= self._limits.topics:
             raise RemoteProtocolError(f"there are {self._limits.topics} services and actions already, the most allowed")
-        table[name] = _Provider(session, operation.type[:256])
+        table[name] = Provider(session, operation.type[:256])
 
     def _unadvertise(
         self, session: ClientSession, name: str, operation: UnadvertiseService | UnadvertiseAction
@@ -214,40 +202,72 @@ class Calls:
         limit = {"timeout": operation.timeout} if operation.timeout else {}
         send(provider.session, op="call_service", id=identifier, service=name, args=args, **limit)
 
-    def _call_builtin(self, builtin: _Builtin, caller: Caller, args: Any, now_ns: int) -> None:
+    def _call_builtin(self, builtin: Builtin, caller: Caller, args: Any, now_ns: int) -> None:
         if caller.session.role < builtin.role:
             raise RemoteProtocolError(f"this needs the role {builtin.role.name.lower()}")
-        args = self._to_plain("ros2", builtin.type, "Request", self._args(builtin.type, "Request", args))
+        args = checked_values(
+            self._registry,
+            "ros2",
+            builtin.type,
+            "Request",
+            arguments_by_name(self._registry, builtin.type, "Request", args),
+        )
         found = builtin.handler(args, caller.session.dialect)
 
-        def respond(values: dict[str, Any]) -> Any:
-            return self._to_plain(caller.session.dialect, builtin.type, "Response", values, caller.is_typed)
+        def respond(values: dict[str, Any]) -> None:
+            """Answer in the caller's dialect and form."""
+            plain = checked_values(
+                self._registry, caller.session.dialect, builtin.type, "Response", values, caller.is_typed
+            )
+            caller.respond(plain, True)
 
-        if not isinstance(found, Forward):
-            caller.respond(respond(found), True)
-            return
-        provider = self._services.get(found.service)
-        if provider is None:
-            raise RemoteProtocolError(f"{found.service}: {NOBODY}")
-        deadline_ns = now_ns + int(self._limits.call_s * NS_PER_S)
-        identifier = self._open(caller, provider, found.service, deadline_ns)
-        args = self._arguments(provider, "Request", found.args, identifier)
-        read, kind = found.read, provider.type
-        self._calls[identifier] = self._calls[identifier]._replace(
-            read=lambda values: respond(read(self._to_plain("ros2", kind, "Response", values)))
-        )
+        match found:
+            case Forward():
+                deadline_ns = now_ns + int(self._limits.call_s * NS_PER_S)
+                self._ask(caller, found.request, deadline_ns, partial(answer_forwarded, found, caller, respond))
+            case Survey():
+                self._survey(found, caller, respond, now_ns)
+            case _:
+                respond(found)
+
+    def _survey(self, survey: Survey, caller: Caller, respond: Callable[[dict[str, Any]], None], now_ns: int) -> None:
+        requests = [request for request in survey.requests if self._is_provided(request)]
+        answers = SurveyAnswers([each.service for each in requests], lambda good: respond(survey.read(good)))
+        deadline_ns = now_ns + int(survey.timeout_s * NS_PER_S)
+        for request in requests:
+            self._ask(caller, request, deadline_ns, partial(answers.take, request.service))
+
+    def _is_provided(self, request: NodeRequest) -> bool:
+        """Return whether a node provides this, and not a client that has taken the node's name or another type."""
+        provider = self._services.get(request.service)
+        return provider is not None and provider.session.in_graph and provider.type == request.type
+
+    def _ask(self, caller: Caller, request: NodeRequest, deadline_ns: int, on_end: Callable[[Any, bool], None]) -> None:
+        """Call a node's service for one of the console."""
+        service = request.service
+        if not self._is_provided(request):
+            raise RemoteProtocolError(f"{service}: {NOBODY}")
+        provider = self._services[service]
+        identifier = self._open(caller, provider, service, deadline_ns)
+        args = self._arguments(provider, "Request", request.args, identifier)
+        self._calls[identifier] = self._calls[identifier]._replace(on_end=on_end)
         self._note_deadline(deadline_ns)
-        send(provider.session, op="call_service", id=identifier, service=found.service, args=args)
+        send(provider.session, op="call_service", id=identifier, service=service, args=args)
 
     def _respond(self, session: ClientSession, name: str, operation: ServiceResponse) -> None:
         identifier, call = self._find_call(session, name, operation.id)
         del self._calls[identifier]
         values, result = operation.values, operation.result
-        if call.read is not None and result:
+        if call.on_end is not None:
             try:
-                call.caller.respond(call.read(values), True)
+                values = (
+                    checked_values(self._registry, "ros2", call.type, "Response", values)
+                    if result
+                    else f"{name}: {values}"
+                )
             except BridgeError as error:
-                self._fail(call, str(error))
+                values, result = f"{name}: {error}", False
+            call.on_end(values, result)
             return
         # rosbridge_suite for ROS 1 uses the values alone, and its clients set no meaningful result.
         if isinstance(values, dict) and (values or result):
@@ -312,18 +332,20 @@ class Calls:
     def _open(
         self,
         caller: Caller,
-        provider: _Provider,
+        provider: Provider,
         name: str,
         deadline_ns: int | None,
         feedback: bool = False,
         is_goal: bool = False,
     ) -> str:
         most = caller.session.max_calls or self._limits.calls
-        if sum(call.caller.session is caller.session for call in self._calls.values()) >= most:
+        # One who asks several providers for one answer makes one call.
+        callers = {id(call.caller) for call in self._calls.values() if call.caller.session is caller.session}
+        if len(callers - {id(caller)}) >= most:
             raise RemoteProtocolError(f"{most} calls at a time are the most allowed")
         self._numbers += 1
         identifier = f"{'goal' if is_goal else 'call'}:{name}:{self._numbers}"
-        self._calls[identifier] = _Call(
+        self._calls[identifier] = OpenCall(
             caller=caller,
             provider=provider.session,
             name=name,
@@ -334,9 +356,15 @@ class Calls:
         )
         return identifier
 
-    def _arguments(self, provider: _Provider, part: str, args: Any, identifier: str) -> Any:
+    def _arguments(self, provider: Provider, part: str, args: Any, identifier: str) -> Any:
         try:
-            return self._to_plain(provider.session.dialect, provider.type, part, self._args(provider.type, part, args))
+            return checked_values(
+                self._registry,
+                provider.session.dialect,
+                provider.type,
+                part,
+                arguments_by_name(self._registry, provider.type, part, args),
+            )
         except BridgeError:
             del self._calls[identifier]
             raise
@@ -345,7 +373,7 @@ class Calls:
         if self._next_deadline_ns is None or deadline_ns < self._next_deadline_ns:
             self._next_deadline_ns = deadline_ns
 
-    def _find_call(self, session: ClientSession, name: str, identifier: Id) -> tuple[str, _Call]:
+    def _find_call(self, session: ClientSession, name: str, identifier: Id) -> tuple[str, OpenCall]:
         """Return the open call that a provider refers to."""
         call = self._calls.get(identifier) if isinstance(identifier, str) else None
         if call is None or call.provider is not session or call.name != name:
@@ -353,33 +381,16 @@ class Calls:
         assert isinstance(identifier, str)
         return identifier, call
 
-    def _fail(self, call: _Call, reason: str) -> None:
+    def _fail(self, call: OpenCall, reason: str) -> None:
         reason = f"{call.name}: {reason}"
         if call.is_goal:
             call.caller.end(reason, ABORTED, False)
+        elif call.on_end is not None:
+            call.on_end(reason, False)
         else:
             call.caller.respond(reason, False)
 
-    def _args(self, type_name: str, part: str, args: Any) -> Any:
-        """Return arguments by name: a list is in the order of the definition."""
-        full = self._registry.part(type_name, part)
-        if args is None:
-            args = {}
-        if full is not None and isinstance(args, list):
-            fields = self._registry.definition(full).fields
-            if len(args) > len(fields):
-                raise RemoteProtocolError(f"{len(args)} arguments, expected at most {len(fields)}")
-            args = {field.name: value for field, value in zip(fields, args, strict=False)}
-        if not isinstance(args, dict | list):
-            raise RemoteProtocolError("args must be an object or an array")
-        return args
-
-    def _checked(self, call: _Call, part: str, values: Any) -> Any:
-        return self._to_plain(call.caller.session.dialect, call.type, part, values, call.caller.is_typed)
-
-    def _to_plain(self, dialect: Dialect, type_name: str, part: str, values: Any, typed: bool = False) -> Any:
-        """Return values checked against their type, if it is known here, in the receiver's dialect."""
-        full = self._registry.part(type_name, part)
-        if full is None:
-            return values
-        return to_plain(self._registry, full, self._registry.from_plain(full, values), dialect, typed)
+    def _checked(self, call: OpenCall, part: str, values: Any) -> Any:
+        return checked_values(
+            self._registry, call.caller.session.dialect, call.type, part, values, call.caller.is_typed
+        )

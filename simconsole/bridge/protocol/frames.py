@@ -1,6 +1,7 @@
 """WebSocket frames and messages, independent of the library (RFC 6455): reassembly, limits, frame headers."""
 
 import codecs
+import struct
 from collections.abc import Callable, Iterable, Iterator
 from typing import Final
 
@@ -24,6 +25,8 @@ TOO_BIG: Final = 1009
 
 ASSEMBLY_NS: Final = 2 * NS_PER_S
 """The longest that one message may be on its way once its first frame is here."""
+_MEDIUM: Final = struct.Struct("!BBH")
+"""The header of a frame of 126 to 65,535 bytes: what most messages have."""
 FRAME_BYTES: Final = 262_144
 """A longer message is sent in several frames, so that no more than one of them waits outside of the bounded queues."""
 _Utf8: Final = codecs.getincrementaldecoder("utf-8")
@@ -117,23 +120,26 @@ class FrameWriter:
 
     def __init__(self) -> None:
         """Start between two messages."""
-        self._rest: Iterator[bytes] = iter(())
+        self._rest: Iterator[bytes] | None = None
 
     def batch(self, take: Callable[[], bytes | None], enough_bytes: int) -> bytes:
         """Return frames of the messages that `take` gives until it gives None or they are `enough_bytes`."""
         parts: list[bytes] = []
         size = 0
         while size < enough_bytes:
-            part = next(self._rest, None)
-            if part is None:
-                message = take()
-                if message is None:
-                    break
-                if len(message) > FRAME_BYTES:
-                    self._rest = _in_frames(message)
+            if self._rest is not None:
+                part = next(self._rest, None)
+                if part is None:
+                    self._rest = None
                     continue
-                parts.append(_header(message))
-                part = message
+            else:
+                part = take()
+                if part is None:
+                    break
+                if len(part) > FRAME_BYTES:
+                    self._rest = _in_frames(part)
+                    continue
+                parts.append(_header(part))
             parts.append(part)
             size += len(part)
         return b"".join(parts)
@@ -161,5 +167,5 @@ def _head(opcode: int, length: int) -> bytes:
     if length < 126:
         return bytes((opcode, length))
     if length < 65_536:
-        return bytes((opcode, 126)) + length.to_bytes(2)
+        return _MEDIUM.pack(opcode, 126, length)
     return bytes((opcode, 127)) + length.to_bytes(8)

@@ -1,18 +1,20 @@
 """Who waits for the end of a call or goal, and what waits for a provider that may just be appearing."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Final, NamedTuple
 
 import cbor2
 import msgspec
 import orjson
 
+from simconsole.bridge.messages import Registry
+from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.client_session import ClientSession
 from simconsole.bridge.protocol.message_decoding import Binary
-from simconsole.bridge.protocol.message_encoding import png
+from simconsole.bridge.protocol.message_encoding import Dialect, png, to_plain
 from simconsole.bridge.protocol.operations import CallService, Compression, Id, SendActionGoal
 from simconsole.profiles.bridge import BridgeLimits
-from simconsole.values.errors import RemoteProtocolError
+from simconsole.values.errors import BridgeError, RemoteProtocolError
 
 NOBODY: Final = "nobody provides it"
 
@@ -44,15 +46,98 @@ class Caller(NamedTuple):
         self.send(op="action_result", action=self.called, values=values, status=status, result=result)
 
 
+class NodeRequest(NamedTuple):
+    """A call of a service of a node in the graph."""
+
+    service: str
+    type: str
+    args: dict[str, Any]
+
+
 class Forward(NamedTuple):
-    """What a service of the console asks a provider before it answers; `read` makes its answer of the provider's.
+    """What a service of the console asks a node before it answers; `read` makes its answer of the node's.
 
     `read` raises RemoteProtocolError where the call has failed.
     """
 
-    service: str
-    args: dict[str, Any]
+    request: NodeRequest
     read: Callable[[dict[str, Any]], dict[str, Any]]
+
+
+class Survey(NamedTuple):
+    """What a service of the console asks several nodes before it answers.
+
+    `read` makes its answer of their good answers, by service, that come within the time; the others are left out.
+    """
+
+    requests: list[NodeRequest]
+    read: Callable[[dict[str, Any]], dict[str, Any]]
+    timeout_s: float
+
+
+Handler = Callable[[dict[str, Any], Dialect], dict[str, Any] | Forward | Survey]
+"""A service of the console: takes arguments and the caller's dialect, returns values; raises BridgeError to fail."""
+
+
+class Builtin(NamedTuple):
+    """A service of the console, for clients of at least a role."""
+
+    type: str
+    handler: Handler
+    role: Role
+
+
+class Provider(NamedTuple):
+    """The client that provides a service or action."""
+
+    session: ClientSession
+    type: str
+
+
+class OpenCall(NamedTuple):
+    """A request or goal that is with its provider."""
+
+    caller: Caller
+    provider: ClientSession
+    name: str
+    type: str
+    deadline_ns: int | None
+    feedback: bool
+    is_goal: bool
+    on_end: Callable[[Any, bool], None] | None = None
+    """Gets values and result in the caller's place, where a service of the console has asked."""
+
+
+def answer_forwarded(
+    forward: Forward, caller: Caller, respond: Callable[[dict[str, Any]], None], values: Any, result: bool
+) -> None:
+    """Answer with what the node says, or with why it cannot be answered."""
+    try:
+        if not result:
+            raise RemoteProtocolError(str(values))
+        respond(forward.read(values))
+    except BridgeError as error:
+        caller.respond(str(error), False)
+
+
+class SurveyAnswers:
+    """The answers to one survey; the last one to come, or to fail, ends it."""
+
+    def __init__(self, services: Iterable[str], finish: Callable[[dict[str, Any]], None]) -> None:
+        """Wait for `services`; `finish` gets the good answers, at once if there is nobody to ask."""
+        self._missing = set(services)
+        self._good: dict[str, Any] = {}
+        self._finish = finish
+        if not self._missing:
+            finish({})
+
+    def take(self, service: str, values: Any, result: bool) -> None:
+        """Take what one of the services says."""
+        self._missing.discard(service)
+        if result:
+            self._good[service] = values
+        if not self._missing:
+            self._finish(self._good)
 
 
 class HeldCall(NamedTuple):
@@ -122,3 +207,36 @@ def encode(compression: Compression, **fields: Any) -> bytes:
 def send(session: ClientSession, **fields: Any) -> None:
     """Send an operation to a provider."""
     session.answer(encode("none", **fields))
+
+
+def arguments_by_name(registry: Registry, type_name: str, part: str, args: Any) -> Any:
+    """Return arguments by name: a list is in the order of the definition.
+
+    Raises:
+        RemoteProtocolError: they are no arguments, or too many.
+    """
+    full = registry.part(type_name, part)
+    if args is None:
+        args = {}
+    if full is not None and isinstance(args, list):
+        fields = registry.definition(full).fields
+        if len(args) > len(fields):
+            raise RemoteProtocolError(f"{len(args)} arguments, expected at most {len(fields)}")
+        args = {field.name: value for field, value in zip(fields, args, strict=False)}
+    if not isinstance(args, dict | list):
+        raise RemoteProtocolError("args must be an object or an array")
+    return args
+
+
+def checked_values(
+    registry: Registry, dialect: Dialect, type_name: str, part: str, values: Any, typed: bool = False
+) -> Any:
+    """Return values checked against their type, if it is known here, in the receiver's dialect.
+
+    Raises:
+        RemoteProtocolError: they do not fit.
+    """
+    full = registry.part(type_name, part)
+    if full is None:
+        return values
+    return to_plain(registry, full, registry.from_plain(full, values), dialect, typed)

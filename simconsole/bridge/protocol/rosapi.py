@@ -13,8 +13,14 @@ from simconsole.bridge.messages.definition_text import full_text, two_parts
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.client_session import resolve_topic
 from simconsole.bridge.protocol.message_encoding import Dialect
-from simconsole.bridge.protocol.pending_calls import Forward
-from simconsole.bridge.protocol.rosapi_graph import get_parameter, has_parameter, is_of_node, set_parameter
+from simconsole.bridge.protocol.pending_calls import Forward, Survey
+from simconsole.bridge.protocol.rosapi_graph import (
+    get_parameter,
+    has_parameter,
+    is_of_node,
+    list_parameters,
+    set_parameter,
+)
 from simconsole.bridge.protocol.server_protocol import Router
 from simconsole.bridge.protocol.topic_registry import Topic
 from simconsole.values.errors import BridgeError, RemoteProtocolError
@@ -252,8 +258,8 @@ class RosApi:
             return has_parameter(args["name"])
         return {"exists": args["name"] in self._parameters}
 
-    def _get_param_names(self, args: Fields, dialect: Dialect) -> Fields:
-        return {"names": sorted(self._parameters)}
+    def _get_param_names(self, args: Fields, dialect: Dialect) -> Survey:
+        return list_parameters(self._router.graph.nodes, self._parameters)
 
     def _search_param(self, args: Fields, dialect: Dialect) -> Fields:
         # ROS 1 searches upwards through the namespaces of the calling node; all nodes here are at the root.

@@ -4,12 +4,12 @@ A parameter of a node is named as rosapi for ROS 2 names it, `/node:parameter`; 
 services, so that what rosapi says of it is what the node has done.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, Final, NamedTuple
 
 import orjson
 
-from simconsole.bridge.protocol.pending_calls import Forward
+from simconsole.bridge.protocol.pending_calls import Forward, NodeRequest, Survey
 from simconsole.values.errors import RemoteProtocolError
 
 
@@ -37,6 +37,15 @@ class GraphNames(NamedTuple):
 
 NO_GRAPH: Final = GraphNames({}, {})
 
+LIST_S: Final = 2.0
+"""How long nodes may take to name their parameters; a node that does not say them by then is left out."""
+_SERVICES: Final = {
+    "GetParameters": "get_parameters",
+    "GetParameterTypes": "get_parameter_types",
+    "SetParameters": "set_parameters",
+    "ListParameters": "list_parameters",
+}
+"""A node's services for its parameters by their types of rcl_interfaces."""
 _NOT_SET, _BOOL, _INTEGER, _DOUBLE, _STRING = 0, 1, 2, 3, 4
 _VALUES: Final = {
     1: "bool_value",
@@ -64,11 +73,12 @@ def get_parameter(name: str, default: str) -> Forward:
     node, parameter = _split(name)
 
     def read(values: dict[str, Any]) -> dict[str, Any]:
+        """Return the value as JSON text."""
         found = next(iter(values["values"]), {"type": _NOT_SET})
         field = _VALUES.get(found["type"])
         return {"value": default or "null" if field is None else orjson.dumps(found[field]).decode()}
 
-    return Forward(f"{node}/get_parameters", {"names": [parameter]}, read)
+    return Forward(_request(node, "GetParameters", names=[parameter]), read)
 
 
 def has_parameter(name: str) -> Forward:
@@ -76,9 +86,10 @@ def has_parameter(name: str) -> Forward:
     node, parameter = _split(name)
 
     def read(values: dict[str, Any]) -> dict[str, Any]:
+        """Return whether any type is that of a set parameter."""
         return {"exists": any(kind != _NOT_SET for kind in values["types"])}
 
-    return Forward(f"{node}/get_parameter_types", {"names": [parameter]}, read)
+    return Forward(_request(node, "GetParameterTypes", names=[parameter]), read)
 
 
 def set_parameter(name: str, value: str | None) -> Forward:
@@ -90,13 +101,35 @@ def set_parameter(name: str, value: str | None) -> Forward:
     node, parameter = _split(name)
 
     def read(values: dict[str, Any]) -> dict[str, Any]:
+        """Raise RemoteProtocolError with the reason of the node that has refused."""
         for result in values["results"]:
             if not result["successful"]:
                 raise RemoteProtocolError(result["reason"] or "the node has refused it")
         return {}
 
     typed = {"type": _NOT_SET} if value is None else _typed(value)
-    return Forward(f"{node}/set_parameters", {"parameters": [{"name": parameter, "value": typed}]}, read)
+    return Forward(_request(node, "SetParameters", parameters=[{"name": parameter, "value": typed}]), read)
+
+
+def list_parameters(nodes: Iterable[str], known: Iterable[str]) -> Survey:
+    """Ask all nodes for the names of their parameters; those that are `known` here come first."""
+    requests = {node: _request(node, "ListParameters") for node in nodes}
+    services = {request.service: node for node, request in requests.items()}
+
+    def read(answers: dict[str, Any]) -> dict[str, Any]:
+        """Return the names, those of a node behind the node's own."""
+        found = [
+            f"{services[service]}:{name}"
+            for service, values in sorted(answers.items())
+            for name in sorted(values["result"]["names"])
+        ]
+        return {"names": [*sorted(known), *found]}
+
+    return Survey(list(requests.values()), read, LIST_S)
+
+
+def _request(node: str, kind: str, **args: Any) -> NodeRequest:
+    return NodeRequest(f"{node}/{_SERVICES[kind]}", f"rcl_interfaces/srv/{kind}", args)
 
 
 def _split(name: str) -> tuple[str, str]:

@@ -109,7 +109,7 @@ class SendBudget:
 
     def __init__(self, max_bytes: int) -> None:
         """Start with nobody."""
-        self._max_bytes = max_bytes
+        self.max_bytes = max_bytes
         self._queues: set[SendQueue] = set()
         self.bytes = 0
 
@@ -124,7 +124,7 @@ class SendBudget:
 
     def make_room(self, size: int, now_ns: int) -> None:
         """Drop the oldest of the longest queue until `size` bytes more fit, or nothing waits."""
-        while self.bytes + size > self._max_bytes and self.bytes:
+        while self.bytes + size > self.max_bytes and self.bytes:
             max(self._queues, key=lambda queue: queue.waiting_bytes).drop_oldest(now_ns)
 
 
@@ -182,12 +182,14 @@ class SendQueue:
         """Queue a message of a topic; what must make room for it is dropped."""
         if len(queue.texts) >= queue.depth:
             self._shorten(queue, now_ns)
-        self._budget.make_room(len(text), now_ns)
+        size, budget = len(text), self._budget
+        if budget.bytes + size > budget.max_bytes:
+            budget.make_room(size, now_ns)
         if queue.texts:
             self._backlog += len(queue.texts[-1])
         queue.texts.append(text)
-        self.bytes += len(text)
-        self._budget.bytes += len(text)
+        self.bytes += size
+        budget.bytes += size
         self._waiting[queue] = None
         while self.bytes > self.max_bytes and self._backlog:
             longer = queue if len(queue.texts) > 1 else next(each for each in self._waiting if len(each.texts) > 1)
@@ -200,6 +202,8 @@ class SendQueue:
             return piece
         if self._replies:
             return self._in_pieces(*self._take_reply())
+        if not self._waiting:
+            return None
         for queue in self._waiting:
             if queue.next_ns <= now_ns:
                 break
@@ -210,7 +214,7 @@ class SendQueue:
         if queue.texts:  # behind the others
             del self._waiting[queue]
             self._waiting[queue] = None
-        return self._in_pieces(text, queue.fragment_size)
+        return text if queue.fragment_size is None else self._in_pieces(text, queue.fragment_size)
 
     def _in_pieces(self, text: bytes, size: int | None) -> bytes:
         """Return a text or, if it is longer than the fragment size, its first piece; the others are taken next."""
@@ -258,10 +262,11 @@ class SendQueue:
 
     def _pop(self, queue: SubscriptionQueue) -> bytes:
         text = queue.texts.popleft()
-        self.bytes -= len(text)
-        self._budget.bytes -= len(text)
+        size = len(text)
+        self.bytes -= size
+        self._budget.bytes -= size
         if queue.texts:
-            self._backlog -= len(text)
+            self._backlog -= size
         else:
             del self._waiting[queue]
         return text

@@ -21,8 +21,8 @@ FULL_BYTES: Final = 65_536
 class Inbox:
     """What has come from one client and waits for its turn."""
 
-    def __init__(self, apply: Callable[[bytes], int], meter: ByteMeter) -> None:
-        """Start empty; `apply` handles a message and returns the bytes that its answers cost."""
+    def __init__(self, apply: Callable[[bytes, int], int], meter: ByteMeter) -> None:
+        """Start empty; `apply` handles a message at a time in ns and returns the bytes that its answers cost."""
         self.apply = apply
         self.meter = meter
         self.messages: deque[bytes] = deque()
@@ -61,13 +61,14 @@ class Turns:
         """Whether a turn is needed."""
         return bool(self._waiting)
 
-    def receive(self, inbox: Inbox, message: bytes, now_ns: int) -> None:
-        """Handle a message at once if its client and this turn have something left; else it waits."""
-        if not inbox.messages and self._has_left() and inbox.meter.ready_ns <= now_ns:
+    def receive(self, inbox: Inbox, message: bytes, now_ns: int) -> bool:
+        """Handle a message at once if its client and this turn have something left; else it waits, and return False."""
+        if not inbox.messages and self._left_messages > 0 and self._left_bytes > 0 and inbox.meter.ready_ns <= now_ns:
             self._handle(inbox, message, now_ns)
-        else:
-            inbox.put(message)
-            self._waiting[inbox] = None
+            return True
+        inbox.put(message)
+        self._waiting[inbox] = None
+        return False
 
     def run(self, now_ns: int) -> int | None:
         """Take a turn; return when the next one is due (0: at once), None when nothing waits."""
@@ -95,7 +96,7 @@ class Turns:
         return self._left_messages > 0 and self._left_bytes > 0
 
     def _handle(self, inbox: Inbox, message: bytes, now_ns: int) -> None:
-        cost = inbox.apply(message)
+        cost = inbox.apply(message, now_ns)
         self._left_messages -= 1
         self._left_bytes -= len(message) + cost
         if cost:

@@ -184,6 +184,7 @@ class Graph:
 
     def _names_of(self, name: str, namespace: str) -> NodeNames:
         def visible(found: list[tuple[str, list[str]]]) -> tuple[str, ...]:
+            """Return the sorted names that are no inside of an action."""
             return tuple(sorted(each for each, _ in found if "/_" not in each))
 
         node = self._node

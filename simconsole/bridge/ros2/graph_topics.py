@@ -13,8 +13,8 @@ from simconsole.bridge.console.graph_view import ANYONE, GraphPublisher
 from simconsole.bridge.ros2.endpoints import Endpoints
 from simconsole.bridge.ros2.message_types import load
 
-DEPTH: Final = 10
-LATCHED_DEPTH: Final = 100
+DEPTH: Final = 100
+"""Messages of a topic that wait to be read, by the next turn of rclpy; of a latched one each publisher has one."""
 MAX_POLLS: Final = 10
 MAX_PENDING: Final = 100
 MAX_SENT: Final = 100
@@ -55,11 +55,6 @@ class _SubscriptionSettings(NamedTuple):
     type: str
     reliable: bool
     latched: bool
-
-    @property
-    def depth(self) -> int:
-        """Messages that wait to be read; of latched ones each publisher has one at once."""
-        return LATCHED_DEPTH if self.latched else DEPTH
 
 
 class GraphTopics:
@@ -161,25 +156,39 @@ class GraphTopics:
         from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
         qos = QoSProfile(
-            depth=way.depth,
+            depth=DEPTH,
             reliability=ReliabilityPolicy.RELIABLE if way.reliable else ReliabilityPolicy.BEST_EFFORT,
             durability=DurabilityPolicy.TRANSIENT_LOCAL if way.latched else DurabilityPolicy.VOLATILE,
         )
 
         def take(data: bytes, info: Any) -> None:
-            # Where ROS does not name the publisher (before Kilted), the whole graph counts as one node.
-            identity = (info.get("publisher_gid") or {}).get("data")
-            if identity is None:
-                if not self._is_own(name, data):
-                    self._receive(ReceivedMessage(name, way.type, data, ANYONE, UNNAMED if way.latched else None))
-                return
-            message = _PendingMessage(
-                topic=name, type=way.type, data=data, identity=bytes(identity), latched=way.latched, polls=0
-            )
-            self._pending.append(message)
-            self._resolve_publishers(0)
+            """Take a message as it comes from rclpy, and those behind it: a turn of rclpy costs more than a message."""
+            self._take(name, way, data, info)
+            for _ in range(DEPTH):
+                with subscription.handle:
+                    found = subscription.handle.take_message(subscription.msg_type, subscription.raw)
+                if found is None:
+                    break
+                self._take(name, way, *found)
 
-        return self._node.create_subscription(load(way.type), name, take, qos, raw=True, callback_group=self._group)
+        subscription: Any = self._node.create_subscription(
+            load(way.type), name, take, qos, raw=True, callback_group=self._group
+        )
+        return subscription
+
+    def _take(self, name: str, way: _SubscriptionSettings, data: bytes, info: Any) -> None:
+        """Pass a message on as soon as its publisher's node is known."""
+        # Where ROS does not name the publisher (before Kilted), the whole graph counts as one node.
+        identity = (info.get("publisher_gid") or {}).get("data")
+        if identity is None:
+            if not self._is_own(name, data):
+                self._receive(ReceivedMessage(name, way.type, data, ANYONE, UNNAMED if way.latched else None))
+            return
+        message = _PendingMessage(
+            topic=name, type=way.type, data=data, identity=bytes(identity), latched=way.latched, polls=0
+        )
+        self._pending.append(message)
+        self._resolve_publishers(0)
 
     def _is_own(self, name: str, data: bytes) -> bool:
         """Return whether a message is one that was sent from here, where ROS does not name the publisher."""

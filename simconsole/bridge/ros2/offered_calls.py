@@ -94,6 +94,7 @@ class OfferedCalls:
             return self._end_goal(offered, goal, operation)
 
         async def accept(request: Any) -> Any:
+            """Accept a goal in its turn, unless the action is about to end."""
             turn: Any = Future(executor=self._executor)
             offered.accepting += 1
             self._actions.do(offered.accepting + len(offered.open), lambda: self._let(turn))

@@ -198,6 +198,7 @@ class GraphCalls:
         key, name = operation.key, called.name
 
         def accepted(future: Any) -> None:
+            """Follow an accepted goal to its end; answer a refused one."""
             handle = future.result()
             if not self._take(called, key):
                 if handle.accepted:
@@ -214,6 +215,7 @@ class GraphCalls:
             self._advance(called)
 
         def ended(future: Any) -> None:
+            """Put the result of the goal, or why there is none, into the bridge's inbox."""
             if called.goals.pop(key, None) is None:
                 return
             try:
@@ -224,6 +226,7 @@ class GraphCalls:
                 self._fail(False, name, key, str(error))
 
         def progressed(message: Any) -> None:
+            """Put the goal's feedback into the bridge's inbox."""
             if key in called.goals or key in called.unanswered:
                 self._put("feedback_received", key, name, serialize_message(message.feedback))
 

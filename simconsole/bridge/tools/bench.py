@@ -8,7 +8,7 @@ import asyncio
 import time
 from collections.abc import Callable, Sequence
 from statistics import median
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple, Protocol
 
 import orjson
 
@@ -23,6 +23,17 @@ _PATIENCE_S: Final = 10.0
 _TRIES: Final = 40
 _TYPES: Final = {"odometry": "nav_msgs/Odometry", "laser_scan": "sensor_msgs/LaserScan"}
 _CASES: Final = (("odometry", 1), ("odometry", 10), ("laser_scan", 1))
+
+
+class BenchedServer(Protocol):
+    """Where a server is, and what processor time (s) it has taken, None where nobody knows."""
+
+    @property
+    def url(self) -> str:
+        """Where clients connect."""
+
+    def cpu_s(self) -> float | None:
+        """Return the time so far."""
 
 
 class Case(NamedTuple):
@@ -66,7 +77,7 @@ async def _measure(served: Sequence[RunningServer], rounds: int, seconds: float)
         for message, subscribers in _CASES:
             for one in served:
                 try:
-                    figures = await _once(one, message, subscribers, seconds)
+                    figures = await measure_once(one, message, subscribers, seconds)
                 except TimeoutError:
                     raise BridgeError(f"{one.url}: loses messages") from None
                 found.setdefault(Case(one.server, one.library, message, subscribers), []).append(figures)
@@ -78,7 +89,13 @@ def _medians(several: Sequence[Measurement]) -> Measurement:
     return Measurement(*(None if None in column else median(column) for column in columns))  # type: ignore[arg-type]  # None in one column only
 
 
-async def _once(served: RunningServer, message: str, subscribers: int, seconds: float) -> Measurement:
+async def measure_once(served: BenchedServer, message: str, subscribers: int, seconds: float) -> Measurement:
+    """Return one measurement of a server: a closed loop for `seconds`, then as long at 100 Hz.
+
+    Raises:
+        BridgeError: it cannot be reached.
+        TimeoutError: it loses messages.
+    """
     topic = f"/bench/t{time.monotonic_ns()}"
     deliveries = _Deliveries(subscribers)
     peers = [await connect(served.url, lambda: None)]
@@ -207,6 +224,7 @@ async def _closed_loop(
     until_s = began_s + seconds
 
     def again() -> None:
+        """Send the next message until the time is over; note when it is."""
         nonlocal count, ended_s
         now_s = time.monotonic()
         if now_s < until_s:
@@ -231,6 +249,7 @@ async def _paced(publisher: Peer, deliveries: _Deliveries, text: bytes, seconds:
     deliveries.forget()
 
     def note() -> None:
+        """Note how long the message took."""
         latencies_ms.append(1000.0 * (time.monotonic() - sent_s))
 
     deliveries.on_round = note

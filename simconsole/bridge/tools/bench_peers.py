@@ -82,6 +82,7 @@ async def _by_picows(url: str, on_message: OnMessage) -> Peer:
 
     class Listener(WSListener):
         def on_ws_frame(self, transport: WSTransport, frame: WSFrame) -> None:
+            """Count a message; answer the end of the connection."""
             if frame.msg_type == WSMsgType.TEXT and frame.fin:
                 on_message()
             elif frame.msg_type == WSMsgType.CLOSE:
@@ -93,9 +94,11 @@ async def _by_picows(url: str, on_message: OnMessage) -> Peer:
             self._transport = transport
 
         def send(self, text: bytes) -> None:
+            """Send a text message at once."""
             self._transport.send(WSMsgType.TEXT, text)
 
         async def close(self) -> None:
+            """Close the connection and wait for the answer, for a second at most."""
             self._transport.send_close(WSCloseCode.OK)
             try:
                 await asyncio.wait_for(self._transport.wait_disconnected(), 1.0)

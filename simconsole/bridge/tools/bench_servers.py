@@ -128,6 +128,7 @@ def _serve_bare_picows(pipe: Connection) -> None:
 
     class Client(WSListener):
         def on_ws_frame(self, transport: WSTransport, frame: WSFrame) -> None:
+            """Take a subscription, pass on what is published, or end the connection."""
             if frame.msg_type == WSMsgType.CLOSE:
                 transport.disconnect()
                 return

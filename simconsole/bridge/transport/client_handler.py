@@ -6,6 +6,7 @@ A client that reads nothing holds up nobody: its queues are bounded, and the loo
 import asyncio
 import logging
 from collections.abc import Callable
+from functools import partial
 from typing import Final, Protocol
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
@@ -40,8 +41,9 @@ class ClientTurns:
 
     def receive(self, client: "ClientHandler", message: bytes) -> None:
         """Handle a message now or in a later turn; read no more of a client of whom much waits."""
-        self._turns.receive(client.inbox, message, self.clock_ns())
-        if self._turns.waits and not self._is_soon:
+        if self._turns.receive(client.inbox, message, self.clock_ns()):
+            return
+        if not self._is_soon:
             self._schedule(0)
         if client.inbox.is_full and client not in self._paused:
             self._paused.add(client)
@@ -93,15 +95,16 @@ class ClientHandler:
         self.connection = connection
         self.stalled_since_ns: int | None = None
         self._server = server
-        self._console = server.console
-        self._limits = self._console.profile.limits
+        router = server.console.router
+        self._receive = router.receive
+        self._limits = server.console.profile.limits
         self._clock_ns = server.turns.clock_ns
         self._loop = asyncio.get_running_loop()
         self._is_woken = False
         self._queued = 0
         self._timer: asyncio.TimerHandle | None = None
         self._writer = FrameWriter()
-        self.session = self._console.router.connect(peer, self._wake, admission.dialect, admission.role)
+        self.session = router.connect(peer, self._wake, admission.dialect, admission.role)
         self.session.has_token = admission.has_token
         self.since_ns = self._clock_ns()
         self.inbox = Inbox(self._apply, ByteMeter(self._limits.answered_bytes_per_s))
@@ -124,10 +127,10 @@ class ClientHandler:
             self._timer.cancel()
         self._server.remove(self)
 
-    def _apply(self, message: bytes) -> int:
+    def _apply(self, message: bytes, now_ns: int) -> int:
         session = self.session
         before = session.send_queue.answered_bytes
-        outcome = self._console.receive(session, message, self._clock_ns())
+        outcome = self._receive(session, message, now_ns)
         if outcome.kind not in _NOT_LOGGED:
             log_outcome(_logger, session, outcome)
         if session.role is not self._role:
@@ -154,7 +157,7 @@ class ClientHandler:
         connection, now_ns = self.connection, self._clock_ns()
         if not connection.is_open or not connection.takes_more:
             return
-        frames = self._writer.batch(lambda: self.session.next_text(now_ns), _WRITE_BYTES)
+        frames = self._writer.batch(partial(self.session.next_text, now_ns), _WRITE_BYTES)
         if frames:
             connection.write(frames)
         if not connection.takes_more:

@@ -4,6 +4,7 @@ import logging
 import socket
 import ssl
 import time
+from functools import partial
 from typing import Final, Protocol
 
 from websockets.frames import CloseCode, Frame
@@ -122,7 +123,7 @@ class LockstepConnection:
         session = self.session
         if session is not None and self._web.state is State.OPEN:
             self._collect()
-            self._unsent += self._writer.batch(lambda: session.next_text(now_ns), UNSENT_BYTES - len(self._unsent))
+            self._unsent += self._writer.batch(partial(session.next_text, now_ns), UNSENT_BYTES - len(self._unsent))
         self._collect()
         self._send()
 

@@ -272,6 +272,7 @@ class LockstepBridge:
         sender.setblocking(False)
 
         def wake() -> None:
+            """End the wait for sockets, from whatever thread."""
             with suppress(OSError):
                 sender.send(b"!")
 

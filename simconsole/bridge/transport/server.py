@@ -183,6 +183,7 @@ class BridgeServer:
         from simconsole.bridge.ros2.node import Ros2Link
 
         def wake() -> None:
+            """Have the graph pumped in the loop's next turn, from whatever thread."""
             if not self._ros2_woken:
                 self._ros2_woken = True
                 loop.call_soon_threadsafe(self._pump_ros2)

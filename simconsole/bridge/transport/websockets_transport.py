@@ -140,6 +140,7 @@ async def start_listener(
     make: Any = partial(WebsocketsConnection, profile, clock_ns)  # any function will do; its type says a class
 
     def admit(connection: ServerConnection, request: Request) -> Response | None:
+        """Return the refusal of a handshake, None to let the client in."""
         assert isinstance(connection, WebsocketsConnection)
         decision = acceptor.admit(handshake_request(request.path, request.headers.get_all))
         if isinstance(decision, Refusal):
@@ -152,6 +153,7 @@ async def start_listener(
         return None
 
     async def attend(connection: ServerConnection) -> None:
+        """Serve a client until its connection ends."""
         assert isinstance(connection, WebsocketsConnection)
         assert connection.admission is not None
         connection.transport.get_extra_info("socket").setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)

@@ -1,3 +1,4 @@
+import math
 from typing import Any
 
 import pytest
@@ -20,6 +21,18 @@ def test_each_topic_is_due_at_its_rate_and_a_latched_one_once(snapshot: Any) -> 
     due = [output.name for tick in range(1, 251) for output in planned.due(snapshot(tick))]
     counts = {name: due.count(name) for name in (CLOCK, ODOMETRY, TF_STATIC)}
     assert counts == {CLOCK: 100, ODOMETRY: 50, TF_STATIC: 1}
+
+
+@pytest.mark.parametrize("period", [1, 2, 5, 7])
+@pytest.mark.parametrize("rate_hz", [30.0, 10.0, 50.0, 35.7])
+def test_no_message_is_lost_where_only_some_ticks_are_published(period: int, rate_hz: float, snapshot: Any) -> None:
+    planned = schedule(rates_hz={CLOCK: rate_hz})
+    ticks = range(period, 2501, period)
+    due = [tick for tick in ticks for output in planned.due(snapshot(tick)) if output.name == CLOCK]
+    # Each instant of the rate (its last tick may be the last published one) is met by the next tick that is published.
+    instants = [math.ceil(count * 250 / rate_hz) for count in range(1, int(10 * rate_hz) + 1)]
+    expected = sorted({math.ceil(instant / period) * period for instant in instants})
+    assert due == [tick for tick in expected if tick <= ticks[-1]]
 
 
 def test_odometry_comes_where_it_is_asked_for(snapshot: Any) -> None:

@@ -171,8 +171,9 @@ def test_rate_is_met_without_drift_whatever_the_tick() -> None:
 
 def test_rate_has_its_phase_from_the_tick_alone() -> None:
     assert [tick for tick in range(1, 26) if is_due(tick, tick - 1, 250, 50.0)] == [5, 10, 15, 20, 25]
-    assert not is_due(7, None, 250, 50.0)
-    assert is_due(10, None, 250, 50.0)
+    assert not is_due(4, None, 250, 50.0)
+    assert is_due(7, None, 250, 50.0)  # since the start
+    assert not is_due(9, 7, 250, 50.0)
     assert is_due(12, 7, 250, 50.0)
     assert is_due(5, 900, 250, 50.0)
 

@@ -6,8 +6,14 @@ from typing import Any
 import pytest
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
-from simconsole.bridge.protocol.rosapi_graph import NO_GRAPH, GraphNames, NodeNames, Unrelayed
+from simconsole.bridge.protocol.rosapi_graph import LIST_S, NO_GRAPH, GraphNames, NodeNames, Unrelayed
 
+LIST = "list_parameters"
+PARAMETER_SERVICES = {
+    "get_parameters": "GetParameters",
+    "set_parameters": "SetParameters",
+    "get_parameter_types": "GetParameterTypes",
+}
 TALKER = NodeNames(("/chatter",), ("/odom",), ("/talker/set_parameters", "/flip"))
 
 
@@ -20,8 +26,8 @@ class Graph:
         bridge.router.graph = GraphNames(
             {"/simconsole": TALKER, "/talker": TALKER}, {"/tf": Unrelayed("tf2_msgs/msg/TFMessage", "not installed")}
         )
-        for name in ("get_parameters", "set_parameters", "get_parameter_types"):
-            self.node.send(op="advertise_service", service=f"/talker/{name}", type=f"rcl_interfaces/srv/{name}")
+        for name, kind in PARAMETER_SERVICES.items():
+            self.node.send(op="advertise_service", service=f"/talker/{name}", type=f"rcl_interfaces/srv/{kind}")
 
     def ask(self, service: str, /, **args: Any) -> Any:
         self.peer.send(op="call_service", service=f"/rosapi/{service}", args=args)
@@ -151,3 +157,105 @@ def test_the_services_of_a_graph_leave_those_of_clients_their_places(graph: Grap
     graph.peer.send(op="advertise_service", service="/mine", type="std_srvs/SetBool")
     assert bridge.router.calls.providers()["/mine"] == graph.peer.session.number
     assert len(bridge.router.calls.providers()) > most
+
+
+class TwoNodes:
+    """/one and /two, who are asked for the names of their parameters."""
+
+    def __init__(self, bridge: ConsoleBridge, join: Callable[..., Any]) -> None:
+        self.bridge, self.node, self.peer = bridge, join(bridge), join(bridge)
+        bridge.router.registry.add("rcl_interfaces/ListParametersResult", "string[] names\nstring[] prefixes\n")
+        bridge.router.registry.add("rcl_interfaces/ListParameters_Response", "ListParametersResult result\n")
+        self.node.session.in_graph = True
+        for name in ("/one", "/two"):
+            self.node.send(op="advertise_service", service=f"{name}/{LIST}", type="rcl_interfaces/srv/ListParameters")
+        mute = NodeNames((), (), ())
+        bridge.router.graph = GraphNames(dict.fromkeys(("/simconsole", "/one", "/two", "/mute"), mute), {})
+        self.peer.send(op="call_service", service="/rosapi/set_param", args={"name": "own", "value": "1"})
+        self.peer.heard()
+
+    def ask(self) -> dict[str, Any]:
+        """Ask for all names; the calls to the nodes by service."""
+        self.peer.send(op="call_service", service="/rosapi/get_param_names")
+        return {call["service"]: call for call in self.node.heard()}
+
+    def answer(self, call: dict[str, Any], values: Any, result: bool = True) -> None:
+        told = {"service": call["service"], "id": call["id"], "values": values, "result": result}
+        self.node.send(op="service_response", **told)
+
+    def names(self) -> list[list[str]]:
+        return [heard["values"]["names"] for heard in self.peer.heard()]
+
+
+@pytest.fixture
+def two(bridge: ConsoleBridge, join: Callable[..., Any]) -> TwoNodes:
+    return TwoNodes(bridge, join)
+
+
+def listed(*names: str) -> dict[str, Any]:
+    return {"result": {"names": list(names), "prefixes": []}}
+
+
+def test_names_of_all_parameters(two: TwoNodes) -> None:
+    calls = two.ask()
+    assert set(calls) == {f"/one/{LIST}", f"/two/{LIST}"}
+    two.answer(calls[f"/two/{LIST}"], listed("gain"))
+    assert two.names() == []  # /one has not said any yet
+    two.answer(calls[f"/one/{LIST}"], listed("rate", "mode"))
+    assert two.names() == [["own", "/one:mode", "/one:rate", "/two:gain"]]
+
+
+def test_a_node_that_does_not_name_its_parameters_is_left_out(two: TwoNodes) -> None:
+    calls = two.ask()
+    two.answer(calls[f"/one/{LIST}"], listed("rate"))
+    two.bridge.router.calls.expire(int((LIST_S - 0.01) * 1e9))
+    assert two.names() == []
+    two.bridge.router.calls.expire(int((LIST_S + 0.01) * 1e9))
+    assert two.names() == [["own", "/one:rate"]]
+
+
+@pytest.mark.parametrize("answer", [("it has failed", False), ({"result": 7}, True)])
+def test_a_node_that_answers_wrongly_is_left_out(two: TwoNodes, answer: tuple[Any, bool]) -> None:
+    calls = two.ask()
+    two.answer(calls[f"/one/{LIST}"], *answer)
+    two.answer(calls[f"/two/{LIST}"], listed("gain"))
+    assert two.names() == [["own", "/two:gain"]]
+
+
+def test_nodes_that_leave_are_left_out(two: TwoNodes) -> None:
+    two.ask()
+    two.bridge.disconnect(two.node.session, 0)
+    assert two.names() == [["own"]]
+
+
+def test_a_client_that_leaves_hears_no_names(two: TwoNodes) -> None:
+    two.ask()
+    two.bridge.disconnect(two.peer.session, 0)
+    assert two.bridge.router.calls.open == 0
+
+
+def test_asking_all_nodes_is_one_call_of_the_client(bridge: ConsoleBridge, join: Callable[..., Any]) -> None:
+    two = TwoNodes(bridge, join)
+    two.peer.session.max_calls = 1
+    calls = two.ask()
+    assert len(calls) == 2
+    assert two.ask() == {}
+    (refused,) = two.peer.heard()
+    assert "1 calls at a time are the most allowed" in refused["values"]
+
+
+@pytest.mark.parametrize("kind", ["GetParameters", "SetBool"])
+def test_a_client_cannot_stand_for_a_node(kind: str, bridge: ConsoleBridge, join: Callable[..., Any]) -> None:
+    squatter, peer = join(bridge), join(bridge)
+    bridge.router.graph = GraphNames({"/talker": TALKER}, {})
+    squatter.send(op="advertise_service", service="/talker/get_parameters", type=f"rcl_interfaces/srv/{kind}")
+    peer.send(op="call_service", service="/rosapi/get_param", args={"name": "/talker:rate"})
+    assert squatter.heard() == []
+    assert peer.heard()[0]["values"] == "/rosapi/get_param: /talker/get_parameters: nobody provides it"
+
+
+def test_a_service_of_another_type_is_not_asked(graph: Graph) -> None:
+    graph.node.send(op="unadvertise_service", service="/talker/get_parameters")
+    graph.node.send(op="advertise_service", service="/talker/get_parameters", type="std_srvs/srv/SetBool")
+    assert graph.ask("get_param", name="/talker:rate")["result"] is False
+    assert graph.node.heard() == []

@@ -16,7 +16,7 @@ class Handled:
         self.messages: list[tuple[str, bytes]] = []
 
     def inbox(self, name: str, cost: int = 0, bytes_per_s: float = 1e9) -> Inbox:
-        def apply(message: bytes) -> int:
+        def apply(message: bytes, now_ns: int) -> int:
             self.messages.append((name, message))
             return cost
 

@@ -1,0 +1,1 @@
+"""Controllers of a console's car, on the ROS side."""
