@@ -19,13 +19,13 @@ from simconsole.values.layout import Part, read, write
 from simconsole.values.platform import MOST_PATCHES, Ground, Platform, Pose
 from simconsole.values.trigonometry import wrap_angle
 from simconsole.values.units import MPS_PER_KMH, RAD_PER_DEG, RADPS_PER_RPM, STANDARD_GRAVITY_MPS2
+from simconsole.vehicle.car.aid_parameters import aid_parameters, slip_stiffness
 from simconsole.vehicle.car.car_step import STEP_S, step
 from simconsole.vehicle.car.gearbox import SHIFT_RAMP_SHARE
 from simconsole.vehicle.car.outputs import vehicle_state
 from simconsole.vehicle.car.parameters import (
     NO_PATCH,
     PARAMETERS,
-    AidParameters,
     AxleParameters,
     BodyParameters,
     CarParameters,
@@ -63,9 +63,6 @@ LEAST_CREEP_NM: Final = 0.1
 
 FRICTION_DEG: Final = 3.0
 """Angle of the hand wheel over which the steering's friction comes in: seals, mesh and column are elastic."""
-
-LEAST_UNDERSTEER_KMH: Final = 250.0
-"""Characteristic speed of the least understeer that stability control expects of a car."""
 
 RAMPS: Final = 8
 LIMIT_BAND_RPM: Final = 100.0
@@ -130,7 +127,7 @@ def car_parameters(profile: CarProfile, ground: Ground) -> CarParameters:
         steering=_steering(profile),
         engine=_engine(profile.engine),
         gears=_gears(profile.gearbox, profile.automatic, profile.engine, driven),
-        aids=_aids(profile, front, rear),
+        aids=aid_parameters(profile, front, rear),
         front=front,
         rear=rear,
         **_patches(ground),
@@ -218,54 +215,6 @@ def _steering(profile: CarProfile) -> SteeringParameters:
         hand_friction_nm=steering.rim_friction_nm,
         per_friction_rad=steering.ratio / (FRICTION_DEG * RAD_PER_DEG),
     )
-
-
-def _aids(profile: CarProfile, front: AxleParameters, rear: AxleParameters) -> AidParameters:
-    aids = profile.aids
-    known = aids.characteristic_speed_kmh
-    return AidParameters(
-        anti_lock=float(aids.anti_lock),
-        traction=float(aids.traction_control),
-        stability=float(aids.stability_control),
-        hill_hold=float(aids.hill_hold),
-        understeer_per_square_mps=(
-            _understeer(profile, front, rear) if known is None else 1.0 / (known * MPS_PER_KMH) ** 2
-        ),
-        lateral_mps2=aids.stability_lateral_mps2,
-        stability_nms=aids.stability_nm_per_radps,
-        stability_most_nm=aids.stability_nm,
-    )
-
-
-def slip_stiffness(profile: CarProfile, axle: AxleProfile) -> float:
-    """Return force per load and slip at small slip, of the tyre that the car has."""
-    given = {} if profile.tyre is None else profile.tyre.coefficients
-    return given.get("PKX1", axle.slip_stiffness) * given.get("LKX", 1.0)
-
-
-def _understeer(profile: CarProfile, front: AxleParameters, rear: AxleParameters) -> float:
-    """Return k of the yaw rate r = v d / (L (1 + k v^2)) that the car settles at, per (m/s)^2.
-
-    That of the linear single track (Riekert and Schunck, 1940) on the tyres' stiffness at their static loads, with the
-    steering that gives way to the tyres' moment. A car that does not understeer is expected to do so a little.
-    """
-    body, steering = profile.body, profile.steering
-    slips = 1.0 / _cornering(profile, profile.front, front.static_n) - 1.0 / _cornering(
-        profile, profile.rear, rear.static_n
-    )
-    moment_nm_per_mps2 = body.mass_kg * body.front_mass_share * (steering.pneumatic_trail_m + steering.caster_trail_m)
-    bent = steering.compliance_deg_per_100nm * RAD_PER_DEG / 100.0 * moment_nm_per_mps2
-    found = (slips / STANDARD_GRAVITY_MPS2 + bent) / body.wheelbase_m
-    return max(found, 1.0 / (LEAST_UNDERSTEER_KMH * MPS_PER_KMH) ** 2)
-
-
-def _cornering(profile: CarProfile, axle: AxleProfile, load_n: float) -> float:
-    """Return an axle's side force over load and slip angle at none."""
-    if profile.tyre is None or not profile.tyre.coefficients:
-        return axle.cornering_stiffness_per_rad
-    from simconsole.vehicle.car.pac2002 import coefficients, stiffness_y
-
-    return -stiffness_y(coefficients(profile.tyre.coefficients), load_n, 0.0) / load_n
 
 
 def _axle(profile: CarProfile, axle: AxleProfile, ground: Ground, at_front: bool) -> AxleParameters:

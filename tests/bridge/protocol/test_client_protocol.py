@@ -5,6 +5,7 @@ from typing import Any
 import pytest
 
 from simconsole.bridge.protocol.client_protocol import MAX_STATUS, ClientProtocol, Goal
+from simconsole.bridge.protocol.operations import write_publish
 from simconsole.values.errors import BridgeError, LocalProtocolError
 
 
@@ -69,6 +70,22 @@ def test_mistakes_of_the_server_are_counted_and_end_nothing() -> None:
     assert client.refused == 5
     assert client.receive(publish("/other", {"data": "x"})) is None
     assert client.receive(publish("/s", {"data": "x"})) is not None
+
+
+def test_what_servers_nearly_always_send_is_read_as_any_other_text() -> None:
+    """The short way and the long one: one message, written as `write_publish` does and with a space more."""
+    for text in (write_publish("/s", {"data": "x"}), b'{"op": "publish", "topic": "/s", "msg": {"data": "x"}}'):
+        client = ClientProtocol(dialect="ros2")
+        client.subscribe("/s", "std_msgs/String")
+        found = client.receive(text)
+        assert found is not None
+        assert (found.topic, found.message.data) == ("/s", "x")
+    short = ClientProtocol(dialect="ros2")
+    short.subscribe("/s", "std_msgs/String")
+    for bad in (write_publish("/s", {"data": 5}), b'{"op":"publish","topic":"/s","msg":{"data":"x"'):
+        assert short.receive(bad) is None
+    assert short.receive(write_publish("/other", {"data": "x"})) is None
+    assert short.refused == 2
 
 
 def test_statuses_are_kept_bounded() -> None:

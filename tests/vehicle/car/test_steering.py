@@ -50,7 +50,9 @@ def test_it_falls_before_the_front_tyres_have_given_all_they_have() -> None:
     )
     assert felt * TICK_S < full * TICK_S - 0.3
     assert forces[felt] < 0.97 * max(forces)
-    assert at_full < 0.9 * max(torques)
+    # Friction at the rim is in both, and assistance flattens what the rack feels: the fall itself must be felt. Hands
+    # tell a tenth of the torque they hold, at most 0.3 N m here.
+    assert max(torques) - at_full > 0.3
 
 
 @pytest.mark.parametrize("brake", [0.0, 0.5])
