@@ -264,7 +264,7 @@ def force_feedback(previous: Row, row: Row, settings: Row, tick_s: float) -> Non
     sample = read(row, LAYOUT.sample)
     arbitration = read(row, LAYOUT.arbitration)
     cockpit = read(settings, SETTINGS.cockpit)
-    torque, memory = wheel_torque(
+    torque, memory, pipe = wheel_torque(
         read(row, LAYOUT.driver),
         sample.wheel_motor,
         arbitration,
@@ -273,9 +273,11 @@ def force_feedback(previous: Row, row: Row, settings: Row, tick_s: float) -> Non
         read(row, LAYOUT.vehicle),
         read(previous, LAYOUT.torque),
         read(previous, LAYOUT.motor),
+        read(previous, LAYOUT.pipe),
         read(settings, SETTINGS.force),
         cockpit.wheel_rate_filter_s,
         tick_s,
     )
     write(row, LAYOUT.torque, torque)
     write(row, LAYOUT.motor, memory)
+    write(row, LAYOUT.pipe, pipe)
