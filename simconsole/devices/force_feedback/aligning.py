@@ -50,15 +50,19 @@ def answered(before_rad: float, road_wheel_rad: float, speed_mps: float, force: 
 
 
 @kernel
-def aligning(car_nm: float, answered_rad: float, rim: Rim, stiff: float, force: ForceSettings) -> float:
+def aligning(
+    car_nm: float, answered_rad: float, swing_radps: float, rim: Rim, stiff: float, force: ForceSettings
+) -> float:
     """Return the car's torque, led by what it has not answered yet, and damped, in N m.
 
     Args:
         car_nm: At the rim of the real car, left-positive.
         answered_rad: The wheel's angle that caused it.
+        swing_radps: The car's yaw rate, less its slow part.
         rim: The wheel when this torque acts.
         stiff: The car's stiffness about the middle, with the share that is in force, in N m per rad.
         force: Of this drive.
     """
-    damping = force.aligning_damping * sqrt(stiff * force.inertia_kgm2)
-    return car_nm + stiff * (answered_rad - rim.rad) - damping * rim.radps
+    damping = force.aligning_damping * sqrt(stiff * force.inertia_kgm2) + force.return_s * stiff
+    against_rad = force.hand_wheel_per_road_wheel * force.yaw_damping_s * swing_radps
+    return car_nm + stiff * (answered_rad - rim.rad - against_rad) - damping * rim.radps

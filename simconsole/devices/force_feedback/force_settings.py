@@ -12,6 +12,9 @@ PHASE_RAD: Final = 1.0
 """Frequency of the wheel on the car's stiffness, times all delay of the motor, up to which prediction holds."""
 ALIGNING_DAMPING: Final = 1.0
 """Twice the damping ratio of a wheel that is let go of."""
+RETURN_S: Final = 0.03
+YAW_DAMPING_S: Final = 0.05
+YAW_SLOW_S: Final = 0.3
 OBSERVER_RADPS: Final = 50.0
 """Bandwidth of the torque estimate: settles in about 3 / 50 s, well above what arms do (5 Hz)."""
 
@@ -61,6 +64,9 @@ class ForceSettings(NamedTuple):
     relaxation_m: float  # of its tyres
     most_nm_per_rad: float  # that this motor bears
     aligning_damping: float  # times the root of stiffness times inertia
+    return_s: float
+    yaw_damping_s: float
+    yaw_slow_s: float
 
 
 NO_FORCE: Final = ForceSettings(*(0.0,) * len(ForceSettings._fields))
@@ -129,4 +135,7 @@ def force_settings(
         relaxation_m=rim.relaxation_m,
         most_nm_per_rad=force.motor.inertia_kgm2 * bandwidth_radps**2,
         aligning_damping=ALIGNING_DAMPING,
+        return_s=RETURN_S,
+        yaw_damping_s=YAW_DAMPING_S,
+        yaw_slow_s=YAW_SLOW_S,
     )

@@ -34,6 +34,7 @@ FRICTION_RADPS: Final = 1.0
 END_STOP_NMS: Final = 1.0
 RESTING_S: Final = 0.05
 """Time constant with which the model follows a wheel with resting hands: that with which the estimate detects them."""
+FAST_MPS: Final = 40.0
 CENTRING_RADPS: Final = 2.0
 """How fast the motor centres the wheel before a restart: a turn in 3 s, which hands that rest on it can follow."""
 CENTRING_LEAD_RAD: Final = 0.15
@@ -120,6 +121,7 @@ def torque_parts(
     asked: GuidanceReference,
     share: float,
     answered_rad: float,
+    swing_radps: float,
     force: ForceSettings,
 ) -> TorqueParts:
     """Return the parts of the torque, unlimited.
@@ -132,6 +134,7 @@ def torque_parts(
         asked: What the controller asks of the hand wheel.
         share: How much of its guidance there is, 0 to 1.
         answered_rad: The hand wheel's angle that the car's tyres have answered.
+        swing_radps: The car's yaw rate, less its slow part.
         force: Of this drive.
     """
     speed = abs(vehicle.vx_mps)
@@ -144,7 +147,7 @@ def torque_parts(
     stiff = force.car_share * rolling * stiffness(speed, force)
     bears = share_of(stiff, force)
     felt = bears * force.car_share * rolling * vehicle.hand_wheel_torque_nm
-    car = aligning(felt, answered_rad, rim, bears * stiff, force)
+    car = aligning(felt, answered_rad, swing_radps, rim, bears * stiff, force)
     guide = guidance(asked, rim, rolling, share, force)
     return TorqueParts(car, 0.0, guide, drag + end_stop(rim, force) + texture, bears)
 
@@ -312,6 +315,11 @@ def wheel_torque(
     answered_rad = target.rim.rad
     if target.known and memory.live > 0.0:
         answered_rad = answered(memory.answered_rad, vehicle.road_wheel_rad, abs(vehicle.vx_mps), force, tick_s)
+    yaw_radps = memory.yaw_radps
+    if target.known:
+        yaw_radps += (vehicle.yaw_rate_radps - yaw_radps) * (tick_s / (tick_s + force.yaw_slow_s))
+    fast = clip(abs(vehicle.vx_mps) / FAST_MPS, 0.0, 1.5) if target.known else 0.0
+    swing_radps = fast * (vehicle.yaw_rate_radps - yaw_radps) if target.known else 0.0
     torque = WheelTorque(
         torque_nm=0.0,
         car_nm=0.0,
@@ -326,7 +334,7 @@ def wheel_torque(
     )
     if enabled:
         guided = arbitration.remote_guidance if mode == Mode.SHARED else 0.0
-        parts = torque_parts(follows, target.rim, rim, vehicle, target.asked, guided, answered_rad, force)
+        parts = torque_parts(follows, target.rim, rim, vehicle, target.asked, guided, answered_rad, swing_radps, force)
         torque = limited_torque(parts, ramp, estimated, before, force)
     share = ramp if follows else 0.0
     unattended = unattended_motion(
@@ -346,4 +354,5 @@ def wheel_torque(
         explained_radps=unattended.explained_radps,
         guide_rad=target.asked.slow_rad,
         answered_rad=answered_rad,
+        yaw_radps=yaw_radps,
     ), pipe

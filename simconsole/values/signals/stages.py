@@ -186,6 +186,7 @@ class WheelMemory(NamedTuple):
     explained_radps: float
     guide_rad: float  # slow part of the angle that the controller asks of the hand wheel
     answered_rad: float  # the hand wheel's angle that the car's tyres have answered
+    yaw_radps: float  # slow part of the car's yaw rate
 
 
 class MotorPipe(NamedTuple):
