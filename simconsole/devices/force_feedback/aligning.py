@@ -16,6 +16,8 @@ from simconsole.values.kernels import clip, kernel
 
 NODE_MPS: Final = 12.0
 """Speed from one figure of the stiffness to the next."""
+FAST_MPS: Final = 40.0
+"""Speed at which the damping of the car's own weaving is in full force; it grows with speed, as its need does."""
 SLOWEST_MPS: Final = 2.0
 """Below it the tyres' relaxation is taken as at this speed."""
 
@@ -34,11 +36,22 @@ def stiffness(speed_mps: float, force: ForceSettings) -> float:
 
 
 @kernel
-def share_of(stiffness_nm_per_rad: float, force: ForceSettings) -> float:
-    """Return the share of the car's torque that this wheel can bear without swinging, 0 to 1."""
-    if stiffness_nm_per_rad <= force.most_nm_per_rad:
-        return 1.0
-    return force.most_nm_per_rad / stiffness_nm_per_rad
+def share_of(stiff: float, fast: float, force: ForceSettings) -> float:
+    """Return the share of the car's torque that this wheel can bear without swinging, 0 to 1.
+
+    Damping over inertia, at the stiffness K that is in force, is a x + r x^2 with x = sqrt(K / J). It may be as high as
+    the motor's delay allows, which gives the largest x.
+
+    Args:
+        stiff: The car's stiffness about the middle, in N m per rad.
+        fast: The speed, in shares of FAST_MPS.
+        force: Of this drive.
+    """
+    a = force.aligning_damping
+    most = force.rate_loop_per_s
+    x_per_s = 2.0 * most / (a + sqrt(a * a + 4.0 * fast * force.return_s * most))
+    most_nm_per_rad = force.inertia_kgm2 * x_per_s * x_per_s
+    return 1.0 if stiff <= most_nm_per_rad else most_nm_per_rad / stiff
 
 
 @kernel
@@ -51,7 +64,7 @@ def answered(before_rad: float, road_wheel_rad: float, speed_mps: float, force: 
 
 @kernel
 def aligning(
-    car_nm: float, answered_rad: float, swing_radps: float, rim: Rim, stiff: float, force: ForceSettings
+    car_nm: float, answered_rad: float, swing_radps: float, rim: Rim, stiff: float, fast: float, force: ForceSettings
 ) -> float:
     """Return the car's torque, led by what it has not answered yet, and damped, in N m.
 
@@ -61,8 +74,9 @@ def aligning(
         swing_radps: The car's yaw rate, less its slow part.
         rim: The wheel when this torque acts.
         stiff: The car's stiffness about the middle, with the share that is in force, in N m per rad.
+        fast: The speed, in shares of FAST_MPS.
         force: Of this drive.
     """
-    damping = force.aligning_damping * sqrt(stiff * force.inertia_kgm2) + force.return_s * stiff
-    against_rad = force.hand_wheel_per_road_wheel * force.yaw_damping_s * swing_radps
+    damping = force.aligning_damping * sqrt(stiff * force.inertia_kgm2) + fast * force.return_s * stiff
+    against_rad = force.hand_wheel_per_road_wheel * fast * force.yaw_damping_s * swing_radps
     return car_nm + stiff * (answered_rad - rim.rad - against_rad) - damping * rim.radps

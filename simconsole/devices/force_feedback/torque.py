@@ -6,7 +6,7 @@ which nobody is driven, the loop has stood still, or any part is not finite.
 
 from typing import Final, NamedTuple
 
-from simconsole.devices.force_feedback.aligning import aligning, answered, share_of, stiffness
+from simconsole.devices.force_feedback.aligning import FAST_MPS, aligning, answered, share_of, stiffness
 from simconsole.devices.force_feedback.estimator import WheelEstimate, at_rest, observe
 from simconsole.devices.force_feedback.force_settings import ForceSettings
 from simconsole.devices.force_feedback.guidance import GuidanceReference, guidance, guidance_reference
@@ -34,7 +34,6 @@ FRICTION_RADPS: Final = 1.0
 END_STOP_NMS: Final = 1.0
 RESTING_S: Final = 0.05
 """Time constant with which the model follows a wheel with resting hands: that with which the estimate detects them."""
-FAST_MPS: Final = 40.0
 CENTRING_RADPS: Final = 2.0
 """How fast the motor centres the wheel before a restart: a turn in 3 s, which hands that rest on it can follow."""
 CENTRING_LEAD_RAD: Final = 0.15
@@ -145,9 +144,10 @@ def torque_parts(
     friction = force.friction_nm + (1.0 - rolling) * force.standstill_friction_nm
     drag = -force.damping_nms * rim.radps - friction * rim.radps / (abs(rim.radps) + FRICTION_RADPS)
     stiff = force.car_share * rolling * stiffness(speed, force)
-    bears = share_of(stiff, force)
+    fast = speed / FAST_MPS
+    bears = share_of(stiff, fast, force)
     felt = bears * force.car_share * rolling * vehicle.hand_wheel_torque_nm
-    car = aligning(felt, answered_rad, swing_radps, rim, bears * stiff, force)
+    car = aligning(felt, answered_rad, swing_radps, rim, bears * stiff, fast, force)
     guide = guidance(asked, rim, rolling, share, force)
     return TorqueParts(car, 0.0, guide, drag + end_stop(rim, force) + texture, bears)
 
@@ -318,8 +318,7 @@ def wheel_torque(
     yaw_radps = memory.yaw_radps
     if target.known:
         yaw_radps += (vehicle.yaw_rate_radps - yaw_radps) * (tick_s / (tick_s + force.yaw_slow_s))
-    fast = clip(abs(vehicle.vx_mps) / FAST_MPS, 0.0, 1.5) if target.known else 0.0
-    swing_radps = fast * (vehicle.yaw_rate_radps - yaw_radps) if target.known else 0.0
+    swing_radps = vehicle.yaw_rate_radps - yaw_radps if target.known else 0.0
     torque = WheelTorque(
         torque_nm=0.0,
         car_nm=0.0,
