@@ -242,6 +242,7 @@ def decide(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
         explained_rad=motor.explained_rad,
         explained_radps=motor.explained_radps,
         human_nm=read(previous, LAYOUT.torque).human_nm,
+        carried_nm=motor.carried_nm,
         wheel_motor=motor.live,
         settings=control,
         tick_s=tick_s,

@@ -13,7 +13,7 @@ from simconsole.devices.force_feedback.motor import SimulatedWheelPort, WheelMot
 from simconsole.devices.force_feedback.simulated_wheel import HANDS_OFF, Arm, SimulatedWheel, step_wheel
 from simconsole.drivers.manoeuvre_driver.run_up import RunUp
 from simconsole.drivers.speed_holder import SpeedHolder
-from simconsole.profiles.force_feedback import ForceFeedback, Motor
+from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.session.resolution import load_scenario, resolve
 from simconsole.tick.advance import Console, advance_vector
 from simconsole.tick.assembly import ResolvedSession, assemble

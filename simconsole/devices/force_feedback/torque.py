@@ -34,6 +34,8 @@ FRICTION_RADPS: Final = 1.0
 END_STOP_NMS: Final = 1.0
 RESTING_S: Final = 0.05
 """Time constant with which the model follows a wheel with resting hands: that with which the estimate detects them."""
+CARRIED_NMPS: Final = 2.0
+"""How fast a torque that was held at engagement must go: hands let go of a bend within a second or two."""
 CENTRING_RADPS: Final = 2.0
 """How fast the motor centres the wheel before a restart: a turn in 3 s, which hands that rest on it can follow."""
 CENTRING_LEAD_RAD: Final = 0.15
@@ -271,6 +273,21 @@ def unattended_motion(
 
 
 @kernel
+def carried(before_nm: float, human_nm: float, watching: bool, tick_s: float) -> float:
+    """Return how much of the person's torque is no take-over: what they held as they engaged, while it fades.
+
+    Args:
+        before_nm: In the tick before.
+        human_nm: The person's torque, estimated.
+        watching: Whether the person may take over.
+        tick_s: Length of a tick.
+    """
+    if not watching:
+        return abs(human_nm)
+    return clip(before_nm - CARRIED_NMPS * tick_s, 0.0, abs(human_nm))
+
+
+@kernel
 def wheel_torque(
     driver: DriverInput,
     wheel_motor: float,
@@ -354,4 +371,5 @@ def wheel_torque(
         guide_rad=target.asked.slow_rad,
         answered_rad=answered_rad,
         yaw_radps=yaw_radps,
+        carried_nm=carried(memory.carried_nm, estimated.human_nm, watching, tick_s),
     ), pipe

@@ -187,6 +187,7 @@ class WheelMemory(NamedTuple):
     guide_rad: float  # slow part of the angle that the controller asks of the hand wheel
     answered_rad: float  # the hand wheel's angle that the car's tyres have answered
     yaw_radps: float  # slow part of the car's yaw rate
+    carried_nm: float  # of the person's torque, what they held before they could take over by it: it fades
 
 
 class MotorPipe(NamedTuple):
