@@ -1,4 +1,4 @@
-"""`simconsole devices list | check | calibrate | feel | record`: the cockpit before a drive."""
+"""`simconsole devices list | check | calibrate | feel | identify | accept | record`: the cockpit before a drive."""
 
 import sys
 from argparse import Namespace
@@ -52,10 +52,12 @@ def devices(options: Namespace) -> Outcome:
                 say=_say,
                 ask=keys.ask,
                 pressed=keys.pressed,
-                strength=options.strength / 100.0,
+                strength=(options.strength or 25) / 100.0,
                 virtual=options.virtual,
             )
         return Outcome(0 if results["ok"] else 1, results)
+    if options.action in ("identify", "accept"):
+        return _identified(options, cockpit)
     results = record_devices(
         cockpit,
         Path(options.out or "trace.csv"),
@@ -65,6 +67,35 @@ def devices(options: Namespace) -> Outcome:
         virtual=options.virtual,
     )
     return Outcome(0, results)
+
+
+def _identified(options: Namespace, cockpit: CockpitProfile) -> Outcome:
+    """Find what the motor is like, alone or as a part of accepting the whole cockpit."""
+    from simconsole.devices.setup.identify_dialogue import Weight, identify_motor
+    from simconsole.devices.setup.key_watch import KeyWatch
+
+    weight = None if options.weight is None else Weight(options.weight, options.radius)
+    with KeyWatch() as keys:
+        if options.action == "accept":
+            from simconsole.devices.setup.accept_dialogue import accept_cockpit
+
+            known = [load("devices", name, CockpitProfile) for name in names("devices")]
+            folder = Path(options.out or "acceptance")
+            results = accept_cockpit(
+                cockpit, folder, keys, say=_say, known=known, weight=weight, virtual=options.virtual
+            )
+            return Outcome(0 if results["ok"] else 1, results)
+        results = identify_motor(
+            cockpit,
+            Path(options.out) if options.out else None,
+            say=_say,
+            ask=keys.ask,
+            pressed=keys.pressed,
+            strength=(options.strength or 40) / 100.0,
+            weight=weight,
+            virtual=options.virtual,
+        )
+    return Outcome(1 if results["refusal"] else 0, results)
 
 
 def _say(line: str) -> None:

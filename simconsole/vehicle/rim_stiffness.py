@@ -29,4 +29,4 @@ def rim_stiffness(profile: VehicleProfile) -> RimStiffness:
         / across_rad
         for speed in SPEEDS_MPS
     ]
-    return RimStiffness(*slopes, relaxation_m=1.0 / front.decay_y_per_m)
+    return RimStiffness(*slopes, 1.0 / front.decay_y_per_m)

@@ -356,20 +356,24 @@ def wheel_torque(
     unattended = unattended_motion(
         driver, estimated, target.rim, share, watching, live, memory, force, rate_filter_s, tick_s
     )
-    return torque, WheelMemory(
-        live=1.0 if live else 0.0,
-        wheel_rad=estimated.rad,
-        wheel_radps=estimated.radps,
-        motor_nm=motor_nm,
-        hands_nm=estimated.hands_nm,
-        target_rad=target.rim.rad,
-        model_rad=unattended.rad,
-        model_radps=unattended.radps,
-        model_nm=unattended.motor_nm,
-        explained_rad=unattended.explained_rad,
-        explained_radps=unattended.explained_radps,
-        guide_rad=target.asked.slow_rad,
-        answered_rad=answered_rad,
-        yaw_radps=yaw_radps,
-        carried_nm=carried(memory.carried_nm, estimated.human_nm, watching, tick_s),
-    ), pipe
+    return (
+        torque,
+        WheelMemory(
+            live=wheel_motor if live else 0.0,
+            wheel_rad=estimated.rad,
+            wheel_radps=estimated.radps,
+            motor_nm=motor_nm,
+            hands_nm=estimated.hands_nm,
+            target_rad=target.rim.rad,
+            model_rad=unattended.rad,
+            model_radps=unattended.radps,
+            model_nm=unattended.motor_nm,
+            explained_rad=unattended.explained_rad,
+            explained_radps=unattended.explained_radps,
+            guide_rad=target.asked.slow_rad,
+            answered_rad=answered_rad,
+            yaw_radps=yaw_radps,
+            carried_nm=carried(memory.carried_nm, estimated.human_nm, watching, tick_s),
+        ),
+        pipe,
+    )

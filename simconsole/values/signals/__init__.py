@@ -19,6 +19,7 @@ from simconsole.values.signals.codes import (
     Validity,
 )
 from simconsole.values.signals.inputs import (
+    MOTOR_UNKNOWN,
     NEVER_TICKS,
     NO_COMMAND,
     NO_EVENTS,
@@ -42,6 +43,7 @@ from simconsole.values.signals.stages import (
 )
 
 __all__ = [
+    "MOTOR_UNKNOWN",
     "NEVER_TICKS",
     "NO_COMMAND",
     "NO_EVENTS",
