@@ -3,11 +3,16 @@
 import sys
 from argparse import Namespace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from simconsole.cli.outcome import Outcome
-from simconsole.devices.setup.device_commands import check_devices, list_devices, record_devices
+from simconsole.devices.setup.device_commands import check_devices, list_devices, realtime, record_devices, unpaced
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load, names
+
+if TYPE_CHECKING:
+    from simconsole.devices.setup.identify_dialogue import Weight
+    from simconsole.devices.setup.key_watch import KeyWatch
 
 
 def devices(options: Namespace) -> Outcome:
@@ -77,14 +82,7 @@ def _identified(options: Namespace, cockpit: CockpitProfile) -> Outcome:
     weight = None if options.weight is None else Weight(options.weight, options.radius)
     with KeyWatch() as keys:
         if options.action == "accept":
-            from simconsole.devices.setup.accept_dialogue import accept_cockpit
-
-            known = [load("devices", name, CockpitProfile) for name in names("devices")]
-            folder = Path(options.out or "acceptance")
-            results = accept_cockpit(
-                cockpit, folder, keys, say=_say, known=known, weight=weight, virtual=options.virtual
-            )
-            return Outcome(0 if results["ok"] else 1, results)
+            return _accepted(options, cockpit, keys, weight)
         results = identify_motor(
             cockpit,
             Path(options.out) if options.out else None,
@@ -96,6 +94,27 @@ def _identified(options: Namespace, cockpit: CockpitProfile) -> Outcome:
             virtual=options.virtual,
         )
     return Outcome(1 if results["refusal"] else 0, results)
+
+
+def _accepted(options: Namespace, cockpit: CockpitProfile, keys: "KeyWatch", weight: "Weight | None") -> Outcome:
+    """Guide a person through a new cockpit."""
+    from simconsole.devices.setup.accept_dialogue import Terminal, accept_cockpit
+    from simconsole.session.emergency_check import stops
+    from simconsole.session.provenance import host_facts
+
+    results = accept_cockpit(
+        cockpit,
+        Path(options.out or "acceptance"),
+        Terminal(keys.ask, keys.pressed, keys.typed if keys.is_terminal else None),
+        say=_say,
+        stops=stops,
+        host=host_facts(),
+        known=[load("devices", name, CockpitProfile) for name in names("devices")],
+        weight=weight,
+        virtual=options.virtual,
+        pace=unpaced if options.virtual else realtime,
+    )
+    return Outcome(0 if results["ok"] else 1, results)
 
 
 def _say(line: str) -> None:

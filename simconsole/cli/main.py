@@ -278,8 +278,8 @@ def _tools(commands: Any) -> None:
         metavar="S",
         help="check, record: for how long (default: 10)",
     )
-    devices.add_argument("--strength", type=int, metavar="PERCENT", help="feel (25), identify (40): of the motor's torque")
-    devices.add_argument("--weight", type=float, metavar="KG", help="identify, accept: hung on the rim, gives the scale")
+    devices.add_argument("--strength", type=int, metavar="PERCENT", help="feel, identify: of the motor's torque")
+    devices.add_argument("--weight", type=float, metavar="KG", help="identify, accept: on the rim, gives the scale")
     devices.add_argument("--radius", type=float, default=0.14, metavar="M", help="... so far from the hub (0.14)")
     devices.add_argument("--out", metavar="FILE", help="record: trace.csv; accept: its folder; else the new profile")
 

@@ -14,6 +14,5 @@ class RimStiffness(NamedTuple):
     relaxation_m: float  # length over which the front tyres answer
 
 
-SPEEDS_MPS: Final = (0.0, 12.0, 24.0, 36.0, 48.0)
 NO_STIFFNESS: Final = RimStiffness(*(0.0,) * len(RimStiffness._fields))
 """A vehicle whose steering feels nothing."""

@@ -4,7 +4,7 @@ from typing import Final
 
 from simconsole.profiles.vehicle import BallProfile, VehicleProfile
 from simconsole.values.platform import Ground
-from simconsole.values.rim_stiffness import NO_STIFFNESS, SPEEDS_MPS, RimStiffness
+from simconsole.values.rim_stiffness import NO_STIFFNESS, RimStiffness
 from simconsole.values.units import RAD_PER_DEG
 
 LEVEL: Final = Ground(friction=1.0, slope_x=0.0, slope_y=0.0)
@@ -24,9 +24,16 @@ def rim_stiffness(profile: VehicleProfile) -> RimStiffness:
     stiff_n_per_rad = 2.0 * front.stiffness_y_per_m / front.decay_y_per_m * front.static_n
     moment_nm = stiff_n_per_rad * (steering.caster_trail_m + steering.pneumatic_trail_m) * SMALL_RAD
     across_rad = 2.0 * SMALL_RAD * profile.steering.ratio
-    slopes = [
-        (hand_wheel_torque(steering, moment_nm, 0.0, speed) - hand_wheel_torque(steering, -moment_nm, 0.0, speed))
-        / across_rad
-        for speed in SPEEDS_MPS
-    ]
-    return RimStiffness(*slopes, 1.0 / front.decay_y_per_m)
+
+    def slope(speed_mps: float) -> float:
+        left_nm, right_nm = (hand_wheel_torque(steering, side * moment_nm, 0.0, speed_mps) for side in (1.0, -1.0))
+        return (left_nm - right_nm) / across_rad
+
+    return RimStiffness(
+        at_0mps=slope(0.0),
+        at_12mps=slope(12.0),
+        at_24mps=slope(24.0),
+        at_36mps=slope(36.0),
+        at_48mps=slope(48.0),
+        relaxation_m=1.0 / front.decay_y_per_m,
+    )
