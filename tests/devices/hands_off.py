@@ -20,6 +20,7 @@ from simconsole.tick.assembly import ResolvedSession, assemble
 from simconsole.values.host.jit import compiled
 from simconsole.values.signals import NO_COMMAND, NO_EVENTS
 from simconsole.values.state_vector import Snapshot
+from simconsole.vehicle.rim_stiffness import rim_stiffness
 from tests.paths import ROOT
 
 TICK_HZ = 250
@@ -139,11 +140,10 @@ class Released(NamedTuple):
     torque_nm: np.ndarray
     share: float
     swings_deg: list[float]  # from extreme to extreme
+    friction_band_deg: float  # at which friction holds it
 
 
-def let_go(
-    vehicle: str, start: Bend, true: ForceFeedback, found: ForceFeedback, seconds: float = 6.0
-) -> Released:
+def let_go(vehicle: str, start: Bend, true: ForceFeedback, found: ForceFeedback, seconds: float = 6.0) -> Released:
     """Hold the wheel in the bend for a second, let go, and return its motion."""
     console, session, _ = console_of(vehicle, found)
     settings = cockpit_settings(session.cockpit, TICK_HZ)
@@ -164,7 +164,10 @@ def let_go(
             rads.append(wheel.state.rad)
             torques.append(snapshot.torque.torque_nm)
     share = snapshot.torque.car_share
-    return Released(np.array(rads), np.array(torques), share, swings(np.degrees(rads)))
+    dry_nm = found.motor.friction_nm + found.friction_nm
+    stiff = rim_stiffness(session.vehicle).at_12mps * found.car_share * share
+    band = math.degrees(dry_nm / stiff) if stiff else math.inf
+    return Released(np.array(rads), np.array(torques), share, swings(np.degrees(rads)), band)
 
 
 def swings(angle_deg: np.ndarray, least_deg: float = 0.3) -> list[float]:

@@ -8,6 +8,7 @@ from typing import Any, Final, NamedTuple
 
 import msgspec
 
+from simconsole.devices.calibration.cockpit_settings import GEARS
 from simconsole.devices.setup.calibration_dialogue import calibrate_devices
 from simconsole.devices.setup.cockpit_trials import Trials, Verdict
 from simconsole.devices.setup.device_commands import Pace, Say, list_devices, realtime
@@ -22,6 +23,8 @@ from simconsole.values.signals import DeviceSample
 CALIBRATED: Final = "calibrated.yaml"
 ACCEPTED: Final = "cockpit.yaml"
 REPORT: Final = "report.json"
+MOST_TRIES: Final = 5
+"""Times that virtual hands are asked the same before they give up."""
 
 Stops = Callable[[CockpitProfile, Sequence[DeviceSample]], Verdict]
 """Drives a console with what a cockpit sent and says whether it went into its emergency stop and let the wheel go."""
@@ -128,11 +131,18 @@ def accept_cockpit(
 
 def _obliging(cockpit: CockpitProfile) -> Callable[[str], str]:
     """Return answers of somebody who does everything that is asked, with a cockpit that lacks some buttons."""
-    lacks = [name for name in Buttons.__struct_fields__ if getattr(cockpit.buttons, name) is None]
+    buttons = [name for name in Buttons.__struct_fields__ if getattr(cockpit.buttons, name) is None]
+    lacks = [f"for {name.replace('_', ' ').upper()}" for name in buttons]
+    lacks += [f"the {name.upper()}" for name in ("clutch", "handbrake") if getattr(cockpit.pedals, name) is None]
+    lacks += [f"GEAR {gear}" for gear in range(len(cockpit.shifter.gears) + 1, GEARS + 1)]
+    asked: dict[str, int] = {}
 
     def ask(question: str) -> str:
-        if any(f"for {name.replace('_', ' ').upper()}" in question for name in lacks):
+        asked[question] = asked.get(question, 0) + 1
+        if any(word in question for word in lacks):
             return "s"
+        if asked[question] > MOST_TRIES:
+            return "q"
         return "y" if "[y/n]" in question else ""
 
     return ask
