@@ -3,8 +3,7 @@
 from typing import Final
 
 from simconsole.profiles.vehicle import BallProfile, VehicleProfile
-from simconsole.values.platform import Ground
-from simconsole.values.rim_stiffness import NO_STIFFNESS, RimStiffness
+from simconsole.values.platform import NO_STIFFNESS, Ground, RimStiffness
 from simconsole.values.units import RAD_PER_DEG
 
 LEVEL: Final = Ground(friction=1.0, slope_x=0.0, slope_y=0.0)

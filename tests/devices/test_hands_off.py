@@ -1,7 +1,9 @@
 """A wheel that is let go of in a bend comes to rest, whatever wheel it is; and nobody's torque is told from a push."""
 
 from collections.abc import Callable
+from itertools import pairwise
 
+import msgspec
 import numpy as np
 import pytest
 
@@ -45,7 +47,7 @@ def shipped() -> ForceFeedback:
 
 def worst_ratio(released: Released) -> float:
     swings = released.swings_deg
-    return max((late / early for early, late in zip(swings, swings[1:], strict=False) if late > SWING_DEG), default=0.0)
+    return max((late / early for early, late in pairwise(swings) if late > SWING_DEG), default=0.0)
 
 
 @pytest.mark.parametrize("vehicle", CARS)
@@ -87,8 +89,6 @@ def test_slow_car_never_swings_up(speed_kmh: int, shipped: ForceFeedback, sample
 
 def test_steeper_rim_is_held_as_well(shipped: ForceFeedback) -> None:
     """Twice the car's torque: damping and share follow from the stiffness, not from one car."""
-    import msgspec
-
     steep = msgspec.structs.replace(shipped, car_share=2.0)
     start = bend("hatchback", 100, 2.0)
     assert start is not None

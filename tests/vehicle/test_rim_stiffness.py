@@ -3,7 +3,7 @@
 import pytest
 
 from simconsole.profiles.files.vehicle_files import load_vehicle
-from simconsole.values.rim_stiffness import NO_STIFFNESS
+from simconsole.values.platform import NO_STIFFNESS
 from simconsole.vehicle.rim_stiffness import rim_stiffness
 
 

@@ -4,7 +4,7 @@ import math
 from typing import Final, NamedTuple
 
 from simconsole.profiles.device import CockpitProfile
-from simconsole.values.rim_stiffness import NO_STIFFNESS, RimStiffness
+from simconsole.values.platform import NO_STIFFNESS, RimStiffness
 from simconsole.values.units import MPS_PER_KMH, RAD_PER_DEG
 
 PIPE_CELLS: Final = 6

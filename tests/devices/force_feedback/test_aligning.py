@@ -6,7 +6,7 @@ from simconsole.devices.force_feedback.aligning import aligning, answered, share
 from simconsole.devices.force_feedback.force_settings import ForceSettings, force_settings
 from simconsole.devices.force_feedback.rim import Rim
 from simconsole.profiles.device import CockpitProfile
-from simconsole.values.rim_stiffness import RimStiffness
+from simconsole.values.platform import RimStiffness
 
 STIFF = RimStiffness(5.0, 7.0, 10.0, 14.0, 19.0, relaxation_m=0.3)
 

@@ -37,7 +37,7 @@ def test_figures_are_found_and_the_wheel_stays_slow(
         worst = np.maximum(worst, seen)
     record_property(
         "identified wheels",
-        f"delay {worst[0]:.1f} ms, torque {worst[1]:.1%}, friction {worst[2]:.1%}, {worst[3]:.0f} deg, {worst[4]:.0f} deg/s",
+        f"{worst[0]:.1f} ms, torque {worst[1]:.1%}, friction {worst[2]:.1%}, {worst[3]:.0f} deg, {worst[4]:.0f} deg/s",
     )
 
 
