@@ -19,9 +19,7 @@ from simconsole.profiles.device import CockpitProfile
         ({"delay_s": 0.05}, "delay_s"),
     ],
 )
-def test_unknown_or_far_off_figures_are_refused_by_their_key(
-    changed: dict[str, Any], key: str, t500: CockpitProfile
-) -> None:
+def test_unknown_or_far_off_figures_are_refused(changed: dict[str, Any], key: str, t500: CockpitProfile) -> None:
     force = t500.force_feedback
     assert force is not None
     good = msgspec.structs.replace(force.motor, identified="ratios")
