@@ -192,7 +192,7 @@ class Trials:
         return Verdict(ok, how, {"brake": half, "throttle_after": left, "back": is_back})
 
     def _pedals_on_wheel(self) -> bool:
-        keys = {role.role: (role.vendor_id, role.product_id) for role in self.cockpit.roles}
+        keys = {role.role: role.key for role in self.cockpit.roles}
         return keys["pedals"] == keys["wheel"]
 
     def emergency(self) -> list[DeviceSample]:

@@ -137,3 +137,12 @@ def test_what_a_restart_waits_for_is_told_before_a_held_accelerator(make_rig: Ca
     rig.driver = rig.driver._replace(throttle=0.5)
     rig.tick(Event.RESTART)
     assert rig.arbitration.notice == Notice.RELEASE_PEDALS
+
+
+def test_person_who_pulls_hard_enough_for_long_enough_takes_the_wheel(control: ControlSettings) -> None:
+    watch = START
+    for tick in range(int(control.steering_override_ticks) + 1):
+        assert not steering_taken(watch, control), tick
+        watch = watch_wheel(watch, 0.0, 0.0, 0.0, 1.3, True, True, control)
+    assert steering_taken(watch, control)
+    assert watch_wheel(watch, 0.0, 0.0, 0.0, 1.1, True, True, control).past_ticks == 0.0
