@@ -77,7 +77,7 @@ def test_the_reference_follows_while_nobody_can_take_over(control: ControlSettin
     assert watch == WheelWatch(1.0, 0.0)
     assert watch_wheel(watch, 1.1, 0.0, 0.0, 0.0, True, True, control) == WheelWatch(1.0, 0.0)
     assert watch_wheel(watch, 1.2, 0.0, 0.0, 0.0, True, True, control).past_ticks == 1.0
-    assert watch_wheel(WheelWatch(1.0, 5.0), 1.0, 0.0, 0.0, True, True, control).past_ticks == 0.0
+    assert watch_wheel(WheelWatch(1.0, 5.0), 1.0, 0.0, 0.0, 0.0, True, True, control).past_ticks == 0.0
 
 
 def test_a_wheel_that_comes_back_elsewhere_is_no_takeover(control: ControlSettings) -> None:
