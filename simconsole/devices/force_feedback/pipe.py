@@ -37,12 +37,12 @@ def filled(pipe: MotorPipe, asked_nm: float, force: ForceSettings) -> MotorPipe:
     """Return the cells after a tick at whose beginning `asked_nm` was asked for."""
     share = force.pipe_share
     return MotorPipe(
-        pipe.cell_1_nm + share * (asked_nm - pipe.cell_1_nm),
-        pipe.cell_2_nm + share * (pipe.cell_1_nm - pipe.cell_2_nm),
-        pipe.cell_3_nm + share * (pipe.cell_2_nm - pipe.cell_3_nm),
-        pipe.cell_4_nm + share * (pipe.cell_3_nm - pipe.cell_4_nm),
-        pipe.cell_5_nm + share * (pipe.cell_4_nm - pipe.cell_5_nm),
-        pipe.cell_6_nm + share * (pipe.cell_5_nm - pipe.cell_6_nm),
+        cell_1_nm=pipe.cell_1_nm + share * (asked_nm - pipe.cell_1_nm),
+        cell_2_nm=pipe.cell_2_nm + share * (pipe.cell_1_nm - pipe.cell_2_nm),
+        cell_3_nm=pipe.cell_3_nm + share * (pipe.cell_2_nm - pipe.cell_3_nm),
+        cell_4_nm=pipe.cell_4_nm + share * (pipe.cell_3_nm - pipe.cell_4_nm),
+        cell_5_nm=pipe.cell_5_nm + share * (pipe.cell_4_nm - pipe.cell_5_nm),
+        cell_6_nm=pipe.cell_6_nm + share * (pipe.cell_5_nm - pipe.cell_6_nm),
     )
 
 
