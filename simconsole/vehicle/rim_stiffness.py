@@ -25,7 +25,7 @@ def rim_stiffness(profile: VehicleProfile) -> RimStiffness:
     across_rad = 2.0 * SMALL_RAD * profile.steering.ratio
 
     def slope(speed_mps: float) -> float:
-        left_nm, right_nm = (hand_wheel_torque(steering, side * moment_nm, 0.0, speed_mps) for side in (1.0, -1.0))
+        left_nm, right_nm = (hand_wheel_torque(steering, side * moment_nm, 0.0, speed_mps, 0.0) for side in (1.0, -1.0))
         return (left_nm - right_nm) / across_rad
 
     return RimStiffness(
