@@ -14,7 +14,7 @@ UNITS = ("_rad", "_radps", "_m", "_mps", "_mps2", "_nm", "_ticks")
 UNITLESS = {
     # pedals, authority and other shares 0..1; raw axes -1..1
     *("throttle", "brake", "clutch", "handbrake", "remote_lateral", "remote_longitudinal", "shared_trade"),
-    "remote_guidance",
+    *("remote_guidance", "car_share"),
     *("person_throttle", "person_brake", "remote_throttle", "remote_brake"),
     *("ros_throttle", "ros_brake", "ecu_throttle", "ecu_brake"),
     *("wheel_axis", "throttle_axis", "brake_axis", "clutch_axis", "handbrake_axis", "hat_x", "hat_y"),

@@ -1,13 +1,18 @@
-"""`simconsole devices list | check | calibrate | feel | record`: the cockpit before a drive."""
+"""`simconsole devices list | check | calibrate | feel | identify | accept | record`: the cockpit before a drive."""
 
 import sys
 from argparse import Namespace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from simconsole.cli.outcome import Outcome
-from simconsole.devices.setup.device_commands import check_devices, list_devices, record_devices
+from simconsole.devices.setup.device_commands import check_devices, list_devices, realtime, record_devices, unpaced
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load, names
+
+if TYPE_CHECKING:
+    from simconsole.devices.setup.identify_dialogue import Weight
+    from simconsole.devices.setup.key_watch import KeyWatch
 
 
 def devices(options: Namespace) -> Outcome:
@@ -52,10 +57,12 @@ def devices(options: Namespace) -> Outcome:
                 say=_say,
                 ask=keys.ask,
                 pressed=keys.pressed,
-                strength=options.strength / 100.0,
+                strength=(options.strength or 25) / 100.0,
                 virtual=options.virtual,
             )
         return Outcome(0 if results["ok"] else 1, results)
+    if options.action in ("identify", "accept"):
+        return _identified(options, cockpit)
     results = record_devices(
         cockpit,
         Path(options.out or "trace.csv"),
@@ -65,6 +72,49 @@ def devices(options: Namespace) -> Outcome:
         virtual=options.virtual,
     )
     return Outcome(0, results)
+
+
+def _identified(options: Namespace, cockpit: CockpitProfile) -> Outcome:
+    """Find what the motor is like, alone or as a part of accepting the whole cockpit."""
+    from simconsole.devices.setup.identify_dialogue import Weight, identify_motor
+    from simconsole.devices.setup.key_watch import KeyWatch
+
+    weight = None if options.weight is None else Weight(options.weight, options.radius)
+    with KeyWatch() as keys:
+        if options.action == "accept":
+            return _accepted(options, cockpit, keys, weight)
+        results = identify_motor(
+            cockpit,
+            Path(options.out) if options.out else None,
+            say=_say,
+            ask=keys.ask,
+            pressed=keys.pressed,
+            strength=(options.strength or 40) / 100.0,
+            weight=weight,
+            virtual=options.virtual,
+        )
+    return Outcome(1 if results["refusal"] else 0, results)
+
+
+def _accepted(options: Namespace, cockpit: CockpitProfile, keys: "KeyWatch", weight: "Weight | None") -> Outcome:
+    """Guide a person through a new cockpit."""
+    from simconsole.devices.setup.accept_dialogue import Terminal, accept_cockpit
+    from simconsole.session.emergency_check import stops
+    from simconsole.session.provenance import host_facts
+
+    results = accept_cockpit(
+        cockpit,
+        Path(options.out or "acceptance"),
+        Terminal(keys.ask, keys.pressed, keys.typed if keys.is_terminal else None),
+        say=_say,
+        stops=stops,
+        host=host_facts(),
+        known=[load("devices", name, CockpitProfile) for name in names("devices")],
+        weight=weight,
+        virtual=options.virtual,
+        pace=unpaced if options.virtual else realtime,
+    )
+    return Outcome(0 if results["ok"] else 1, results)
 
 
 def _say(line: str) -> None:

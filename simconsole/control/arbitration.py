@@ -109,6 +109,7 @@ def _observe(now: TickContext) -> Observed:
         now.driver.hand_wheel_rad,
         now.driver.hand_wheel_radps - now.explained_radps,
         now.explained_rad,
+        abs(now.human_nm) - now.carried_nm,
         watched(now.before.mode),
         person.wheel_trusted > 0.0,
         now.settings,

@@ -32,7 +32,7 @@ Anchor = Literal["l", "c", "r"]
 _LINK_LEVELS: Final = {
     LINK_NOBODY: "plain", LINK_LOST: "warn", LINK_CONNECTING: "warn", LINK_RETRYING: "warn", LINK_DOWN: "warn",
 }  # fmt: skip
-_FORCE_LEVELS: Final = {"none": "plain", "on": "good", "limit": "warn", "lost": "warn"}
+_FORCE_LEVELS: Final = {"none": "plain", "on": "good", "eased": "plain", "limit": "warn", "lost": "warn"}
 
 
 def _panel(box: Box, title: str) -> list[DrawItem]:

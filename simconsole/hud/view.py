@@ -41,6 +41,10 @@ class HudSettings(NamedTuple):
     reset_button: str = ""
 
 
+EASED_SHARE: Final = 0.95
+"""Share of the car's torque below which a driver is told that this wheel cannot bear all of it."""
+
+
 class HudMemory(NamedTuple):
     """What the display remembers from one picture to the next."""
 
@@ -140,7 +144,10 @@ def force_label(snapshot: Snapshot, memory: HudMemory) -> tuple[str, bool, float
     clipped_s = snapshot.t_s if snapshot.torque.clipped > 0.0 else memory.clipped_s
     if snapshot.sample.wheel_motor <= 0.0:
         return ("lost" if memory.motor_seen else "none"), memory.motor_seen, clipped_s
-    return ("limit" if 0.0 <= snapshot.t_s - clipped_s < CLIP_SHOWN_S else "on"), True, clipped_s
+    if 0.0 <= snapshot.t_s - clipped_s < CLIP_SHOWN_S:
+        return "limit", True, clipped_s
+    eased = snapshot.torque.enabled > 0.0 and 0.0 < snapshot.torque.car_share < EASED_SHARE
+    return ("eased" if eased else "on"), True, clipped_s
 
 
 def view(

@@ -16,6 +16,7 @@ class Motor(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     friction_nm: Annotated[float, Meta(ge=0.0, le=2.0)] = 0.2
     delay_s: Annotated[float, Meta(ge=0.0, le=0.05)] = 0.01
     level_steps: Annotated[int, Meta(ge=10, le=32_767)] = 127
+    identified: Literal["no", "ratios", "weight"] = "no"  # by `simconsole devices identify`, with a weight or without
 
 
 Gain: TypeAlias = Annotated[float, Meta(ge=0.0, le=3.0)]

@@ -75,6 +75,18 @@ def package_versions() -> dict[str, str]:
     return found
 
 
+def host_facts() -> dict[str, str]:
+    """Return versions and machine as plain text, for a report that is sent in."""
+    machine = _machine()
+    return {
+        **package_versions(),
+        "platform": machine.platform,
+        "kernel": machine.kernel,
+        "cpu": machine.cpu,
+        "python": machine.python,
+    }
+
+
 @cache
 def _machine() -> Machine:
     return Machine(

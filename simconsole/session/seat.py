@@ -91,6 +91,7 @@ def _say(line: str) -> None:
 def _with_motor(devices: "SdlSource", cockpit: CockpitProfile, force: ForceFeedback, stack: ExitStack) -> Seating:
     """Add the wheel's motor; without one everything else works, and a line says so."""
     from simconsole.devices.force_feedback.motor import MotorisedSource, NoHaptics, WheelMotor
+    from simconsole.devices.force_feedback.servo_range import servo_refusal
     from simconsole.devices.haptics.back_ends import open_motor
     from simconsole.devices.haptics.watchdog_client import open_watchdog, with_watchdog
     from simconsole.devices.sources.kernel_limits import notes, wheel_limits
@@ -118,7 +119,10 @@ def _with_motor(devices: "SdlSource", cockpit: CockpitProfile, force: ForceFeedb
 
     motor = WheelMotor(opened(), force, lambda snapshot: time.monotonic(), _say)
     stack.callback(motor.close)
-    return Seating(MotorisedSource(devices, motor, replugged), outputs=(motor,))
+    refusal = servo_refusal(force)
+    if refusal is not None:
+        _say(f"autonomy is refused with this wheel: {refusal}")
+    return Seating(MotorisedSource(devices, motor, replugged, refusal is None), outputs=(motor,))
 
 
 def _open_person(resolved: ResolvedSession, console: Console, stack: ExitStack) -> Seating:

@@ -242,6 +242,7 @@ def decide(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
         explained_rad=motor.explained_rad,
         explained_radps=motor.explained_radps,
         human_nm=read(previous, LAYOUT.torque).human_nm,
+        carried_nm=motor.carried_nm,
         wheel_motor=motor.live,
         settings=control,
         tick_s=tick_s,
@@ -264,7 +265,7 @@ def force_feedback(previous: Row, row: Row, settings: Row, tick_s: float) -> Non
     sample = read(row, LAYOUT.sample)
     arbitration = read(row, LAYOUT.arbitration)
     cockpit = read(settings, SETTINGS.cockpit)
-    torque, memory = wheel_torque(
+    torque, memory, pipe = wheel_torque(
         read(row, LAYOUT.driver),
         sample.wheel_motor,
         arbitration,
@@ -273,9 +274,11 @@ def force_feedback(previous: Row, row: Row, settings: Row, tick_s: float) -> Non
         read(row, LAYOUT.vehicle),
         read(previous, LAYOUT.torque),
         read(previous, LAYOUT.motor),
+        read(previous, LAYOUT.pipe),
         read(settings, SETTINGS.force),
         cockpit.wheel_rate_filter_s,
         tick_s,
     )
     write(row, LAYOUT.torque, torque)
     write(row, LAYOUT.motor, memory)
+    write(row, LAYOUT.pipe, pipe)

@@ -16,6 +16,7 @@ from simconsole.values.platform import Ground, Patch, Pose
 from simconsole.values.signals import Commander
 from simconsole.values.units import RAD_PER_DEG
 from simconsole.vehicle.platforms import build
+from simconsole.vehicle.rim_stiffness import rim_stiffness
 
 
 class ResolvedSession(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -49,7 +50,13 @@ def assemble(resolved: ResolvedSession, execution: Execution) -> tuple[Console, 
         platform,
         tick_hz,
         execution,
-        force_settings(resolved.cockpit, platform.steering_ratio, platform.max_road_wheel_rad, tick_hz),
+        force_settings(
+            resolved.cockpit,
+            platform.steering_ratio,
+            platform.max_road_wheel_rad,
+            tick_hz,
+            rim_stiffness(resolved.vehicle),
+        ),
     )
     return console, initial_state(console)
 

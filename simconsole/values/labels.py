@@ -54,6 +54,7 @@ _REASONS: Final[dict[float, str]] = {
     Reason.REFUSED_PEDAL_PRESSED: "refused: a pedal is pressed",
     Reason.REFUSED_IMPLAUSIBLE: "refused: too much lateral acceleration",
     Reason.REFUSED_OVERRULED: "refused: something stronger came first",
+    Reason.REFUSED_WHEEL_UNKNOWN: "refused: wheel's motor is not identified",
 }
 
 _NOTICES: Final[dict[float, str]] = {

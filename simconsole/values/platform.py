@@ -44,6 +44,24 @@ class Ground(NamedTuple):
     patches: tuple[Patch, ...] = ()
 
 
+class RimStiffness(NamedTuple):
+    """What a steering is like about the middle, as far as a wheel's motor must know it.
+
+    Torque at the rim per rad of the hand wheel before the car answers by turning, in N m per rad, by speed.
+    """
+
+    at_0mps: float
+    at_12mps: float
+    at_24mps: float
+    at_36mps: float
+    at_48mps: float
+    relaxation_m: float  # length over which the front tyres answer
+
+
+NO_STIFFNESS: Final = RimStiffness(*(0.0,) * len(RimStiffness._fields))
+"""A vehicle whose steering feels nothing."""
+
+
 class Platform(NamedTuple):
     """One vehicle, ready to drive.
 

@@ -22,6 +22,7 @@ from simconsole.values.signals import (
     Link,
     LinkState,
     Mode,
+    MotorPipe,
     Notice,
     RemoteCommand,
     VehicleCommand,
@@ -48,12 +49,13 @@ class Layout(NamedTuple):
     vehicle: Part[VehicleState]
     torque: Part[WheelTorque]
     motor: Part[WheelMemory]
+    pipe: Part[MotorPipe]
 
 
 LAYOUT: Final = lay_out(Layout)
 INPUT_WIDTH: Final = LAYOUT.ecu.stop
 """The first columns: what comes from outside."""
-PLATFORM_AT: Final = LAYOUT.motor.stop
+PLATFORM_AT: Final = LAYOUT.pipe.stop
 """Where the platform's own state begins."""
 
 _RECORDING_FAILED: Final = int(Event.RECORDING_FAILED)

@@ -207,8 +207,8 @@ def steps(mode: float, trigger: int) -> float:
 
 
 @kernel
-def turned(o: Row, driver: DriverInput, trusted: bool, explained: tuple[float, float], r: Rules) -> bool:
-    """Return whether the person has taken the wheel of a car that drives itself."""
+def turned(o: Row, driver: DriverInput, trusted: bool, explained: tuple[float, float, float], r: Rules) -> bool:
+    """Return whether the person has taken the wheel; `explained` is the motor's angle and rate, and their own pull."""
     if not AUTONOMOUS <= o[MODE] <= MINIMAL:
         o[TURNED] = 0.0
         return False
@@ -221,7 +221,8 @@ def turned(o: Row, driver: DriverInput, trusted: bool, explained: tuple[float, f
     moved = abs(driver.hand_wheel_rad - explained[0] - o[REFERENCE])
     far = moved > (r.moved_still_rad if o[TURNED] > 0.0 else r.moved_rad)
     fast = abs(driver.hand_wheel_radps - explained[1]) > r.turned_radps
-    o[TURNED] = o[TURNED] + 1.0 if far or fast else 0.0
+    pulled = explained[2] > r.pulled_nm
+    o[TURNED] = o[TURNED] + 1.0 if far or fast or pulled else 0.0
     return bool(trusted and o[TURNED] > r.turned_ticks)
 
 
@@ -252,7 +253,7 @@ def gather(
     ros: RemoteCommand,
     ecu: RemoteCommand,
     vehicle: VehicleState,
-    explained: tuple[float, float],
+    explained: tuple[float, float, float],
     seen: Arbitration,
     r: Rules,
 ) -> None:
@@ -365,7 +366,7 @@ def foresee(
     ros: RemoteCommand,
     ecu: RemoteCommand,
     vehicle: VehicleState,
-    explained: tuple[float, float],
+    explained: tuple[float, float, float],
     seen: Arbitration,
     r: Rules,
 ) -> bool:

@@ -66,6 +66,7 @@ class Rules(NamedTuple):
     moved_rad: float
     moved_still_rad: float
     turned_radps: float
+    pulled_nm: float
     turned_ticks: float
     stale_ticks: float
     lease_ticks: float
@@ -104,6 +105,7 @@ def rules(profile: ControlProfile, tick_hz: int, preferred: Commander, wheelbase
         moved_rad=math.radians(p.steering_override_deg),
         moved_still_rad=math.radians(p.steering_override_deg - p.steering_override_hysteresis_deg),
         turned_radps=math.radians(p.steering_override_rate_degps),
+        pulled_nm=p.steering_override_nm,
         turned_ticks=lasting(p.steering_override_hold_s),
         stale_ticks=within(p.command_stale_s),
         lease_ticks=within(p.commander_lease_s),

@@ -100,6 +100,7 @@ def drive(inputs: Row, outputs: Row, row: Row, tick_s: float) -> None:
             0.0,
             0.0,
             given[HUMAN_AT],
+            0.0,
             1.0,
             s,
             tick_s,

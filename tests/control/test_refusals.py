@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from simconsole.values.signals import Button, Event, Mode, Reason, Validity
+from simconsole.values.signals import MOTOR_UNKNOWN, Button, Event, Mode, Reason, Validity
 
 MakeRig = Callable[..., Any]
 
@@ -98,3 +98,13 @@ def test_manual_is_refused_where_the_cockpit_is_not_there(make_rig: MakeRig) -> 
     assert rig.mode is Mode.TAKEOVER_REQUESTED
     rig.tick(Event.REQUEST_MANUAL)
     assert (rig.mode, rig.refusal) == (Mode.TAKEOVER_REQUESTED, Reason.REFUSED_NOT_ARMED)
+
+
+def test_wheel_whose_motor_is_unknown_is_not_turned_by_a_controller(make_rig: MakeRig) -> None:
+    rig = make_rig().drive(Mode.MANUAL)
+    rig.wheel_motor = MOTOR_UNKNOWN
+    rig.tick(Event.REQUEST_AUTONOMOUS)
+    assert (rig.mode, rig.refusal) == (Mode.MANUAL, Reason.REFUSED_WHEEL_UNKNOWN)
+    rig.wheel_motor = 1.0
+    rig.tick(Event.REQUEST_AUTONOMOUS)
+    assert rig.mode is Mode.AUTONOMOUS

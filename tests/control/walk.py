@@ -290,6 +290,7 @@ def walk(
             explained,
             0.0,
             g[HUMAN],
+            0.0,
             figures[2],
             s,
             tick_s,
@@ -298,9 +299,8 @@ def walk(
         command = gate(
             request, ecu if arbitration.commander == ECU else ros, arbitration, command, vehicle, s, tick_s, 0.0
         )
-        may_command = foresee(
-            o, present, driver, g[EVENT_MASK], g[ECU_MASK], ros, ecu, vehicle, (explained, 0.0), arbitration, r
-        )
+        felt = (explained, 0.0, abs(g[HUMAN]))
+        may_command = foresee(o, present, driver, g[EVENT_MASK], g[ECU_MASK], ros, ecu, vehicle, felt, arbitration, r)
         note(given, g, figures, mode, driver, ros, ecu)
         recent[int(figures[0]) % RECENT] = given
         count(counts, present, mode)

@@ -8,7 +8,7 @@ from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample, wheel_raw
 from simconsole.devices.force_feedback.motor import SimulatedWheelPort, WheelMotor
 from simconsole.devices.force_feedback.simulated_wheel import RELAXED, Arm, SimulatedWheel, step_wheel
-from simconsole.profiles.force_feedback import Motor
+from simconsole.profiles.force_feedback import ForceFeedback, Motor
 from simconsole.session.resolution import load_session, resolve
 from simconsole.tick.advance import advance_vector
 from simconsole.tick.assembly import ResolvedSession, assemble
@@ -73,22 +73,33 @@ class Controller:
 class Loop:
     """One drive, tick by tick."""
 
-    def __init__(self, tick_hz: int = 250, motor: Motor | None = None, grid_m: float = 0.2) -> None:
+    def __init__(
+        self,
+        tick_hz: int = 250,
+        motor: Motor | None = None,
+        grid_m: float = 0.2,
+        wheel: tuple[ForceFeedback, ForceFeedback] | None = None,
+    ) -> None:
         """Start.
 
         Args:
             tick_hz: Of the session.
             motor: What the wheel really is, where the profile is mistaken about it.
             grid_m: How often the controller looks at the curvature: a coarse one steers in jerks.
+            wheel: The wheel as it is, and as the profile says.
         """
         self.session = resolved(tick_hz)
+        if wheel is not None:
+            cockpit = msgspec.structs.replace(self.session.cockpit, force_feedback=wheel[1])
+            self.session = msgspec.structs.replace(self.session, cockpit=cockpit)
         self.tick_hz = tick_hz
         self.console, state = assemble(self.session, compiled)
         cockpit = self.session.cockpit
         assert cockpit.force_feedback is not None
         self.force = cockpit.force_feedback
         self.settings = cockpit_settings(cockpit, tick_hz)
-        true = self.force if motor is None else msgspec.structs.replace(self.force, motor=motor)
+        true = self.force if wheel is None else wheel[0]
+        true = true if motor is None else msgspec.structs.replace(true, motor=motor)
         self.wheel = SimulatedWheel(true, cockpit.wheel.lock_to_lock_deg, tick_hz=tick_hz, step=compiled(step_wheel))
         self.motor = WheelMotor(SimulatedWheelPort(self.wheel), self.force, lambda shot: shot.t_s)
         self.rest = raw_sample(Intent(), self.settings)._replace(wheel_motor=1.0)

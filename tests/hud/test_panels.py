@@ -95,7 +95,7 @@ def test_authority_is_shared_out_along_one_bar() -> None:
     assert person.right == pytest.approx(remote.x)
 
 
-@pytest.mark.parametrize(("force", "lamp"), [("none", 0), ("on", 1), ("limit", 3), ("lost", 3)])
+@pytest.mark.parametrize(("force", "lamp"), [("none", 0), ("on", 1), ("eased", 0), ("limit", 3), ("lost", 3)])
 def test_force_feedback_is_told_in_words_with_a_warning_where_it_is_cut_off(force: str, lamp: int) -> None:
     items = layout(HudView(force=force), SCREEN)
     assert [t.text for t in texts(items) if t.role == "status.force.label"] == [force]

@@ -20,7 +20,7 @@ from simconsole.control.requests.control_settings import ControlSettings
 from simconsole.control.requests.person import Person
 from simconsole.control.requests.tick_context import TickContext
 from simconsole.values.kernels import kernel
-from simconsole.values.signals import Link, Mode, Reason
+from simconsole.values.signals import MOTOR_UNKNOWN, Link, Mode, Reason
 
 
 class Decision(NamedTuple):
@@ -62,6 +62,8 @@ def decide(now: TickContext, person: Person, controllers: Controllers, steering:
         settings,
     )
     shared = engage if engage != GRANTED else manual
+    if engage == GRANTED and now.wheel_motor == MOTOR_UNKNOWN:
+        engage = float(Reason.REFUSED_WHEEL_UNKNOWN)
     waited = mode == Mode.TAKEOVER_REQUESTED and now.memory.mode_ticks + 1.0 >= settings.minimal_risk_ticks
     # A lost cockpit that is back ends the wait, not the request: autonomy needs an act of a person or an operator.
     no_reaction = waited and not (now.before.reason == Reason.DEVICE_LOST and person.trusted > 0.0)

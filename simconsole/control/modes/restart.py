@@ -47,7 +47,7 @@ def restart_of(now: TickContext, person: Person) -> Restart:
         return Restart(0.0, 0.0, hindrance, 0.0)
     notice = Notice.RELEASE_PEDALS
     if not centred:
-        notice = Notice.CENTRING_WHEEL if now.wheel_motor > 0.0 else Notice.CENTRE_WHEEL
+        notice = Notice.CENTRING_WHEEL if now.wheel_motor == 1.0 else Notice.CENTRE_WHEEL
     return Restart(waited + 1.0, 0.0, 0.0, notice)
 
 

@@ -1,4 +1,4 @@
-"""Whether the person takes the wheel: by its motion since engagement, because no torque is measured.
+"""Whether the person takes the wheel: by its motion since engagement, and where a motor tells it by their torque.
 
 With a wheel that stands still by itself any motion is the person's. A motor that follows the car moves the wheel too:
 then the reference is where the motor alone would have it, handed in as `explained_rad` by whoever drives the motor.
@@ -28,6 +28,7 @@ def watch_wheel(
     hand_wheel_rad: float,
     hand_wheel_radps: float,
     explained_rad: float,
+    pull_nm: float,
     watching: bool,
     trusted: bool,
     settings: ControlSettings,
@@ -39,6 +40,7 @@ def watch_wheel(
         hand_wheel_rad: Angle now, left-positive.
         hand_wheel_radps: Its rate, less what the wheel's motor explains of it.
         explained_rad: How far the wheel's motor alone has moved it since engagement; 0 without a motor.
+        pull_nm: The person's torque, estimated, less what they held at engagement; 0 without a motor.
         watching: Whether the mode is one that a person can take over from; if not, the reference follows the wheel.
         trusted: Whether the wheel is there; after a gap the reference is taken anew, wherever it comes back.
         settings: Thresholds.
@@ -49,7 +51,8 @@ def watch_wheel(
         return WheelWatch(hand_wheel_rad - explained_rad, 0.0)
     threshold_rad = settings.steering_release_rad if before.past_ticks > 0.0 else settings.steering_override_rad
     moved_rad = abs(hand_wheel_rad - explained_rad - before.reference_rad)
-    if moved_rad >= threshold_rad or abs(hand_wheel_radps) >= settings.steering_override_radps:
+    turned = moved_rad >= threshold_rad or abs(hand_wheel_radps) >= settings.steering_override_radps
+    if turned or pull_nm >= settings.steering_override_nm:
         return WheelWatch(before.reference_rad, before.past_ticks + 1.0)
     return WheelWatch(before.reference_rad, 0.0)
 

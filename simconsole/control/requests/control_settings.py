@@ -22,6 +22,7 @@ class ControlSettings(NamedTuple):
     steering_override_rad: float
     steering_release_rad: float
     steering_override_radps: float
+    steering_override_nm: float
     steering_override_ticks: float
     device_back_ticks: float
     brake_override: float

@@ -4,8 +4,20 @@ import math
 from typing import Final, NamedTuple
 
 from simconsole.profiles.device import CockpitProfile
+from simconsole.values.platform import NO_STIFFNESS, RimStiffness
 from simconsole.values.units import MPS_PER_KMH, RAD_PER_DEG
 
+PIPE_CELLS: Final = 6
+RATE_PHASE: Final = 2.0
+"""Damping over inertia, times all delay of the motor, up to which the prediction holds where figures are 10 % off."""
+ALIGNING_DAMPING: Final = 3.0
+"""Damping of a wheel that is let go of, in shares of the root of the car's stiffness times the wheel's inertia."""
+RETURN_S: Final = 0.14
+"""Time by which the wheel follows its middle later than the car's own weaving, which steers it, at 40 m/s."""
+YAW_DAMPING_S: Final = 0.25
+"""Road-wheel angle by which the rim's torque is asked to steer against a quick change of the yaw rate, at 40 m/s."""
+YAW_SLOW_S: Final = 0.1
+"""Changes of the yaw rate that are slower are driving, not weaving."""
 OBSERVER_RADPS: Final = 50.0
 """Bandwidth of the torque estimate: settles in about 3 / 50 s, well above what arms do (5 Hz)."""
 
@@ -18,6 +30,9 @@ class ForceSettings(NamedTuple):
     motor_damping_nms: float
     motor_friction_nm: float
     motor_lag_share: float  # of the way to the commanded torque that the motor comes in one tick
+    pipe_cells: float  # of its delay; 0: torque acts at once
+    pipe_share: float  # of the way from cell to cell in one tick
+    pipe_cell_s: float
     car_share: float
     damping_nms: float
     friction_nm: float
@@ -44,6 +59,17 @@ class ForceSettings(NamedTuple):
     observer_accel_per_s2: float
     resting_hands_nm: float
     hands_on_nm: float
+    rim_0mps_nm_per_rad: float  # the car's stiffness about the middle, at the hand wheel, by speed
+    rim_12mps_nm_per_rad: float
+    rim_24mps_nm_per_rad: float
+    rim_36mps_nm_per_rad: float
+    rim_48mps_nm_per_rad: float
+    relaxation_m: float  # of its tyres
+    rate_loop_per_s: float  # damping over inertia that this motor's delay bears
+    aligning_damping: float  # times the root of stiffness times inertia
+    return_s: float
+    yaw_damping_s: float
+    yaw_slow_s: float
 
 
 NO_FORCE: Final = ForceSettings(*(0.0,) * len(ForceSettings._fields))
@@ -51,7 +77,11 @@ NO_FORCE: Final = ForceSettings(*(0.0,) * len(ForceSettings._fields))
 
 
 def force_settings(
-    profile: CockpitProfile, steering_ratio: float, max_road_wheel_rad: float, tick_hz: int
+    profile: CockpitProfile,
+    steering_ratio: float,
+    max_road_wheel_rad: float,
+    tick_hz: int,
+    rim: RimStiffness = NO_STIFFNESS,
 ) -> ForceSettings:
     """Return the force feedback of a cockpit on a vehicle; `NO_FORCE` where the profile has none."""
     force = profile.force_feedback
@@ -61,6 +91,8 @@ def force_settings(
     own_lock_rad = (0.5 * profile.wheel.lock_to_lock_deg - force.end_stop_margin_deg) * RAD_PER_DEG
     # Critically damped tracking filter of three states (fading memory, three equal poles): Zarchan, Musoff,
     # Fundamentals of Kalman Filtering, chapter 3.
+    delay_s = force.motor.delay_s + max(0.0, 0.5 * (1.0 / force.update_hz - tick_s))
+    cells = min(PIPE_CELLS, round(delay_s * tick_hz))
     pole = math.exp(-OBSERVER_RADPS * tick_s)
     return ForceSettings(
         max_torque_nm=force.max_torque_nm,
@@ -68,6 +100,9 @@ def force_settings(
         motor_damping_nms=force.motor.damping_nms,
         motor_friction_nm=force.motor.friction_nm,
         motor_lag_share=tick_s / (tick_s + force.motor.delay_s),
+        pipe_cells=float(cells),
+        pipe_share=cells * tick_s / delay_s if cells else 1.0,
+        pipe_cell_s=delay_s / cells if cells else 0.0,
         car_share=force.car_share,
         damping_nms=force.damping_nms,
         friction_nm=force.friction_nm,
@@ -94,4 +129,15 @@ def force_settings(
         observer_accel_per_s2=(1.0 - pole) * (1.0 - pole) * (1.0 - pole) / (tick_s * tick_s),
         resting_hands_nm=force.resting_hands_nm,
         hands_on_nm=force.hands_on_nm,
+        rim_0mps_nm_per_rad=rim.at_0mps,
+        rim_12mps_nm_per_rad=rim.at_12mps,
+        rim_24mps_nm_per_rad=rim.at_24mps,
+        rim_36mps_nm_per_rad=rim.at_36mps,
+        rim_48mps_nm_per_rad=rim.at_48mps,
+        relaxation_m=rim.relaxation_m,
+        rate_loop_per_s=RATE_PHASE / (delay_s + tick_s),
+        aligning_damping=ALIGNING_DAMPING,
+        return_s=RETURN_S,
+        yaw_damping_s=YAW_DAMPING_S,
+        yaw_slow_s=YAW_SLOW_S,
     )

@@ -11,7 +11,7 @@ from simconsole.devices.force_feedback.simulated_wheel import SimulatedWheel
 from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.values.errors import DeviceError
 from simconsole.values.latency import Hop
-from simconsole.values.signals import DeviceSample
+from simconsole.values.signals import MOTOR_UNKNOWN, DeviceSample
 from simconsole.values.state_vector import Snapshot
 
 EFFECT_S: Final = 0.2
@@ -217,17 +217,21 @@ class Source(Protocol):
 class MotorisedSource:
     """A cockpit whose samples say whether the wheel's motor obeys: the console must know what may move the wheel."""
 
-    def __init__(self, source: Source, motor: WheelMotor, replugged: Callable[[], HapticPort | None]) -> None:
+    def __init__(
+        self, source: Source, motor: WheelMotor, replugged: Callable[[], HapticPort | None], known: bool = True
+    ) -> None:
         """Wrap a source.
 
         Args:
             source: The cockpit.
             motor: Of its wheel.
             replugged: Returns a new port once after the wheel came back as a new device, else None.
+            known: Whether its figures are, so that it may turn the wheel by itself.
         """
         self._source = source
         self._motor = motor
         self._replugged = replugged
+        self._obeying = 1.0 if known else MOTOR_UNKNOWN
 
     def poll(self, tick: int) -> DeviceSample:
         """Return the newest sample for `tick`."""
@@ -236,7 +240,7 @@ class MotorisedSource:
         if port is not None:
             self._motor.exchange(port)
         there = sample.wheel_age_ticks == 0.0 and self._motor.obeys
-        return sample._replace(wheel_motor=1.0 if there else 0.0)
+        return sample._replace(wheel_motor=self._obeying if there else 0.0)
 
     def close(self) -> None:
         """Release the devices."""

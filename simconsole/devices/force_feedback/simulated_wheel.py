@@ -102,7 +102,7 @@ class SimulatedWheel:
         )
         self._steps = 1000 // tick_hz
         self._step = step
-        self._wire = deque([0.0] * round(motor.delay_s * tick_hz))
+        self._wire = deque([0.0] * round(motor.delay_s / STEP_S))
         self._tick_hz = tick_hz
         self._torque_nm = 0.0
         self._ticks_left = 0
@@ -126,12 +126,19 @@ class SimulatedWheel:
             arm: How the person holds the wheel.
             hands_rad: Where they want it; None: where their hands are.
         """
-        self._wire.append(self._torque_nm if self._ticks_left > 0 else 0.0)
+        self._wire.extend([self._torque_nm if self._ticks_left > 0 else 0.0] * self._steps)
         self._ticks_left = max(0, self._ticks_left - 1)
         state = self.state
         if hands_rad is not None:
             state = state._replace(hands_rad=hands_rad)
         elif arm == HANDS_OFF:
             state = state._replace(hands_rad=state.rad)
-        self.state = self._step(state, self._wire.popleft(), arm, self._body, self._steps)
-        return self.state.rad
+        left = self._steps
+        while left:
+            arrived_nm, steps = self._wire.popleft(), 1
+            while steps < left and self._wire[0] == arrived_nm:
+                self._wire.popleft()
+                steps += 1
+            state, left = self._step(state, arrived_nm, arm, self._body, steps), left - steps
+        self.state = state
+        return state.rad

@@ -6,9 +6,11 @@ which nobody is driven, the loop has stood still, or any part is not finite.
 
 from typing import Final, NamedTuple
 
+from simconsole.devices.force_feedback.aligning import FAST_MPS, aligning, answered, share_of, stiffness
 from simconsole.devices.force_feedback.estimator import WheelEstimate, at_rest, observe
 from simconsole.devices.force_feedback.force_settings import ForceSettings
 from simconsole.devices.force_feedback.guidance import GuidanceReference, guidance, guidance_reference
+from simconsole.devices.force_feedback.pipe import ahead, delivered, filled
 from simconsole.devices.force_feedback.rim import Rim, turn
 from simconsole.values.kernels import approach, clip, is_finite, kernel
 from simconsole.values.signals import (
@@ -16,6 +18,7 @@ from simconsole.values.signals import (
     DriverInput,
     Event,
     Mode,
+    MotorPipe,
     Notice,
     VehicleState,
     WheelMemory,
@@ -31,6 +34,8 @@ FRICTION_RADPS: Final = 1.0
 END_STOP_NMS: Final = 1.0
 RESTING_S: Final = 0.05
 """Time constant with which the model follows a wheel with resting hands: that with which the estimate detects them."""
+CARRIED_NMPS: Final = 2.0
+"""How fast a torque that was held at engagement must go: hands let go of a bend within a second or two."""
 CENTRING_RADPS: Final = 2.0
 """How fast the motor centres the wheel before a restart: a turn in 3 s, which hands that rest on it can follow."""
 CENTRING_LEAD_RAD: Final = 0.15
@@ -47,6 +52,7 @@ class TorqueParts(NamedTuple):
     servo_nm: float
     guide_nm: float
     effects_nm: float  # damping, friction, end stop, road
+    car_share: float  # of the car's torque that the motor bears
 
 
 class WheelTarget(NamedTuple):
@@ -115,6 +121,8 @@ def torque_parts(
     vehicle: VehicleState,
     asked: GuidanceReference,
     share: float,
+    answered_rad: float,
+    swing_radps: float,
     force: ForceSettings,
 ) -> TorqueParts:
     """Return the parts of the torque, unlimited.
@@ -122,22 +130,28 @@ def torque_parts(
     Args:
         follows: The wheel is to follow the road wheels; else it is the car's.
         target: Where the road wheels have it.
-        rim: The wheel as estimated.
+        rim: The wheel when this torque acts on it.
         vehicle: The vehicle after this tick.
         asked: What the controller asks of the hand wheel.
         share: How much of its guidance there is, 0 to 1.
+        answered_rad: The hand wheel's angle that the car's tyres have answered.
+        swing_radps: The car's yaw rate, less its slow part.
         force: Of this drive.
     """
     speed = abs(vehicle.vx_mps)
     rolling = speed / (speed + force.fade_mps)
     texture = road(vehicle, rolling, force)
     if follows:
-        return TorqueParts(0.0, servo(target, rim, force), 0.0, texture)
+        return TorqueParts(0.0, servo(target, rim, force), 0.0, texture, 0.0)
     friction = force.friction_nm + (1.0 - rolling) * force.standstill_friction_nm
     drag = -force.damping_nms * rim.radps - friction * rim.radps / (abs(rim.radps) + FRICTION_RADPS)
-    car = force.car_share * rolling * vehicle.hand_wheel_torque_nm
+    stiff = force.car_share * rolling * stiffness(speed, force)
+    fast = speed / FAST_MPS
+    bears = share_of(stiff, fast, force)
+    felt = bears * force.car_share * rolling * vehicle.hand_wheel_torque_nm
+    car = aligning(felt, answered_rad, swing_radps, rim, bears * stiff, fast, force)
     guide = guidance(asked, rim, rolling, share, force)
-    return TorqueParts(car, 0.0, guide, drag + end_stop(rim, force) + texture)
+    return TorqueParts(car, 0.0, guide, drag + end_stop(rim, force) + texture, bears)
 
 
 @kernel
@@ -207,6 +221,7 @@ def limited_torque(
         enabled=1.0,
         human_nm=estimated.human_nm,
         hands_on=estimated.hands_on,
+        car_share=parts.car_share,
     )
 
 
@@ -258,6 +273,21 @@ def unattended_motion(
 
 
 @kernel
+def carried(before_nm: float, human_nm: float, watching: bool, tick_s: float) -> float:
+    """Return how much of the person's torque is no take-over: what they held as they engaged, while it fades.
+
+    Args:
+        before_nm: In the tick before.
+        human_nm: The person's torque, estimated.
+        watching: Whether the person may take over.
+        tick_s: Length of a tick.
+    """
+    if not watching:
+        return abs(human_nm)
+    return clip(before_nm - CARRIED_NMPS * tick_s, 0.0, abs(human_nm))
+
+
+@kernel
 def wheel_torque(
     driver: DriverInput,
     wheel_motor: float,
@@ -267,10 +297,11 @@ def wheel_torque(
     vehicle: VehicleState,
     before: WheelTorque,
     memory: WheelMemory,
+    pipe_before: MotorPipe,
     force: ForceSettings,
     rate_filter_s: float,
     tick_s: float,
-) -> tuple[WheelTorque, WheelMemory]:
+) -> tuple[WheelTorque, WheelMemory, MotorPipe]:
     """Return the motor's torque for the coming tick, and what must be remembered.
 
     Args:
@@ -282,20 +313,29 @@ def wheel_torque(
         vehicle: The vehicle after this tick.
         before: Torque of the tick before.
         memory: From the tick before.
+        pipe_before: What was on its way to the motor in the tick before.
         force: Of this drive, with a motor.
         rate_filter_s: Of the rate in `driver`: the explained rate is filtered alike.
         tick_s: Length of a tick.
     """
     mode = arbitration.mode
     live = wheel_motor > 0.0 and is_trusted(driver.wheel_validity)
-    motor_nm = memory.motor_nm + force.motor_lag_share * (before.torque_nm - memory.motor_nm)
+    motor_nm = delivered(pipe_before, before.torque_nm, force)
+    pipe = filled(pipe_before, before.torque_nm, force)
     estimated = estimate(driver, live, motor_nm, before, memory, force, tick_s)
-    rim = Rim(estimated.rad, estimated.radps)
+    rim = ahead(Rim(estimated.rad, estimated.radps), estimated.human_nm, pipe, force)
     follows = mode in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED) or centring(arbitration)
     target = wheel_target(arbitration, vehicle, estimated, memory, force, tick_s)
     driven = follows or mode in (Mode.MANUAL, Mode.SHARED)
     enabled = live and target.known and driven and int(events) & _STANDING == 0
     ramp = approach(before.ramp, 1.0, force.ramp_per_tick) if enabled else 0.0
+    answered_rad = target.rim.rad
+    if target.known and memory.live > 0.0:
+        answered_rad = answered(memory.answered_rad, vehicle.road_wheel_rad, abs(vehicle.vx_mps), force, tick_s)
+    yaw_radps = memory.yaw_radps
+    if target.known:
+        yaw_radps += (vehicle.yaw_rate_radps - yaw_radps) * (tick_s / (tick_s + force.yaw_slow_s))
+    swing_radps = vehicle.yaw_rate_radps - yaw_radps if target.known else 0.0
     torque = WheelTorque(
         torque_nm=0.0,
         car_nm=0.0,
@@ -306,26 +346,34 @@ def wheel_torque(
         enabled=0.0,
         human_nm=estimated.human_nm,
         hands_on=estimated.hands_on,
+        car_share=0.0,
     )
     if enabled:
         guided = arbitration.remote_guidance if mode == Mode.SHARED else 0.0
-        parts = torque_parts(follows, target.rim, rim, vehicle, target.asked, guided, force)
+        parts = torque_parts(follows, target.rim, rim, vehicle, target.asked, guided, answered_rad, swing_radps, force)
         torque = limited_torque(parts, ramp, estimated, before, force)
     share = ramp if follows else 0.0
     unattended = unattended_motion(
         driver, estimated, target.rim, share, watching, live, memory, force, rate_filter_s, tick_s
     )
-    return torque, WheelMemory(
-        live=1.0 if live else 0.0,
-        wheel_rad=estimated.rad,
-        wheel_radps=estimated.radps,
-        motor_nm=motor_nm,
-        hands_nm=estimated.hands_nm,
-        target_rad=target.rim.rad,
-        model_rad=unattended.rad,
-        model_radps=unattended.radps,
-        model_nm=unattended.motor_nm,
-        explained_rad=unattended.explained_rad,
-        explained_radps=unattended.explained_radps,
-        guide_rad=target.asked.slow_rad,
+    return (
+        torque,
+        WheelMemory(
+            live=wheel_motor if live else 0.0,
+            wheel_rad=estimated.rad,
+            wheel_radps=estimated.radps,
+            motor_nm=motor_nm,
+            hands_nm=estimated.hands_nm,
+            target_rad=target.rim.rad,
+            model_rad=unattended.rad,
+            model_radps=unattended.radps,
+            model_nm=unattended.motor_nm,
+            explained_rad=unattended.explained_rad,
+            explained_radps=unattended.explained_radps,
+            guide_rad=target.asked.slow_rad,
+            answered_rad=answered_rad,
+            yaw_radps=yaw_radps,
+            carried_nm=carried(memory.carried_nm, estimated.human_nm, watching, tick_s),
+        ),
+        pipe,
     )

@@ -53,6 +53,11 @@ def realtime(tick_hz: int) -> Pace:
     return wait
 
 
+def unpaced(tick_hz: int) -> Pace:
+    """Return a pace that never waits: nobody is there whose hands it would have to wait for."""
+    return lambda tick: None
+
+
 def list_devices(cockpit: CockpitProfile, *, say: Say, virtual: bool = False) -> dict[str, Any]:
     """List every joystick and the roles it plays in this cockpit.
 

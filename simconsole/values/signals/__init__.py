@@ -19,6 +19,7 @@ from simconsole.values.signals.codes import (
     Validity,
 )
 from simconsole.values.signals.inputs import (
+    MOTOR_UNKNOWN,
     NEVER_TICKS,
     NO_COMMAND,
     NO_EVENTS,
@@ -33,6 +34,7 @@ from simconsole.values.signals.stages import (
     Arbitration,
     DriverInput,
     Link,
+    MotorPipe,
     Request,
     VehicleCommand,
     VehicleState,
@@ -41,6 +43,7 @@ from simconsole.values.signals.stages import (
 )
 
 __all__ = [
+    "MOTOR_UNKNOWN",
     "NEVER_TICKS",
     "NO_COMMAND",
     "NO_EVENTS",
@@ -59,6 +62,7 @@ __all__ = [
     "Link",
     "LinkState",
     "Mode",
+    "MotorPipe",
     "Notice",
     "Reason",
     "RemoteCommand",

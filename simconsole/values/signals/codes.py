@@ -64,6 +64,7 @@ class Reason(IntEnum):
     REFUSED_PEDAL_PRESSED = 33
     REFUSED_IMPLAUSIBLE = 34
     REFUSED_OVERRULED = 35
+    REFUSED_WHEEL_UNKNOWN = 36
 
 
 class Notice(IntEnum):

@@ -6,6 +6,10 @@ NEVER_TICKS: Final = 1e9
 """Age of something that has never been received or whose device is gone."""
 
 
+MOTOR_UNKNOWN: Final = 0.5
+"""`wheel_motor` of a motor that obeys, but whose figures nobody has found: it does not turn the wheel by itself."""
+
+
 class DeviceSample(NamedTuple):
     """The cockpit as read: raw axes -1..1, button masks, ages in ticks since the last good poll (NEVER_TICKS: gone)."""
 
@@ -22,7 +26,7 @@ class DeviceSample(NamedTuple):
     pedals_age_ticks: float
     shifter_age_ticks: float
     handbrake_age_ticks: float  # of the pedals, where it has no device of its own
-    wheel_motor: float = 0.0  # 1 while the wheel's motor obeys: then the wheel also moves by itself
+    wheel_motor: float = 0.0  # 1 while the wheel's motor obeys: then the wheel also moves by itself; or MOTOR_UNKNOWN
 
 
 class RemoteCommand(NamedTuple):

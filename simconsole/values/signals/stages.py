@@ -167,6 +167,7 @@ class WheelTorque(NamedTuple):
     enabled: float
     human_nm: float  # the person's torque, estimated
     hands_on: float  # 1: somebody holds the wheel
+    car_share: float  # of the car's torque that this motor can bear at this speed without swinging, 0 to 1
 
 
 class WheelMemory(NamedTuple):
@@ -184,6 +185,20 @@ class WheelMemory(NamedTuple):
     explained_rad: float  # how far the motor alone has moved it since a take-over has been possible
     explained_radps: float
     guide_rad: float  # slow part of the angle that the controller asks of the hand wheel
+    answered_rad: float  # the hand wheel's angle that the car's tyres have answered
+    yaw_radps: float  # slow part of the car's yaw rate
+    carried_nm: float  # of the person's torque, what they held before they could take over by it: it fades
+
+
+class MotorPipe(NamedTuple):
+    """Torque that was asked for and is on its way to the wheel, in N m; the first cell is filled first."""
+
+    cell_1_nm: float
+    cell_2_nm: float
+    cell_3_nm: float
+    cell_4_nm: float
+    cell_5_nm: float
+    cell_6_nm: float
 
 
 NO_TORQUE: Final = WheelTorque(*(0.0,) * len(WheelTorque._fields))

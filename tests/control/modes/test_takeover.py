@@ -20,7 +20,7 @@ def taken_after_s(angle_of_time: object, tick_hz: int, seconds: float, phase: fl
     for tick in range(round(seconds * tick_hz)):
         time_s = (tick + phase) / tick_hz
         angle = angle_of_time(time_s)  # type: ignore[operator]
-        watch = watch_wheel(watch, angle, (angle - previous) * tick_hz, 0.0, True, True, s)
+        watch = watch_wheel(watch, angle, (angle - previous) * tick_hz, 0.0, 0.0, True, True, s)
         previous = angle
         if steering_taken(watch, s):
             return time_s
@@ -73,29 +73,29 @@ def test_a_shaking_hand_near_the_threshold_counts_on() -> None:
 
 
 def test_the_reference_follows_while_nobody_can_take_over(control: ControlSettings) -> None:
-    watch = watch_wheel(START, 1.0, 0.0, 0.0, False, True, control)
+    watch = watch_wheel(START, 1.0, 0.0, 0.0, 0.0, False, True, control)
     assert watch == WheelWatch(1.0, 0.0)
-    assert watch_wheel(watch, 1.1, 0.0, 0.0, True, True, control) == WheelWatch(1.0, 0.0)
-    assert watch_wheel(watch, 1.2, 0.0, 0.0, True, True, control).past_ticks == 1.0
-    assert watch_wheel(WheelWatch(1.0, 5.0), 1.0, 0.0, 0.0, True, True, control).past_ticks == 0.0
+    assert watch_wheel(watch, 1.1, 0.0, 0.0, 0.0, True, True, control) == WheelWatch(1.0, 0.0)
+    assert watch_wheel(watch, 1.2, 0.0, 0.0, 0.0, True, True, control).past_ticks == 1.0
+    assert watch_wheel(WheelWatch(1.0, 5.0), 1.0, 0.0, 0.0, 0.0, True, True, control).past_ticks == 0.0
 
 
 def test_a_wheel_that_comes_back_elsewhere_is_no_takeover(control: ControlSettings) -> None:
-    watch = watch_wheel(START, 2.0, 9.9, 0.0, True, False, control)
+    watch = watch_wheel(START, 2.0, 9.9, 0.0, 0.0, True, False, control)
     assert watch == WheelWatch(0.0, -1.0)
-    watch = watch_wheel(watch, 2.0, 0.0, 0.0, True, True, control)
+    watch = watch_wheel(watch, 2.0, 0.0, 0.0, 0.0, True, True, control)
     assert watch == WheelWatch(2.0, 0.0)
-    assert watch_wheel(watch, 2.0, 0.0, 0.0, True, True, control).past_ticks == 0.0
+    assert watch_wheel(watch, 2.0, 0.0, 0.0, 0.0, True, True, control).past_ticks == 0.0
 
 
 def test_what_the_motor_explains_is_not_the_persons(control: ControlSettings) -> None:
-    assert watch_wheel(START, 1.0, 0.0, 1.0, True, True, control).past_ticks == 0.0
-    assert watch_wheel(START, 1.2, 0.0, 1.0, True, True, control).past_ticks == 1.0
-    assert watch_wheel(START, 1.2, 0.0, 1.0, False, True, control) == (pytest.approx(0.2), 0.0)
+    assert watch_wheel(START, 1.0, 0.0, 1.0, 0.0, True, True, control).past_ticks == 0.0
+    assert watch_wheel(START, 1.2, 0.0, 1.0, 0.0, True, True, control).past_ticks == 1.0
+    assert watch_wheel(START, 1.2, 0.0, 1.0, 0.0, False, True, control) == (pytest.approx(0.2), 0.0)
 
 
 def test_a_wheel_that_reports_no_number_is_no_takeover(control: ControlSettings) -> None:
-    assert watch_wheel(START, 0.0, math.nan, 0.0, True, True, control).past_ticks == 0.0
+    assert watch_wheel(START, 0.0, math.nan, 0.0, 0.0, True, True, control).past_ticks == 0.0
 
 
 def test_the_accelerator_overrides_with_hysteresis(control: ControlSettings) -> None:
@@ -137,3 +137,12 @@ def test_what_a_restart_waits_for_is_told_before_a_held_accelerator(make_rig: Ca
     rig.driver = rig.driver._replace(throttle=0.5)
     rig.tick(Event.RESTART)
     assert rig.arbitration.notice == Notice.RELEASE_PEDALS
+
+
+def test_person_who_pulls_hard_enough_for_long_enough_takes_the_wheel(control: ControlSettings) -> None:
+    watch = START
+    for tick in range(int(control.steering_override_ticks) + 1):
+        assert not steering_taken(watch, control), tick
+        watch = watch_wheel(watch, 0.0, 0.0, 0.0, 1.3, True, True, control)
+    assert steering_taken(watch, control)
+    assert watch_wheel(watch, 0.0, 0.0, 0.0, 1.1, True, True, control).past_ticks == 0.0

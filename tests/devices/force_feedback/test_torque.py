@@ -28,6 +28,7 @@ from simconsole.values.signals import (
     DriverInput,
     Event,
     Mode,
+    MotorPipe,
     Notice,
     Validity,
     VehicleState,
@@ -53,6 +54,7 @@ class Motor:
         self.force, self.kernel = force, kernel
         self.torque = WheelTorque(*(0.0,) * len(WheelTorque._fields))
         self.memory = WheelMemory(*(0.0,) * len(WheelMemory._fields))
+        self.pipe = MotorPipe(*(0.0,) * len(MotorPipe._fields))
 
     def tick(
         self,
@@ -70,7 +72,7 @@ class Motor:
         )
         watching = mode in (Mode.AUTONOMOUS, Mode.TAKEOVER_REQUESTED, Mode.MINIMAL_RISK)
         for _ in range(ticks):
-            self.torque, self.memory = self.kernel(
+            self.torque, self.memory, self.pipe = self.kernel(
                 driver,
                 motor,
                 arbitration,
@@ -79,6 +81,7 @@ class Motor:
                 vehicle,
                 self.torque,
                 self.memory,
+                self.pipe,
                 self.force,
                 0.02,
                 TICK_S,
@@ -88,7 +91,7 @@ class Motor:
 
 def alone(force: ForceSettings, target: Rim, rim: Rim, vehicle: VehicleState) -> TorqueParts:
     """The parts in MANUAL."""
-    return torque_parts(False, target, rim, vehicle, GuidanceReference(0.0, 0.0), 0.0, force)
+    return torque_parts(False, target, rim, vehicle, GuidanceReference(0.0, 0.0), 0.0, 0.0, 0.0, force)
 
 
 @pytest.fixture

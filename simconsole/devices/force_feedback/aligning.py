@@ -1,0 +1,82 @@
+"""The car's torque at the rim, closed over the person's hands and the motor's delay so that a free wheel comes to rest.
+
+Pure kernels. Between the hand wheel and the torque that it causes lie the rack, the tyres' relaxation and the motor.
+That lag turns the car's stiffness about the middle into negative damping. So the torque is led by what the car does
+not know yet: its own stiffness, times the way of the wheel since the tyres last answered, with the wheel as it will be
+when the torque arrives. Damping in proportion to the root of stiffness times inertia then keeps swings short at every
+speed. A wheel whose delay is too long for its inertia gets a share of the car's torque only.
+"""
+
+from math import sqrt
+from typing import Final
+
+from simconsole.devices.force_feedback.force_settings import ForceSettings
+from simconsole.devices.force_feedback.rim import Rim
+from simconsole.values.kernels import clip, kernel
+
+NODE_MPS: Final = 12.0
+"""Speed from one figure of the stiffness to the next."""
+FAST_MPS: Final = 40.0
+"""Speed at which the damping of the car's own weaving is in full force; it grows with speed, as its need does."""
+SLOWEST_MPS: Final = 2.0
+"""Below it the tyres' relaxation is taken as at this speed."""
+
+
+@kernel
+def stiffness(speed_mps: float, force: ForceSettings) -> float:
+    """Return the car's stiffness about the middle in N m per rad of the hand wheel, straight between its figures."""
+    at = clip(speed_mps / NODE_MPS, 0.0, 4.0)
+    if at > 3.0:
+        return force.rim_48mps_nm_per_rad + (at - 4.0) * (force.rim_48mps_nm_per_rad - force.rim_36mps_nm_per_rad)
+    if at > 2.0:
+        return force.rim_36mps_nm_per_rad + (at - 3.0) * (force.rim_36mps_nm_per_rad - force.rim_24mps_nm_per_rad)
+    if at > 1.0:
+        return force.rim_24mps_nm_per_rad + (at - 2.0) * (force.rim_24mps_nm_per_rad - force.rim_12mps_nm_per_rad)
+    return force.rim_12mps_nm_per_rad + (at - 1.0) * (force.rim_12mps_nm_per_rad - force.rim_0mps_nm_per_rad)
+
+
+@kernel
+def share_of(stiff: float, fast: float, force: ForceSettings) -> float:
+    """Return the share of the car's torque that this wheel can bear without swinging, 0 to 1.
+
+    Damping over inertia, at the stiffness K that is in force, is a x + r x^2 with x = sqrt(K / J). It may be as high as
+    the motor's delay allows, which gives the largest x.
+
+    Args:
+        stiff: The car's stiffness about the middle, in N m per rad.
+        fast: The speed, in shares of FAST_MPS.
+        force: Of this drive.
+    """
+    a = force.aligning_damping
+    most = force.rate_loop_per_s
+    x_per_s = 2.0 * most / (a + sqrt(a * a + 4.0 * fast * force.return_s * most))
+    most_nm_per_rad = force.inertia_kgm2 * x_per_s * x_per_s
+    return 1.0 if stiff <= most_nm_per_rad else most_nm_per_rad / stiff
+
+
+@kernel
+def answered(before_rad: float, road_wheel_rad: float, speed_mps: float, force: ForceSettings, tick_s: float) -> float:
+    """Return the angle of the hand wheel that the tyres have answered: the rack's, through their relaxation."""
+    speed = clip(speed_mps, SLOWEST_MPS, 200.0)
+    way = road_wheel_rad * force.hand_wheel_per_road_wheel - before_rad
+    return before_rad + way * (tick_s / (tick_s + force.relaxation_m / speed))
+
+
+@kernel
+def aligning(
+    car_nm: float, answered_rad: float, swing_radps: float, rim: Rim, stiff: float, fast: float, force: ForceSettings
+) -> float:
+    """Return the car's torque, led by what it has not answered yet, and damped, in N m.
+
+    Args:
+        car_nm: At the rim of the real car, left-positive.
+        answered_rad: The wheel's angle that caused it.
+        swing_radps: The car's yaw rate, less its slow part.
+        rim: The wheel when this torque acts.
+        stiff: The car's stiffness about the middle, with the share that is in force, in N m per rad.
+        fast: The speed, in shares of FAST_MPS.
+        force: Of this drive.
+    """
+    damping = force.aligning_damping * sqrt(stiff * force.inertia_kgm2) + fast * force.return_s * stiff
+    against_rad = force.hand_wheel_per_road_wheel * fast * force.yaw_damping_s * swing_radps
+    return car_nm + stiff * (answered_rad - rim.rad - against_rad) - damping * rim.radps

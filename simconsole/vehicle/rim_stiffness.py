@@ -1,0 +1,38 @@
+"""How stiff a car holds its hand wheel about the middle: from its tyres, trails and steering assistance. Pure."""
+
+from typing import Final
+
+from simconsole.profiles.vehicle import BallProfile, VehicleProfile
+from simconsole.values.platform import NO_STIFFNESS, Ground, RimStiffness
+from simconsole.values.units import RAD_PER_DEG
+
+LEVEL: Final = Ground(friction=1.0, slope_x=0.0, slope_y=0.0)
+SMALL_RAD: Final = 0.1 * RAD_PER_DEG
+"""Angle of the road wheels to either side over which the stiffness is taken."""
+
+
+def rim_stiffness(profile: VehicleProfile) -> RimStiffness:
+    """Return the stiffness of a vehicle's steering on level, dry ground; `NO_STIFFNESS` where it feels nothing."""
+    if isinstance(profile, BallProfile):
+        return NO_STIFFNESS
+    from simconsole.vehicle.car.car_platform import car_parameters
+    from simconsole.vehicle.car.steering import hand_wheel_torque
+
+    car = car_parameters(profile, LEVEL)
+    front, steering = car.front, car.steering
+    stiff_n_per_rad = 2.0 * front.stiffness_y_per_m / front.decay_y_per_m * front.static_n
+    moment_nm = stiff_n_per_rad * (steering.caster_trail_m + steering.pneumatic_trail_m) * SMALL_RAD
+    across_rad = 2.0 * SMALL_RAD * profile.steering.ratio
+
+    def slope(speed_mps: float) -> float:
+        left_nm, right_nm = (hand_wheel_torque(steering, side * moment_nm, 0.0, speed_mps, 0.0) for side in (1.0, -1.0))
+        return (left_nm - right_nm) / across_rad
+
+    return RimStiffness(
+        at_0mps=slope(0.0),
+        at_12mps=slope(12.0),
+        at_24mps=slope(24.0),
+        at_36mps=slope(36.0),
+        at_48mps=slope(48.0),
+        relaxation_m=1.0 / front.decay_y_per_m,
+    )

@@ -1,0 +1,40 @@
+"""The scale of a motor's torque by a weight on the rim."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from simconsole.devices.force_feedback.identification import identify
+from simconsole.devices.force_feedback.weighing import weighed
+from simconsole.profiles.device import CockpitProfile
+from simconsole.values.errors import DeviceError
+from tests.devices.benched_wheel import TICK_HZ, BenchedWheel
+from tests.devices.hands_off import Draw, draws
+from tests.samples import Sample
+
+WEIGHT_NM = 0.7
+
+
+def test_scale_is_found(t500: CockpitProfile, sample: Sample, record_property: Callable[[str, object], None]) -> None:
+    force, worst = t500.force_feedback, 0.0
+    assert force is not None
+    for draw in draws(np.random.default_rng(sample.seed), sample.of(2, 50)):
+        wheel = BenchedWheel(force, draw)
+        found = identify(wheel.turn, force, 0.4, TICK_HZ)
+        wheel.furthest_rad = 0.0
+        wheel.hung_nm = WEIGHT_NM
+        scale = weighed(wheel.turn, found, WEIGHT_NM, 0.8 * force.max_torque_nm, TICK_HZ, wheel.take_off)
+        worst = max(worst, abs(scale / wheel.scale - 1.0))
+        assert worst <= 0.05, (draw, scale)
+        assert wheel.furthest_rad <= np.radians(12.0), draw
+    record_property("torque by a weight", f"within {worst:.1%}")
+
+
+def test_missing_weight_is_said(t500: CockpitProfile) -> None:
+    force = t500.force_feedback
+    assert force is not None
+    wheel = BenchedWheel(force, Draw())
+    found = identify(wheel.turn, force, 0.4, TICK_HZ)
+    with pytest.raises(DeviceError, match="weight"):
+        weighed(wheel.turn, found, WEIGHT_NM, 0.8 * force.max_torque_nm, TICK_HZ, wheel.take_off)

@@ -1,0 +1,189 @@
+"""A car in a steady bend whose hand wheel is let go of: the console, the car and a simulated wheel in steps of 1 ms."""
+
+import math
+from functools import cache
+from typing import NamedTuple
+
+import msgspec
+import numpy as np
+
+from simconsole.devices.calibration.cockpit_settings import cockpit_settings
+from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample, wheel_raw
+from simconsole.devices.force_feedback.motor import SimulatedWheelPort, WheelMotor
+from simconsole.devices.force_feedback.simulated_wheel import HANDS_OFF, Arm, SimulatedWheel, step_wheel
+from simconsole.drivers.manoeuvre_driver.run_up import RunUp
+from simconsole.drivers.speed_holder import SpeedHolder
+from simconsole.profiles.force_feedback import ForceFeedback
+from simconsole.session.resolution import load_scenario, resolve
+from simconsole.tick.advance import Console, advance_vector
+from simconsole.tick.assembly import ResolvedSession, assemble
+from simconsole.values.host.jit import compiled
+from simconsole.values.signals import NO_COMMAND, NO_EVENTS
+from simconsole.values.state_vector import Snapshot
+from simconsole.vehicle.rim_stiffness import rim_stiffness
+from tests.paths import ROOT
+
+TICK_HZ = 250
+HELD = Arm(400.0, 6.0, 0.0, 60.0, 0.0)
+COCKPIT = "t500rs_th8rs"
+
+
+class Draw(NamedTuple):
+    """What a wheel really is, beside the shipped profile."""
+
+    inertia: float = 1.0
+    torque: float = 1.0
+    friction_nm: float = 0.2
+    delay_ms: int = 12
+
+
+def draws(rng: np.random.Generator, count: int) -> list[Draw]:
+    """Return a Latin hypercube over the range that wheels of this class have."""
+    shuffled = [(rng.permutation(count) + rng.random(count)) / count for _ in range(4)]
+    return [
+        Draw(2.0 ** (2.0 * a - 1.0), 2.0 ** (2.0 * b - 1.0), 0.03 + 0.27 * c, 5 + int(27.999 * d))
+        for a, b, c, d in zip(*shuffled, strict=True)
+    ]
+
+
+def true_force(shipped: ForceFeedback, draw: Draw) -> ForceFeedback:
+    """Return the wheel as it is."""
+    motor = msgspec.structs.replace(
+        shipped.motor,
+        inertia_kgm2=shipped.motor.inertia_kgm2 * draw.inertia,
+        friction_nm=draw.friction_nm,
+        delay_s=draw.delay_ms / 1000.0,
+    )
+    return msgspec.structs.replace(shipped, motor=motor, max_torque_nm=shipped.max_torque_nm * draw.torque)
+
+
+def found_force(shipped: ForceFeedback, draw: Draw) -> ForceFeedback:
+    """Return the profile as an identification without a weight leaves it: ratios and delay right, scale believed."""
+    motor = msgspec.structs.replace(
+        shipped.motor,
+        inertia_kgm2=shipped.motor.inertia_kgm2 * draw.inertia / draw.torque,
+        damping_nms=shipped.motor.damping_nms / draw.torque,
+        friction_nm=draw.friction_nm / draw.torque,
+        delay_s=draw.delay_ms / 1000.0 + 0.002,
+    )
+    return msgspec.structs.replace(shipped, motor=motor)
+
+
+@cache
+def session_of(vehicle: str) -> ResolvedSession:
+    session = load_scenario(str(ROOT / "profiles/scenarios/handling/step_steer.yaml"))[0].session
+    scenario = msgspec.structs.replace(session.scenario, vehicle=vehicle)
+    mode = msgspec.structs.replace(session.mode, tick_hz=TICK_HZ)
+    control = msgspec.structs.replace(session.features.control, manual_automatic=True)
+    features = msgspec.structs.replace(session.features, control=control)
+    return resolve(msgspec.structs.replace(session, scenario=scenario, mode=mode, features=features), COCKPIT)
+
+
+def console_of(vehicle: str, force: ForceFeedback | None) -> tuple[Console, ResolvedSession, np.ndarray]:
+    session = session_of(vehicle)
+    cockpit = session.cockpit if force is None else msgspec.structs.replace(session.cockpit, force_feedback=force)
+    session = msgspec.structs.replace(session, cockpit=cockpit)
+    console, state = assemble(session, compiled)
+    return console, session, state.vector
+
+
+class Bend(NamedTuple):
+    """A car in a steady bend."""
+
+    vector: np.ndarray
+    tick: int
+    hand_rad: float
+    throttle: float
+    lateral_mps2: float
+    speed_mps: float
+
+
+@cache
+def bend(vehicle: str, speed_kmh: float, lateral_mps2: float) -> Bend | None:
+    """Drive into a bend with the wheel held; None where the car does not reach the speed."""
+    console, session, vector = console_of(vehicle, None)
+    settings = cockpit_settings(session.cockpit, TICK_HZ)
+    steer = {"rad": 0.0}
+    hold = SpeedHolder(speed_kmh / 3.6)
+
+    def turn(snapshot: Snapshot, time_s: float) -> Intent | None:
+        if time_s > 7.0:
+            return None
+        if time_s < 5.0:
+            error = lateral_mps2 - snapshot.vehicle.ay_mps2
+            steer["rad"] += 0.15 * error / snapshot.tick_hz * min(1.0, 25.0 / snapshot.vehicle.vx_mps)
+        return Intent(hand_wheel_rad=steer["rad"], throttle=hold(snapshot), gear=1.0)
+
+    pilot = RunUp(speed_kmh, session.vehicle.steering.ratio, turn, rolling=False)
+    snapshot, intent = Snapshot(0, TICK_HZ, vector), Intent()
+    while snapshot.t_s < 150.0:
+        wanted = pilot(snapshot)
+        if wanted is None:
+            vehicle_now = snapshot.vehicle
+            return Bend(
+                snapshot.vector, snapshot.tick, steer["rad"], intent.throttle, vehicle_now.ay_mps2, vehicle_now.vx_mps
+            )
+        intent = wanted
+        sample = raw_sample(intent, settings)._replace(wheel_motor=1.0)
+        snapshot = Snapshot(
+            snapshot.tick + 1,
+            TICK_HZ,
+            advance_vector(snapshot.vector, (*sample, *NO_COMMAND, *NO_EVENTS, *NO_COMMAND), console),
+        )
+    return None
+
+
+class Released(NamedTuple):
+    """What a wheel did that was let go of."""
+
+    rad: np.ndarray  # tick by tick
+    torque_nm: np.ndarray
+    share: float
+    swings_deg: list[float]  # from extreme to extreme
+    friction_band_deg: float  # at which friction holds it
+
+
+def let_go(vehicle: str, start: Bend, true: ForceFeedback, found: ForceFeedback, seconds: float = 6.0) -> Released:
+    """Hold the wheel in the bend for a second, let go, and return its motion."""
+    console, session, _ = console_of(vehicle, found)
+    settings = cockpit_settings(session.cockpit, TICK_HZ)
+    wheel = SimulatedWheel(true, session.cockpit.wheel.lock_to_lock_deg, tick_hz=TICK_HZ, step=compiled(step_wheel))
+    wheel.state = wheel.state._replace(rad=start.hand_rad, hands_rad=start.hand_rad)
+    motor = WheelMotor(SimulatedWheelPort(wheel), found, lambda shot: shot.t_s)
+    rest = raw_sample(Intent(throttle=start.throttle, gear=1.0), settings)._replace(wheel_motor=1.0)
+    snapshot = Snapshot(start.tick, TICK_HZ, start.vector)
+    rads, torques = [], []
+    for tick in range(round((1.0 + seconds) * TICK_HZ)):
+        held = tick < TICK_HZ
+        axis = wheel_raw(wheel.turn(HELD if held else HANDS_OFF, start.hand_rad if held else None), settings)
+        sample = rest._replace(wheel_axis=round(axis * 32767.0) / 32768.0)
+        row = advance_vector(snapshot.vector, (*sample, *NO_COMMAND, *NO_EVENTS, *NO_COMMAND), console)
+        snapshot = Snapshot(snapshot.tick + 1, TICK_HZ, row)
+        motor.publish(snapshot)
+        if not held:
+            rads.append(wheel.state.rad)
+            torques.append(snapshot.torque.torque_nm)
+    share = snapshot.torque.car_share
+    dry_nm = found.motor.friction_nm + found.friction_nm
+    stiff = rim_stiffness(session.vehicle).at_12mps * found.car_share * share
+    band = math.degrees(dry_nm / stiff) if stiff else math.inf
+    return Released(np.array(rads), np.array(torques), share, swings(np.degrees(rads)), band)
+
+
+def swings(angle_deg: np.ndarray, least_deg: float = 0.3) -> list[float]:
+    """Return the ways from extreme to extreme, those below `least_deg` left out."""
+    found, extreme, direction = [], angle_deg[0], 0.0
+    last = angle_deg[0]
+    for angle in angle_deg[1:]:
+        if direction == 0.0:
+            if abs(angle - extreme) > least_deg:
+                direction = math.copysign(1.0, angle - extreme)
+                last, extreme = extreme, angle
+        elif (angle - extreme) * direction > 0.0:
+            extreme = angle
+        elif (extreme - angle) * direction > least_deg:
+            found.append(abs(extreme - last))
+            last, extreme, direction = extreme, angle, -direction
+    if direction != 0.0:
+        found.append(abs(extreme - last))
+    return found
