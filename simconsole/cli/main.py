@@ -281,6 +281,16 @@ def _tools(commands: Any) -> None:
     devices.add_argument("--strength", type=int, default=25, metavar="PERCENT", help="feel: of the motor's torque")
     devices.add_argument("--out", metavar="FILE", help="record: trace.csv; calibrate: the new profile, cockpit.yaml")
 
+    world = _command(commands, "world", "world:world", "worlds to drive in: list, show what one holds, import a map")
+    world.add_argument("action", choices=("list", "show", "import"))
+    world.add_argument(
+        "name",
+        nargs="?",
+        metavar="WORLD",
+        help="`show`: by name, a .yaml or .net.xml file; `import`: an .xodr or .osm file (extra `sumo`)",
+    )
+    world.add_argument("--out", metavar="DIR", help="where `import` writes map and world (default: here)")
+
     bridge = _command(commands, "bridge", "rosbridge:bridge", "rosbridge: serve it alone, check any server")
     bridge.add_argument("action", choices=("serve", "check", "bench", "cert"))
     bridge.add_argument(
