@@ -23,7 +23,7 @@ from simconsole.hud.window.raster import snapshot_png
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.replay_bundle import recorded_session
 from simconsole.values.state_vector import Snapshot
-from simconsole.world.course import Course
+from simconsole.world.kinds.worlds import open_world
 
 HEIGHT_PX = 540
 MAP_INCH = (9.2, 7.4)
@@ -49,7 +49,7 @@ def main() -> None:
         index = int(np.searchsorted(table.ticks, given.at * table.tick_hz))
         snapshot_png(Snapshot(int(table.ticks[index]), table.tick_hz, table.vectors[index]), left)
         drive = drive_of(table.vectors, table.columns, table.tick_hz, int(table.ticks[0]))
-        course = None if resolved.world is None else Course(resolved.world)
+        course = None if resolved.world is None else open_world(resolved.world).route
         way = track(drive, course)
         with rc_context({**STYLE, "axes.grid": False}):
             figure = Figure(figsize=MAP_INCH, dpi=200, layout="constrained")

@@ -12,6 +12,7 @@ from simconsole.cli.progress import Progress
 from simconsole.profiles.link import LinkProfile
 from simconsole.session.lifecycle import drive
 from simconsole.session.resolution import load_session, override, resolve
+from simconsole.world.kinds.worlds import route_length_m
 
 
 def demo(options: Namespace) -> Outcome:
@@ -24,7 +25,6 @@ def demo(options: Namespace) -> Outcome:
         session = override(session, mode={"pacing": "realtime"})
     resolved = resolve(session)
     folder = Path(options.out) if options.out else Path("out") / time.strftime("demo-%Y%m%d-%H%M%S")
-    length_m = 0.0 if resolved.world is None else resolved.world.length_m
-    with Progress("driving", length_m) as progress:
+    with Progress("driving", route_length_m(resolved.world)) as progress:
         result = drive(resolved, folder, progress.watch)
     return finish(result, packed=not options.no_pack)

@@ -13,6 +13,7 @@ from simconsole.recording.bundles.provenance import Given
 from simconsole.session.lifecycle import drive as drive_session
 from simconsole.session.resolution import load_session, override, resolve
 from simconsole.values.errors import DeviceNotFound, ProfileError
+from simconsole.world.kinds.worlds import route_length_m
 
 
 def drive(options: Namespace) -> Outcome:
@@ -21,7 +22,7 @@ def drive(options: Namespace) -> Outcome:
     resolved = resolve(session, options.cockpit)
     given = Given(participant=options.participant, trial=options.trial, notes=tuple(options.note)).checked()
     folder = Path(options.out) if options.out else Path("out") / time.strftime("drive-%Y%m%d-%H%M%S")
-    with Progress("driving", resolved.world.length_m if resolved.world else 0.0) as progress:
+    with Progress("driving", route_length_m(resolved.world)) as progress:
         try:
             result = drive_session(resolved, folder, progress.watch, given=given)
         except DeviceNotFound as error:

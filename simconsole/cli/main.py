@@ -283,6 +283,16 @@ def _tools(commands: Any) -> None:
     devices.add_argument("--radius", type=float, default=0.14, metavar="M", help="... so far from the hub (0.14)")
     devices.add_argument("--out", metavar="FILE", help="record: trace.csv; accept: its folder; else the new profile")
 
+    world = _command(commands, "world", "world:world", "worlds to drive in: list, show what one holds, import a map")
+    world.add_argument("action", choices=("list", "show", "import"))
+    world.add_argument(
+        "name",
+        nargs="?",
+        metavar="WORLD",
+        help="`show`: by name, a .yaml or .net.xml file; `import`: an .xodr or .osm file (extra `sumo`)",
+    )
+    world.add_argument("--out", metavar="DIR", help="where `import` writes map and world (default: here)")
+
     bridge = _command(commands, "bridge", "rosbridge:bridge", "rosbridge: serve it alone, check any server")
     bridge.add_argument("action", choices=("serve", "check", "bench", "cert"))
     bridge.add_argument(

@@ -55,7 +55,8 @@ class Scenario(Section, frozen=True, kw_only=True):
     """What is driven: the vehicle, from where, how long, and what goes wrong on the way."""
 
     vehicle: ProfileName = "hatchback"
-    start: Start = Start()
+    start: Start | None = None
+    """Where the world's route begins, unless it says otherwise; without a world at the origin of `map`."""
     duration_s: Annotated[float, Meta(gt=0.0, le=86_400.0)] | None = None
     faults: Faults = ()
 

@@ -1,10 +1,10 @@
-"""The world profile: a course as exact path primitives, and what stands on it.
+"""The world profile, of one of two kinds: a course as exact path primitives, or a road map and a route on it.
 
-Written by `python -m simconsole.world.tools.generate` from a readable plan (profiles/course_plan.py); nothing here is
-meant to be edited by hand. Positions along the course (`s_m`) count from its start.
+A course is written by `python -m simconsole.world.tools.generate` from a readable plan (profiles/course_plan.py);
+nothing of it is meant to be edited by hand. Positions along it (`s_m`) count from its start.
 """
 
-from typing import Annotated, Literal
+from typing import Annotated, Final, Literal
 
 from msgspec import Meta, Struct
 
@@ -56,7 +56,7 @@ class Roundabout(WorldSection, frozen=True, kw_only=True):
     radius_m: Annotated[float, Meta(ge=5.0, le=200.0)]
 
 
-class WorldProfile(WorldSection, frozen=True, kw_only=True):
+class CourseProfile(WorldSection, frozen=True, kw_only=True, tag_field="kind", tag="course"):
     """One course, driven on the right; the primitives are the centre of the driven lane.
 
     It is a loop where its end meets its start, else it is open: an autopilot stops at its end.
@@ -71,3 +71,52 @@ class WorldProfile(WorldSection, frozen=True, kw_only=True):
     crossings: tuple[Crossing, ...] = ()
     intersections: tuple[Intersection, ...] = ()
     roundabouts: tuple[Roundabout, ...] = ()
+
+
+EdgeId = Annotated[str, Meta(min_length=1, max_length=200)]
+MapName = Annotated[str, Meta(pattern=r"^.{1,1000}\.xml(\.gz)?$")]
+Digest = Annotated[str, Meta(pattern=r"^[0-9a-f]{64}$")]
+
+
+class MapFile(WorldSection, frozen=True, kw_only=True):
+    """A file of the map: in the folder of the profile, or that of the drive, which has it compressed."""
+
+    name: MapName
+    sha256: Digest | None = None
+    """Of the uncompressed text; a recorded drive has it."""
+
+
+class RouteByEdges(WorldSection, frozen=True, kw_only=True, tag_field="by", tag="edges"):
+    """One edge after the other, each connected to the next."""
+
+    edges: Annotated[tuple[EdgeId, ...], Meta(min_length=1, max_length=10_000)]
+
+
+class RouteByPlaces(WorldSection, frozen=True, kw_only=True, tag_field="by", tag="places"):
+    """The quickest way from one edge to another at the speed limits."""
+
+    start: EdgeId
+    goal: EdgeId
+
+
+class RandomRoute(WorldSection, frozen=True, kw_only=True, tag_field="by", tag="random"):
+    """A way that the seed draws, at least `length_m` long where the map lets it, no edge twice."""
+
+    seed: Annotated[int, Meta(ge=0, le=2**53)]
+    length_m: Annotated[float, Meta(ge=50.0, le=1e5)] = 2000.0
+
+
+class RoadsProfile(WorldSection, frozen=True, kw_only=True, tag_field="kind", tag="roads"):
+    """A road map, SUMO's `.net.xml`, and the route that is driven on it."""
+
+    schema: Literal[1]
+    title: str
+    map: MapFile
+    polygons: MapFile | None = None
+    """Of buildings and cones: SUMO's `.poly.xml`."""
+    route: RouteByEdges | RouteByPlaces | RandomRoute
+
+
+WorldProfile = CourseProfile | RoadsProfile
+KINDS: Final = ("course", "roads")
+RESERVED: Final = ("arena",)

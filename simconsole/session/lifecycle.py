@@ -7,10 +7,13 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import msgspec
+
 from simconsole import __version__
 from simconsole.processes.lifetimes import Interrupt, remove_half_made, undone
 from simconsole.processes.shared_memory import sweep
 from simconsole.profiles.files.loader import to_text
+from simconsole.profiles.files.world_files import enclosed
 from simconsole.recording.bundles.bundle import SESSION_FILE, BundleWriter, add_export, unlisted
 from simconsole.recording.bundles.manifest import Manifest
 from simconsole.recording.bundles.provenance import NOTHING_GIVEN, Given
@@ -131,7 +134,8 @@ def _list_what_workers_wrote(folder: Path, manifest: Manifest) -> None:
 
 
 def _bundle(resolved: ResolvedSession, console: Console, folder: Path, given: Given) -> BundleWriter:
-    text = to_text(resolved)
+    world, maps = (None, {}) if resolved.world is None else enclosed(resolved.world)
+    text = to_text(msgspec.structs.replace(resolved, world=world))
     header = LogHeader(
         tick_hz=console.tick_hz,
         streams=(vector_stream(console.columns, INPUT_WIDTH), message_stream(ACTS)),
@@ -140,4 +144,4 @@ def _bundle(resolved: ResolvedSession, console: Console, folder: Path, given: Gi
         session_sha256=hashlib.sha256(text.encode()).hexdigest(),
     )
     provenance = provenance_at_start(resolved.session.title, given)
-    return BundleWriter(folder, header, {SESSION_FILE: text}, package_versions(), provenance)
+    return BundleWriter(folder, header, {SESSION_FILE: text, **maps}, package_versions(), provenance)

@@ -41,7 +41,7 @@ from simconsole.values.errors import BridgeError, ProfileError
 from simconsole.values.latency import LatencyStatistics
 from simconsole.values.protocols import CommandSource, DeviceIdentity, NobodyCommands, Output
 from simconsole.values.state_vector import Snapshot
-from simconsole.world.route import route_of
+from simconsole.world.kinds.worlds import route_points
 
 LOOKED_AT = 64
 """In a drive that is not paced, hops are timed in each 64th tick."""
@@ -299,7 +299,7 @@ def _open_lockstep(
         odometry_hz=odometry_hz,
         folder=folder,
         drive=drive,
-        route=route_of(resolved.world),
+        route=route_points(resolved.world),
         steering=steering_limit(session.features.control, console.platform.wheelbase_m),
     )
     program = None

@@ -44,7 +44,7 @@ from simconsole.values.protocols import CommandSource, NobodyCommands
 from simconsole.values.signals import NEVER_TICKS, NO_COMMAND, EventInput, RemoteCommand
 from simconsole.values.state_vector import LAYOUT, Snapshot
 from simconsole.values.units import NS_PER_S
-from simconsole.world.route import route_of
+from simconsole.world.kinds.worlds import route_points
 
 START_PATIENCE_S = 20.0
 
@@ -183,7 +183,7 @@ def worker_specs(
             tick_hz=tick_hz,
             drive=drive,
             bundle=str(bundle.absolute()),
-            route=route_of(resolved.world),
+            route=route_points(resolved.world),
             steering=steering_limit(resolved.session.features.control, console.platform.wheelbase_m),
         )
     if outputs.can is not None:

@@ -1,19 +1,23 @@
 """From a session's name to a resolved session: every profile it names, read and checked."""
 
+import math
 from pathlib import Path
 from typing import Final
 
 import msgspec
 
 from simconsole.profiles.device import CockpitProfile, ScriptProfile
-from simconsole.profiles.files.loader import MAX_DATA_BYTES, find, load
+from simconsole.profiles.files.loader import find, load
 from simconsole.profiles.files.vehicle_files import load_vehicle
+from simconsole.profiles.files.world_files import load_world
 from simconsole.profiles.scenario import ScenarioProfile
-from simconsole.profiles.session import PROFILE_FILES, SessionProfile
+from simconsole.profiles.session import PROFILE_FILES, SessionProfile, Start
 from simconsole.profiles.validation import convert
 from simconsole.profiles.world import WorldProfile
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import ProfileError
+from simconsole.values.units import DEG_PER_RAD
+from simconsole.world.kinds.worlds import open_world
 
 _NAMED: Final = (
     ("environment", "world"),
@@ -30,13 +34,23 @@ def resolve(session: SessionProfile, cockpit: str | None = None) -> ResolvedSess
     Raises:
         ProfileError: one of them is missing or wrong; names its file, key, value and range.
     """
-    world = session.environment.world
+    world = None if session.environment.world is None else load_world(session.environment.world)
     return ResolvedSession(
-        session=session,
+        session=session if world is None else _started(session, world),
         cockpit=load("devices", cockpit or session.devices.cockpit, CockpitProfile),
         vehicle=load_vehicle(session.scenario.vehicle),
-        world=None if world is None else load("worlds", world, WorldProfile, max_bytes=MAX_DATA_BYTES),
+        world=world,
     )
+
+
+def _started(session: SessionProfile, world: WorldProfile) -> SessionProfile:
+    """Return `session` with where it starts: at the beginning of the route, unless it says otherwise."""
+    if session.scenario.start is not None:
+        return session
+    first = open_world(world).route.at(0.0)
+    yaw_deg = math.remainder(first.yaw_rad, math.tau) * DEG_PER_RAD
+    start = Start(x_m=first.x_m, y_m=first.y_m, yaw_deg=min(max(yaw_deg, -180.0), 180.0))
+    return msgspec.structs.replace(session, scenario=msgspec.structs.replace(session.scenario, start=start))
 
 
 def load_session(name_or_path: str) -> SessionProfile:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Final
 from simconsole.profiles.view import SceneProfile
 from simconsole.tick.assembly import ResolvedSession, assemble
 from simconsole.values.host.jit import plain
-from simconsole.world.course import Course
+from simconsole.world.kinds.worlds import open_world
 
 if TYPE_CHECKING:
     from simconsole.scene.viewer.job import Job
@@ -18,11 +18,10 @@ def scene_job(resolved: ResolvedSession, columns: tuple[str, ...], tick_hz: int)
     """Return what a scene process needs before the first state vector, which will have `columns`."""
     from simconsole.scene.entities import Dimensions
     from simconsole.scene.viewer.job import Job
-    from simconsole.world.drawing import draw
 
-    platform, course = assemble(resolved, plain)[0].platform, None if resolved.world is None else Course(resolved.world)
+    platform = assemble(resolved, plain)[0].platform
     dimensions = Dimensions(platform.length_m, platform.width_m, platform.height_m, platform.rear_overhang_m)
-    drawing = None if course is None else draw(course)
+    drawing = None if resolved.world is None else open_world(resolved.world).drawing
     return Job(
         columns=columns,
         tick_hz=tick_hz,

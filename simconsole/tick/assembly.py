@@ -8,7 +8,7 @@ from simconsole.control.requests.control_settings import settings as control_set
 from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.force_feedback.force_settings import force_settings
 from simconsole.profiles.device import CockpitProfile
-from simconsole.profiles.session import Aids, Environment, SessionProfile
+from simconsole.profiles.session import Aids, Environment, SessionProfile, Start
 from simconsole.profiles.vehicle import CarProfile, VehicleProfile
 from simconsole.profiles.world import WorldProfile
 from simconsole.tick.advance import Console, ConsoleState, Execution, build_console, initial_state
@@ -31,7 +31,8 @@ class ResolvedSession(Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
 def assemble(resolved: ResolvedSession, execution: Execution) -> tuple[Console, ConsoleState]:
     """Return the console and its state before the first tick."""
     session = resolved.session
-    start, environment, tick_hz = session.scenario.start, session.environment, session.mode.tick_hz
+    start = session.scenario.start or Start()
+    environment, tick_hz = session.environment, session.mode.tick_hz
     platform = build(
         switched(resolved.vehicle, session.features.aids),
         Pose(start.x_m, start.y_m, start.yaw_deg * RAD_PER_DEG),

@@ -7,7 +7,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from simconsole.profiles.course_plan import CoursePlan, Curve, PlannedCrossing, PlannedRoundabout, Straight
-from simconsole.profiles.world import Crossing, Intersection, Primitive, Roundabout, WorldProfile
+from simconsole.profiles.world import CourseProfile, Crossing, Intersection, Primitive, Roundabout
 from simconsole.values.errors import ProfileError
 from simconsole.values.platform import Pose
 from simconsole.values.units import RAD_PER_DEG
@@ -27,7 +27,7 @@ class Solved(NamedTuple):
     pieces: tuple[Piece, ...]
 
 
-def solve(plan: CoursePlan, name: str) -> WorldProfile:
+def solve(plan: CoursePlan, name: str) -> CourseProfile:
     """Return the world of `plan`; `name` is the file that errors name.
 
     Raises ProfileError when a loop does not turn once round, has not three free straights in independent directions,
@@ -62,7 +62,7 @@ def solve(plan: CoursePlan, name: str) -> WorldProfile:
         for piece in pieces:
             path.append(_primitive(piece, s, pose))
             s, pose = s + piece.length_m, travel(pose, piece)
-    return WorldProfile(
+    return CourseProfile(
         schema=1,
         title=plan.title,
         lane_width_m=plan.lane_width_m,

@@ -23,7 +23,7 @@ from simconsole.values.signals import (
     RemoteKind,
 )
 from simconsole.values.state_vector import LAYOUT, Snapshot
-from simconsole.world.course import Course
+from simconsole.world.kinds.worlds import open_world
 
 SPEED_MPS = 10.0
 LATERAL_MPS2 = 2.0
@@ -44,8 +44,8 @@ class Controller:
 
     def __init__(self, session: ResolvedSession, tick_hz: int, grid_m: float) -> None:
         assert session.world is not None
-        course, self.grid_m = Course(session.world), grid_m
-        self.cells = round(session.world.length_m / grid_m)
+        course, self.grid_m = open_world(session.world).route, grid_m
+        self.cells = round(course.length_m / grid_m)
         bends = [course.curvature_at(cell * grid_m) for cell in range(self.cells)]
         window = range(0, round(20.0 / grid_m), max(1, round(1.0 / grid_m)))
         ahead = [max(abs(bends[(cell + far) % self.cells]) for far in window) for cell in range(self.cells)]

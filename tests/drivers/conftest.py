@@ -12,7 +12,7 @@ from simconsole.drivers.path_tracker.state_estimator import VehicleMotion
 from simconsole.drivers.path_tracker.tracker import Tracker
 from simconsole.drivers.path_tracker.tracker_settings import HATCHBACK, CarModel
 from simconsole.profiles.files.loader import load
-from simconsole.profiles.world import WorldProfile
+from simconsole.profiles.world import CourseProfile
 from simconsole.world.course import Course
 from tests.devices.conftest import sdl, t500
 
@@ -85,7 +85,7 @@ def drive(
 
 @pytest.fixture(scope="session")
 def course() -> Course:
-    return Course(load("worlds", "urban", WorldProfile))
+    return Course(load("worlds", "urban", CourseProfile))
 
 
 @pytest.fixture(scope="session")

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from simconsole.bridge.link.localisation import Localisation
 from simconsole.profiles.course_plan import CoursePlan, Curve, Straight
 from simconsole.profiles.link import LinkProfile, LocalisationProfile
-from simconsole.profiles.world import WorldProfile
+from simconsole.profiles.world import CourseProfile
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.session.lifecycle import drive
 from simconsole.session.resolution import load_session, resolve
@@ -18,9 +18,12 @@ from simconsole.values.signals import Mode, VehicleState
 from simconsole.values.state_vector import Snapshot
 from simconsole.world.course import Course
 from simconsole.world.planning import solve
+from simconsole.world.route import Route
 from simconsole.world.tools.generate import to_text
 
 PERIOD_S = 0.02
+END_M = 3.0
+STANDING_MPS = 0.02
 _TRIES = 10_000
 _REACHED_RAD = 1e-6
 _STATES = len(VehicleState._fields)
@@ -41,7 +44,7 @@ FULL = Size((500.0, 1200.0), (4, 9), 80.0, (5.0, 80.0))
 SHORT = Size((240.0, 480.0), (3, 6), 40.0, (5.0, 40.0))
 
 
-def random_course(rng: np.random.Generator, size: Size = FULL) -> WorldProfile:
+def random_course(rng: np.random.Generator, size: Size = FULL) -> CourseProfile:
     """Radii of 8 to 60 m, curvature ramps of 3 to 15 m, a speed limit of 30 to 80 km/h, bends to both sides."""
     for _ in range(_TRIES):
         angles = rng.uniform(20.0, 120.0, int(rng.integers(*size.bends)))
@@ -83,23 +86,41 @@ class Tracked(NamedTuple):
     longitudinal_kept: float  # share of commands within -2.0 to 1.6 m/s2 and 3 m/s3
     reached: float  # share of commands whose angle the gate has let through by the time the next one comes
     driven_s: float
+    left_m: float  # of the route
 
 
-def tracked(world: WorldProfile, vehicle: str, link: str, folder: Path, tracker: str = "preview") -> Tracked:
+def tracked(world: CourseProfile, vehicle: str, link: str, folder: Path, tracker: str = "preview") -> Tracked:
     """Drive one lap over the link (YAML of a LinkProfile) and measure."""
     folder.mkdir()
     (folder / "course.yaml").write_text(to_text(world, "random"))
+    return tracked_on(Course(world), "course.yaml", vehicle, link, folder, tracker=tracker)
+
+
+def tracked_on(
+    route: Route,
+    world: str,
+    vehicle: str,
+    link: str,
+    folder: Path,
+    hand_over_m: float = 20.0,
+    tracker: str = "preview",
+) -> Tracked:
+    """Drive a lap, or an open route up to its end, in a world of `folder` or a shipped one, and measure."""
     (folder / "session.yaml").write_text(
-        "schema: 1\nenvironment: {world: course.yaml}\n"
-        f"scenario: {{vehicle: {vehicle}, duration_s: 400}}\nfeatures: {{autopilot: course.yaml, tracker: {tracker}}}\n"
+        f"schema: 1\nenvironment: {{world: {world}}}\n"
+        f"scenario: {{vehicle: {vehicle}, duration_s: 600}}\nfeatures: {{autopilot: {world}, tracker: {tracker}}}\n"
         f"outputs: {{hud: null, scene: null, report: false, bridge: {{port: 0, link: {link}}}}}\n"
-        "devices: {driver: virtual, person: {sit_s: 0.5, cruise_kmh: 20, top_gear: 2, autonomy: {distance_m: 20}}}\n"
+        "devices: {driver: virtual, person: {sit_s: 0.5, cruise_kmh: 20, top_gear: 2, autonomy: "
+        f"{{distance_m: {hand_over_m}}}}}}}\n"
         "mode: {pacing: lockstep}\n"
     )
     ended = (Mode.MINIMAL_RISK, Mode.STOPPED, Mode.EMERGENCY_STOP)
 
     def watch(snapshot: Snapshot) -> bool:
-        return snapshot.arbitration.mode in ended or snapshot.vehicle.distance_m > world.length_m + 10.0
+        car = snapshot.vehicle
+        at_end = car.distance_m > route.length_m - END_M and car.vx_mps < STANDING_MPS
+        over = car.distance_m > route.length_m + 10.0 if route.closed else at_end
+        return snapshot.arbitration.mode in ended or over
 
     resolved = resolve(load_session(str(folder / "session.yaml")))
     assert resolved.session.outputs.bridge is not None
@@ -114,7 +135,7 @@ def tracked(world: WorldProfile, vehicle: str, link: str, folder: Path, tracker:
     settled = driven & (distance > distance[first] + _SETTLED_M)
     drift = _drift(resolved.session.outputs.bridge.link, len(mode), resolved.session.mode.tick_hz)
     x, y = table.column("vehicle.x_m") + drift[:, 0], table.column("vehicle.y_m") + drift[:, 1]
-    _, lateral = Course(world).project_all(x, y, 0.0)
+    _, lateral = route.project_all(x, y, 0.0)
     errors_cm = 100.0 * np.abs(lateral[settled])
     commands = np.flatnonzero(np.diff(table.column("ros.sequence"), prepend=0.0) > 0.0)
     commands = commands[settled[commands]]
@@ -131,6 +152,7 @@ def tracked(world: WorldProfile, vehicle: str, link: str, folder: Path, tracker:
         longitudinal_kept=float(gentle.mean()),
         reached=float((missing_rad < _REACHED_RAD).mean()),
         driven_s=float(settled.sum()) / tick_hz,
+        left_m=route.length_m - float(distance[-1]),
     )
 
 

@@ -8,7 +8,7 @@ import pytest
 from numpy.typing import NDArray
 
 from simconsole.profiles.files.loader import load
-from simconsole.profiles.world import WorldProfile
+from simconsole.profiles.world import CourseProfile
 from simconsole.values.signals import Mode, Reason
 from simconsole.values.state_vector import columns
 from simconsole.world.course import Course
@@ -29,7 +29,7 @@ class Known(NamedTuple):
 
 @pytest.fixture(scope="session")
 def course() -> Course:
-    return Course(load("worlds", "urban", WorldProfile))
+    return Course(load("worlds", "urban", CourseProfile))
 
 
 @pytest.fixture(scope="session")

@@ -37,7 +37,8 @@ from simconsole.values.signals import (
     RemoteKind,
 )
 from simconsole.values.state_vector import Snapshot
-from simconsole.world.course import Course
+from simconsole.world.kinds.worlds import open_world
+from simconsole.world.route import Route
 
 HZ = 250
 PERIOD_TICKS = 5
@@ -185,7 +186,7 @@ class Driven(NamedTuple):
     vectors: Any  # [ticks, columns]
     first_tick: int
     columns: tuple[str, ...]
-    course: Course
+    course: Route
 
     def column(self, name: str) -> Any:
         return self.vectors[:, self.columns.index(name)]
@@ -223,7 +224,7 @@ class Circuit:
     def __init__(self) -> None:
         self.resolved = resolve(parse(SESSION, SessionProfile, "session"))
         assert self.resolved.world is not None
-        self.course = Course(self.resolved.world)
+        self.course = open_world(self.resolved.world).route
         self.tracker = Tracker(self.course)  # fresh: its copies drive
         self.console: Console
         self.console, self.start = assemble(self.resolved, compiled)

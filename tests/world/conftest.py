@@ -1,18 +1,18 @@
 import pytest
 
 from simconsole.profiles.files.loader import load
-from simconsole.profiles.world import WorldProfile
+from simconsole.profiles.world import CourseProfile
 from simconsole.world.course import Course
 from simconsole.world.drawing import Drawing, draw
 
 
 @pytest.fixture(scope="session")
-def urban() -> WorldProfile:
-    return load("worlds", "urban", WorldProfile)
+def urban() -> CourseProfile:
+    return load("worlds", "urban", CourseProfile)
 
 
 @pytest.fixture(scope="session")
-def course(urban: WorldProfile) -> Course:
+def course(urban: CourseProfile) -> Course:
     return Course(urban)
 
 

@@ -5,11 +5,12 @@ import numpy as np
 import pytest
 
 from simconsole.profiles.course_plan import CoursePlan, Curve, Straight
-from simconsole.profiles.world import WorldProfile
+from simconsole.profiles.world import CourseProfile
 from simconsole.values.platform import Pose
-from simconsole.world.course import CELL_M, Course
+from simconsole.world.course import Course
 from simconsole.world.path_geometry import Piece, travel
 from simconsole.world.planning import solve
+from simconsole.world.route import CELL_M
 from tests.samples import Sample
 
 
@@ -21,7 +22,7 @@ def test_cells_are_half_a_metre_or_finer(course: Course) -> None:
 
 
 def test_path_and_projection_agree_with_the_exact_primitives(
-    urban: WorldProfile, course: Course, sample: Sample
+    urban: CourseProfile, course: Course, sample: Sample
 ) -> None:
     dice = random.Random(sample.seed)
     for _ in range(sample.of(1500, 50_000)):

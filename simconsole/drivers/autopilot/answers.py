@@ -9,14 +9,14 @@ from simconsole.drivers.path_tracker.state_estimator import VehicleMotion
 from simconsole.drivers.path_tracker.tracker import Tracker, TrackerCommand
 from simconsole.drivers.path_tracker.tracker_settings import TIMING, CarModel
 from simconsole.drivers.path_tracker.tracking_statistics import TrackingStatistics
-from simconsole.world.course import Course
+from simconsole.world.route import Route
 
 _LAWS: Final = {"pure_pursuit": pure_pursuit, "stanley": stanley}
 _END_M: Final = 0.5
 _STANDING_MPS: Final = 0.05
 
 
-def make_tracker(name: str, course: Course, car: CarModel, delay_s: float) -> Tracker | GeometricTracker:
+def make_tracker(name: str, course: Route, car: CarModel, delay_s: float) -> Tracker | GeometricTracker:
     """Return the tracker `name`, one of TRACKERS; the plain ones do not know `delay_s`."""
     if name in _LAWS:
         return GeometricTracker(_LAWS[name], course, car)

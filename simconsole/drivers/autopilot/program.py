@@ -1,4 +1,4 @@
-"""The driver on the ROS side: a program that uses only rosbridge and follows a course (shell).
+"""The driver on the ROS side: a program that uses only rosbridge and follows the route of a world (shell).
 
 It answers every odometry with one command that carries the odometry's own stamp, so that a console in lockstep knows
 which state the command was made for; also while a person drives, so that engagement finds a fresh command. What people
@@ -18,12 +18,11 @@ from simconsole.drivers.path_tracker.car_model import car_model
 from simconsole.drivers.path_tracker.state_estimator import VehicleMotion
 from simconsole.drivers.path_tracker.tracker import TrackerCommand
 from simconsole.drivers.path_tracker.tracker_settings import TIMING, TRACKERS
-from simconsole.profiles.files.loader import MAX_DATA_BYTES, load
 from simconsole.profiles.files.vehicle_files import load_vehicle
-from simconsole.profiles.world import WorldProfile
+from simconsole.profiles.files.world_files import load_world
 from simconsole.values.errors import BridgeError, OtherDriveError
 from simconsole.values.signals import Mode
-from simconsole.world.course import Course
+from simconsole.world.kinds.worlds import open_world
 
 ODOMETRY: Final = "/odom"
 ARBITRATION: Final = "/console/arbitration"
@@ -70,11 +69,11 @@ def run(
         tracker: how it steers, one of `tracker_settings.TRACKERS`.
 
     Raises:
-        ProfileError: the course cannot be read.
+        ProfileError: the world cannot be read.
         BridgeError: no server answers at `url`.
         OtherDriveError: the server there belongs to another drive.
     """
-    course = Course(load("worlds", course_name, WorldProfile, max_bytes=MAX_DATA_BYTES))
+    course = open_world(load_world(course_name)).route
     answers = Answers(make_tracker(tracker, course, car_model(load_vehicle(vehicle)), delay_s), _say)
     with BridgeClient(url, token=token, certificate=certificate, drive=drive, until_good_bye=True) as client:
         odometry, arbitration, command = (

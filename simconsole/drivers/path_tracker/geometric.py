@@ -13,18 +13,18 @@ from simconsole.drivers.path_tracker.state_estimator import VehicleMotion
 from simconsole.drivers.path_tracker.tracker import TrackerCommand
 from simconsole.drivers.path_tracker.tracker_settings import COMFORT, TIMING, CarModel
 from simconsole.values.kernels import clip
-from simconsole.world.course import Course, Projection
+from simconsole.world.route import Projection, Route
 
 AHEAD_S: Final = 0.6
 LEAST_AHEAD_M: Final = 4.0
 GAIN_1PS: Final = 1.5
 SOFT_MPS: Final = 1.0
 
-Law = Callable[[Course, Projection, VehicleMotion, float], float]
+Law = Callable[[Route, Projection, VehicleMotion, float], float]
 """Takes the course, where base_link is beside it, the motion and the wheelbase in m; returns the road-wheel angle."""
 
 
-def pure_pursuit(course: Course, place: Projection, seen: VehicleMotion, wheelbase_m: float) -> float:
+def pure_pursuit(course: Route, place: Projection, seen: VehicleMotion, wheelbase_m: float) -> float:
     """Return the road-wheel angle (rad) of the arc to the point of the path that is 0.6 s, at least 4 m, ahead.
 
     Coulter, Implementation of the Pure Pursuit Path Tracking Algorithm, CMU-RI-TR-92-01.
@@ -35,7 +35,7 @@ def pure_pursuit(course: Course, place: Projection, seen: VehicleMotion, wheelba
     return math.atan(2.0 * wheelbase_m * aside_m / (dx * dx + dy * dy))
 
 
-def stanley(course: Course, place: Projection, seen: VehicleMotion, wheelbase_m: float) -> float:
+def stanley(course: Route, place: Projection, seen: VehicleMotion, wheelbase_m: float) -> float:
     """Return the road-wheel angle (rad) that turns the front wheels along the path, and towards it.
 
     Thrun et al., Stanley: The Robot that Won the DARPA Grand Challenge, J. Field Robotics 23(9), 2006.
@@ -49,7 +49,7 @@ def stanley(course: Course, place: Projection, seen: VehicleMotion, wheelbase_m:
 class GeometricTracker:
     """Follows a course by a law of geometry; the same interface as `Tracker`."""
 
-    def __init__(self, law: Law, course: Course, car: CarModel) -> None:
+    def __init__(self, law: Law, course: Route, car: CarModel) -> None:
         """Steer a car by `law` along `course`."""
         self.course = course
         self.s_m: float | None = None

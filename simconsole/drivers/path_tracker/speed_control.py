@@ -5,7 +5,7 @@ from typing import Final, NamedTuple
 from simconsole.drivers.path_tracker.speed_profile import plan_speed
 from simconsole.drivers.path_tracker.tracker_settings import Comfort
 from simconsole.values.kernels import approach, clip
-from simconsole.world.course import Course
+from simconsole.world.route import Route
 
 _GAIN_1PS: Final = 1.2
 _LEAD_S: Final = 0.15
@@ -23,7 +23,7 @@ class Longitudinal(NamedTuple):
 class SpeedControl:
     """Follows the plan of a course; every tracker has one, however it steers."""
 
-    def __init__(self, course: Course, comfort: Comfort, period_s: float) -> None:
+    def __init__(self, course: Route, comfort: Comfort, period_s: float) -> None:
         """Plan the speed; `step` is called once in `period_s`."""
         self.profile = plan_speed(course, comfort)
         self.accel_mps2 = 0.0

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simconsole.drivers.path_tracker.tracker_settings import Comfort
-from simconsole.world.course import Course
+from simconsole.world.route import Route
 
 Array = NDArray[np.float64]
 
@@ -67,7 +67,7 @@ def stopping(left_m: float) -> tuple[float, float]:
     return 0.5 * _STOP_JERK_MPS3 * left_s**2, -_STOP_JERK_MPS3 * max(left_s, _STOPPED_S)
 
 
-def plan_speed(course: Course, comfort: Comfort, top_mps: float | None = None) -> SpeedProfile:
+def plan_speed(course: Route, comfort: Comfort, top_mps: float | None = None) -> SpeedProfile:
     """Return the profile of a flying lap: never above the limits of `comfort` and of the course (or `top_mps`).
 
     An open course is entered at any speed that the profile has, and ends with a stop.
@@ -75,7 +75,8 @@ def plan_speed(course: Course, comfort: Comfort, top_mps: float | None = None) -
     count = round(course.length_m / STEP_M)
     step, closed = course.length_m / count, course.closed
     curvature = np.array([course.curvature_at((index + 0.5) * step) for index in range(count)])
-    top = (course.speed_limit_mps if top_mps is None else top_mps) - comfort.margin_mps
+    limits = course.limits_at(np.arange(count, dtype=np.float64) * step)
+    top = (limits if top_mps is None else np.full(count, top_mps)) - comfort.margin_mps
     bend = np.sqrt(comfort.lateral_mps2 / np.maximum(np.abs(curvature), 1e-9))
     bending = np.abs(_shifted(curvature, -1, closed) - _shifted(curvature, 1, closed)) / (2.0 * step)
     ramp = np.cbrt(comfort.lateral_jerk_mps3 / np.maximum(bending, 1e-9))

@@ -32,11 +32,11 @@ from simconsole.drivers.path_tracker.tracker_settings import (
     Weights,
 )
 from simconsole.values.kernels import clip
-from simconsole.world.course import Course
+from simconsole.world.route import Route
 
 Array = NDArray[np.float64]
 
-_SPEEDS_MPS: Final = (1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5, 8.5, 10.0, 11.5, 13.0, 14.5, 17.0, 20.0)
+_SPEEDS_MPS: Final = (1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5, 8.5, 10.0, 11.5, 13.0, 14.5, 17.0, 20.0, 24.0, 29.0, 36.0)
 _CURVATURE_STEP_M: Final = 0.1
 _PUSHED_OFF_M: Final = 0.3
 _STEERING_RATE_RADPS: Final = 0.8
@@ -59,7 +59,7 @@ class Tracker:
 
     def __init__(
         self,
-        course: Course,
+        course: Route,
         car: CarModel = HATCHBACK,
         comfort: Comfort = COMFORT,
         timing: Timing = TIMING,
@@ -154,7 +154,7 @@ class Tracker:
         self._along.accel_mps2 = 0.0
 
 
-def _curvatures(course: Course) -> tuple[float, Array]:
+def _curvatures(course: Route) -> tuple[float, Array]:
     """Return (distance in m, curvatures in 1/m in the middle of each such part); an open course ends with one of 0."""
     count = round(course.length_m / _CURVATURE_STEP_M)
     step = course.length_m / count

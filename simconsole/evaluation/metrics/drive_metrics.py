@@ -12,7 +12,7 @@ from simconsole.evaluation.metrics.takeovers import takeovers
 from simconsole.evaluation.metrics.track import Track, track
 from simconsole.values.labels import mode_label, reason_label
 from simconsole.values.units import KMH_PER_MPS
-from simconsole.world.course import Course
+from simconsole.world.route import Route
 
 _PERCENT: Final = 95.0
 
@@ -83,7 +83,7 @@ def lateral_errors(way: Track) -> LateralErrors | None:
 
 def metrics(
     drive: Drive,
-    course: Course | None,
+    route: Route | None,
     way: Track | None = None,
     faults: Sequence[str] = (),
     changes: Sequence[ModeChange] | None = None,
@@ -92,14 +92,13 @@ def metrics(
 
     Args:
         drive: The drive.
-        course: The theoretical path, None in a world without one.
+        route: The theoretical path, None in a world without one.
         way: The drive's track, where the caller has it.
         faults: The names of the faults of its scenario, in their order.
         changes: The drive's mode changes, where the caller has them.
     """
-    way = track(drive, course) if way is None else way
+    way = track(drive, route) if way is None else way
     duration = drive.ticks / drive.tick_hz
-    limit = course.speed_limit_mps if course is not None else math.inf
     lateral_accel, autonomous_accel = _lateral_accel_mps2(drive, way)
     return {
         "ticks": drive.ticks,
@@ -107,8 +106,8 @@ def metrics(
         "distance_m": float(way.distance_m[-1]),
         "mean_speed_kmh": float(way.distance_m[-1]) / duration * KMH_PER_MPS,
         "max_speed_kmh": float(way.speed_mps.max()) * KMH_PER_MPS,
-        "speed_limit_kmh": limit * KMH_PER_MPS if course is not None else None,
-        "above_limit_s": float((way.speed_mps > limit).sum()) / drive.tick_hz,
+        "speed_limit_kmh": route.speed_limit_mps * KMH_PER_MPS if route is not None else None,
+        "above_limit_s": float((way.speed_mps > way.limit_mps).sum()) / drive.tick_hz,
         "max_lateral_accel_mps2": lateral_accel,
         "autonomous": _autonomous(drive, way, autonomous_accel),
         "time_in_mode_s": _time_in_mode(drive, way),

@@ -1,5 +1,6 @@
 """Where a drive was, tick by tick: what most figures need of it, and the only columns of it that stay in memory."""
 
+import math
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -7,7 +8,7 @@ from numpy.typing import NDArray
 
 from simconsole.evaluation.metrics.table import Array, Drive
 from simconsole.values.signals import Mode
-from simconsole.world.course import Course
+from simconsole.world.route import Route
 
 JUMP_M: Final = 1.0
 """A vehicle that moved further in one tick was put there (a restart): it did not drive."""
@@ -16,12 +17,13 @@ _COLUMNS: Final = ("vehicle.x_m", "vehicle.y_m", "vehicle.vx_mps", "vehicle.vy_m
 
 
 class Track(NamedTuple):
-    """A drive along its course, [ticks] each: 25 bytes a tick."""
+    """A drive along its route, [ticks] each: 25 bytes a tick, 33 where limits change."""
 
     distance_m: Array  # driven since the first tick
     speed_mps: Array
     mode: NDArray[np.int8]
-    lateral_m: Array  # left of the theoretical path; empty without a course
+    lateral_m: Array  # left of the theoretical path; empty without a route
+    limit_mps: Array  # the speed limit there; infinite without a route
 
     @property
     def autonomous(self) -> NDArray[np.bool_]:
@@ -30,7 +32,7 @@ class Track(NamedTuple):
         return found
 
 
-def track(drive: Drive, course: Course | None) -> Track:
+def track(drive: Drive, route: Route | None) -> Track:
     """Return where the drive was, tick by tick."""
     x, y, speed = np.empty(drive.ticks), np.empty(drive.ticks), np.empty(drive.ticks)
     mode, at = np.empty(drive.ticks, np.int8), 0
@@ -39,8 +41,18 @@ def track(drive: Drive, course: Course | None) -> Track:
         x[part], y[part], mode[part] = block[:, 0], block[:, 1], block[:, 4]
         np.hypot(block[:, 2], block[:, 3], out=speed[part])
         at += len(block)
-    lateral = course.project_all(x, y)[1] if course is not None else np.zeros(0)
-    return Track(_distance_m(x, y), speed, mode, lateral)
+    lateral, limit = np.zeros(0), np.broadcast_to(np.array(math.inf), len(x))
+    if route is not None:
+        places, lateral = route.project_all(x, y)
+        one = bool((route.limit == route.speed_limit_mps).all())
+        limit = np.broadcast_to(np.array(route.speed_limit_mps), len(x)) if one else route.limits_at(places)
+    return Track(
+        distance_m=_distance_m(x, y),
+        speed_mps=speed,
+        mode=mode,
+        lateral_m=lateral,
+        limit_mps=limit,
+    )
 
 
 def _distance_m(x: Array, y: Array) -> Array:

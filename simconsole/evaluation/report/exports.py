@@ -17,7 +17,8 @@ from simconsole.recording.bundles.provenance import facts as provenance_facts
 from simconsole.recording.bundles.replay_bundle import recorded_session
 from simconsole.session.scene_job import LIVE_SCENE
 from simconsole.tick.assembly import ResolvedSession
-from simconsole.world.course import Course
+from simconsole.world.kinds.worlds import open_world
+from simconsole.world.route import Route
 
 REPORT: Final = "report.html"
 PASSES: Final = 8
@@ -95,8 +96,8 @@ def open_viewer(path: Path) -> None:
     subprocess.Popen([sys.executable, "-m", "rerun", str(path)], stdin=subprocess.DEVNULL)
 
 
-def _course(resolved: ResolvedSession) -> Course | None:
-    return None if resolved.world is None else Course(resolved.world)
+def _route(resolved: ResolvedSession) -> Route | None:
+    return None if resolved.world is None else open_world(resolved.world).route
 
 
 def _report(bundle: Bundle, page: bool, told: Callable[[float], object]) -> dict[str, Any]:
@@ -105,20 +106,20 @@ def _report(bundle: Bundle, page: bool, told: Callable[[float], object]) -> dict
     from simconsole.evaluation.report.page import write_report as write_page
 
     resolved, manifest = recorded_session(bundle), bundle.manifest
-    course, title = _course(resolved), resolved.session.title or bundle.folder.name
+    route, title = _route(resolved), resolved.session.title or bundle.folder.name
     faults = [fault_label(fault) for fault in resolved.session.scenario.faults]
     drive = recorded_drive(bundle.log, lambda passes: told(min(passes / PASSES, 1.0)))
     if page:
         return write_page(
             bundle.folder / REPORT,
             drive,
-            course,
+            route,
             title,
             _facts(resolved, manifest),
             faults=faults,
             latency_us=manifest.summary.get("latency_us"),
         )
-    return metrics(drive, course, None, faults)
+    return metrics(drive, route, None, faults)
 
 
 def _facts(resolved: ResolvedSession, manifest: Manifest) -> dict[str, object]:

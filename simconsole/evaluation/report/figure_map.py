@@ -12,24 +12,24 @@ from simconsole.evaluation.metrics.track import JUMP_M, Track
 from simconsole.evaluation.report.colours import END, LIMIT, MODES, NOTE, PERSON, REMOTE, START, THEORY
 from simconsole.values.labels import mode_label
 from simconsole.values.signals import Mode
-from simconsole.world.course import Course
+from simconsole.world.route import Route
 
 _STEP_M: Final = 1.0
 _LABEL_M: Final = 26.0  # how far beside the road a label stands
 _NOTED: Final[dict[str, Any]] = {"textcoords": "offset points", "color": NOTE, "fontsize": 7.5}
 
 
-def draw_map(figure: Any, drive: Drive, way: Track, changes: list[ModeChange], course: Course | None) -> None:
+def draw_map(figure: Any, drive: Drive, way: Track, changes: list[ModeChange], route: Route | None) -> None:
     """Draw the map into a matplotlib figure."""
     axes = figure.add_subplot()
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_title("Driven path against theoretical path")
     axes.set_xlabel("x in map / m")
     axes.set_ylabel("y in map / m")
-    if course is not None:
-        path = course.offset(0.0, 0.0, course.length_m, _STEP_M)
+    if route is not None:
+        path = route.offset(0.0, 0.0, route.length_m, _STEP_M)
         axes.plot(*path.T, color=THEORY, linewidth=6.0, solid_capstyle="round", label="theoretical path")
-        _label_features(axes, course)
+        _label_landmarks(axes, route)
     x, y = drive.columns("vehicle.x_m", "vehicle.y_m")
     _draw_driven(axes, x, y, way)
     _draw_changes(axes, changes)
@@ -90,33 +90,32 @@ def _draw_changes(axes: Any, changes: list[ModeChange]) -> None:
         )
 
 
-def _label_features(axes: Any, course: Course) -> None:
-    world = course.world
-    half = 0.5 * world.lane_width_m
-    for crossing in world.crossings:
-        ends = [course.offset(side, crossing.s_m, crossing.s_m + 0.1)[0] for side in (-3 * half, 5 * half)]
-        axes.plot(*np.array(ends).T, color=LIMIT, linewidth=2.4, solid_capstyle="butt", zorder=3)
-        _label(axes, course, crossing.s_m, "crossing")
-    for spot in world.intersections:
-        ends = [course.offset(half + side, spot.s_m, spot.s_m + 0.1)[0] for side in (-spot.arm_m, spot.arm_m)]
-        axes.plot(*np.array(ends).T, color=THEORY, linewidth=3.0, solid_capstyle="butt", zorder=1)
-        _label_junction(axes, course, spot.s_m, "traffic lights" if spot.signalled else "side road")
-    for ring in world.roundabouts:
-        axes.annotate("roundabout", (ring.x_m, ring.y_m), xytext=(16, 12), **_NOTED)
+def _label_landmarks(axes: Any, route: Route) -> None:
+    for mark in route.landmarks:
+        if mark.across:
+            crossing = mark.kind == "crossing"
+            width, order, colour = (2.4, 3, LIMIT) if crossing else (3.0, 1, THEORY)
+            axes.plot(*np.array(mark.across).T, color=colour, linewidth=width, solid_capstyle="butt", zorder=order)
+        if mark.kind == "crossing":
+            _label(axes, route, mark.s_m, mark.kind)
+        elif mark.kind == "roundabout":
+            axes.annotate(mark.kind, (mark.x_m, mark.y_m), xytext=(16, 12), **_NOTED)
+        else:
+            _label_junction(axes, route, mark.s_m, mark.kind)
 
 
-def _label(axes: Any, course: Course, s_m: float, text: str) -> None:
-    point = course.at(s_m)
+def _label(axes: Any, route: Route, s_m: float, text: str) -> None:
+    point = route.at(s_m)
     upright = abs(np.sin(point.yaw_rad)) > 0.5
-    x, y = course.offset(_LABEL_M * (0.6 if upright else 0.8), s_m, s_m + 0.1)[0].tolist()
+    x, y = route.offset(_LABEL_M * (0.6 if upright else 0.8), s_m, s_m + 0.1)[0].tolist()
     left = np.sin(point.yaw_rad) > 0.0
     side = ("right" if left else "left") if upright else "center"
     axes.annotate(text, (x, y), ha=side, va="center", color=NOTE, fontsize=7.5)
 
 
-def _label_junction(axes: Any, course: Course, s_m: float, text: str) -> None:
-    """Write beside the crossing road, on the left of the course."""
-    point = course.at(s_m)
+def _label_junction(axes: Any, route: Route, s_m: float, text: str) -> None:
+    """Write beside the crossing road, on the left of the route."""
+    point = route.at(s_m)
     east, north = np.cos(point.yaw_rad) > 0.5, np.sin(point.yaw_rad) > 0.5
-    x, y = course.offset(_LABEL_M, s_m + 5.0, s_m + 5.1)[0].tolist()
+    x, y = route.offset(_LABEL_M, s_m + 5.0, s_m + 5.1)[0].tolist()
     axes.annotate(text, (x, y), ha="left" if east or north else "right", va="center", color=NOTE, fontsize=7.5)

@@ -12,7 +12,7 @@ from simconsole.evaluation.report.colours import BAND, END, LIMIT, MODES, NOTE, 
 from simconsole.values.labels import mode_label
 from simconsole.values.signals import Mode
 from simconsole.values.units import DEG_PER_RAD, KMH_PER_MPS
-from simconsole.world.course import Course
+from simconsole.world.route import Route
 
 _POINTS: Final = 1600
 _CM_PER_M: Final = 100.0
@@ -20,13 +20,13 @@ _ROOM: Final = 1.35  # upper end of the deviation's axis over its largest value
 _NARROW: Final = 0.05  # share of the drive below which the mode's label does not fit
 
 
-def draw_traces(figure: Any, drive: Drive, way: Track, changes: list[ModeChange], course: Course | None) -> None:
+def draw_traces(figure: Any, drive: Drive, way: Track, changes: list[ModeChange], route: Route | None) -> None:
     """Draw the panels into a matplotlib figure, one distance axis for all."""
     lateral, speed, wheel, modes = figure.subplots(
         4, 1, sharex=True, gridspec_kw={"height_ratios": (3.0, 2.6, 2.2, 0.55), "hspace": 0.04}
     )
-    _draw_lateral(lateral, way, course)
-    _draw_speed(speed, way, course)
+    _draw_lateral(lateral, way, route)
+    _draw_speed(speed, way, route)
     _draw_steering(wheel, drive, way)
     _draw_modes(modes, way)
     for axes in (lateral, speed, wheel):
@@ -35,10 +35,10 @@ def draw_traces(figure: Any, drive: Drive, way: Track, changes: list[ModeChange]
     modes.set_xlim(0.0, max(float(way.distance_m[-1]), 1.0))
 
 
-def _draw_lateral(axes: Any, way: Track, course: Course | None) -> None:
+def _draw_lateral(axes: Any, way: Track, route: Route | None) -> None:
     axes.set_title("Lateral deviation of base_link from the theoretical path, left positive")
     axes.set_ylabel("deviation / cm")
-    if course is None:
+    if route is None:
         axes.text(0.5, 0.5, "no course in this world", transform=axes.transAxes, ha="center", color=NOTE)
         return
     errors = lateral_errors(way)
@@ -56,13 +56,16 @@ def _draw_lateral(axes: Any, way: Track, course: Course | None) -> None:
     axes.legend(loc="upper center", ncols=4)
 
 
-def _draw_speed(axes: Any, way: Track, course: Course | None) -> None:
+def _draw_speed(axes: Any, way: Track, route: Route | None) -> None:
     axes.set_title("Speed")
     axes.set_ylabel("speed / km/h")
     _line(axes, way.distance_m, way.speed_mps * KMH_PER_MPS, REMOTE, "driven")
-    if course is not None:
-        limit = course.speed_limit_mps * KMH_PER_MPS
-        axes.axhline(limit, color=LIMIT, linestyle=(0, (5, 3)), linewidth=1.1, label=f"limit {limit:.0f} km/h")
+    if route is not None:
+        limit = way.limit_mps * KMH_PER_MPS
+        steps = np.flatnonzero(np.diff(limit))
+        shown = np.unique(np.concatenate(((0, len(limit) - 1), steps, steps + 1)))
+        label = "limit" if len(steps) else f"limit {limit[0]:.0f} km/h"
+        axes.plot(way.distance_m[shown], limit[shown], color=LIMIT, linestyle=(0, (5, 3)), linewidth=1.1, label=label)
         axes.legend(loc="lower right", ncols=2)
     axes.set_ylim(0.0, max(1.15 * float(axes.get_ylim()[1]), 1.0))
 

@@ -10,7 +10,7 @@ from simconsole.evaluation.metrics.track import Track
 from simconsole.evaluation.report.figure_map import draw_map
 from simconsole.evaluation.report.figure_panels import draw_panels
 from simconsole.evaluation.report.figure_traces import draw_traces
-from simconsole.world.course import Course
+from simconsole.world.route import Route
 
 STYLE: Final[dict[str, Any]] = {
     "font.family": "DejaVu Sans",  # ships with matplotlib, so the same everywhere
@@ -37,14 +37,14 @@ STYLE: Final[dict[str, Any]] = {
 }
 
 
-def map_svg(drive: Drive, way: Track, changes: list[ModeChange], course: Course | None) -> str:
+def map_svg(drive: Drive, way: Track, changes: list[ModeChange], route: Route | None) -> str:
     """Return the driven path over the theoretical one, start green and end red (the paper's Fig. 9)."""
-    return _svg("map", (9.2, 7.4), lambda figure: draw_map(figure, drive, way, changes, course))
+    return _svg("map", (9.2, 7.4), lambda figure: draw_map(figure, drive, way, changes, route))
 
 
-def traces_svg(drive: Drive, way: Track, changes: list[ModeChange], course: Course | None) -> str:
+def traces_svg(drive: Drive, way: Track, changes: list[ModeChange], route: Route | None) -> str:
     """Return lateral deviation, speed and steering over the distance driven, with the mode beneath."""
-    return _svg("traces", (9.2, 7.6), lambda figure: draw_traces(figure, drive, way, changes, course))
+    return _svg("traces", (9.2, 7.6), lambda figure: draw_traces(figure, drive, way, changes, route))
 
 
 def panels_svg(name: str, panels: tuple[Panel, ...]) -> str:

@@ -11,7 +11,7 @@ from simconsole.evaluation.metrics.track import track
 from simconsole.evaluation.report.figures import map_svg, traces_svg
 from simconsole.values.errors import RecordingError
 from simconsole.values.host.files import write_atomically
-from simconsole.world.course import Course
+from simconsole.world.route import Route
 
 STYLE: Final = """
 :root{color-scheme:light}
@@ -55,7 +55,7 @@ _LABELS: Final[tuple[tuple[str, str, str], ...]] = (
 def write_report(
     path: Path,
     drive: Drive,
-    course: Course | None,
+    route: Route | None,
     title: str,
     extra: Mapping[str, object] | None = None,
     *,
@@ -67,7 +67,7 @@ def write_report(
     Args:
         path: the HTML file.
         drive: the drive.
-        course: the theoretical path, None in a world without one.
+        route: the theoretical path, None in a world without one.
         title: heading of the page.
         extra: further facts for the page, in order. Nothing that differs between equal drives belongs here, if two
             reports of one drive are to be equal.
@@ -78,10 +78,10 @@ def write_report(
     Raises:
         RecordingError: a column is missing, or the file cannot be written.
     """
-    way = track(drive, course)
+    way = track(drive, route)
     changes = mode_changes(drive, way)
-    found = metrics(drive, course, way, faults, changes)
-    svgs = map_svg(drive, way, changes, course), traces_svg(drive, way, changes, course)
+    found = metrics(drive, route, way, faults, changes)
+    svgs = map_svg(drive, way, changes, route), traces_svg(drive, way, changes, route)
     try:
         write_atomically(path, page(title, found, svgs, extra or {}, latency_us or {}))
     except OSError as error:

@@ -19,12 +19,15 @@ __all__ = [
     "MAX_BYTES",
     "MAX_DATA_BYTES",
     "find",
+    "inside",
     "load",
     "names",
     "parse",
     "profiles_folder",
     "read_beside",
+    "read_bytes",
     "read_text",
+    "read_text_of",
     "to_text",
 ]
 
@@ -92,7 +95,7 @@ def load(
         ProfileError: one line, `FILE: KEY: value VALUE: what is allowed`.
     """
     path = find(kind, name_or_path, referrer=referrer)
-    return parse(_read(path, max_bytes), struct, str(path))
+    return parse(read_text_of(path, max_bytes), struct, str(path))
 
 
 def parse(text: str, struct: type[T], origin: str) -> T:
@@ -118,7 +121,7 @@ def read_text(kind: str, file_name: str, *, max_bytes: int = MAX_DATA_BYTES) -> 
     allowed = len(file_name) <= _MAX_NAME and _NAME.fullmatch(file_name) is not None
     if not allowed or not _is_file(path) or not _stays_in(path, folder):
         raise _refused(kind, _shown(file_name), "a file that simconsole ships", None)
-    return _read(path, max_bytes)
+    return read_text_of(path, max_bytes)
 
 
 def read_beside(kind: str, reference: str, referrer: Path, *, max_bytes: int = MAX_BYTES) -> str:
@@ -127,13 +130,22 @@ def read_beside(kind: str, reference: str, referrer: Path, *, max_bytes: int = M
     Raises:
         ProfileError: the reference is refused, the file is not there, too big or not UTF-8.
     """
+    return read_text_of(inside(kind, reference, referrer), max_bytes)
+
+
+def inside(kind: str, reference: str, referrer: Path) -> Path:
+    """Return the path of a file that a profile names, which must lie in the profile's folder or below.
+
+    Raises:
+        ProfileError: the reference is refused, or the file is not there.
+    """
     shown = _shown(reference)
     if not reference or not reference.isprintable():
         raise _refused(kind, shown, "printable text", referrer)
     path = _inside(kind, reference, shown, referrer)
     if not _is_file(path):
         raise _refused(kind, shown, "a file that exists", referrer)
-    return _read(path, max_bytes)
+    return path
 
 
 def _shipped(kind: str, name: str, shown: str, referrer: Path | None) -> Path:
@@ -167,7 +179,12 @@ def _is_file(path: Path) -> bool:
         return False
 
 
-def _read(path: Path, max_bytes: int) -> str:
+def read_bytes(path: Path, max_bytes: int) -> bytes:
+    """Return the content of a file that `find` or `inside` has found.
+
+    Raises:
+        ProfileError: it cannot be read, or is too big.
+    """
     try:
         with path.open("rb") as file:
             content = file.read(max_bytes + 1)
@@ -175,6 +192,16 @@ def _read(path: Path, max_bytes: int) -> str:
         raise ProfileError(f"{path}: file: {error.strerror}: a readable file") from error
     if len(content) > max_bytes:
         raise ProfileError(f"{path}: file: value larger than {max_bytes} bytes: at most {max_bytes} bytes")
+    return content
+
+
+def read_text_of(path: Path, max_bytes: int) -> str:
+    """Return the text of a file that `find` or `inside` has found.
+
+    Raises:
+        ProfileError: it cannot be read, is too big or not UTF-8.
+    """
+    content = read_bytes(path, max_bytes)
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -117,7 +117,7 @@ class BundleWriter:
         self,
         folder: Path,
         header: LogHeader,
-        texts: Mapping[str, str],
+        contents: Mapping[str, str | bytes],
         versions: Mapping[str, str] | None = None,
         provenance: Provenance = UNKNOWN,
     ) -> None:
@@ -126,7 +126,7 @@ class BundleWriter:
         Args:
             folder: new, or empty.
             header: of the log.
-            texts: resolved profiles, file name to content.
+            contents: resolved profiles and what they need of a map, file name to content.
             versions: of the packages that make the result.
             provenance: what is known now of where the drive comes from; see `extend_provenance`.
 
@@ -134,7 +134,7 @@ class BundleWriter:
             RecordingError: the folder exists and is not empty, or cannot be written.
         """
         self.folder = folder
-        self._texts = dict(texts)
+        self._contents = dict(contents)
         self._made = [path for path in (folder, *folder.parents) if not path.exists()]  # innermost first
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -144,10 +144,10 @@ class BundleWriter:
         if filled:
             raise RecordingError(f"{folder}: cannot be recorded to: the folder is not empty")
         try:
-            for name, text in texts.items():
-                write_atomically(folder / plain_name(name, folder), text)
+            for name, content in contents.items():
+                write_atomically(folder / plain_name(name, folder), content)
             self.manifest = Manifest(
-                files={name: file_entry(folder / name) for name in texts},
+                files={name: file_entry(folder / name) for name in contents},
                 versions=dict(versions or {}),
                 provenance=provenance,
             )
@@ -207,9 +207,9 @@ class BundleWriter:
     def _put_back(self) -> None:
         self.folder.mkdir(parents=True, exist_ok=True)
         self.log.put_back()
-        for name, text in self._texts.items():
+        for name, content in self._contents.items():
             if not (self.folder / name).exists():
-                write_atomically(self.folder / name, text)
+                write_atomically(self.folder / name, content)
 
     def _log_entry(self) -> FileEntry:
         if self.log.sha256 is None or (self.folder / LOG).stat().st_size != self.log.size_bytes:

@@ -4,10 +4,13 @@ import hashlib
 from collections.abc import Mapping
 from pathlib import Path
 
+import msgspec
 import numpy as np
 
 from simconsole import __version__
-from simconsole.profiles.files.loader import parse
+from simconsole.profiles.files.world_files import located, with_kind
+from simconsole.profiles.strict_yaml import parse
+from simconsole.profiles.validation import convert
 from simconsole.recording.bundles.bundle import SESSION_FILE, Bundle, open_bundle, session_problem
 from simconsole.recording.replay import Remade, ReplayResult, replay
 from simconsole.tick.advance import Console, ConsoleState, advance_vector, decide
@@ -29,7 +32,13 @@ def recorded_session(bundle: Bundle) -> ResolvedSession:
     text, path = bundle.text(SESSION_FILE), bundle.folder / SESSION_FILE
     if problem := session_problem(path, text, bundle.log.header):
         raise RecordingError(problem)
-    return parse(text, ResolvedSession, str(path))
+    plain = parse(text, str(path))
+    if isinstance(plain, dict) and plain.get("world") is not None:
+        plain["world"] = with_kind(plain["world"], str(path))
+    resolved = convert(plain, ResolvedSession, str(path))
+    if resolved.world is None:
+        return resolved
+    return msgspec.structs.replace(resolved, world=located(resolved.world, bundle.folder))
 
 
 def sources_sha256(console: Console) -> str:

@@ -16,7 +16,7 @@ from simconsole.recording.exports.drive_topics import DriveTopics, OnTick
 from simconsole.recording.exports.foxglove import foxglove_layout
 from simconsole.recording.reading import Recording
 from simconsole.values.errors import RecordingError
-from simconsole.world.route import route_of
+from simconsole.world.kinds.worlds import route_points
 
 TOPIC_FORMATS: Final = {"mcap": "mcap_file", "rosbag2": "rosbag2_folder"}
 TABLE_FORMATS: Final = {"csv": "csv_file", "parquet": "parquet_file"}
@@ -69,7 +69,7 @@ def export_drive(
         if taken.exists():
             raise RecordingError(f"{taken}: cannot be exported to: it exists already")
     module = import_module(f"simconsole.recording.exports.{FORMATS[format_name]}")
-    topics = DriveTopics(session, route_of(world)) if of_topics else None
+    topics = DriveTopics(session, route_points(world)) if of_topics else None
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         # A folder of its own to write in, because rosbag2 names its files after its folder.

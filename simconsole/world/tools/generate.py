@@ -9,12 +9,12 @@ import msgspec
 
 from simconsole.profiles.course_plan import CoursePlan
 from simconsole.profiles.files.loader import load
-from simconsole.profiles.world import WorldProfile, WorldSection
+from simconsole.profiles.world import CourseProfile, WorldSection
 from simconsole.values.errors import ProfileError, SimConsoleError
 from simconsole.world.planning import PLACES_M, PLACES_RAD, solve
 
 
-def generate(plan_path: str, world_path: str) -> WorldProfile:
+def generate(plan_path: str, world_path: str) -> CourseProfile:
     """Read a plan, solve it, write the world; equal plans give equal bytes.
 
     Raises ProfileError for a plan that cannot be read or solved and for a file that cannot be written.
@@ -28,14 +28,14 @@ def generate(plan_path: str, world_path: str) -> WorldProfile:
     return world
 
 
-def to_text(world: WorldProfile, plan_name: str) -> str:
+def to_text(world: CourseProfile, plan_name: str) -> str:
     """Return the world as YAML, one part per line."""
     return "\n".join((*_lines(world, plan_name), ""))
 
 
-def _lines(world: WorldProfile, plan_name: str) -> Iterator[str]:
+def _lines(world: CourseProfile, plan_name: str) -> Iterator[str]:
     yield f"# Generated from {plan_name} by simconsole.world.tools.generate; edit the plan instead."
-    for key in WorldProfile.__struct_fields__:
+    for key in CourseProfile.__struct_fields__:
         value = getattr(world, key)
         if not isinstance(value, tuple):
             yield f"{key}: {json.dumps(value)}"

@@ -6,6 +6,9 @@ from simconsole.drivers.path_tracker.tracker_settings import COMFORT
 from simconsole.profiles.course_plan import CoursePlan, Curve, Straight
 from simconsole.world.course import Course
 from simconsole.world.planning import solve
+from simconsole.world.roads.lane_graph import LaneGraph
+from simconsole.world.roads.road_route import route_over
+from tests.world.nets import straight_map
 
 
 def test_profile_keeps_every_limit(course: Course) -> None:
@@ -74,3 +77,13 @@ def test_stopping_is_one_motion() -> None:
         left, speed = left - 1e-4 * speed, speed + 1e-4 * accel
         assert speed == pytest.approx(stopping(left)[0], abs=0.02)
     assert left == pytest.approx(0.0, abs=0.01)
+
+
+def test_open_route_ends_with_a_stop_and_keeps_each_limit() -> None:
+    road_map = straight_map()
+    route = route_over(road_map, LaneGraph(road_map).drawn(1, 180.0))
+    profile = plan_speed(route, COMFORT)
+    assert profile.at(route.length_m)[0] == profile.at(route.length_m + 5.0)[0] == 0.0
+    places = np.arange(len(profile.speed_mps), dtype=np.float64) * profile.step_m
+    assert (profile.speed_mps <= route.limits_at(places)).all()
+    assert float(profile.speed_mps[0]) > 10.0

@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 
 from simconsole.profiles.files.loader import find
-from simconsole.profiles.world import WorldProfile
+from simconsole.profiles.world import CourseProfile
 from simconsole.values.platform import Pose
 from simconsole.world.path_geometry import Piece, travel
 from simconsole.world.tools.generate import main
@@ -38,7 +38,7 @@ def test_usage(capsys: pytest.CaptureFixture[str]) -> None:
     assert "usage" in capsys.readouterr().err
 
 
-def test_urban_is_a_closed_loop_of_2600_m(urban: WorldProfile) -> None:
+def test_urban_is_a_closed_loop_of_2600_m(urban: CourseProfile) -> None:
     pose, s = Pose(0.0, 0.0, 0.0), 0.0
     for part in urban.path:
         assert part.s_m == pytest.approx(s, abs=1e-7)
@@ -52,12 +52,12 @@ def test_urban_is_a_closed_loop_of_2600_m(urban: WorldProfile) -> None:
     assert abs(urban.length_m - 2600.0) <= 10.0
 
 
-def test_urban_curvature_is_continuous(urban: WorldProfile) -> None:
+def test_urban_curvature_is_continuous(urban: CourseProfile) -> None:
     for before, after in zip(urban.path, (*urban.path[1:], urban.path[0]), strict=True):
         assert before.curvature_end_1pm == pytest.approx(after.curvature_start_1pm, abs=1e-12)
 
 
-def test_urban_has_the_ingredients_of_the_issue(urban: WorldProfile) -> None:
+def test_urban_has_the_ingredients_of_the_issue(urban: CourseProfile) -> None:
     radii = [1.0 / abs(part.curvature_start_1pm) for part in urban.path if part.kind == "arc"]
     corners = [
         part for part in urban.path if part.kind == "arc" and 1 / 15.01 < abs(part.curvature_start_1pm) < 1 / 11.9
@@ -75,7 +75,7 @@ def test_urban_has_the_ingredients_of_the_issue(urban: WorldProfile) -> None:
     assert urban.speed_limit_kmh == 50.0
 
 
-def test_urban_starts_on_a_long_straight(urban: WorldProfile) -> None:
+def test_urban_starts_on_a_long_straight(urban: CourseProfile) -> None:
     first, last = urban.path[0], urban.path[-1]
     assert (first.kind, last.kind) == ("line", "line")
     assert (first.x_m, first.y_m, first.yaw_rad) == (0.0, 0.0, 0.0)

@@ -1,0 +1,117 @@
+"""`simconsole world list | show | import`: the worlds that can be driven in."""
+
+from argparse import Namespace
+from pathlib import Path
+from typing import Any
+
+from simconsole.cli.outcome import Outcome, table
+from simconsole.profiles.files.loader import names, read_bytes
+from simconsole.profiles.files.world_files import MAX_MAP_BYTES, load_world
+from simconsole.profiles.world import CourseProfile, RoadsProfile, WorldProfile
+from simconsole.values.errors import ProfileError
+from simconsole.values.units import KMH_PER_MPS
+from simconsole.world.kinds.worlds import open_map, open_world
+from simconsole.world.roads.road_map import MapReport, RoadMap
+
+_NET = (".net.xml", ".net.xml.gz")
+_IMPORTED = """# Made by `simconsole world import` from {source}.
+schema: 1
+kind: roads
+title: {title}
+map: {{name: {net}}}
+route: {{by: random, seed: 1, length_m: 2000}}
+"""
+
+
+def world(options: Namespace) -> Outcome:
+    """Do one of them.
+
+    Raises:
+        ProfileError: a profile or a map cannot be used.
+    """
+    if options.action == "list":
+        return _list()
+    if options.name is None:
+        raise ProfileError(f"command line: WORLD: value missing: what to {options.action}")
+    return _show(options.name) if options.action == "show" else _import(Path(options.name), options.out)
+
+
+def _list() -> Outcome:
+    found = {name: load_world(name) for name in _worlds()}
+    rows = [(name, f"{_kind(profile):<7} {profile.title}") for name, profile in found.items()]
+    worlds = [{"name": name, "kind": _kind(profile), "title": profile.title} for name, profile in found.items()]
+    return Outcome(0, {"worlds": worlds}, table(rows))
+
+
+def _worlds() -> list[str]:
+    return [name for name in names("worlds") if not name.endswith(".plan")]
+
+
+def _kind(profile: WorldProfile) -> str:
+    return "course" if isinstance(profile, CourseProfile) else "roads"
+
+
+def _show(name: str) -> Outcome:
+    if name.endswith(_NET):
+        from simconsole.world.sumo.net_reader import read_net
+
+        return _told({"map": name}, read_net(read_bytes(Path(name), MAX_MAP_BYTES), name), [])
+    profile = load_world(name)
+    route = open_world(profile).route
+    facts = {
+        "world": name,
+        "kind": _kind(profile),
+        "title": profile.title,
+        "route": f"{route.length_m:.1f} m, {'closed' if route.closed else 'open'}",
+        "limits": " ".join(f"{limit * KMH_PER_MPS:.0f}" for limit in sorted(set(route.limit.tolist()))) + " km/h",
+        "tightest bend": f"{1.0 / max(float(abs(route.curvature).max()), 1e-6):.1f} m",
+        "along the route": _landmarks([mark.kind for mark in route.landmarks]),
+    }
+    if isinstance(profile, RoadsProfile):
+        return _told(facts, open_map(profile), [])
+    return Outcome(0, {**facts, "length_m": route.length_m}, table(list(facts.items())))
+
+
+def _landmarks(kinds: list[str]) -> str:
+    return ", ".join(f"{kinds.count(kind)} {kind}" for kind in dict.fromkeys(kinds)) or "nothing"
+
+
+def _told(facts: dict[str, str], road_map: RoadMap, losses: list[str]) -> Outcome:
+    report, geo = road_map.report, road_map.geo
+    rows = [*facts.items(), *((name, str(count)) for name, count in report.counts)]
+    rows.append(("buildings and cones", str(len(road_map.obstacles))))
+    rows.append(("on the earth", "not said" if geo.projection == "!" else geo.projection))
+    lines = [table(rows), *(f"  lost: {loss}" for loss in losses), *_not_read(report)]
+    results: dict[str, Any] = {
+        **facts,
+        "counts": dict(report.counts),
+        "obstacles": len(road_map.obstacles),
+        "not_read": [part._asdict() for part in report.skipped],
+        "losses": losses,
+    }
+    return Outcome(0, results, "\n".join(lines))
+
+
+def _not_read(report: MapReport) -> list[str]:
+    return [f"  not read: line {part.place}: <{part.element}>: {part.reason}" for part in report.skipped]
+
+
+def _import(source: Path, out: str | None) -> Outcome:
+    from simconsole.world.sumo.netconvert import convert
+
+    done = convert(read_bytes(source, MAX_MAP_BYTES), str(source))
+    folder = Path(out or ".")
+    name = source.name.split(".")[0]
+    net, profile = folder / f"{name}.net.xml", folder / f"{name}.yaml"
+    for path in (net, profile):
+        if path.exists():
+            raise ProfileError(f"{path}: file: value taken: a name that is free")
+    title = "".join(letter if letter.isalnum() else " " for letter in name).strip() or "map"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        net.write_bytes(done.net)
+        text = _IMPORTED.format(source=ascii(source.name)[1:-1], title=f'"{title}"', net=f'"{net.name}"')
+        profile.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise ProfileError(f"{folder}: file: {error.strerror}: a folder that can be written to") from None
+    return _told({"world": str(profile), "map": str(net)}, done.road_map, list(done.losses))

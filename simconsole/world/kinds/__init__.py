@@ -1,0 +1,1 @@
+"""From a world's profile to the world, whatever its kind."""

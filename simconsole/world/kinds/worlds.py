@@ -1,0 +1,51 @@
+"""From a world's profile to the world, whatever its kind: the one place that knows them all."""
+
+from functools import lru_cache, partial
+
+from simconsole.profiles.files.world_files import read_map
+from simconsole.profiles.world import CourseProfile, RoadsProfile, WorldProfile
+from simconsole.world.course import Course
+from simconsole.world.drawing import draw
+from simconsole.world.roads.road_map import RoadMap
+from simconsole.world.roads.road_world import road_world
+from simconsole.world.world import World
+
+
+@lru_cache(maxsize=4)
+def open_world(profile: WorldProfile) -> World:
+    """Return the world of a profile.
+
+    Raises:
+        ProfileError: a file of its map cannot be read, or no route leads over it as its profile says.
+    """
+    if isinstance(profile, CourseProfile):
+        course = Course(profile)
+        return World(profile.title, course, partial(draw, course))
+    return road_world(profile, open_map(profile))
+
+
+def open_map(profile: RoadsProfile) -> RoadMap:
+    """Return the road map of a world, with the polygons beside it.
+
+    Raises:
+        ProfileError: a file cannot be read as what it should be.
+    """
+    from simconsole.world.sumo.net_reader import read_net
+    from simconsole.world.sumo.polygons import read_polygons
+
+    found = read_net(read_map(profile.map), profile.map.name)
+    if profile.polygons is None:
+        return found
+    outlines, skipped = read_polygons(read_map(profile.polygons), profile.polygons.name)
+    report = found.report._replace(skipped=found.report.skipped + skipped)
+    return found._replace(obstacles=tuple(outline - found.moved_m for outline in outlines), report=report)
+
+
+def route_points(profile: WorldProfile | None) -> tuple[tuple[float, float, float], ...]:
+    """Return the route of a world as points (x m, y m, yaw rad); none without a world. Raises as open_world."""
+    return () if profile is None else open_world(profile).route.points()
+
+
+def route_length_m(profile: WorldProfile | None) -> float:
+    """Return the length of a world's route, 0 without a world. Raises as open_world."""
+    return 0.0 if profile is None else open_world(profile).route.length_m

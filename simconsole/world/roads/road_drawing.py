@@ -1,0 +1,128 @@
+"""A road map as lines and areas in `map` for whoever draws it: what lies near the route."""
+
+import math
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+
+from simconsole.world.drawing import Drawing
+from simconsole.world.drawing_layers import STEP_M, DrawingLayers, Frame, Light, add_zebra, box
+from simconsole.world.roads.road_map import CROSSING, ROAD, Array, Edge, Lane, RoadMap
+from simconsole.world.route import Route
+
+NEAR_M: Final = 250.0
+"""What lies further from the route is not drawn: a city has too much of it."""
+_CHUNK_M: Final = 12.0
+_STOP_LINE_M: Final = 0.5
+_POST_M: Final = 0.9
+_SPARSE_M: Final = 20.0
+
+
+def draw_roads(road_map: RoadMap, route: Route) -> Drawing:
+    """Return everything there is to draw near a route."""
+    layers = DrawingLayers()
+    near = _Near(route)
+    for edge in road_map.edges:
+        lanes = [road_map.lanes[place] for place in edge.lanes]
+        if not near.to(lanes[0].line[:, :2]):
+            continue
+        if edge.function == ROAD:
+            _add_road(layers, lanes)
+        elif edge.function == CROSSING:
+            _add_crossing(layers, lanes[0])
+    for junction in road_map.junctions:
+        if len(junction.outline) > 2 and near.to(junction.outline):
+            layers.surfaces.append(junction.outline)
+    for one in road_map.connections:
+        if one.signal >= 0 and road_map.lanes[one.from_lane].drivable:
+            _add_stop(layers, road_map, road_map.edges[road_map.lanes[one.from_lane].edge], one.from_lane, near)
+    for outline in road_map.obstacles:
+        if near.to(outline):
+            layers.edges.append(np.vstack((outline, outline[:1])))
+    return Drawing(
+        surfaces=tuple(layers.surfaces),
+        islands=tuple(layers.islands),
+        edges=tuple(layers.edges),
+        centre_lines=tuple(layers.centre_lines),
+        zebras=tuple(layers.zebras),
+        stop_lines=tuple(layers.stop_lines),
+        lights=tuple(dict.fromkeys(layers.lights)),
+        path=route.offset(0.0, 0.0, route.length_m, STEP_M),
+    )
+
+
+class _Near:
+    """Tells what lies near a route."""
+
+    def __init__(self, route: Route) -> None:
+        self._points = route.offset(0.0, 0.0, route.length_m, _SPARSE_M)
+
+    def to(self, line: Array) -> bool:
+        """Return whether one of the points [N, 2], or the middle of them, lies near the route."""
+        spots = np.vstack((line, line.mean(axis=0)))
+        away = np.hypot(*(spots[:, None, :] - self._points[None, :, :]).transpose(2, 0, 1))
+        return float(away.min()) < NEAR_M
+
+
+def _add_road(layers: DrawingLayers, lanes: list[Lane]) -> None:
+    for lane in lanes:
+        layers.surfaces += _strip(lane)
+    layers.edges.append(beside(lanes[0].line[:, :2], -0.5 * lanes[0].width_m))
+    layers.edges.append(beside(lanes[-1].line[:, :2], 0.5 * lanes[-1].width_m))
+    for lane, other in pairwise(lanes):
+        line = beside(lane.line[:, :2], 0.5 * lane.width_m)
+        (layers.centre_lines if lane.drivable and other.drivable else layers.edges).append(line)
+
+
+def beside(line: Array, lateral_m: float) -> Array:
+    """Return the line `lateral_m` left of a line [N, 2], mitred at its corners."""
+    steps = np.diff(line, axis=0)
+    headings = np.arctan2(steps[:, 1], steps[:, 0])
+    turned = np.remainder(np.diff(headings) + math.pi, math.tau) - math.pi
+    inner = headings[:-1] + 0.5 * turned
+    yaw = np.concatenate((headings[:1], inner, headings[-1:]))
+    mitre = np.concatenate(((1.0,), 1.0 / np.maximum(np.cos(0.5 * turned), 0.5), (1.0,)))
+    normal = np.stack((-np.sin(yaw), np.cos(yaw)), axis=1)
+    return np.asarray(line + normal * (lateral_m * mitre)[:, None])
+
+
+def _strip(lane: Lane) -> Iterator[Array]:
+    """Yield the area of a lane as polygons of at most 12 m, nearly convex."""
+    line = _dense(lane.line[:, :2])
+    right, left = beside(line, -0.5 * lane.width_m), beside(line, 0.5 * lane.width_m)
+    for at in range(len(line) - 1):
+        yield np.stack((right[at], right[at + 1], left[at + 1], left[at]))
+
+
+def _dense(line: Array) -> Array:
+    """Return a line with points at most 12 m apart."""
+    parts = [line[:1]]
+    for one, other in pairwise(line):
+        count = max(1, math.ceil(float(np.hypot(*(other - one))) / _CHUNK_M))
+        parts.append(one + (other - one) * (np.arange(1, count + 1) / count)[:, None])
+    return np.vstack(parts)
+
+
+def _add_crossing(layers: DrawingLayers, lane: Lane) -> None:
+    """Draw a zebra; the lane of a crossing leads over the road, its width along it."""
+    start, end = lane.line[0, :2], lane.line[-1, :2]
+    x, y = (0.5 * (start + end)).tolist()
+    across = math.atan2(*(end - start)[::-1].tolist())
+    half = 0.5 * lane.width_m
+    add_zebra(layers, Frame(x, y, across - 0.5 * math.pi), -half, half, 0.5 * lane.length_m)
+
+
+def _add_stop(layers: DrawingLayers, road_map: RoadMap, edge: Edge, place: int, near: _Near) -> None:
+    lane = road_map.lanes[place]
+    end = lane.line[-1, :2]
+    if not near.to(end[None, :]):
+        return
+    yaw = math.atan2(*(end - lane.line[-2, :2])[::-1].tolist())
+    frame = Frame(float(end[0]), float(end[1]), yaw)
+    half = 0.5 * lane.width_m
+    layers.stop_lines.append(frame.out(box(-_STOP_LINE_M, 0.0, 0.2 - half, half - 0.2)))
+    outer = road_map.lanes[edge.lanes[0]]
+    post = frame.out(np.array(((0.0, -0.5 * outer.width_m - _POST_M - half * 2.0 * (lane.number - outer.number)),)))
+    layers.lights.append(Light(round(float(post[0, 0]), 3), round(float(post[0, 1]), 3), yaw))

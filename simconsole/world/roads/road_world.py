@@ -1,0 +1,75 @@
+"""The world of a road map: the route that its profile asks for, and the drawing of what lies round it."""
+
+from collections.abc import Callable
+from functools import partial
+from typing import Final
+
+from simconsole.profiles.world import RandomRoute, RoadsProfile, RouteByEdges
+from simconsole.values.errors import ProfileError
+from simconsole.world.roads.lane_graph import LaneGraph, Leg
+from simconsole.world.roads.road_drawing import draw_roads
+from simconsole.world.roads.road_map import Connection, RoadMap
+from simconsole.world.roads.road_route import MAX_CURVATURE_1PM, route_over, too_tight
+from simconsole.world.route import Route
+from simconsole.world.world import World
+
+SHORTEST_M: Final = 20.0
+_TURNS: Final = 30
+"""Turns that are too tight for a car are driven round: as many are looked for."""
+
+
+def road_world(profile: RoadsProfile, road_map: RoadMap) -> World:
+    """Return the world of a profile with its map.
+
+    Raises:
+        ProfileError: no route that a car can drive leads over the map as the profile says.
+    """
+    route = planned(profile, road_map)
+    return World(profile.title, route, partial(draw_roads, road_map, route))
+
+
+def planned(profile: RoadsProfile, road_map: RoadMap) -> Route:
+    """Return the route of a profile.
+
+    Raises:
+        ProfileError: none that a car can drive leads over the map as the profile says.
+    """
+    wanted, key = profile.route, "route"
+    if isinstance(wanted, RandomRoute):
+        seed, length_m = wanted.seed, wanted.length_m
+        return _drivable(profile, road_map, lambda graph: graph.drawn(seed, length_m), key)
+    if isinstance(wanted, RouteByEdges):
+        edges = [_edge(profile, road_map, f"route.edges[{place}]", edge) for place, edge in enumerate(wanted.edges)]
+        return _drivable(profile, road_map, lambda graph: graph.by_edges(edges), "route.edges")
+    start, goal = (_edge(profile, road_map, f"route.{end}", getattr(wanted, end)) for end in ("start", "goal"))
+    return _drivable(profile, road_map, lambda graph: graph.between(start, goal), "route.goal")
+
+
+def _drivable(
+    profile: RoadsProfile, road_map: RoadMap, find: Callable[[LaneGraph], list[Leg] | None], key: str
+) -> Route:
+    closed: list[Connection] = []
+    problem = "no way for a car leads there"
+    for _ in range(_TURNS):
+        legs = find(LaneGraph(road_map, closed))
+        if not legs:
+            break
+        if sum(road_map.lanes[lane].length_m for leg in legs for lane in leg.lanes[:1]) < SHORTEST_M:
+            problem = f"a route of less than {SHORTEST_M:g} m"
+            break
+        route = route_over(road_map, legs)
+        turn = too_tight(road_map, legs, route)
+        if turn is None:
+            return route
+        closed.append(turn)
+        edges = [road_map.edges[road_map.lanes[lane].edge].id for lane in (turn.from_lane, turn.to_lane)]
+        radius_m = 1.0 / MAX_CURVATURE_1PM
+        problem = f"the turn from {edges[0]} to {edges[1]} is tighter than a radius of {radius_m:.1f} m"
+    raise ProfileError(f"{profile.map.name}: {key}: {problem}: a route that a car can drive")
+
+
+def _edge(profile: RoadsProfile, road_map: RoadMap, key: str, name: str) -> int:
+    place = road_map.edge(name)
+    if place is None or not any(road_map.lanes[lane].drivable for lane in road_map.edges[place].lanes):
+        raise ProfileError(f"{profile.map.name}: {key}: value {name!a}: an edge of the map, open to cars")
+    return place

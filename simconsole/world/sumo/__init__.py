@@ -1,0 +1,1 @@
+"""SUMO's files: networks and polygons read, courses written, other formats converted."""

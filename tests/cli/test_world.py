@@ -1,0 +1,52 @@
+from pathlib import Path
+
+import pytest
+
+from tests.drives.console import results, simconsole
+from tests.world.nets import STRAIGHT
+from tests.world.sumo.test_netconvert import OSM
+
+
+def test_list_names_every_world_with_its_kind() -> None:
+    done = simconsole("world", "list", "--json")
+    kinds = {one["name"]: one["kind"] for one in results(done)["worlds"]}
+    assert kinds["urban"] == "course"
+    assert kinds["urban_signals"] == kinds["motorway"] == kinds["country"] == kinds["skid_pad"] == "roads"
+    assert "Urban course" in done.stdout
+
+
+def test_show_says_what_a_world_holds() -> None:
+    found = results(simconsole("world", "show", "urban_signals", "--json"))
+    assert found["counts"]["roundabouts"] == 1
+    assert found["not_read"] == []
+    assert found["along the route"] == "1 roundabout, 1 traffic lights, 6 crossing"
+    assert results(simconsole("world", "show", "urban", "--json"))["length_m"] == 2600.0
+
+
+def test_show_of_a_map_says_what_was_not_read(tmp_path: Path) -> None:
+    path = tmp_path / "m.net.xml"
+    path.write_text(STRAIGHT.replace("</net>", "<odd/></net>"))
+    done = simconsole("world", "show", str(path))
+    assert done.returncode == 0
+    assert "  not read: line 17: <odd>: not an element that is read" in done.stdout
+
+
+def test_import_writes_a_world_that_can_be_shown(tmp_path: Path) -> None:
+    source = tmp_path / "vienna.osm"
+    source.write_bytes(OSM)
+    done = simconsole("world", "import", str(source), "--out", str(tmp_path / "new"))
+    assert done.returncode == 0
+    assert "  lost: " in done.stdout
+    assert simconsole("world", "show", str(tmp_path / "new" / "vienna.yaml")).returncode == 0
+    again = simconsole("world", "import", str(source), "--out", str(tmp_path / "new"))
+    assert again.returncode == 2
+    assert "value taken" in again.stderr
+
+
+@pytest.mark.parametrize(
+    "words", [("show",), ("import",), ("show", "none"), ("import", "none.osm"), ("show", "x.net.xml")]
+)
+def test_what_cannot_be_shown_is_one_line(words: tuple[str, ...]) -> None:
+    done = simconsole("world", *words)
+    assert done.returncode == 2
+    assert len(done.stderr.splitlines()) == 1

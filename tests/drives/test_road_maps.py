@@ -1,0 +1,88 @@
+"""The autopilot drives random routes over maps that nobody made by hand, and the shipped road maps, to their ends."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from simconsole.profiles.files.world_files import load_world
+from simconsole.recording.bundles.bundle import open_bundle
+from simconsole.recording.bundles.replay_bundle import recorded_session, replay_bundle
+from simconsole.recording.bundles.verification import verify
+from simconsole.world.kinds.worlds import open_world
+from tests.drives.random_courses import Tracked, tracked_on
+from tests.samples import Sample
+from tests.world.nets import CITY, TOWN, generated
+
+LINK = "{seed: SEED, delay_ms: 40, localisation: {position_noise_m: 0.02, yaw_noise_deg: 0.2}}"
+RMS_CM = 3.0
+HAND_OVER_M = 5.0
+"""The person drives straight on: as far as every route does."""
+
+
+def driven(folder: Path, net: bytes, seed: int, length_m: float) -> Tracked:
+    folder.mkdir()
+    (folder / "map.net.xml").write_bytes(net)
+    (folder / "world.yaml").write_text(
+        "schema: 1\nkind: roads\ntitle: random\nmap: {name: map.net.xml}\n"
+        f"route: {{by: random, seed: {seed}, length_m: {length_m}}}\n"
+    )
+    route = open_world(load_world(str(folder / "world.yaml"))).route
+    return tracked_on(route, "world.yaml", "hatchback", LINK.replace("SEED", str(seed)), folder, HAND_OVER_M)
+
+
+def on_shipped(world: str, folder: Path) -> Tracked:
+    route = open_world(load_world(world)).route
+    return tracked_on(route, world, "hatchback", LINK.replace("SEED", "1"), folder, HAND_OVER_M)
+
+
+def judge(done: Tracked) -> None:
+    assert not done.stopped
+    assert done.rms_cm <= RMS_CM
+    assert -0.5 < done.left_m < 3.0
+    assert done.longitudinal_kept >= 0.999
+
+
+def test_random_routes(sample: Sample, tmp_path: Path) -> None:
+    rng = np.random.default_rng(sample.seed)
+    count, length_m = sample.of(8, 50), 250.0 if not sample.long else 800.0
+    all_done = []
+    for number in range(count):
+        net = generated(*(CITY if number % 2 else TOWN))
+        all_done.append(driven(tmp_path / str(number), net, int(rng.integers(2**31)), length_m))
+        print(all_done[-1])
+    worst_rms, worst = max(one.rms_cm for one in all_done), max(one.max_cm for one in all_done)
+    print(f"measured: {count} routes over road maps: RMS at most {worst_rms:.2f} cm, max {worst:.1f} cm")
+    assert np.mean([one.lateral_kept for one in all_done]) >= 0.999
+    for one in all_done:
+        judge(one)
+
+
+@pytest.mark.parametrize("world", ["skid_pad"])
+def test_shipped_roads_are_driven_to_their_end(world: str, tmp_path: Path) -> None:
+    judge(on_shipped(world, tmp_path))
+
+
+@pytest.mark.parametrize("world", ["urban_signals", "motorway", "country"])
+def test_long_shipped_roads_are_driven_to_their_end(sample: Sample, world: str, tmp_path: Path) -> None:
+    if not sample.long:
+        pytest.skip("its length: in the long run")
+    judge(on_shipped(world, tmp_path))
+
+
+def test_bundle_holds_the_map_once_and_needs_no_other_file(tmp_path: Path) -> None:
+    net = generated(*TOWN)
+    driven(tmp_path / "drive", net, 5, 60.0)
+    for name in ("map.net.xml", "world.yaml"):
+        (tmp_path / "drive" / name).unlink()
+    bundle = tmp_path / "drive" / "bundle"
+    (held,) = bundle.glob("map.*")
+    assert held.name.endswith(".net.xml.gz")
+    assert held.stat().st_size < 0.2 * len(net)
+    assert verify(bundle) == []
+    assert replay_bundle(bundle).problems == ()
+    world = recorded_session(open_bundle(bundle)).world
+    assert world is not None
+    assert open_world(world).route.length_m >= 60.0
+    held.write_bytes(held.read_bytes()[:-9] + b"x" * 9)
+    assert verify(bundle) != []
