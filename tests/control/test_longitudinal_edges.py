@@ -209,14 +209,16 @@ def test_a_vehicle_whose_speed_is_no_number_is_driven_as_if_it_stood(control: Co
 
 def test_the_wheel_takes_over_at_the_threshold_itself(control: ControlSettings) -> None:
     start = WheelWatch(0.0, 0.0)
-    past = watch_wheel(start, control.steering_override_rad, 0.0, 0.0, True, True, control)
+    past = watch_wheel(start, control.steering_override_rad, 0.0, 0.0, 0.0, True, True, control)
     assert past.past_ticks == 1.0
-    assert watch_wheel(start, control.steering_override_rad - 1e-9, 0.0, 0.0, True, True, control).past_ticks == 0.0
-    assert watch_wheel(past, control.steering_release_rad, 0.0, 0.0, True, True, control).past_ticks == 2.0
-    assert watch_wheel(past, control.steering_release_rad - 1e-9, 0.0, 0.0, True, True, control).past_ticks == 0.0
+    assert (
+        watch_wheel(start, control.steering_override_rad - 1e-9, 0.0, 0.0, 0.0, True, True, control).past_ticks == 0.0
+    )
+    assert watch_wheel(past, control.steering_release_rad, 0.0, 0.0, 0.0, True, True, control).past_ticks == 2.0
+    assert watch_wheel(past, control.steering_release_rad - 1e-9, 0.0, 0.0, 0.0, True, True, control).past_ticks == 0.0
     for rate in (control.steering_override_radps, -control.steering_override_radps):
-        assert watch_wheel(start, 0.0, rate, 0.0, True, True, control).past_ticks == 1.0
-        assert watch_wheel(start, 0.0, rate * 0.999, 0.0, True, True, control).past_ticks == 0.0
+        assert watch_wheel(start, 0.0, rate, 0.0, 0.0, True, True, control).past_ticks == 1.0
+        assert watch_wheel(start, 0.0, rate * 0.999, 0.0, 0.0, True, True, control).past_ticks == 0.0
     ticks = control.steering_override_ticks
     assert not steering_taken(WheelWatch(0.0, ticks), control)
     assert steering_taken(WheelWatch(0.0, ticks + 1.0), control)

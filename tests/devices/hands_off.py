@@ -14,6 +14,7 @@ from simconsole.devices.force_feedback.simulated_wheel import HANDS_OFF, Arm, Si
 from simconsole.drivers.manoeuvre_driver.run_up import RunUp
 from simconsole.drivers.speed_holder import SpeedHolder
 from simconsole.profiles.force_feedback import ForceFeedback
+from simconsole.profiles.vehicle import CarProfile
 from simconsole.session.resolution import load_scenario, resolve
 from simconsole.tick.advance import Console, advance_vector
 from simconsole.tick.assembly import ResolvedSession, assemble
@@ -102,6 +103,7 @@ class Bend(NamedTuple):
 def bend(vehicle: str, speed_kmh: float, lateral_mps2: float) -> Bend | None:
     """Drive into a bend with the wheel held; None where the car does not reach the speed."""
     console, session, vector = console_of(vehicle, None)
+    assert isinstance(session.vehicle, CarProfile)
     settings = cockpit_settings(session.cockpit, TICK_HZ)
     steer = {"rad": 0.0}
     hold = SpeedHolder(speed_kmh / 3.6)
