@@ -95,13 +95,14 @@ class LockstepConnection:
             return
         if data:
             self._checks.heard(time.monotonic_ns())
-            frames, data = take_whole(self._web, data)
+            frames, rest = take_whole(self._web, data)
             for frame in frames:
                 if self.session is not None and self._web.state is State.OPEN:
                     self._take(frame.opcode, frame.data, True, self.session)
-            if not data and self._web.state is State.OPEN:
+            if not rest and self._web.state is State.OPEN:
                 return
-            self._web.receive_data(data)
+            if rest:
+                self._web.receive_data(rest)
         else:
             self._web.receive_eof()
         self._collect()
