@@ -58,7 +58,7 @@ class ControlProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_f
     # Where nobody steers the stop, it is short: decisions/0009 has the measurements behind these three.
     blind_stop_decel_mps2: Acceleration = 3.5  # with the integral at most 4.0, as above
     blind_stop_jerk_mps3: Acceleration = 5.0  # AW lon_jerk_lim
-    stop_road_wheel_decay_radps: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)] = 0.01  # angle held, slowly to 0
+    stop_road_wheel_decay_radps: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)] = 0.005  # angle held, slowly to 0
     stop_steering_apart_mps2: Acceleration = 2.0  # AW on_transition lat_acc_lim: a controller that steers as the person
     emergency_brake: Annotated[float, msgspec.Meta(ge=0.5, le=1.0)] = 1.0  # full service brake: 6 m/s2 class or more
     hold_brake: Annotated[float, msgspec.Meta(ge=0.1, le=1.0)] = 0.4  # holds a 24 % slope on a car of 6 m/s2 brakes
