@@ -5,7 +5,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simconsole.scene.triangles import Indices, triangulate
+from simconsole.world.triangles import Indices, triangulate
 from simconsole.values.signals import Mode
 from simconsole.world.drawing import Drawing
 
