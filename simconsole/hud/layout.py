@@ -4,6 +4,7 @@ Top to bottom inside the safe area: who drives (mode as label and shape), one sl
 dial and steering side by side, then a strip of lamps. Each thing has one place at all times.
 """
 
+import math
 from typing import Final, NamedTuple
 
 from simconsole.hud.banner import alert_of, banner, slot
@@ -38,22 +39,58 @@ class Places(NamedTuple):
     status: Box
 
 
+class _Rows(NamedTuple):
+    """From top to bottom, in shares of the safe area's height."""
+
+    banner: tuple[float, float]
+    slot: tuple[float, float]
+    middle: tuple[float, float]
+    status: tuple[float, float]
+
+
+class _Heights(NamedTuple):
+    """The same parts by height, in minutes of arc."""
+
+    banner: float
+    slot: float
+    middle: float
+    status: float
+
+
+_ALONE: Final = _Rows(banner=(0.0, 0.135), slot=(0.15, 0.26), middle=(0.275, 0.88), status=(0.90, 1.0))
+_LEAST_ARCMIN: Final = _Heights(banner=168.0, slot=130.0, middle=636.0, status=130.0)
+"""Heights at which every text of a part has the size that it needs (`check_screen`): the road has the rest."""
+
+
+def _rows_under_view(area: Box, px_per_arcmin: float) -> _Rows:
+    """Return the rows that leave the road as much of the screen as legible instruments allow."""
+    banner, slot, middle, status = (arcmin * px_per_arcmin / area.h for arcmin in _LEAST_ARCMIN)
+    gap = 0.5 * GAP
+    return _Rows(
+        banner=(0.0, banner),
+        slot=(banner + gap, banner + gap + slot),
+        middle=(1.0 - status - gap - middle, 1.0 - status - gap),
+        status=(1.0 - status, 1.0),
+    )
+
+
 def places(screen: Screen) -> Places:
     """Divide the driver's screen."""
     area = screen.content()
-    middle = area.row(0.275, 0.88)
+    rows = _rows_under_view(area, screen.px_per_arcmin) if screen.has_view else _ALONE
+    middle = area.row(*rows.middle)
     dial_width = min(1.125 * middle.h, 0.50 * area.w)
     gap = GAP * area.h
     side = 0.5 * (area.w - dial_width) - gap
     left = Box(area.cx - 0.5 * dial_width - gap - side, middle.y, side, middle.h)
     right = Box(area.cx + 0.5 * dial_width + gap, middle.y, side, middle.h)
     return Places(
-        banner=area.row(0.0, 0.135),
-        slot=area.row(0.15, 0.26),
+        banner=area.row(*rows.banner),
+        slot=area.row(*rows.slot),
         left=left,
         dial=Box(area.cx - 0.5 * dial_width, middle.y, dial_width, middle.h),
         right=right,
-        status=area.row(0.90, 1.0),
+        status=area.row(*rows.status),
     )
 
 
@@ -71,6 +108,15 @@ def layout(view: HudView, screen: Screen) -> list[DrawItem]:
         *slot(view, alert, place.slot, screen),
         *banner(view, alert, place.banner),
     ]
+
+
+def panels_over_view(view: HudView, screen: Screen) -> tuple[Box, ...]:
+    """Return the parts of the screen that hide the road: who drives, the one alert if there is one, the instruments."""
+    place, pad = places(screen), math.ceil(GAP * screen.height_px)
+    top = min(place.left.y, place.dial.y) - pad
+    instruments = Box(0.0, top, screen.width_px, screen.height_px - top)
+    shown = (place.banner, place.slot) if alert_of(view) is not None else (place.banner,)
+    return (*(box.inset(-0.5 * pad) for box in shown), instruments)
 
 
 def check_screen(screen: Screen, name: str) -> None:
