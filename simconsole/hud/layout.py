@@ -7,11 +7,12 @@ dial and steering side by side, then a strip of lamps. Each thing has one place 
 import math
 from typing import Final, NamedTuple
 
-from simconsole.hud.banner import alert_of, banner, slot
+from simconsole.hud.banner import Alert, alert_of, banner, slot
 from simconsole.hud.dial import dial
 from simconsole.hud.draw import BACKGROUND, Box, DrawItem, Rect, Text, bounds
 from simconsole.hud.panels import pedals, status, steering
 from simconsole.hud.screen import Screen
+from simconsole.hud.strip import HEIGHT_ARCMIN, strip
 from simconsole.hud.view import HudView
 from simconsole.hud.words import AUTOPILOT, CONSOLE, LONGEST_PRESS, MENDING, NOBODY
 from simconsole.values.errors import ProfileError
@@ -26,6 +27,9 @@ from simconsole.values.labels import (
 from simconsole.values.signals import Mode, Notice, Reason
 
 GAP: Final = 0.02
+BANNER_ARCMIN: Final = 168.0
+SLOT_ARCMIN: Final = 130.0
+"""Heights under the road at which each text has the size that it needs (`check_screen`)."""
 
 
 class Places(NamedTuple):
@@ -39,66 +43,55 @@ class Places(NamedTuple):
     status: Box
 
 
-class _Rows(NamedTuple):
-    """From top to bottom, in shares of the safe area's height."""
+class PlacesUnderView(NamedTuple):
+    """Where the instruments stand that leave the road most of the screen."""
 
-    banner: tuple[float, float]
-    slot: tuple[float, float]
-    middle: tuple[float, float]
-    status: tuple[float, float]
-
-
-class _Heights(NamedTuple):
-    """The same parts by height, in minutes of arc."""
-
-    banner: float
-    slot: float
-    middle: float
-    status: float
-
-
-_ALONE: Final = _Rows(banner=(0.0, 0.135), slot=(0.15, 0.26), middle=(0.275, 0.88), status=(0.90, 1.0))
-_LEAST_ARCMIN: Final = _Heights(banner=168.0, slot=130.0, middle=636.0, status=130.0)
-"""Heights at which every text of a part has the size that it needs (`check_screen`): the road has the rest."""
-
-
-def _rows_under_view(area: Box, px_per_arcmin: float) -> _Rows:
-    """Return the rows that leave the road as much of the screen as legible instruments allow."""
-    banner, slot, middle, status = (arcmin * px_per_arcmin / area.h for arcmin in _LEAST_ARCMIN)
-    gap = 0.5 * GAP
-    return _Rows(
-        banner=(0.0, banner),
-        slot=(banner + gap, banner + gap + slot),
-        middle=(1.0 - status - gap - middle, 1.0 - status - gap),
-        status=(1.0 - status, 1.0),
-    )
+    slot: Box  # at the top, only while there is something to say
+    strip: Box
+    banner: Box
 
 
 def places(screen: Screen) -> Places:
     """Divide the driver's screen."""
     area = screen.content()
-    rows = _rows_under_view(area, screen.px_per_arcmin) if screen.has_view else _ALONE
-    middle = area.row(*rows.middle)
+    middle = area.row(0.275, 0.88)
     dial_width = min(1.125 * middle.h, 0.50 * area.w)
     gap = GAP * area.h
     side = 0.5 * (area.w - dial_width) - gap
     left = Box(area.cx - 0.5 * dial_width - gap - side, middle.y, side, middle.h)
     right = Box(area.cx + 0.5 * dial_width + gap, middle.y, side, middle.h)
     return Places(
-        banner=area.row(*rows.banner),
-        slot=area.row(*rows.slot),
+        banner=area.row(0.0, 0.135),
+        slot=area.row(0.15, 0.26),
         left=left,
         dial=Box(area.cx - 0.5 * dial_width, middle.y, dial_width, middle.h),
         right=right,
-        status=area.row(*rows.status),
+        status=area.row(0.90, 1.0),
+    )
+
+
+def places_under_view(screen: Screen) -> PlacesUnderView:
+    """Divide the driver's screen by what must be legible: heights are angles at the driver's eye, not shares."""
+    area, unit = screen.content(), screen.px_per_arcmin
+    gap = GAP * area.h
+    banner = Box(area.x, area.bottom - BANNER_ARCMIN * unit, area.w, BANNER_ARCMIN * unit)
+    height = HEIGHT_ARCMIN * unit
+    return PlacesUnderView(
+        slot=Box(area.x, area.y, area.w, SLOT_ARCMIN * unit),
+        strip=Box(area.x, banner.y - 0.5 * gap - height, area.w, height),
+        banner=banner,
     )
 
 
 def layout(view: HudView, screen: Screen) -> list[DrawItem]:
     """Return everything to draw, back to front, in pixels of `screen`."""
-    place = places(screen)
     alert = alert_of(view)
     ground = Rect(Box(0.0, 0.0, screen.width_px, screen.height_px), BACKGROUND, "ground")
+    if screen.has_view:
+        under = places_under_view(screen)
+        message = [] if alert is Alert.NONE else slot(view, alert, under.slot, screen)
+        return [ground, *strip(view, under.strip), *message, *banner(view, alert, under.banner)]
+    place = places(screen)
     return [
         ground,
         *pedals(view, place.left),
@@ -111,12 +104,14 @@ def layout(view: HudView, screen: Screen) -> list[DrawItem]:
 
 
 def panels_over_view(view: HudView, screen: Screen) -> tuple[Box, ...]:
-    """Return the parts of the screen that hide the road: who drives, the one alert if there is one, the instruments."""
-    place, pad = places(screen), math.ceil(GAP * screen.height_px)
-    top = min(place.left.y, place.dial.y) - pad
+    """Return the parts of the screen that hide the road: a message if there is one, and, last, the instruments."""
+    place, pad = places_under_view(screen), 0.5 * GAP * screen.height_px
+    top = float(math.floor(place.strip.y - pad))
     instruments = Box(0.0, top, screen.width_px, screen.height_px - top)
-    shown = (place.banner, place.slot) if alert_of(view) is not None else (place.banner,)
-    return (*(box.inset(-0.5 * pad) for box in shown), instruments)
+    if alert_of(view) is Alert.NONE:
+        return (instruments,)
+    safe = screen.safe()  # a take-over spans every screen
+    return (Box(safe.x, place.slot.y, safe.w, place.slot.h).inset(-pad), instruments)
 
 
 def check_screen(screen: Screen, name: str) -> None:
