@@ -246,7 +246,7 @@ def _shift_up(box: Box) -> list[DrawItem]:
 
 
 def indicator_arrows(view: HudView, cx: float, y: float, apart: float, reach: float) -> list[DrawItem]:
-    """Return the arrows that flash with the lamps outside, `apart` from `cx`: one side's, or both for the hazard lights."""
+    """Return the arrows that flash with the lamps outside: `apart` from `cx`, one or both."""
     if view.stale or not lamps_on(view.t_s):
         return []
     both = view.hazard_lights > 0.0

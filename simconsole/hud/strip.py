@@ -33,7 +33,10 @@ def _speed(view: HudView, box: Box) -> list[DrawItem]:
         return [Text(box.cx, box.cy, "NO DATA", cap_px=cap, colour=MUTED, role="speed", arcmin=DRIVING_ARCMIN)]
     cap = 0.50 * box.h
     return [
-        Text(box.cx, box.y + 0.36 * box.h, f"{view.shown_kmh}", cap_px=cap, colour=TEXT, role="speed", arcmin=SPEED_ARCMIN),
+        Text(
+            box.cx, box.y + 0.36 * box.h, f"{view.shown_kmh}", cap_px=cap, colour=TEXT, role="speed",
+            arcmin=SPEED_ARCMIN,
+        ),
         Text(
             box.cx, box.y + 0.85 * box.h, "km/h", cap_px=0.165 * box.h, colour=MUTED, role="speed.unit",
             arcmin=DRIVING_ARCMIN,
@@ -53,11 +56,21 @@ def _gear(view: HudView, box: Box) -> list[DrawItem]:
     if view.automatic and not view.stale:
         cap = fit_cap_px("AUTO", 0.14 * box.h, box.w)
         items.append(
-            Text(box.cx, box.y + 0.85 * box.h, "AUTO", cap_px=cap, colour=MUTED, role="gear.automatic", arcmin=SECONDARY_ARCMIN)
+            Text(
+                box.cx,
+                box.y + 0.85 * box.h,
+                "AUTO",
+                cap_px=cap,
+                colour=MUTED,
+                role="gear.automatic",
+                arcmin=SECONDARY_ARCMIN,
+            )
         )
     elif is_over_red(view) and not view.stale:
         cap = fit_cap_px("UP", 0.165 * box.h, box.w)
-        items.append(Text(box.cx, box.y + 0.85 * box.h, "UP", cap_px=cap, colour=CAUTION, role="shift", arcmin=DRIVING_ARCMIN))
+        items.append(
+            Text(box.cx, box.y + 0.85 * box.h, "UP", cap_px=cap, colour=CAUTION, role="shift", arcmin=DRIVING_ARCMIN)
+        )
     return items
 
 
@@ -79,7 +92,9 @@ def _engine(view: HudView, box: Box) -> list[DrawItem]:
     width = min(1.0, view.rpm / settings.rpm_max) * bar.w
     if width >= 1.0:
         items.append(Rect(Box(bar.x, bar.y, width, bar.h), TEXT, "rpm.bar", 0.3 * bar.h))
-    red = Box(bar.x + settings.rpm_red / settings.rpm_max * bar.w, bar.y - 0.3 * bar.h, max(2.0, 0.12 * bar.h), 1.6 * bar.h)
+    red = Box(
+        bar.x + settings.rpm_red / settings.rpm_max * bar.w, bar.y - 0.3 * bar.h, max(2.0, 0.12 * bar.h), 1.6 * bar.h
+    )
     return [*items, Rect(red, WARNING_LINE, "rpm.red")]
 
 

@@ -76,7 +76,9 @@ def box(place: Box, colour: Colour, roof: Colour | None = None, material: Materi
     along = np.array((cosine, sine)) * place.half_length_m
     across = np.array((-sine, cosine)) * place.half_width_m
     middle = np.array((place.x_m, place.y_m))
-    foot = np.array([middle - along - across, middle + along - across, middle + along + across, middle - along + across])
+    foot = np.array(
+        [middle - along - across, middle + along - across, middle + along + across, middle - along + across]
+    )
     low = np.column_stack((foot, np.full(4, place.z_m)))
     high = np.column_stack((foot, np.full(4, place.z_m + place.height_m)))
     walls = np.array([(low[i], low[(i + 1) % 4], high[(i + 1) % 4], high[i]) for i in range(4)])
@@ -84,7 +86,7 @@ def box(place: Box, colour: Colour, roof: Colour | None = None, material: Materi
 
 
 def prism(outline: Array, left_m: float, right_m: float, colour: Colour) -> Vertices:
-    """Return a convex outline [N, 2] in (x, z), anticlockwise seen from the right, between two distances to the left."""
+    """Return a convex outline [N, 2] in (x, z) (anticlockwise from the right) between two distances to the left."""
     right = np.column_stack((outline[:, 0], np.full(len(outline), right_m), outline[:, 1]))
     left = np.column_stack((outline[:, 0], np.full(len(outline), left_m), outline[:, 1]))
     after = np.roll(np.arange(len(outline)), -1)
@@ -138,7 +140,9 @@ def ring(centre: Array, right: Array, up: Array, radii_m: tuple[float, float], c
     return quads(corners.reshape(-1, 4, 3), colour)
 
 
-def ribbon(line: Array, right_m: float, left_m: float, z_m: float | Array, colour: Colour, material: Material) -> Vertices:
+def ribbon(
+    line: Array, right_m: float, left_m: float, z_m: float | Array, colour: Colour, material: Material
+) -> Vertices:
     """Return a strip along a line [N, 2] between two distances to its left, lying at height `z_m`, facing up."""
     if len(line) < 2:
         return np.zeros(0, VERTEX)

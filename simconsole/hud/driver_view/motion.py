@@ -71,26 +71,8 @@ def between(older: ShownVehicle, newer: ShownVehicle, share: float) -> ShownVehi
     )
 
 
-class Interpolator:
-    """Keeps the two newest ticks and says what stands between them at a moment of the display's clock."""
-
-    def __init__(self) -> None:
-        self._older: ShownVehicle | None = None
-        self._newer: ShownVehicle | None = None
-        self._seen_s = 0.0
-
-    def take(self, snapshots: list[Snapshot], now_s: float) -> None:
-        """Take the ticks that came since the last call, oldest first; `now_s` of the display's steady clock."""
-        for snapshot in snapshots[-2:]:
-            shown = shown_vehicle(snapshot)
-            restarted = self._newer is not None and shown.t_s < self._newer.t_s
-            self._older, self._newer = (shown if restarted or self._newer is None else self._newer), shown
-            self._seen_s = now_s
-
-    def at(self, now_s: float) -> ShownVehicle | None:
-        """Return the vehicle one tick ago, which two ticks enclose; the newest where no further tick has come."""
-        if self._newer is None or self._older is None:
-            return None
-        period_s = self._newer.t_s - self._older.t_s
-        share = 1.0 if period_s <= 0.0 else (now_s - self._seen_s) / period_s
-        return between(self._older, self._newer, share)
+def moved(older: Snapshot, newer: Snapshot, age_s: float) -> ShownVehicle:
+    """Return the vehicle one tick ago, which the two newest ticks enclose, when the newer is `age_s` old."""
+    period_s = newer.t_s - older.t_s
+    share = 1.0 if period_s <= 0.0 else age_s / period_s
+    return between(shown_vehicle(older), shown_vehicle(newer), share)

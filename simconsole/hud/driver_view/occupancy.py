@@ -1,4 +1,4 @@
-"""What ground is taken: a grid of the road's surface, so that nothing is built on it and a kerb knows its outer side."""
+"""What ground is taken: a grid of roads, so that nothing is built on them and a kerb knows its outer side."""
 
 from typing import Final
 

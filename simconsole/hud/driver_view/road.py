@@ -93,7 +93,7 @@ def _kerb(line: Array, taken: Occupancy) -> Vertices:
     if len(line) < 2:
         return joined([])
     across = left_of(line)
-    parts = []
+    parts: list[Vertices] = []
     for side in (-1.0, 1.0):
         free = ~taken.is_taken(line + side * PROBE_M * across)
         for start, end in _runs(free):

@@ -22,11 +22,11 @@ LAMP_HEIGHTS_M: Final = (3.05, 2.75, 2.45)
 
 
 class Pieces(NamedTuple):
-    """Vertices sorted by place: piece i is vertices first[i] to first[i] + count[i], inside a ball about `centre[i]`."""
+    """Vertices sorted by place: piece i is `length[i]` vertices from `first[i]`, inside a ball about `centre[i]`."""
 
     vertices: Vertices
     first: NDArray[np.int64]
-    count: NDArray[np.int64]
+    length: NDArray[np.int64]
     centre: Array  # [N, 3] in m
     radius: Array  # [N] in m
 
@@ -67,7 +67,7 @@ def pieces(mesh: Vertices) -> Pieces:
     return Pieces(
         vertices=mesh.reshape(-1, 3)[order].reshape(-1),
         first=3 * starts,
-        count=3 * counts,
+        length=3 * counts,
         centre=0.5 * (low + high),
         radius=0.5 * np.linalg.norm(high - low, axis=1),
     )
@@ -94,7 +94,7 @@ def in_sight(part: Pieces, view_projection: Array, reach_m: float, eye: Array) -
         return []
     breaks = np.flatnonzero(np.diff(indices) != 1) + 1
     return [
-        (int(part.first[run[0]]), int(part.first[run[-1]] + part.count[run[-1]] - part.first[run[0]]))
+        (int(part.first[run[0]]), int(part.first[run[-1]] + part.length[run[-1]] - part.first[run[0]]))
         for run in np.split(indices, breaks)
     ]
 
@@ -109,7 +109,9 @@ def _light(light: Light) -> Vertices:
     lamps = []
     for height, colour in zip(LAMP_HEIGHTS_M, LAMPS, strict=True):
         centre = np.array((x, y, height)) + 0.115 * back
-        corners = [(0.1 * (a * left + b * up) + centre) for a, b in ((1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0))]
+        corners = [
+            (0.1 * (a * left + b * up) + centre) for a, b in ((1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0))
+        ]
         dim = tuple(channel // 3 for channel in colour)
         lamps.append(quads(np.array([corners]), (dim[0], dim[1], dim[2]), Material.PLAIN))
     return joined([cone(x, y, (0.0, 2.3), (0.06, 0.05), POST), case, *lamps])
@@ -122,6 +124,20 @@ def _plain() -> tuple[Vertices, Vertices]:
     at = np.arange(-200.0, 200.1, 10.0)
     lines = []
     for value in at.tolist():
-        lines.append(((-200.0, value - wide, 0.0), (200.0, value - wide, 0.0), (200.0, value + wide, 0.0), (-200.0, value + wide, 0.0)))
-        lines.append(((value - wide, -200.0, 0.0), (value + wide, -200.0, 0.0), (value + wide, 200.0, 0.0), (value - wide, 200.0, 0.0)))
+        lines.append(
+            (
+                (-200.0, value - wide, 0.0),
+                (200.0, value - wide, 0.0),
+                (200.0, value + wide, 0.0),
+                (-200.0, value + wide, 0.0),
+            )
+        )
+        lines.append(
+            (
+                (value - wide, -200.0, 0.0),
+                (value + wide, -200.0, 0.0),
+                (value + wide, 200.0, 0.0),
+                (value - wide, 200.0, 0.0),
+            )
+        )
     return quads(land, MEADOW, Material.MEADOW), quads(np.array(lines), (150, 156, 150))

@@ -39,11 +39,9 @@ def surroundings(path: Array, limit_kmh: float, taken: Occupancy) -> Vertices:
     way = np.concatenate(((0.0,), np.cumsum(np.hypot(*np.diff(path, axis=0).T))))
     parts = [_sign(*_place(path, across, way, s), limit_kmh) for s in np.arange(30.0, way[-1], SIGN_EVERY_M).tolist()]
     for s in np.arange(10.0, way[-1], HOUSE_EVERY_M).tolist():
-        for side in SIDES_M:
-            parts.append(_house(*_place(path, across, way, s), side, taken, generator))
+        parts += [_house(*_place(path, across, way, s), side, taken, generator) for side in SIDES_M]
     for s in np.arange(4.0, way[-1], TREE_EVERY_M).tolist():
-        for side in SIDES_M:
-            parts.append(_tree(*_place(path, across, way, s), side, taken, generator))
+        parts += [_tree(*_place(path, across, way, s), side, taken, generator) for side in SIDES_M]
     return joined(parts)
 
 
@@ -72,7 +70,7 @@ def _gable(place: Box, colour: Colour) -> Vertices:
     along = np.array((cosine, sine, 0.0)) * (place.half_length_m + 0.3)
     across = np.array((-sine, cosine, 0.0)) * (place.half_width_m + 0.3)
     eaves = np.array((place.x_m, place.y_m, place.z_m + place.height_m))
-    ridge = eaves + (0.0, 0.0, 0.55 * place.half_width_m)
+    ridge = eaves + np.array((0.0, 0.0, 0.55 * place.half_width_m))
     slopes = np.array(
         (
             (eaves - along - across, eaves + along - across, ridge + along, ridge - along),

@@ -6,7 +6,18 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simconsole.hud.driver_view.mesh import Colour, Material, Vertices, encoded, facets, joined, prism, quads, ring, wheel
+from simconsole.hud.driver_view.mesh import (
+    Colour,
+    Material,
+    Vertices,
+    encoded,
+    facets,
+    joined,
+    prism,
+    quads,
+    ring,
+    wheel,
+)
 
 Array = NDArray[np.float64]
 
@@ -26,7 +37,7 @@ WHEEL_RADIUS_M: Final = 0.31
 
 
 class Size(NamedTuple):
-    """A vehicle's outer size in m; base_link is `rear_overhang_m` from its rear end, `wheelbase_m` behind the front axle."""
+    """A vehicle in m; base_link is `rear_overhang_m` from its rear end, `wheelbase_m` behind the front axle."""
 
     length_m: float
     width_m: float
@@ -101,7 +112,12 @@ def _outside(size: Size) -> Vertices:
     )  # fmt: skip
     roof_front, roof_rear = front - 0.45 * size.length_m, rear + 0.14 * size.length_m
     cabin = np.array(
-        ((rear + 0.03, waist), (front - 0.25 * size.length_m, waist), (roof_front, high - 0.03), (roof_rear, high - 0.03))
+        (
+            (rear + 0.03, waist),
+            (front - 0.25 * size.length_m, waist),
+            (roof_front, high - 0.03),
+            (roof_rear, high - 0.03),
+        )
     )
     roof = np.array(
         ((roof_rear, high - 0.03), (roof_front, high - 0.03), (roof_front - 0.1, high), (roof_rear + 0.1, high))
@@ -117,7 +133,9 @@ def _outside(size: Size) -> Vertices:
     )
 
 
-def _lamps(size: Size, up: float, x_m: float, sides: tuple[float, ...], colour: Colour, reach: float = 0.86) -> Vertices:
+def _lamps(
+    size: Size, up: float, x_m: float, sides: tuple[float, ...], colour: Colour, reach: float = 0.86
+) -> Vertices:
     """Return plates across the car at `x_m`, facing away from its middle."""
     half, z = 0.5 * size.width_m, up * 0.62 * size.height_m
     corners = []
@@ -146,11 +164,21 @@ def _bonnet(size: Size) -> Vertices:
     metal = np.stack((grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]), axis=2).reshape(-1, 4, 3)
     shelf_z, shelf_x = eye[2] - 0.33, eye[0] + 0.45
     shelf = np.array(
-        [((shelf_x, -half, shelf_z - 0.06), (back, -half, shelf_z), (back, half, shelf_z), (shelf_x, half, shelf_z - 0.06))]
+        [
+            (
+                (shelf_x, -half, shelf_z - 0.06),
+                (back, -half, shelf_z),
+                (back, half, shelf_z),
+                (shelf_x, half, shelf_z - 0.06),
+            )
+        ]
     )
     pillars = []
     for side in (-1.0, 1.0):
-        foot, head = np.array((back, side * 0.93 * half, shelf_z)), np.array((eye[0] + 0.22, side * 0.72 * half, size.height_m))
+        foot, head = (
+            np.array((back, side * 0.93 * half, shelf_z)),
+            np.array((eye[0] + 0.22, side * 0.72 * half, size.height_m)),
+        )
         wide = np.array((0.0, side * 0.075, 0.0))
         plate = (foot, foot + wide, head + wide, head)
         pillars.append(plate if side < 0.0 else plate[::-1])
@@ -169,7 +197,16 @@ def _hand_wheel() -> Vertices:
         )
     )
     mark_low, mark_high = reach - 0.018, reach + 0.018
-    mark = np.array([((-0.018, 0.012, mark_low), (-0.018, -0.012, mark_low), (-0.018, -0.012, mark_high), (-0.018, 0.012, mark_high))])
+    mark = np.array(
+        [
+            (
+                (-0.018, 0.012, mark_low),
+                (-0.018, -0.012, mark_low),
+                (-0.018, -0.012, mark_high),
+                (-0.018, 0.012, mark_high),
+            )
+        ]
+    )
     return joined([rim, quads(spokes, TRIM), quads(spokes[:, ::-1], TRIM), quads(mark, INDICATOR)])
 
 

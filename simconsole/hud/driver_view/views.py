@@ -70,7 +70,7 @@ def _camera(kind: str, shown: ShownVehicle, size: Size, yaw_rad: float) -> Camer
         back, up = CHASE_BACK * size.length_m, CHASE_UP * size.height_m
         return Camera(place + level @ np.array((-back, 0.0, up)), rotation(shown.yaw_rad + yaw_rad, 0.09))
     north_up = rotation(0.5 * math.pi, math.radians(89.9))
-    return Camera(place + (0.0, 0.0, BIRD_UP_M * min(1.0, max(0.1, size.length_m / 4.0))), north_up)
+    return Camera(place + np.array((0.0, 0.0, BIRD_UP_M * min(1.0, max(0.1, size.length_m / 4.0)))), north_up)
 
 
 def _mirror(name: str, shown: ShownVehicle, size: Size, window: Viewport, width_px: int, height_px: int) -> Look:

@@ -1,12 +1,13 @@
 """OpenGL contexts: one without any window, and what is known of the one that draws."""
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from simconsole.values.errors import WorkerError
 
 if TYPE_CHECKING:
     import moderngl
 
+_EGL: Final[dict[str, Any]] = {"backend": "egl"}
 SOFTWARE: Final = ("llvmpipe", "softpipe", "swiftshader", "software")
 """Names of renderers that run on the processor (Mesa, Chromium)."""
 
@@ -20,8 +21,8 @@ def windowless_context() -> "moderngl.Context":
     import moderngl
 
     try:
-        return moderngl.create_context(standalone=True, require=330, backend="egl")
-    except Exception as problem:  # glcontext raises bare Exception
+        return moderngl.create_context(standalone=True, require=330, **_EGL)
+    except Exception as problem:  # noqa: BLE001 glcontext raises bare Exception
         raise WorkerError(f"driver's view: no OpenGL 3.3 without a window here: {problem}") from None
 
 

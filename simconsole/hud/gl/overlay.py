@@ -52,4 +52,4 @@ class Overlay:
             if right > left and bottom > top:
                 target.scissor = (left, height - bottom, right - left, bottom - top)
                 self._whole.render(vertices=3)
-        target.scissor = None
+        target.scissor = (0, 0, width, height)

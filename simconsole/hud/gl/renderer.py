@@ -1,7 +1,7 @@
 """Draws a scene: sky, flat layers from the ground up, what has height, the vehicle; into any framebuffer."""
 
 import math
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,7 +49,7 @@ class _Drawn(NamedTuple):
 
     surface: "moderngl.VertexArray"
     shadow: "moderngl.VertexArray | None"
-    count: int
+    length: int
 
 
 class Renderer:
@@ -108,15 +108,14 @@ class Renderer:
             target.viewport = target.scissor = look.viewport.pixels(width, height)
             target.clear(depth=1.0)
             self._draw_look(look, shown, pose)
-        target.scissor = None
-        target.viewport = (0, 0, width, height)
+        target.viewport = target.scissor = (0, 0, width, height)
 
     def _draw_look(self, look: Look, shown: ShownVehicle, pose: Array) -> None:
         context, camera, light = self._context, look.camera, self._light
         projection = look.lens.projection()
         view_projection = projection @ camera.view(np.zeros(3))
         self._set_light(camera, shown, pose)
-        self._surface["view_projection"].write(_bytes(view_projection))
+        _set(self._surface, "view_projection", _bytes(view_projection))
         self._set_model(np.eye(4))
         reach = reach_m(light)
         for height, (layer, part) in enumerate(zip(self._layers, self._scene.layers, strict=True)):
@@ -159,16 +158,16 @@ class Renderer:
                     self._draw_mesh(lamps, pose)
 
     def _draw_mesh(self, mesh: _Drawn, model: Array) -> None:
-        if mesh.count:
+        if mesh.length:
             self._set_model(model)
-            mesh.surface.render(vertices=mesh.count)
+            mesh.surface.render(vertices=mesh.length)
 
     def _draw_sky(self, camera: Camera, projection: Array) -> None:
         rotated = np.eye(4)
         rotated[:3, :3] = camera.view(np.zeros(3))[:3, :3]
-        self._sky["from_clip"].write(_bytes(np.linalg.inv(projection @ rotated)))
+        _set(self._sky, "from_clip", _bytes(np.linalg.inv(projection @ rotated)))
         for name in ("sun", "horizon", "zenith", "night"):
-            self._sky[name].value = getattr(self._light, name)
+            _set(self._sky, name, getattr(self._light, name))
         self._backdrop.render()
 
     def _draw_shadows(self, shown: ShownVehicle, pose: Array) -> None:
@@ -177,22 +176,22 @@ class Renderer:
         matrix = shadow_matrix(self._light, centre[:3], SHADOW_HALF_M)
         self._map.use()
         self._map.clear(depth=1.0)
-        self._shadow["to_shadow"].write(_bytes(matrix))
-        self._shadow["model"].write(_bytes(np.eye(4)))
+        _set(self._shadow, "to_shadow", _bytes(matrix))
+        _set(self._shadow, "model", _bytes(np.eye(4)))
         part = self._scene.solids
         near = np.linalg.norm(part.centre - centre[:3], axis=1) - part.radius < 2.0 * SHADOW_HALF_M
         if self._solids.shadow is not None:
             for index in np.flatnonzero(near).tolist():
-                self._solids.shadow.render(vertices=int(part.count[index]), first=int(part.first[index]))
+                self._solids.shadow.render(vertices=int(part.length[index]), first=int(part.first[index]))
         if self._body.shadow is not None:
-            self._shadow["model"].write(_bytes(pose))
-            self._body.shadow.render(vertices=self._body.count)
-        self._surface["to_shadow"].write(_bytes(matrix))
+            _set(self._shadow, "model", _bytes(pose))
+            self._body.shadow.render(vertices=self._body.length)
+        _set(self._surface, "to_shadow", _bytes(matrix))
         self._depth.use(0)
 
     def _set_light(self, camera: Camera, shown: ShownVehicle, pose: Array) -> None:
         light = self._light
-        values = {
+        values: dict[str, float | tuple[float, ...]] = {
             "eye": tuple(camera.eye.tolist()),
             "sun": light.sun,
             "sun_light": light.sun_light,
@@ -204,10 +203,10 @@ class Renderer:
             "lamp_heading": (math.cos(shown.yaw_rad), math.sin(shown.yaw_rad)),
         }
         for name, value in values.items():
-            self._surface[name].value = value
+            _set(self._surface, name, value)
 
     def _set_model(self, model: Array) -> None:
-        self._surface["model"].write(_bytes(model))
+        _set(self._surface, "model", _bytes(model))
 
     def _put(self, mesh: Vertices) -> _Drawn:
         """Put a mesh on the card."""
@@ -235,6 +234,18 @@ def _transform(axes: Array, place: Array) -> Array:
     return matrix
 
 
-def _bytes(matrix: Array) -> bytes:
+def _set(program: "moderngl.Program", name: str, value: bytes | float | tuple[float, ...]) -> None:
+    """Give a program's uniform a value; a matrix comes as bytes."""
+    import moderngl
+
+    uniform = program[name]
+    assert isinstance(uniform, moderngl.Uniform)
+    if isinstance(value, bytes):
+        uniform.write(value)
+    else:
+        uniform.value = value
+
+
+def _bytes(matrix: NDArray[np.floating[Any]]) -> bytes:
     """Return a matrix as OpenGL wants it: columns first, single precision."""
     return matrix.T.astype("<f4").tobytes()
