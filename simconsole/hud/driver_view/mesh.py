@@ -90,7 +90,7 @@ def prism(outline: Array, left_m: float, right_m: float, colour: Colour) -> Vert
     right = np.column_stack((outline[:, 0], np.full(len(outline), right_m), outline[:, 1]))
     left = np.column_stack((outline[:, 0], np.full(len(outline), left_m), outline[:, 1]))
     after = np.roll(np.arange(len(outline)), -1)
-    rim = np.stack((right[after], right, left, left[after]), axis=1)[:, ::-1]
+    rim = np.stack((left, left[after], right[after], right), axis=1)
     fan = np.arange(1, len(outline) - 1)
     near = np.stack((np.broadcast_to(right[0], (len(fan), 3)), right[fan], right[fan + 1]), axis=1)
     far = np.stack((np.broadcast_to(left[0], (len(fan), 3)), left[fan + 1], left[fan]), axis=1)

@@ -23,16 +23,17 @@ class Occupancy:
         self._taken = np.zeros(shape, dtype=bool)
 
     def add(self, points: Array, triangles: Indices) -> None:
-        """Take the ground under triangles [M, 3] of points [N, 2]."""
+        """Take the ground under triangles [M, 3] of points [N, 2], and half a cell around it."""
         for corners in points[triangles]:
             first, last = self._cells(corners.min(axis=0)), self._cells(corners.max(axis=0)) + 1
             x, y = (np.arange(first[i], last[i]) * CELL_M + self._low[i] for i in (0, 1))
+            along, beside = corners[1] - corners[0], corners[2] - corners[0]
+            turn = float(np.sign(along[0] * beside[1] - along[1] * beside[0]))
             inside = np.ones((len(x), len(y)), dtype=bool)
-            turn = 0.0
             for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-                side = (end[0] - start[0]) * (y[None, :] - start[1]) - (end[1] - start[1]) * (x[:, None] - start[0])
-                turn = turn or float(np.sign(np.cross(corners[1] - corners[0], corners[2] - corners[0])))
-                inside &= turn * side >= -CELL_M * float(np.abs(end - start).sum()) * 0.5
+                edge = end - start
+                left_of_edge = edge[0] * (y[None, :] - start[1]) - edge[1] * (x[:, None] - start[0])
+                inside &= turn * left_of_edge >= -0.5 * CELL_M * float(np.abs(edge).sum())
             self._taken[first[0] : last[0], first[1] : last[1]] |= inside
 
     def is_taken(self, points: Array) -> NDArray[np.bool_]:

@@ -26,6 +26,7 @@ SIGN_RED: Final[Colour] = (176, 24, 32)
 SIGN_WHITE: Final[Colour] = (240, 240, 238)
 INK: Final[Colour] = (24, 24, 26)
 SIGN_RADIUS_M: Final = 0.3
+SIGN_ASIDE_M: Final = 3.0
 _DIGITS: Final = {
     "0": (7, 5, 5, 5, 7), "1": (2, 6, 2, 2, 7), "2": (7, 1, 7, 4, 7), "3": (7, 1, 7, 1, 7), "4": (5, 5, 7, 1, 1),
     "5": (7, 4, 7, 1, 7), "6": (7, 4, 7, 5, 7), "7": (7, 1, 1, 2, 2), "8": (7, 5, 7, 5, 7), "9": (7, 5, 7, 1, 7),
@@ -37,7 +38,9 @@ def surroundings(path: Array, limit_kmh: float, taken: Occupancy) -> Vertices:
     generator = np.random.Generator(np.random.PCG64(SEED))
     across = left_of(path)
     way = np.concatenate(((0.0,), np.cumsum(np.hypot(*np.diff(path, axis=0).T))))
-    parts = [_sign(*_place(path, across, way, s), limit_kmh) for s in np.arange(30.0, way[-1], SIGN_EVERY_M).tolist()]
+    parts = [
+        _sign(*_place(path, across, way, s), limit_kmh, taken) for s in np.arange(30.0, way[-1], SIGN_EVERY_M).tolist()
+    ]
     for s in np.arange(10.0, way[-1], HOUSE_EVERY_M).tolist():
         parts += [_house(*_place(path, across, way, s), side, taken, generator) for side in SIDES_M]
     for s in np.arange(4.0, way[-1], TREE_EVERY_M).tolist():
@@ -99,9 +102,11 @@ def _tree(point: Array, left: Array, side: float, taken: Occupancy, generator: n
     return joined([trunk, low, high])
 
 
-def _sign(point: Array, left: Array, limit_kmh: float) -> Vertices:
+def _sign(point: Array, left: Array, limit_kmh: float, taken: Occupancy) -> Vertices:
     """Return a speed limit's sign on the right of the lane, facing those who come along the path."""
-    foot = np.append(point - 2.6 * left, 0.0)
+    foot = np.append(point - SIGN_ASIDE_M * left, 0.0)
+    if not taken.take_disc(float(foot[0]), float(foot[1]), SIGN_RADIUS_M):
+        return joined([])
     ahead, right, up = np.array((left[1], -left[0], 0.0)), np.append(-left, 0.0), np.array((0.0, 0.0, 1.0))
     centre = foot + 2.3 * up
     post = cone(float(foot[0]), float(foot[1]), (0.0, 2.6), (0.035, 0.035), POST)
