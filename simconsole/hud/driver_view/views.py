@@ -68,7 +68,8 @@ def _camera(kind: str, shown: ShownVehicle, size: Size, yaw_rad: float) -> Camer
     level = rotation(shown.yaw_rad + yaw_rad)
     if kind == "chase":
         back, up = CHASE_BACK * size.length_m, CHASE_UP * size.height_m
-        return Camera(place + level @ np.array((-back, 0.0, up)), rotation(shown.yaw_rad + yaw_rad, 0.09))
+        halfway_rad = 0.5 * math.atan2(up - 0.5 * size.height_m, back)  # between the horizon and the vehicle
+        return Camera(place + level @ np.array((-back, 0.0, up)), level @ rotation(0.0, halfway_rad))
     north_up = rotation(0.5 * math.pi, math.radians(89.9))
     return Camera(place + np.array((0.0, 0.0, BIRD_UP_M * min(1.0, max(0.1, size.length_m / 4.0)))), north_up)
 
