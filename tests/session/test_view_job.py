@@ -1,0 +1,37 @@
+"""What the driver's view is given of a session."""
+
+from pathlib import Path
+
+import pytest
+
+from simconsole.session.resolution import load_session, override, resolve
+from simconsole.session.view_job import load_view_job, save_view_job, view_job
+from simconsole.values.errors import WorkerError
+
+
+def test_a_job_comes_out_of_its_file_as_it_went_in(tmp_path: Path) -> None:
+    job = view_job(resolve(load_session("demo")))
+    save_view_job(tmp_path / "view.npz", job)
+    back = load_view_job(tmp_path / "view.npz")
+    assert (back.limit_kmh, back.size, back.steering_ratio) == (job.limit_kmh, job.size, job.steering_ratio)
+    assert job.limit_kmh == pytest.approx(50.0)
+    assert 2.0 < job.size.wheelbase_m < 3.0
+    assert job.drawing is not None
+    assert back.drawing is not None
+    assert (back.drawing.path == job.drawing.path).all()
+
+
+def test_without_a_course_there_is_nothing_to_draw(tmp_path: Path) -> None:
+    bare = resolve(override(load_session("demo"), environment={"world": None}, features={"autopilot": None}))
+    save_view_job(tmp_path / "view.npz", view_job(bare))
+    assert load_view_job(tmp_path / "view.npz").drawing is None
+
+
+def test_what_is_no_job_is_one_line(tmp_path: Path) -> None:
+    with pytest.raises(WorkerError, match="cannot be read"):
+        load_view_job(tmp_path / "nowhere.npz")
+    (tmp_path / "text.npz").write_text("no")
+    with pytest.raises(WorkerError, match="is not a view job"):
+        load_view_job(tmp_path / "text.npz")
+    with pytest.raises(WorkerError, match="cannot be written"):
+        save_view_job(tmp_path / "nowhere" / "view.npz", view_job(resolve(load_session("roll_a_ball"))))
