@@ -1,6 +1,6 @@
 import pytest
 
-from simconsole.hud.draw import Text, bounds
+from simconsole.hud.draw import bounds
 from simconsole.hud.layout import check_screen, layout, panels_over_view, sample_views
 from simconsole.hud.screen import Screen
 from simconsole.hud.view import HudView
@@ -12,6 +12,10 @@ WELL = HudView(
     shown_kmh=52, rpm=2310.0, engine_running=True, gear="4", wheel_validity=2.0, pedals_validity=2.0,
     shifter_validity=2.0, handbrake_validity=2.0, t_s=75.0, distance_m=1250.0,
 )  # fmt: skip
+
+
+def words(view: HudView) -> set[str]:
+    return {item.text for item in texts(layout(view, SCREEN))}
 
 
 @pytest.mark.parametrize(
@@ -40,24 +44,23 @@ def test_all_that_is_shown_stands_on_a_panel_that_hides_the_road() -> None:
 
 
 def test_speed_gear_and_engine_speed_are_told() -> None:
-    said = texts(layout(WELL, SCREEN))
-    assert {"52", "km/h", "4", "2300 rpm"} <= set(said)
+    assert {"52", "km/h", "4", "2300 rpm"} <= words(WELL)
     slot, bar = (bounds(by_role(layout(WELL, SCREEN), f"rpm.{part}")[0]) for part in ("slot", "bar"))
     assert bar.w == pytest.approx(2310.0 / 7000.0 * slot.w)
 
 
 def test_lamps_tell_what_is_wrong_and_nothing_else() -> None:
-    well, lost = texts(layout(WELL, SCREEN)), texts(layout(WELL._replace(wheel_validity=4.0), SCREEN))
-    assert {"01:15", "1.2 km"} <= set(well)
+    well, lost = words(WELL), words(WELL._replace(wheel_validity=4.0))
+    assert {"01:15", "1.2 km"} <= well
     assert "WHEEL" not in well
-    assert {"WHEEL", "lost"} <= set(lost)
+    assert {"WHEEL", "lost"} <= lost
     assert "01:15" not in lost
 
 
 def test_stale_data_leaves_no_number() -> None:
-    stale = [item for item in layout(WELL._replace(stale=True), SCREEN) if isinstance(item, Text)]
-    assert "NO DATA" in {item.text for item in stale}
-    assert not any(character.isdigit() for item in stale for character in item.text)
+    stale = words(WELL._replace(stale=True))
+    assert "NO DATA" in stale
+    assert not any(character.isdigit() for text in stale for character in text)
 
 
 def test_the_shift_arrow_comes_only_over_red_with_a_gear_left() -> None:

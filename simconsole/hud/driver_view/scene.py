@@ -102,7 +102,10 @@ def in_sight(part: Pieces, view_projection: Array, reach_m: float, eye: Array) -
 def _light(light: Light) -> Vertices:
     """Return a traffic light's post and case, its lamps facing those who come."""
     x, y = light.x_m, light.y_m
-    case = box(Box(x, y, 2.3, 0.11, 0.17, 1.0, light.yaw_rad), CASE)
+    place = Box(
+        x_m=x, y_m=y, z_m=2.3, half_length_m=0.11, half_width_m=0.17, height_m=1.0, yaw_rad=light.yaw_rad,
+    )  # fmt: skip
+    case = box(place, CASE)
     cosine, sine = np.cos(light.yaw_rad), np.sin(light.yaw_rad)
     back, left = np.array((-cosine, -sine, 0.0)), np.array((-sine, cosine, 0.0))
     up = np.array((0.0, 0.0, 1.0))

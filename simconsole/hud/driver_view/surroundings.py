@@ -63,7 +63,10 @@ def _house(point: Array, left: Array, side: float, taken: Occupancy, generator: 
     if not taken.take_disc(float(centre[0]), float(centre[1]), max(length, depth) + 1.0):
         return joined([])
     yaw = math.atan2(-float(left[0]), float(left[1]))
-    place = Box(float(centre[0]), float(centre[1]), 0.0, float(length), float(depth), float(height), yaw)
+    place = Box(
+        x_m=float(centre[0]), y_m=float(centre[1]), z_m=0.0, half_length_m=float(length), half_width_m=float(depth),
+        height_m=float(height), yaw_rad=yaw,
+    )  # fmt: skip
     return joined([box(place, wall, roof, Material.WALL), _gable(place, roof)])
 
 

@@ -81,8 +81,10 @@ def vehicle_meshes(size: Size) -> VehicleMeshes:
     nothing = joined([])
     if size.is_ball:
         return VehicleMeshes(
-            _ball(0.5 * size.height_m), nothing, (), nothing, nothing, nothing, nothing, nothing, (0.0, 0.0, 0.0), 0.0
-        )
+            body=_ball(0.5 * size.height_m), wheel=nothing, wheel_places=(), brake_lamps=nothing,
+            left_indicators=nothing, right_indicators=nothing, bonnet=nothing, hand_wheel=nothing,
+            hand_wheel_place=(0.0, 0.0, 0.0), hand_wheel_tilt_rad=0.0,
+        )  # fmt: skip
     half = 0.5 * size.width_m
     track = half - 0.12
     eye = size.eye_m
