@@ -2,11 +2,11 @@
 
 import os
 import sys
-from typing import TYPE_CHECKING
 
 from simconsole.hud.driver_view.motion import ShownVehicle, moved, shown_vehicle
 from simconsole.hud.driver_view.scene import ViewScene
 from simconsole.hud.gl.cockpit_picture import CockpitPicture
+from simconsole.hud.gl.context import renderer_name
 from simconsole.hud.layout import check_screen
 from simconsole.hud.screen import Screen, screen_of
 from simconsole.hud.view import HudSettings
@@ -15,9 +15,6 @@ from simconsole.hud.window.pygame_window import Motion
 from simconsole.profiles.view import DriverViewProfile, HudProfile
 from simconsole.values.errors import ProfileError, WorkerError
 from simconsole.values.state_vector import Snapshot
-
-if TYPE_CHECKING:
-    pass
 
 
 class ViewWindow:
@@ -37,6 +34,7 @@ class ViewWindow:
         import pygame
 
         try:
+            pygame.display.quit()  # one that this process opened before, for joysticks, may be of a kind without OpenGL
             pygame.display.init()
             self._screen = _fitting(screen_of(profile), pygame.display.get_desktop_sizes())
             check_screen(self._screen, "hud")
@@ -60,6 +58,9 @@ class ViewWindow:
         pygame.mouse.set_visible(not profile.fullscreen)
         self._context: moderngl.Context = context
         self._picture = CockpitPicture(context, scene, view, self._screen, settings.hand_wheel_per_road_wheel)
+        if self._picture.is_cheap:
+            name = renderer_name(context)
+            print(f"driver's view: {name} draws, no graphics card: no mirrors, no shadows, rough edges", file=sys.stderr)
         self._shown = ShownVehicle()
 
     def frame(

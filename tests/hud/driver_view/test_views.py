@@ -23,7 +23,7 @@ def seen_at(look: Look, ahead_m: float, left_m: float, up_m: float) -> np.ndarra
     """Where a point beside the car lands in the look's own picture, in shares of it from its upper left corner."""
     cosine, sine = math.cos(HERE.yaw_rad), math.sin(HERE.yaw_rad)
     point = (HERE.x_m + ahead_m * cosine - left_m * sine, HERE.y_m + ahead_m * sine + left_m * cosine, up_m)
-    return to_pixels(np.array([point]), look.camera, look.lens, 1, 1)[0]
+    return np.asarray(to_pixels(np.array([point]), look.camera, look.lens, 1, 1)[0])
 
 
 def test_the_driver_looks_ahead_and_into_three_mirrors() -> None:

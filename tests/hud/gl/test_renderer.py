@@ -7,7 +7,7 @@ from simconsole.hud.driver_view.camera import Camera, Lens, Viewport, rotation, 
 from simconsole.hud.driver_view.light import DAY, NIGHT
 from simconsole.hud.driver_view.mesh import Box, Material, box, joined
 from simconsole.hud.driver_view.motion import ShownVehicle
-from simconsole.hud.driver_view.scene import ViewScene, pieces, view_scene
+from simconsole.hud.driver_view.scene import Pieces, ViewScene, pieces, view_scene
 from simconsole.hud.driver_view.vehicle_body import Size
 from simconsole.hud.driver_view.views import Look
 from simconsole.hud.gl.renderer import Quality, Renderer
@@ -59,7 +59,7 @@ def test_what_lies_on_the_road_is_seen_whole() -> None:
     """Paint in the plane of the road: not one pixel of the layer below shows through."""
     from simconsole.hud.driver_view.mesh import quads
 
-    def plate(half: float, colour: tuple[int, int, int]) -> object:
+    def plate(half: float, colour: tuple[int, int, int]) -> Pieces:
         corners = np.array([((-half, -half, 0.0), (half, -half, 0.0), (half, half, 0.0), (-half, half, 0.0))])
         return pieces(quads(corners + np.array((200.0, 0.0, 0.0)), colour, Material.GLOWING))
 

@@ -6,6 +6,7 @@ import pytest
 
 from simconsole.hud.driver_view.scene import view_scene
 from simconsole.hud.driver_view.vehicle_body import Size
+from simconsole.hud.gl.context import is_software, renderer_name
 from simconsole.hud.screen import Screen
 from simconsole.hud.view import HudSettings
 from simconsole.hud.window import view_window
@@ -52,6 +53,23 @@ def test_a_frame_is_drawn_between_the_two_newest_ticks() -> None:
     assert len(set(pictures)) == 3
     window.frame(snapshot(11, 2.0), 1.0)
     assert seen(window) == pictures[-1]
+    window.close()
+
+
+def test_a_display_that_was_opened_without_opengl_does_not_stay(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A process that read joysticks before has SDL's dummy display open."""
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    pygame.display.init()
+    monkeypatch.setenv("SDL_VIDEODRIVER", "offscreen")
+    opened().close()
+
+
+def test_a_processor_that_draws_is_told_of_once(capsys: pytest.CaptureFixture[str]) -> None:
+    window = opened()
+    for tick in range(3):
+        window.frame(snapshot(tick), 0.01 * tick)
+    name = renderer_name(window._context)
+    assert capsys.readouterr().err.count(f"{name} draws, no graphics card") == is_software(window._context)
     window.close()
 
 
