@@ -43,6 +43,7 @@ class CockpitPicture:
             screen: Size of the picture.
             steering_ratio: Hand-wheel angle per road-wheel angle.
         """
+        self._painter = Painter()  # before pygame is imported anywhere: it keeps its greeting off standard output
         import pygame
 
         self._context, self._scene, self._screen = context, scene, screen
@@ -50,7 +51,6 @@ class CockpitPicture:
         self._profile = _cheap(profile) if self.is_cheap else profile
         quality = Quality(shadows=self._profile.shadows, detail=not self.is_cheap)
         self._renderer = Renderer(context, scene, NIGHT if profile.night else DAY, quality, steering_ratio)
-        self._painter = Painter()
         self._surface = pygame.Surface((screen.width_px, screen.height_px), 0, 32)
         self._overlay = Overlay(context, self._surface)
         self._drawn: list[DrawItem] = []

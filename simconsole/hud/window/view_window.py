@@ -60,7 +60,7 @@ class ViewWindow:
         self._picture = CockpitPicture(context, scene, view, self._screen, settings.hand_wheel_per_road_wheel)
         if self._picture.is_cheap:
             name = renderer_name(context)
-            print(f"driver's view: {name} draws, no graphics card: no mirrors, no shadows, rough edges", file=sys.stderr)
+            print(f"driver's view: {name} draws, no graphics card: no mirrors, no shadows", file=sys.stderr)
         self._shown = ShownVehicle()
 
     def frame(
