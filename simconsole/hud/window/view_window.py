@@ -59,8 +59,8 @@ class ViewWindow:
         self._context: moderngl.Context = context
         self._picture = CockpitPicture(context, scene, view, self._screen, settings.hand_wheel_per_road_wheel)
         if self._picture.is_cheap:
-            name = renderer_name(context)
-            print(f"driver's view: {name} draws, no graphics card: no mirrors, no shadows", file=sys.stderr)
+            drawer = renderer_name(context)
+            print(f"driver's view: {drawer} draws, no graphics card: no mirrors, no shadows", file=sys.stderr)
         self._shown = ShownVehicle()
 
     def frame(
