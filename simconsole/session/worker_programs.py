@@ -6,6 +6,7 @@ A worker's fields are its whole configuration; `simconsole.processes.worker` bri
 import contextlib
 import time
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -136,6 +137,7 @@ class HudWorker(Worker, frozen=True, kw_only=True):
 
     def run(self, folder: Path, stop: Callable[[], bool]) -> None:
         """Draw until `stop`."""
+        from simconsole.hud.gl.view_window import open_window
         from simconsole.hud.window.pygame_window import Motion, Ports, run
 
         ring = Ring.open(folder / SNAPSHOTS)
@@ -162,7 +164,8 @@ class HudWorker(Worker, frozen=True, kw_only=True):
         can = CanWatch(folder / CAN_STATUS, time.time, time.monotonic) if self.has_can else lambda: None
         link = LinkWatch(folder / LINK_STATUS, time.time, time.monotonic) if self.has_bridge else lambda: None
         ports = Ports(latest, report_keys, stop, can_up=can, drawn=receipts.drawn, link=link, motion=motion)
-        run(ports, self.profile, self.settings, _view_scene(folder) if self.profile.view is not None else None)
+        scene = _view_scene(folder) if self.profile.view is not None else None
+        run(ports, self.profile, self.settings, partial(open_window, scene=scene))
 
 
 class SceneWorker(Worker, frozen=True, kw_only=True):

@@ -33,6 +33,8 @@ SHADOW_HALF_M: Final = 70.0
 SHADOW_AHEAD_M: Final = 45.0
 LAYER_SLOPE: Final = 1.0
 LAYER_STEPS: Final = 8.0
+FRAME: Final = 0.004  # of the window's width
+FRAME_COLOUR: Final = (0.07, 0.07, 0.08)
 BLINK_S: Final = 0.67
 """Period of the indicators (UN R48: 60 to 120 a minute)."""
 
@@ -105,7 +107,10 @@ class Renderer:
         target.use()
         width, height = target.size
         for look in looks:
-            target.viewport = target.scissor = look.viewport.pixels(width, height)
+            place = look.viewport.pixels(width, height)
+            if look.is_mirror:
+                _frame(target, place)
+            target.viewport = target.scissor = place
             target.clear(depth=1.0)
             self._draw_look(look, shown, pose)
         target.viewport = target.scissor = (0, 0, width, height)
@@ -221,6 +226,16 @@ class Renderer:
         if self._quality.shadows:
             shadow = self._context.vertex_array(self._shadow, [(buffer, "3f4 8x1", "in_position")])
         return _Drawn(surface, shadow, len(mesh))
+
+
+def _frame(target: "moderngl.Framebuffer", place: tuple[int, int, int, int]) -> None:
+    """Paint what a mirror stands in: a dark rim around its place."""
+    left, bottom, width, height = place
+    rim = max(2, round(FRAME * target.width))
+    right, top = min(target.width, left + width + rim), min(target.height, bottom + height + rim)
+    left, bottom = max(0, left - rim), max(0, bottom - rim)
+    target.scissor = (left, bottom, right - left, top - bottom)
+    target.clear(*FRAME_COLOUR)
 
 
 def _pose(shown: ShownVehicle) -> Array:

@@ -9,10 +9,7 @@ import time
 from collections.abc import Callable
 from typing import Any, NamedTuple, Protocol
 
-from msgspec.structs import replace
-
 from simconsole.hud.draw import DrawItem
-from simconsole.hud.driver_view.scene import ViewScene
 from simconsole.hud.key_names import KEY_CODES
 from simconsole.hud.layout import check_screen, layout, sample_views
 from simconsole.hud.screen import Screen, screen_of
@@ -150,13 +147,18 @@ def _asks_for_end(event: Any) -> bool:
     return bool(event.type == pygame.QUIT)
 
 
-def run(ports: Ports, profile: HudProfile, settings: HudSettings, scene: ViewScene | None = None) -> None:
-    """Show road and instruments, or the cluster alone, until `ports.stop` says so.
+def run(
+    ports: Ports,
+    profile: HudProfile,
+    settings: HudSettings,
+    opened: Callable[[HudProfile, HudSettings], DriverWindow] = Window,
+) -> None:
+    """Show what `opened` opens, the cluster alone if nothing else is said, until `ports.stop` says so.
 
     Closing the window, or its key for that, asks for the end of the drive as a key held from then on: whoever drives
     ends it and stops this window with everything else. A window that ended by itself would be opened again.
     """
-    window = open_window(profile, settings, scene)
+    window = opened(profile, settings)
     import pygame
 
     clock = pygame.time.Clock()
@@ -172,21 +174,3 @@ def run(ports: Ports, profile: HudProfile, settings: HudSettings, scene: ViewSce
     finally:
         ports.report_keys(0)
         window.close()
-
-
-def open_window(profile: HudProfile, settings: HudSettings, scene: ViewScene | None) -> DriverWindow:
-    """Return the road above the instruments; the cluster alone where none is asked for or no OpenGL is to be had.
-
-    Raises:
-        ProfileError: the screen is too small or too far away to be read.
-        WorkerError: no window can be opened here.
-    """
-    if profile.view is None or scene is None:
-        return Window(profile, settings)
-    from simconsole.hud.window.view_window import ViewWindow
-
-    try:
-        return ViewWindow(profile, profile.view, settings, scene)
-    except WorkerError as problem:
-        print(f"{problem}; the instruments are shown without the road", file=sys.stderr)
-        return Window(replace(profile, view=None), settings)

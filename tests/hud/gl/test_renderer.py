@@ -133,3 +133,19 @@ def test_night_is_dark_but_for_the_headlights() -> None:
     night = pixels(framebuffer).astype(int).sum(axis=2)
     assert night[: HEIGHT_PX // 4].mean() < 90
     assert night[int(0.55 * HEIGHT_PX) : int(0.62 * HEIGHT_PX), WIDTH_PX // 2].max() > 150
+
+
+def test_a_mirror_stands_in_a_dark_frame() -> None:
+    scene, camera, lens = view_scene(None, 0.0, SIZE), Camera(np.array((0.0, 0.0, 1.2)), rotation(0.0)), Lens(0.6, 1.5)
+    whole = Look(camera, Lens(1.2, 1.6), Viewport(), from_seat=True)
+    mirror = Look(camera, lens._replace(is_mirror=True), Viewport(0.5, 0.5, 0.25, 0.25), from_seat=True, is_mirror=True)
+    framebuffer = target(WIDTH_PX, HEIGHT_PX)
+    Renderer(context(), scene, DAY, Quality(), 15.0).draw(framebuffer, [whole, mirror], ShownVehicle(x_m=-500.0))
+    picture = pixels(framebuffer).astype(int)
+    left, right, top, bottom = 320, 480, 100, 200
+    for rim in (picture[top:bottom, left - 2 : left], picture[top:bottom, right : right + 2]):
+        assert rim.max() < 30
+    for rim in (picture[top - 2 : top, left:right], picture[bottom : bottom + 2, left:right]):
+        assert rim.max() < 30
+    assert picture[top:bottom, left:right].min(axis=(0, 1)).max() > 30
+    assert picture[top:bottom, left - 8].max() > 30

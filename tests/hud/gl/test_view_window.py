@@ -1,4 +1,5 @@
 from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
 import pygame
@@ -6,12 +7,12 @@ import pytest
 
 from simconsole.hud.driver_view.scene import view_scene
 from simconsole.hud.driver_view.vehicle_body import Size
+from simconsole.hud.gl import view_window
 from simconsole.hud.gl.context import is_software, renderer_name
+from simconsole.hud.gl.view_window import ViewWindow, open_window
 from simconsole.hud.screen import Screen
 from simconsole.hud.view import HudSettings
-from simconsole.hud.window import view_window
-from simconsole.hud.window.pygame_window import Motion, Ports, Window, open_window, run
-from simconsole.hud.window.view_window import ViewWindow
+from simconsole.hud.window.pygame_window import Motion, Ports, Window, run
 from simconsole.profiles.view import DriverViewProfile, HudProfile
 from simconsole.values.key_codes import Key
 from simconsole.values.state_vector import LAYOUT, PLATFORM_AT, Snapshot
@@ -76,7 +77,12 @@ def test_a_processor_that_draws_is_told_of_once(capsys: pytest.CaptureFixture[st
 def test_the_window_runs_reports_keys_and_ends() -> None:
     keys: list[int] = []
     ticks, ends = iter(range(100)), iter([False] * 5 + [True])
-    run(Ports(lambda: snapshot(next(ticks)), keys.append, lambda: next(ends)), PROFILE, HudSettings(), SCENE)
+    run(
+        Ports(lambda: snapshot(next(ticks)), keys.append, lambda: next(ends)),
+        PROFILE,
+        HudSettings(),
+        partial(open_window, scene=SCENE),
+    )
     assert keys == [0] * 6
     assert not pygame.display.get_init()
 
@@ -89,7 +95,7 @@ def test_closing_the_window_asks_for_the_end_of_the_drive() -> None:
         pygame.event.post(pygame.event.Event(pygame.QUIT))
         return snapshot(len(keys))
 
-    run(Ports(latest, keys.append, lambda: next(ends)), PROFILE, HudSettings(), SCENE)
+    run(Ports(latest, keys.append, lambda: next(ends)), PROFILE, HudSettings(), partial(open_window, scene=SCENE))
     assert keys[0] == 0
     assert keys[2] & Key.END
 

@@ -3,6 +3,8 @@
 import os
 import sys
 
+from msgspec.structs import replace
+
 from simconsole.hud.driver_view.motion import ShownVehicle, moved, shown_vehicle
 from simconsole.hud.driver_view.scene import ViewScene
 from simconsole.hud.gl.cockpit_picture import CockpitPicture
@@ -11,7 +13,7 @@ from simconsole.hud.layout import check_screen
 from simconsole.hud.screen import Screen, screen_of
 from simconsole.hud.view import HudSettings
 from simconsole.hud.window.display_memory import DisplayMemory
-from simconsole.hud.window.pygame_window import Motion
+from simconsole.hud.window.pygame_window import DriverWindow, Motion, Window
 from simconsole.profiles.view import DriverViewProfile, HudProfile
 from simconsole.values.errors import ProfileError, WorkerError
 from simconsole.values.state_vector import Snapshot
@@ -95,3 +97,19 @@ def _fitting(screen: Screen, displays: list[tuple[int, int]]) -> Screen:
     width, height = displays[0] if displays else (screen.width_px, screen.height_px)
     share = min(1.0, width / screen.width_px, height / screen.height_px)
     return screen._replace(width_px=int(screen.width_px * share), height_px=int(screen.height_px * share))
+
+
+def open_window(profile: HudProfile, settings: HudSettings, scene: ViewScene | None) -> DriverWindow:
+    """Return the road above the instruments; the cluster alone where none is asked for or no OpenGL is to be had.
+
+    Raises:
+        ProfileError: the screen is too small or too far away to be read.
+        WorkerError: no window can be opened here.
+    """
+    if profile.view is None or scene is None:
+        return Window(profile, settings)
+    try:
+        return ViewWindow(profile, profile.view, settings, scene)
+    except WorkerError as problem:
+        print(f"{problem}; the instruments are shown without the road", file=sys.stderr)
+        return Window(replace(profile, view=None), settings)
