@@ -8,7 +8,7 @@ from msgspec.structs import replace
 from simconsole.hud.driver_view.motion import ShownVehicle, moved, shown_vehicle
 from simconsole.hud.driver_view.scene import ViewScene
 from simconsole.hud.gl.cockpit_picture import CockpitPicture
-from simconsole.hud.gl.context import renderer_name
+from simconsole.hud.gl.context import context_of_window, renderer_name
 from simconsole.hud.layout import check_screen
 from simconsole.hud.screen import Screen, screen_of
 from simconsole.hud.view import HudSettings
@@ -32,7 +32,6 @@ class ViewWindow:
         self._memory = DisplayMemory(settings)
         if sys.platform == "linux" and not any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY")):
             os.environ.setdefault("SDL_VIDEODRIVER", "offscreen")
-        import moderngl
         import pygame
 
         try:
@@ -49,7 +48,7 @@ class ViewWindow:
                 pygame.display.gl_set_attribute(name, value)
             flags = pygame.OPENGL | pygame.DOUBLEBUF | (pygame.FULLSCREEN if profile.fullscreen else 0)
             pygame.display.set_mode((self._screen.width_px, self._screen.height_px), flags)
-            context = moderngl.create_context(require=330)
+            context = context_of_window()
         except ProfileError:
             pygame.display.quit()
             raise
@@ -58,7 +57,7 @@ class ViewWindow:
             raise WorkerError(f"driver's view: no OpenGL window can be opened: {problem}") from None
         pygame.display.set_caption("simconsole")
         pygame.mouse.set_visible(not profile.fullscreen)
-        self._context: moderngl.Context = context
+        self._context = context
         self._picture = CockpitPicture(context, scene, view, self._screen, settings.hand_wheel_per_road_wheel)
         if self._picture.is_cheap:
             drawer = renderer_name(context)

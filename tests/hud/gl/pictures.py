@@ -15,8 +15,14 @@ Pixels = NDArray[np.uint8]
 
 
 @cache
-def context() -> "moderngl.Context":
+def _made() -> "moderngl.Context":
     return windowless_context()
+
+
+def context() -> "moderngl.Context":
+    """The one context of all pictures, current again if a window was opened since."""
+    _made().mglo.__enter__()  # what `with context:` begins with: makes it current
+    return _made()
 
 
 def target(width_px: int, height_px: int) -> "moderngl.Framebuffer":

@@ -1,3 +1,6 @@
+import subprocess
+import sys
+
 import pytest
 
 from simconsole.hud.gl.context import is_software, renderer_name, windowless_context
@@ -22,3 +25,10 @@ def test_no_context_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(moderngl, "create_context", refuse)
     with pytest.raises(WorkerError, match=r"no OpenGL 3.3 without a window here: libEGL.so not loaded"):
         windowless_context()
+
+
+def test_no_window_is_no_context() -> None:
+    """In a process of its own: nothing is current there."""
+    code = "from simconsole.hud.gl.context import context_of_window\ncontext_of_window()"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert "RuntimeError: Cannot detect window" in done.stderr
