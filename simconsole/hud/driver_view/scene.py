@@ -88,15 +88,16 @@ def in_sight(part: Pieces, view_projection: Array, reach_m: float, eye: Array) -
     planes = planes / np.linalg.norm(planes[:, :3], axis=1)[:, None]
     distance = part.centre @ planes[:, :3].T + planes[:, 3]
     seen = (distance > -part.radius[:, None]).all(axis=1)
-    seen &= np.linalg.norm(part.centre - eye, axis=1) - part.radius < reach_m
+    away = part.centre - eye
+    seen &= np.einsum("ij,ij->i", away, away) < (part.radius + reach_m) ** 2
     indices = np.flatnonzero(seen)
     if len(indices) == 0:
         return []
-    breaks = np.flatnonzero(np.diff(indices) != 1) + 1
-    return [
-        (int(part.first[run[0]]), int(part.first[run[-1]] + part.length[run[-1]] - part.first[run[0]]))
-        for run in np.split(indices, breaks)
-    ]
+    last = np.append(indices[1:] - indices[:-1] != 1, True)
+    first = np.append(True, last[:-1])
+    starts = part.first[indices[first]]
+    ends = part.first[indices[last]] + part.length[indices[last]]
+    return list(zip(starts.tolist(), (ends - starts).tolist(), strict=True))
 
 
 def _light(light: Light) -> Vertices:

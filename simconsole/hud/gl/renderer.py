@@ -78,6 +78,10 @@ class Renderer:
         )
         self._sky = context.program(vertex_shader=SKY_VERTEX, fragment_shader=SKY_FRAGMENT)
         self._shadow = context.program(vertex_shader=SHADOW_VERTEX, fragment_shader=SHADOW_FRAGMENT)
+        for name in ("sun", "sun_light", "sky_light", "fog", "fog_per_m", "night"):
+            _set(self._surface, name, getattr(light, name))
+        for name in ("sun", "horizon", "zenith", "night"):
+            _set(self._sky, name, getattr(light, name))
         corners = np.array(((-1.0, -1.0), (3.0, -1.0), (-1.0, 3.0)), dtype="<f4")
         self._backdrop = context.vertex_array(self._sky, [(context.buffer(corners.tobytes()), "2f4", "in_place")])
         self._layers = [self._put(layer.vertices) for layer in scene.layers]
@@ -171,8 +175,6 @@ class Renderer:
         rotated = np.eye(4)
         rotated[:3, :3] = camera.view(np.zeros(3))[:3, :3]
         _set(self._sky, "from_clip", _bytes(np.linalg.inv(projection @ rotated)))
-        for name in ("sun", "horizon", "zenith", "night"):
-            _set(self._sky, name, getattr(self._light, name))
         self._backdrop.render()
 
     def _draw_shadows(self, shown: ShownVehicle, pose: Array) -> None:
@@ -195,20 +197,11 @@ class Renderer:
         self._depth.use(0)
 
     def _set_light(self, camera: Camera, shown: ShownVehicle, pose: Array) -> None:
-        light = self._light
-        values: dict[str, float | tuple[float, ...]] = {
-            "eye": tuple(camera.eye.tolist()),
-            "sun": light.sun,
-            "sun_light": light.sun_light,
-            "sky_light": light.sky_light,
-            "fog": light.fog,
-            "fog_per_m": light.fog_per_m,
-            "night": light.night,
-            "lamp_place": tuple((pose @ np.array((self._scene.size.front_m, 0.0, 0.62, 1.0)))[:3].tolist()),
-            "lamp_heading": (math.cos(shown.yaw_rad), math.sin(shown.yaw_rad)),
-        }
-        for name, value in values.items():
-            _set(self._surface, name, value)
+        _set(self._surface, "eye", tuple(camera.eye.tolist()))
+        if self._light.night > 0.0:
+            place = (pose @ np.array((self._scene.size.front_m, 0.0, 0.62, 1.0)))[:3]
+            _set(self._surface, "lamp_place", tuple(place.tolist()))
+            _set(self._surface, "lamp_heading", (math.cos(shown.yaw_rad), math.sin(shown.yaw_rad)))
 
     def _set_model(self, model: Array) -> None:
         _set(self._surface, "model", _bytes(model))
