@@ -22,7 +22,7 @@ from simconsole.hud.view import HudView
 from simconsole.profiles.view import DriverViewProfile
 from simconsole.session.resolution import load_session, resolve
 from simconsole.session.view_job import view_job
-from simconsole.world.course import Course
+from simconsole.world.kinds.worlds import open_world
 
 WARM_UP = 10
 STEP_M = 0.35
@@ -53,7 +53,7 @@ def cost(context: moderngl.Context, draw: Callable[[int], None], first: int, fra
 def measured(size: tuple[int, int], frames: int, *, rich: bool, mirrors: bool) -> tuple[Cost, Cost]:
     """Return the median cost of a frame, and of clearing one, taken in turns."""
     resolved = resolve(load_session("demo"))
-    job, course = view_job(resolved), Course(resolved.world)
+    job, course = view_job(resolved), open_world(resolved.world).route
     context = windowless_context()
     profile = DriverViewProfile(always_rich=rich, mirrors=mirrors)
     picture = CockpitPicture(

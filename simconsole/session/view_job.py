@@ -11,16 +11,17 @@ from simconsole.tick.assembly import ResolvedSession, assemble
 from simconsole.values.errors import WorkerError
 from simconsole.values.host.jit import plain
 from simconsole.values.units import KMH_PER_MPS
-from simconsole.world.course import Course
-from simconsole.world.drawing import Drawing, draw
+from simconsole.world.drawing import Drawing
 from simconsole.world.drawing_arrays import from_arrays, to_arrays
+from simconsole.world.kinds.worlds import open_world
+from simconsole.world.route import Route
 
 
 class ViewJob(NamedTuple):
     """A drive to look at."""
 
     drawing: Drawing | None  # None: a session without a world
-    limit_kmh: float
+    limit_kmh: float  # 0: none that holds everywhere
     size: Size
     steering_ratio: float  # hand-wheel angle per road-wheel angle
 
@@ -28,10 +29,10 @@ class ViewJob(NamedTuple):
 def view_job(resolved: ResolvedSession) -> ViewJob:
     """Return what there is to see of a session."""
     platform = assemble(resolved, plain)[0].platform
-    course = None if resolved.world is None else Course(resolved.world)
+    world = None if resolved.world is None else open_world(resolved.world)
     return ViewJob(
-        drawing=None if course is None else draw(course),
-        limit_kmh=0.0 if course is None else course.speed_limit_mps * KMH_PER_MPS,
+        drawing=None if world is None else world.drawing,
+        limit_kmh=0.0 if world is None else _limit_kmh(world.route),
         size=Size(
             length_m=platform.length_m,
             width_m=platform.width_m,
@@ -41,6 +42,11 @@ def view_job(resolved: ResolvedSession) -> ViewJob:
         ),
         steering_ratio=platform.steering_ratio,
     )
+
+
+def _limit_kmh(route: Route) -> float:
+    """Return the limit that holds all along a route, 0 where it changes on the way."""
+    return route.speed_limit_mps * KMH_PER_MPS if bool((route.limit == route.limit[0]).all()) else 0.0
 
 
 def save_view_job(path: Path, job: ViewJob) -> None:

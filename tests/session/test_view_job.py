@@ -35,3 +35,10 @@ def test_what_is_no_job_is_one_line(tmp_path: Path) -> None:
         load_view_job(tmp_path / "text.npz")
     with pytest.raises(WorkerError, match="cannot be written"):
         save_view_job(tmp_path / "nowhere" / "view.npz", view_job(resolve(load_session("roll_a_ball"))))
+
+
+def test_a_limit_that_changes_on_the_way_is_on_no_sign() -> None:
+    country = override(load_session("demo"), environment={"world": "country"}, features={"autopilot": None})
+    job = view_job(resolve(country))
+    assert job.limit_kmh == 0.0
+    assert job.drawing is not None

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from simconsole.profiles.files.loader import load
-from simconsole.profiles.world import WorldProfile
+from simconsole.profiles.world import CourseProfile
 from simconsole.world.course import Course
 from simconsole.world.drawing import draw
 from simconsole.world.drawing_arrays import from_arrays, to_arrays
 
 
 def test_a_drawing_comes_out_of_a_file_as_it_went_in() -> None:
-    drawing = draw(Course(load("worlds", "urban", WorldProfile)))
+    drawing = draw(Course(load("worlds", "urban", CourseProfile)))
     file = io.BytesIO()
     np.savez(file, **to_arrays(drawing))
     file.seek(0)

@@ -34,13 +34,14 @@ _DIGITS: Final = {
 
 
 def surroundings(path: Array, limit_kmh: float, taken: Occupancy) -> Vertices:
-    """Return houses, trees and signs along a path [N, 2], on ground that is free; takes that ground."""
+    """Return houses, trees and signs along a path [N, 2], on ground that is free; takes it. Limit 0: no signs."""
     generator = np.random.Generator(np.random.PCG64(SEED))
     across = left_of(path)
     way = np.concatenate(((0.0,), np.cumsum(np.hypot(*np.diff(path, axis=0).T))))
-    parts = [
-        _sign(*_place(path, across, way, s), limit_kmh, taken) for s in np.arange(30.0, way[-1], SIGN_EVERY_M).tolist()
-    ]
+    parts = []
+    if limit_kmh > 0.0:
+        places = [_place(path, across, way, s) for s in np.arange(30.0, way[-1], SIGN_EVERY_M).tolist()]
+        parts = [_sign(*place, limit_kmh, taken) for place in places]
     for s in np.arange(10.0, way[-1], HOUSE_EVERY_M).tolist():
         parts += [_house(*_place(path, across, way, s), side, taken, generator) for side in SIDES_M]
     for s in np.arange(4.0, way[-1], TREE_EVERY_M).tolist():

@@ -13,7 +13,7 @@ from simconsole.hud.driver_view.road import (
     road_meshes,
 )
 from simconsole.profiles.files.loader import load
-from simconsole.profiles.world import WorldProfile
+from simconsole.profiles.world import CourseProfile
 from simconsole.world.course import Course
 from simconsole.world.drawing import draw
 
@@ -22,7 +22,7 @@ MARKING_M = 0.02
 
 @pytest.fixture(scope="module")
 def course() -> Course:
-    return Course(load("worlds", "urban", WorldProfile))
+    return Course(load("worlds", "urban", CourseProfile))
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ from simconsole.hud.driver_view.mesh import Box, box, joined
 from simconsole.hud.driver_view.scene import in_sight, pieces, view_scene
 from simconsole.hud.driver_view.vehicle_body import Size
 from simconsole.profiles.files.loader import load
-from simconsole.profiles.world import WorldProfile
+from simconsole.profiles.world import CourseProfile
 from simconsole.world.course import Course
 from simconsole.world.drawing import draw
 from tests.samples import Sample
@@ -27,7 +27,7 @@ def test_pieces_are_the_mesh_in_another_order() -> None:
 def test_nothing_that_a_camera_sees_is_left_out(sample: Sample) -> None:
     """A vertex inside the picture and within reach belongs to a run that is drawn."""
     generator = np.random.Generator(np.random.PCG64(sample.seed))
-    course = Course(load("worlds", "urban", WorldProfile))
+    course = Course(load("worlds", "urban", CourseProfile))
     solids = view_scene(draw(course), 50.0, SIZE).solids
     corners = solids.vertices["position"].astype(float)
     for _ in range(sample.of(20, 500)):
@@ -53,7 +53,7 @@ def test_a_session_without_a_world_has_a_plain_to_move_over() -> None:
 
 
 def test_every_light_of_the_drawing_has_a_post() -> None:
-    drawing = draw(Course(load("worlds", "urban", WorldProfile)))
+    drawing = draw(Course(load("worlds", "urban", CourseProfile)))
     with_lights = view_scene(drawing, 50.0, SIZE).solids
     without = view_scene(drawing._replace(lights=()), 50.0, SIZE).solids
     assert len(drawing.lights) > 0
