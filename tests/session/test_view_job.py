@@ -1,12 +1,15 @@
 """What the driver's view is given of a session."""
 
+from copy import copy
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from simconsole.session.resolution import load_session, override, resolve
-from simconsole.session.view_job import load_view_job, save_view_job, view_job
+from simconsole.session.view_job import _limit_kmh, load_view_job, save_view_job, view_job
 from simconsole.values.errors import WorkerError
+from simconsole.world.kinds.worlds import open_world
 
 
 def test_a_job_comes_out_of_its_file_as_it_went_in(tmp_path: Path) -> None:
@@ -39,6 +42,9 @@ def test_what_is_no_job_is_one_line(tmp_path: Path) -> None:
 
 def test_a_limit_that_changes_on_the_way_is_on_no_sign() -> None:
     country = override(load_session("demo"), environment={"world": "country"}, features={"autopilot": None})
-    job = view_job(resolve(country))
-    assert job.limit_kmh == 0.0
-    assert job.drawing is not None
+    resolved = resolve(country)
+    assert resolved.world is not None
+    assert view_job(resolved).limit_kmh == pytest.approx(80.0, abs=0.1)
+    route = copy(open_world(resolved.world).route)
+    route.limit = np.append(route.limit, 10.0)
+    assert _limit_kmh(route) == 0.0
