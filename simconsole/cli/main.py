@@ -43,6 +43,7 @@ def parser() -> argparse.ArgumentParser:
     _beside_a_drive(commands)
     _recordings(commands)
     _exchange(commands)
+    _video(commands)
     _tools(commands)
     _can(commands)
     return root
@@ -241,6 +242,20 @@ def _exchange(commands: Any) -> None:
     into.add_argument("--cockpit", default="t500rs_th8rs", metavar="PROFILE", help="whose axes the trace then has")
     into.add_argument("--axes", metavar="MAP", help="such as wheel=-0,throttle=2: place of each axis, - turns it round")
     into.add_argument("--buttons", metavar="MAP", help="such as wheel=0:13,shifter=13:10: first place and number")
+
+
+def _video(commands: Any) -> None:
+    video = _command(commands, "video", "video:video", "a bundle as a video: the road, the instruments, who drives")
+    video.add_argument("bundle", metavar="BUNDLE", help="the folder that a drive has written")
+    video.add_argument("--out", metavar="FILE", help="the new .mp4 (default: BUNDLE.mp4, beside the bundle)")
+    video.add_argument("--camera", choices=("driver", "chase", "bird"), default="driver")
+    video.add_argument("--size", default="1280x720", metavar="WxH", help="pixels (default: 1280x720)")
+    video.add_argument("--from", dest="from_s", type=float, default=0.0, metavar="S", help="simulated seconds")
+    video.add_argument("--to", dest="to_s", type=float, metavar="S", help="simulated seconds (default: the end)")
+    video.add_argument("--fps", type=int, default=30, metavar="N", help="frames a second (default: 30)")
+    video.add_argument("--night", action="store_true", help="by the light of the headlamps")
+    video.add_argument("--rich", action="store_true", help="mirrors and shadows also where the processor draws: slow")
+    video.add_argument("--png", nargs=2, metavar=("S", "FILE"), help="no video: one picture, of this simulated second")
 
 
 def _can(commands: Any) -> None:

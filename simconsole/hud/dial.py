@@ -42,7 +42,7 @@ def dial(view: HudView, box: Box) -> list[DrawItem]:
         *_scale(view, cx, cy, radius),
         *_speed(view, cx, cy, radius),
         *_gear(view, cx, cy, radius),
-        *_indicators(view, cx, cy, radius),
+        *indicator_arrows(view, cx, cy - 0.86 * radius, 0.84 * radius, 0.16 * radius),
     ]
 
 
@@ -219,14 +219,15 @@ def _gear(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]:
                 arcmin=SECONDARY_ARCMIN,
             )
         )
-    elif view.rpm >= view.settings.rpm_red and _has_higher(view) and not view.stale:
+    elif is_over_red(view) and not view.stale:
         items += _shift_up(Box(box.right + 0.07 * radius, box.cy - 0.06 * radius, 0.12 * radius, 0.12 * radius))
     return items
 
 
-def _has_higher(view: HudView) -> bool:
-    """Return whether there is a gear above the one that is in: not from neutral, reverse or the highest."""
-    return view.gear.isdigit() and int(view.gear) < view.settings.top_gear
+def is_over_red(view: HudView) -> bool:
+    """Return whether a gear above the one that is in is asked for: not from neutral, reverse or the highest."""
+    has_higher = view.gear.isdigit() and int(view.gear) < view.settings.top_gear
+    return has_higher and view.rpm >= view.settings.rpm_red
 
 
 def _shift_up(box: Box) -> list[DrawItem]:
@@ -244,16 +245,15 @@ def _shift_up(box: Box) -> list[DrawItem]:
     return [Polygon(arrow, CAUTION, "shift.arrow"), label]
 
 
-def _indicators(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]:
-    """Return the arrows that flash with the lamps outside: one side's, or both for the hazard lights."""
+def indicator_arrows(view: HudView, cx: float, y: float, apart: float, reach: float) -> list[DrawItem]:
+    """Return the arrows that flash with the lamps outside: `apart` from `cx`, one or both."""
     if view.stale or not lamps_on(view.t_s):
         return []
     both = view.hazard_lights > 0.0
-    y, reach = cy - 0.86 * radius, 0.16 * radius
     items: list[DrawItem] = []
     for name, side in (("left", -1.0), ("right", 1.0)):
         if both or side * view.turn_indicators < 0.0:
-            items.append(_arrow(cx + side * 0.84 * radius, y, side * reach, f"indicator.{name}"))
+            items.append(_arrow(cx + side * apart, y, side * reach, f"indicator.{name}"))
     return items
 
 

@@ -4,13 +4,15 @@ Top to bottom inside the safe area: who drives (mode as label and shape), one sl
 dial and steering side by side, then a strip of lamps. Each thing has one place at all times.
 """
 
+import math
 from typing import Final, NamedTuple
 
-from simconsole.hud.banner import alert_of, banner, slot
+from simconsole.hud.banner import Alert, alert_of, banner, slot
 from simconsole.hud.dial import dial
 from simconsole.hud.draw import BACKGROUND, Box, DrawItem, Rect, Text, bounds
 from simconsole.hud.panels import pedals, status, steering
 from simconsole.hud.screen import Screen
+from simconsole.hud.strip import HEIGHT_ARCMIN, strip
 from simconsole.hud.view import HudView
 from simconsole.hud.words import AUTOPILOT, CONSOLE, LONGEST_PRESS, MENDING, NOBODY
 from simconsole.values.errors import ProfileError
@@ -25,6 +27,9 @@ from simconsole.values.labels import (
 from simconsole.values.signals import Mode, Notice, Reason
 
 GAP: Final = 0.02
+BANNER_ARCMIN: Final = 168.0
+SLOT_ARCMIN: Final = 130.0
+"""Heights under the road at which each text has the size that it needs (`check_screen`)."""
 
 
 class Places(NamedTuple):
@@ -36,6 +41,14 @@ class Places(NamedTuple):
     dial: Box
     right: Box
     status: Box
+
+
+class PlacesUnderView(NamedTuple):
+    """Where the instruments stand that leave the road most of the screen."""
+
+    slot: Box  # at the top, only while there is something to say
+    strip: Box
+    banner: Box
 
 
 def places(screen: Screen) -> Places:
@@ -57,11 +70,28 @@ def places(screen: Screen) -> Places:
     )
 
 
+def places_under_view(screen: Screen) -> PlacesUnderView:
+    """Divide the driver's screen by what must be legible: heights are angles at the driver's eye, not shares."""
+    area, unit = screen.content(), screen.px_per_arcmin
+    gap = GAP * area.h
+    banner = Box(area.x, area.bottom - BANNER_ARCMIN * unit, area.w, BANNER_ARCMIN * unit)
+    height = HEIGHT_ARCMIN * unit
+    return PlacesUnderView(
+        slot=Box(area.x, area.y, area.w, SLOT_ARCMIN * unit),
+        strip=Box(area.x, banner.y - 0.5 * gap - height, area.w, height),
+        banner=banner,
+    )
+
+
 def layout(view: HudView, screen: Screen) -> list[DrawItem]:
     """Return everything to draw, back to front, in pixels of `screen`."""
-    place = places(screen)
     alert = alert_of(view)
     ground = Rect(Box(0.0, 0.0, screen.width_px, screen.height_px), BACKGROUND, "ground")
+    if screen.has_view:
+        under = places_under_view(screen)
+        message = [] if alert is Alert.NONE else slot(view, alert, under.slot, screen)
+        return [ground, *strip(view, under.strip), *message, *banner(view, alert, under.banner)]
+    place = places(screen)
     return [
         ground,
         *pedals(view, place.left),
@@ -71,6 +101,17 @@ def layout(view: HudView, screen: Screen) -> list[DrawItem]:
         *slot(view, alert, place.slot, screen),
         *banner(view, alert, place.banner),
     ]
+
+
+def panels_over_view(view: HudView, screen: Screen) -> tuple[Box, ...]:
+    """Return the parts of the screen that hide the road: a message if there is one, and, last, the instruments."""
+    place, pad = places_under_view(screen), 0.5 * GAP * screen.height_px
+    top = float(math.floor(place.strip.y - pad))
+    instruments = Box(0.0, top, screen.width_px, screen.height_px - top)
+    if alert_of(view) is Alert.NONE:
+        return (instruments,)
+    safe = screen.safe()  # a take-over spans every screen
+    return (Box(safe.x, place.slot.y, safe.w, place.slot.h).inset(-pad), instruments)
 
 
 def check_screen(screen: Screen, name: str) -> None:

@@ -1,6 +1,6 @@
 """The panels beside and below the dial: pedals, steering and link, lamps."""
 
-from typing import Final, Literal
+from typing import Final, Literal, NamedTuple
 
 from simconsole.hud.draw import (
     ACTIVE,
@@ -112,7 +112,7 @@ def steering(view: HudView, box: Box) -> list[DrawItem]:
     items = _panel(box, "STEERING")
     inside = Box(box.x + 0.08 * box.w, box.y, 0.84 * box.w, box.h)
     items += _angle(view, inside.row(0.12, 0.40))
-    items += _share(view, inside.row(0.42, 0.66))
+    items += share(view, inside.row(0.42, 0.66))
     line = Box(inside.x, box.y + 0.685 * box.h, inside.w, 2.0)
     return [*items, Rect(line, LINE, "panel.line"), *_link(view, inside.row(0.70, 0.96))]
 
@@ -156,7 +156,7 @@ def _along(bar: Box, share: float) -> float:
     return bar.cx - min(1.0, max(-1.0, share)) * 0.5 * bar.w
 
 
-def _share(view: HudView, box: Box) -> list[DrawItem]:
+def share(view: HudView, box: Box) -> list[DrawItem]:
     """Return who steers: the person's part from the left, from the right that of whoever has the rest."""
     remote = min(1.0, max(0.0, view.remote_lateral))
     nobody = view.other_side == NOBODY
@@ -254,24 +254,39 @@ def _link_shape(text: str, box: Box, colour: Colour) -> list[DrawItem]:
     ]
 
 
-def status(view: HudView, box: Box) -> list[DrawItem]:
-    """Return the lamps: the three devices, the wheel's motor, engine, hand brake, and CAN and bridge if any."""
-    cells = [
-        ("WHEEL", *_device(view.wheel_validity)),
-        ("PEDALS", *_device(view.pedals_validity)),
-        ("SHIFTER", view.lever_label, "warn") if view.lever_label else ("SHIFTER", *_device(view.shifter_validity)),
-        ("FORCE", view.force, _FORCE_LEVELS[view.force]),
-        ("ENGINE", "running", "good") if view.engine_running else ("ENGINE", "off", "plain"),
-        ("HAND BRAKE", *_hand_brake(view)),
+class Lamp(NamedTuple):
+    """One sign of the strip of lamps; its level is good, plain or warn."""
+
+    name: str
+    text: str
+    level: str
+
+
+def lamps(view: HudView) -> list[Lamp]:
+    """Return the three devices, the wheel's motor, engine, hand brake, and CAN and bridge if any."""
+    shifter = (view.lever_label, "warn") if view.lever_label else _device(view.shifter_validity)
+    found = [
+        Lamp("WHEEL", *_device(view.wheel_validity)),
+        Lamp("PEDALS", *_device(view.pedals_validity)),
+        Lamp("SHIFTER", *shifter),
+        Lamp("FORCE", view.force, _FORCE_LEVELS[view.force]),
+        Lamp("ENGINE", "running", "good") if view.engine_running else Lamp("ENGINE", "off", "plain"),
+        Lamp("HAND BRAKE", *_hand_brake(view)),
     ]
     if view.can_up is not None:
-        cells.append(("CAN", "on", "good") if view.can_up else ("CAN", "down", "warn"))
+        found.append(Lamp("CAN", "on", "good") if view.can_up else Lamp("CAN", "down", "warn"))
     if view.link is not None:
-        cells.append(("LINK", view.link, _LINK_LEVELS.get(view.link, "good")))
+        found.append(Lamp("LINK", view.link, _LINK_LEVELS.get(view.link, "good")))
+    return found
+
+
+def status(view: HudView, box: Box) -> list[DrawItem]:
+    """Return the strip of lamps."""
+    cells = lamps(view)
     items: list[DrawItem] = [Rect(box, PANEL, "status", 0.12 * box.h)]
-    for index, (name, text, level) in enumerate(cells):
+    for index, lamp in enumerate(cells):
         cell = box.inset(0.01 * box.w).column(index / len(cells), (index + 1) / len(cells))
-        items += _cell(name, "--" if view.stale else text, "plain" if view.stale else level, cell, box)
+        items += lamp_cell(lamp, view.stale, cell, box)
     return items
 
 
@@ -293,7 +308,9 @@ def _hand_brake(view: HudView) -> tuple[str, str]:
     return ("on", "warn") if view.handbrake > 0.05 else ("off", "plain")
 
 
-def _cell(name: str, text: str, level: str, cell: Box, box: Box) -> list[DrawItem]:
+def lamp_cell(lamp: Lamp, stale: bool, cell: Box, box: Box) -> list[DrawItem]:
+    """Return one lamp in its cell of a strip that is as high as `box`."""
+    name, text, level = (lamp.name, "--", "plain") if stale else lamp
     role = f"status.{name.lower().replace(' ', '_')}"
     label = fit_cap_px("HAND BRAKE", 0.14 * box.h, 0.92 * cell.w)
     side = 0.22 * box.h

@@ -25,6 +25,7 @@ class Screen(NamedTuple):
     height_px: int
     screen_width_m: float
     eye_distance_m: float
+    has_view: bool = False  # the road is above the instruments
 
     @property
     def px_per_arcmin(self) -> float:
@@ -63,4 +64,6 @@ class Screen(NamedTuple):
 
 def screen_of(profile: HudProfile) -> Screen:
     """Return the screen that a profile describes."""
-    return Screen(profile.width_px, profile.height_px, profile.screen_width_m, profile.eye_distance_m)
+    return Screen(
+        profile.width_px, profile.height_px, profile.screen_width_m, profile.eye_distance_m, profile.view is not None
+    )

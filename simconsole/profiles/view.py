@@ -1,8 +1,42 @@
 """What the driver and the operators see: the screen in the seat, and the operators' recording."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from msgspec import Meta, Struct
+
+Share = Annotated[float, Meta(ge=0.0, le=1.0)]
+
+
+class ViewScreen(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """One screen or beamer: where it stands in the window, and what of the scene it shows.
+
+    The place is in shares of the road's part of the window, from its lower left corner.
+    """
+
+    yaw_deg: Annotated[float, Meta(ge=-180.0, le=180.0)] = 0.0
+    """Where the screen's middle is from straight ahead, left-positive."""
+    horizontal_fov_deg: Annotated[float, Meta(ge=10.0, le=150.0)] = 62.0
+    """Angle of the scene that the screen shows from side to side."""
+    left: Share = 0.0
+    bottom: Share = 0.0
+    width: Annotated[float, Meta(gt=0.0, le=1.0)] = 1.0
+    height: Annotated[float, Meta(gt=0.0, le=1.0)] = 1.0
+
+
+class DriverViewProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The road ahead in 3D above the instruments."""
+
+    camera: Literal["driver", "chase", "bird"] = "driver"
+    night: bool = False
+    mirrors: bool = True
+    shadows: bool = True
+    samples: Annotated[int, Meta(ge=0, le=16)] = 4
+    """Samples of a pixel that smooth edges. A processor that draws takes none, and neither mirrors nor shadows."""
+    always_rich: bool = False
+    """Draw mirrors, shadows and smooth edges also where the processor draws."""
+    horizon: Annotated[float, Meta(ge=0.1, le=0.9)] = 0.55
+    """Height of the level horizon in the picture."""
+    screens: Annotated[tuple[ViewScreen, ...], Meta(min_length=1, max_length=8)] = (ViewScreen(),)
 
 
 class HudProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -19,6 +53,8 @@ class HudProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     rate_hz: Annotated[int, Meta(ge=1, le=240)] = 60
     rpm_max: Annotated[float, Meta(ge=1000.0, le=20000.0)] = 7000.0
     rpm_red: Annotated[float, Meta(ge=500.0, le=20000.0)] = 6000.0
+    view: DriverViewProfile | None = None
+    """The road above the instruments; without it the instruments have the whole screen."""
 
 
 class SceneProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -5,9 +5,9 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simconsole.scene.triangles import Indices, triangulate
 from simconsole.values.signals import Mode
 from simconsole.world.drawing import Drawing
+from simconsole.world.triangles import Indices, triangulate
 
 Array = NDArray[np.float64]
 Colour = tuple[int, int, int]

@@ -14,6 +14,7 @@ from simconsole.processes.shared_memory import EventCounters, Ring, TextQueue
 from simconsole.processes.worker import Worker, WorkerSpec
 from simconsole.profiles.view import HudProfile
 from simconsole.session.scene_job import LIVE_SCENE, scene_job
+from simconsole.session.view_job import save_view_job, view_job
 from simconsole.session.worker_programs import (
     ACTS,
     ADDRESS,
@@ -29,6 +30,7 @@ from simconsole.session.worker_programs import (
     SLOT_CAPACITY,
     SNAPSHOT_CAPACITY,
     SNAPSHOTS,
+    VIEW_JOB,
     BridgeWorker,
     CanWorker,
     HudWorker,
@@ -193,6 +195,8 @@ def worker_specs(
             profile=outputs.can, tick_hz=tick_hz, wheels=wheel_columns(console.columns), bundle=str(bundle.absolute())
         )
     if outputs.hud is not None:
+        if outputs.hud.view is not None:
+            save_view_job(folder / VIEW_JOB, view_job(resolved))
         workers["hud"] = HudWorker(
             profile=outputs.hud,
             settings=_hud_settings(resolved, outputs.hud),

@@ -6,8 +6,9 @@ A worker's fields are its whole configuration; `simconsole.processes.worker` bri
 import contextlib
 import time
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
 import numpy as np
@@ -27,6 +28,9 @@ from simconsole.values.signals import RemoteCommand
 from simconsole.values.state_vector import LAYOUT, Snapshot
 from simconsole.values.units import NS_PER_S
 
+if TYPE_CHECKING:
+    from simconsole.hud.driver_view.scene import ViewScene
+
 SNAPSHOTS: Final = "snapshots"
 COMMAND: Final = "bridge.command"
 EVENTS: Final = "bridge.events"
@@ -40,6 +44,7 @@ CAN_EVENTS: Final = "can.events"
 CAN_STATUS: Final = "can.json"
 LATENCY: Final = "latency"
 SCENE_JOB: Final = "scene.npz"
+VIEW_JOB: Final = "view.npz"
 SNAPSHOT_CAPACITY: Final = 1024
 SLOT_CAPACITY: Final = 4
 NO_RECEIPT: Final = -1
@@ -132,7 +137,8 @@ class HudWorker(Worker, frozen=True, kw_only=True):
 
     def run(self, folder: Path, stop: Callable[[], bool]) -> None:
         """Draw until `stop`."""
-        from simconsole.hud.window.pygame_window import Ports, run
+        from simconsole.hud.gl.view_window import open_window
+        from simconsole.hud.window.pygame_window import Motion, Ports, run
 
         ring = Ring.open(folder / SNAPSHOTS)
         keys = Ring.open(folder / KEY_CODES, writable=True)
@@ -145,13 +151,21 @@ class HudWorker(Worker, frozen=True, kw_only=True):
             receipts.received(record)
             return snapshot_of(record, self.tick_hz)
 
+        def motion() -> Motion | None:
+            records = ring.since(ring.newest - 2)
+            if len(records) < 2:
+                return None
+            older, newer = (snapshot_of(record, self.tick_hz) for record in records[-2:])
+            return Motion(older, newer, 1e-9 * (time.monotonic_ns() - records[-1].second_stamp))
+
         def report_keys(mask: int) -> None:
             keys.write(np.array([float(mask)]), time.monotonic_ns())
 
         can = CanWatch(folder / CAN_STATUS, time.time, time.monotonic) if self.has_can else lambda: None
         link = LinkWatch(folder / LINK_STATUS, time.time, time.monotonic) if self.has_bridge else lambda: None
-        ports = Ports(latest, report_keys, stop, can_up=can, drawn=receipts.drawn, link=link)
-        run(ports, self.profile, self.settings)
+        ports = Ports(latest, report_keys, stop, can_up=can, drawn=receipts.drawn, link=link, motion=motion)
+        scene = _view_scene(folder) if self.profile.view is not None else None
+        run(ports, self.profile, self.settings, partial(open_window, scene=scene))
 
 
 class SceneWorker(Worker, frozen=True, kw_only=True):
@@ -179,6 +193,15 @@ class SceneWorker(Worker, frozen=True, kw_only=True):
 
         link = LinkWatch(folder / LINK_STATUS, time.time, time.monotonic) if self.has_bridge else lambda: None
         follow(Ports(new_ticks, stop, link), load_job(folder / SCENE_JOB), Path(self.path))
+
+
+def _view_scene(folder: Path) -> "ViewScene":
+    """Return what the drive's view job describes."""
+    from simconsole.hud.driver_view.scene import view_scene
+    from simconsole.session.view_job import load_view_job
+
+    job = load_view_job(folder / VIEW_JOB)
+    return view_scene(job.drawing, job.limit_kmh, job.size)
 
 
 def command_writer(path: Path) -> Callable[[RemoteCommand, int | None], None]:

@@ -15,6 +15,7 @@ COMMANDS = {
     "import",
     "check",
     "report",
+    "video",
     "view",
     "devices",
     "bridge",

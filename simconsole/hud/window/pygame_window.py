@@ -7,18 +7,27 @@ import os
 import sys
 import time
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 from simconsole.hud.draw import DrawItem
 from simconsole.hud.key_names import KEY_CODES
 from simconsole.hud.layout import check_screen, layout, sample_views
 from simconsole.hud.screen import Screen, screen_of
-from simconsole.hud.view import HudMemory, HudSettings, HudView, view
+from simconsole.hud.view import HudSettings
+from simconsole.hud.window.display_memory import DisplayMemory
 from simconsole.hud.window.raster import Painter
 from simconsole.profiles.view import HudProfile
 from simconsole.values.errors import WorkerError
 from simconsole.values.key_codes import Key
 from simconsole.values.state_vector import Snapshot
+
+
+class Motion(NamedTuple):
+    """The two newest ticks, and how long ago the newer one was published."""
+
+    older: Snapshot
+    newer: Snapshot
+    age_s: float
 
 
 class Ports(NamedTuple):
@@ -30,20 +39,24 @@ class Ports(NamedTuple):
     can_up: Callable[[], bool | None] = lambda: None  # whether the CAN bus is up; None where there is none
     drawn: Callable[[], None] = lambda: None  # told after every frame
     link: Callable[[], str | None] = lambda: None  # how the rosbridge link stands; None where there is no bridge
+    motion: Callable[[], Motion | None] = lambda: None  # for a picture that moves between two ticks
 
 
-class Freshness:
-    """Says how long ago the tick last changed, by the display's own clock: a frozen ring is stale data."""
+class DriverWindow(Protocol):
+    """A window in front of the driver."""
 
-    def __init__(self) -> None:
-        self._tick = -1
-        self._changed_s = 0.0
+    def frame(
+        self,
+        snapshot: Snapshot | None,
+        now_s: float,
+        can_up: bool | None = None,
+        link: str | None = None,
+        motion: Motion | None = None,
+    ) -> None:
+        """Draw one frame. `can_up`, `link`: None without CAN bus or bridge."""
 
-    def age_s(self, tick: int, now_s: float) -> float:
-        """Return the age of `tick` in s, seen at `now_s` of any steady clock."""
-        if tick != self._tick:
-            self._tick, self._changed_s = tick, now_s
-        return now_s - self._changed_s
+    def close(self) -> None:
+        """Close the window."""
 
 
 class Window:
@@ -58,9 +71,7 @@ class Window:
         """
         self._screen: Screen = screen_of(profile)
         check_screen(self._screen, "hud")
-        self._settings = settings
-        self._memory = HudMemory()
-        self._freshness = Freshness()
+        self._memory = DisplayMemory(settings)
         self._painter = Painter()
         self._drawn: list[DrawItem] = []
         choose_display()
@@ -83,23 +94,21 @@ class Window:
             before = after
 
     def frame(
-        self, snapshot: Snapshot | None, now_s: float, can_up: bool | None = None, link: str | None = None
+        self,
+        snapshot: Snapshot | None,
+        now_s: float,
+        can_up: bool | None = None,
+        link: str | None = None,
+        motion: Motion | None = None,
     ) -> None:
-        """Draw one frame; one equal to the last costs nothing. `can_up`, `link`: None without CAN bus or bridge."""
+        """Draw one frame; one equal to the last costs nothing."""
         import pygame
 
-        items = layout(self._content(snapshot, now_s, can_up, link), self._screen)
+        items = layout(self._memory.content(snapshot, now_s, can_up, link), self._screen)
         if items == self._drawn:
             return
         pygame.display.update(self._painter.repaint(self._surface, self._drawn, items))
         self._drawn = items
-
-    def _content(self, snapshot: Snapshot | None, now_s: float, can_up: bool | None, link: str | None) -> HudView:
-        if snapshot is None:
-            return HudView(stale=True)
-        age_s = self._freshness.age_s(snapshot.tick, now_s)
-        shown, self._memory = view(snapshot, age_s, self._memory, self._settings, can_up, link)
-        return shown
 
     def close(self) -> None:
         """Close the window."""
@@ -138,13 +147,18 @@ def _asks_for_end(event: Any) -> bool:
     return bool(event.type == pygame.QUIT)
 
 
-def run(ports: Ports, profile: HudProfile, settings: HudSettings) -> None:
-    """Show the cluster until `ports.stop` says so.
+def run(
+    ports: Ports,
+    profile: HudProfile,
+    settings: HudSettings,
+    opened: Callable[[HudProfile, HudSettings], DriverWindow] = Window,
+) -> None:
+    """Show what `opened` opens, the cluster alone if nothing else is said, until `ports.stop` says so.
 
     Closing the window, or its key for that, asks for the end of the drive as a key held from then on: whoever drives
     ends it and stops this window with everything else. A window that ended by itself would be opened again.
     """
-    window = Window(profile, settings)
+    window = opened(profile, settings)
     import pygame
 
     clock = pygame.time.Clock()
@@ -154,7 +168,7 @@ def run(ports: Ports, profile: HudProfile, settings: HudSettings) -> None:
             if any(_asks_for_end(event) for event in pygame.event.get()):
                 end = Key.END
             ports.report_keys(held_keys() | end)
-            window.frame(ports.latest(), time.monotonic(), ports.can_up(), ports.link())
+            window.frame(ports.latest(), time.monotonic(), ports.can_up(), ports.link(), ports.motion())
             ports.drawn()
             clock.tick(profile.rate_hz)
     finally:

@@ -1,7 +1,7 @@
 """What a scene needs before the first state vector: course, car and columns; as one .npz file for a live drive."""
 
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Any, NamedTuple
 from zipfile import BadZipFile
 
 import msgspec
@@ -11,9 +11,7 @@ from simconsole.profiles.view import SceneProfile
 from simconsole.scene.entities import Dimensions
 from simconsole.values.errors import WorkerError
 from simconsole.world.drawing import Drawing
-from simconsole.world.drawing_layers import Light
-
-_LINES: Final = ("surfaces", "islands", "edges", "centre_lines", "zebras", "stop_lines")
+from simconsole.world.drawing_arrays import from_arrays, to_arrays
 
 
 class Job(NamedTuple):
@@ -39,7 +37,7 @@ def save_job(path: Path, job: Job) -> None:
         "profile": np.frombuffer(msgspec.json.encode(job.profile), dtype=np.uint8),
     }
     if job.drawing is not None:
-        content |= _packed(job.drawing)
+        content |= to_arrays(job.drawing)
     try:
         with path.open("wb") as file:
             np.savez(file, **content)
@@ -59,25 +57,10 @@ def load_job(path: Path) -> Job:
                 columns=tuple(content["columns"].tolist()),
                 tick_hz=int(content["tick_hz"]),
                 dimensions=Dimensions(*content["dimensions"].tolist()),
-                drawing=_unpacked(content) if "path" in content else None,
+                drawing=from_arrays(content),
                 profile=msgspec.json.decode(content["profile"].tobytes(), type=SceneProfile),
             )
     except OSError as problem:
         raise WorkerError(f"{path}: cannot be read: {problem.strerror or problem}") from None
     except (BadZipFile, ValueError, KeyError, TypeError, EOFError) as problem:
         raise WorkerError(f"{path}: is not a scene job: {problem}") from None
-
-
-def _packed(drawing: Drawing) -> dict[str, Any]:
-    content: dict[str, Any] = {"path": drawing.path, "lights": np.array(drawing.lights).reshape(-1, 3)}
-    for name in _LINES:
-        lines = getattr(drawing, name)
-        content[name] = np.vstack(lines) if lines else np.empty((0, 2))
-        content[f"{name}_ends"] = np.cumsum([len(line) for line in lines], dtype=np.int64)
-    return content
-
-
-def _unpacked(content: Any) -> Drawing:
-    lines = {name: tuple(np.split(content[name], content[f"{name}_ends"])[:-1]) for name in _LINES}
-    lights = tuple(Light(*light) for light in content["lights"].tolist())
-    return Drawing(**lines, lights=lights, path=content["path"])

@@ -11,7 +11,8 @@ import pytest
 from simconsole.hud.key_names import KEY_CODES
 from simconsole.hud.view import HudSettings
 from simconsole.hud.window import pygame_window as window
-from simconsole.hud.window.pygame_window import Freshness, Ports, Window, choose_display, run
+from simconsole.hud.window.display_memory import Freshness
+from simconsole.hud.window.pygame_window import Ports, Window, choose_display, run
 from simconsole.profiles.view import HudProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.key_codes import Key

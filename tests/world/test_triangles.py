@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from simconsole.scene.triangles import Array, triangulate
+from simconsole.world.triangles import Array, triangulate
 
 
 def areas(polygon: Array) -> tuple[float, float]:

@@ -1,0 +1,76 @@
+"""Pictures of a recorded drive, drawn by OpenGL into memory."""
+
+from collections.abc import Iterator
+from typing import Literal, NamedTuple
+
+import numpy as np
+from msgspec.structs import replace
+from numpy.typing import NDArray
+
+from simconsole.evaluation.video.moments import Moment
+from simconsole.hud.driver_view.scene import view_scene
+from simconsole.hud.gl.cockpit_picture import CockpitPicture
+from simconsole.hud.gl.context import renderer_name, windowless_context
+from simconsole.hud.layout import check_screen
+from simconsole.hud.screen import Screen
+from simconsole.hud.view import settings_of
+from simconsole.hud.window.display_memory import DisplayMemory
+from simconsole.profiles.view import DriverViewProfile, HudProfile
+from simconsole.session.view_job import view_job
+from simconsole.tick.assembly import ResolvedSession
+
+Pixels = NDArray[np.uint8]
+CameraName = Literal["driver", "chase", "bird"]
+RGB = 3
+
+
+class Wanted(NamedTuple):
+    """What the pictures are to be."""
+
+    width_px: int
+    height_px: int
+    camera: CameraName = "driver"
+    night: bool = False
+    rich: bool = False  # mirrors, shadows and smooth edges, also where the processor draws
+
+
+class DrivePictures:
+    """Draws the moments of one drive, in their order: instruments remember what they showed."""
+
+    def __init__(self, resolved: ResolvedSession, wanted: Wanted) -> None:
+        """Make the scene of a session.
+
+        Raises:
+            ProfileError: the size is too small to be read, or of a shape that no screen has.
+            WorkerError: this machine has no OpenGL 3.3 without a window.
+        """
+        hud = resolved.session.outputs.hud or HudProfile()
+        profile = replace(
+            hud.view or DriverViewProfile(), camera=wanted.camera, night=wanted.night, always_rich=wanted.rich
+        )
+        self._screen = Screen(wanted.width_px, wanted.height_px, hud.screen_width_m, hud.eye_distance_m, has_view=True)
+        check_screen(self._screen, "--size")
+        job = view_job(resolved)
+        context = windowless_context()
+        self.renderer = renderer_name(context)
+        scene = view_scene(job.drawing, job.limit_kmh, job.size)
+        self._picture = CockpitPicture(context, scene, profile, self._screen, job.steering_ratio)
+        self.is_cheap = self._picture.is_cheap
+        self._target = context.simple_framebuffer((wanted.width_px, wanted.height_px), components=RGB)
+        by_keyboard = resolved.session.devices.driver == "keyboard"
+        control = resolved.session.features.control
+        self._memory = DisplayMemory(
+            settings_of(hud, control, resolved.cockpit, resolved.vehicle, by_keyboard=by_keyboard)
+        )
+
+    def draw(self, moment: Moment) -> Pixels:
+        """Return one frame as red, green and blue, uint8 [height, width, 3] from the top."""
+        content = self._memory.content(moment.snapshot, moment.t_s, None, None)
+        self._picture.draw(self._target, moment.shown, content)
+        width, height = self._target.size
+        data = np.frombuffer(self._target.read(components=RGB, alignment=1), np.uint8)
+        return np.ascontiguousarray(data.reshape(height, width, RGB)[::-1])
+
+    def draw_all(self, frames: Iterator[Moment]) -> Iterator[Pixels]:
+        """Yield every frame."""
+        return (self.draw(moment) for moment in frames)

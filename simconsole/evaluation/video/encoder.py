@@ -1,0 +1,62 @@
+"""Pictures into files: H.264 in MP4, and PNG."""
+
+import io
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simconsole.values.errors import RecordingError
+from simconsole.values.host.files import replaced, write_atomically
+
+Pixels = NDArray[np.uint8]
+
+THREADS: Final = 2
+"""Fixed: the same pictures give the same bytes on every machine."""
+OPTIONS: Final = {"preset": "veryfast", "crf": "23"}
+
+
+def write_video(path: Path, frames: Iterable[Pixels], fps: int) -> int:
+    """Write frames, uint8 [height, width, 3] of one even size, as a video; return how many. An error leaves no file.
+
+    Raises:
+        RecordingError: the encoder is not installed, or the file cannot be written.
+    """
+    try:
+        import av
+    except ImportError:
+        raise RecordingError("video: module av: not installed: pip install 'simconsole[video]'") from None
+    count = 0
+    try:
+        with replaced(path) as draft, av.open(str(draft), "w", format="mp4") as file:
+            stream = file.add_stream("libx264", rate=fps, options=OPTIONS)
+            stream.pix_fmt = "yuv420p"
+            stream.codec_context.thread_count = THREADS
+            for pixels in frames:
+                if count == 0:
+                    stream.height, stream.width = pixels.shape[:2]
+                file.mux(stream.encode(av.VideoFrame.from_ndarray(pixels, format="rgb24")))
+                count += 1
+            file.mux(stream.encode(None))
+    except (OSError, av.FFmpegError) as problem:
+        raise RecordingError(f"{path}: cannot be written: {getattr(problem, 'strerror', None) or problem}") from None
+    return count
+
+
+def write_png(path: Path, pixels: Pixels) -> None:
+    """Write one picture, uint8 [height, width, 3].
+
+    Raises:
+        RecordingError: the file cannot be written.
+    """
+    import pygame
+
+    height, width = pixels.shape[:2]
+    content = io.BytesIO()
+    pygame.image.save(pygame.image.frombytes(pixels.tobytes(), (width, height), "RGB"), content, "picture.png")
+    try:
+        write_atomically(path, content.getvalue(), durable=False)
+    except OSError as problem:
+        raise RecordingError(f"{path}: cannot be written: {problem.strerror}") from None

@@ -1,0 +1,147 @@
+"""The scene of a drive: what stands still, cut into pieces so that only what may be seen is drawn."""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simconsole.hud.driver_view.mesh import VERTEX, Box, Colour, Material, Vertices, box, cone, joined, quads
+from simconsole.hud.driver_view.road import MEADOW, occupancy_of, road_meshes
+from simconsole.hud.driver_view.surroundings import surroundings
+from simconsole.hud.driver_view.vehicle_body import Size, VehicleMeshes, vehicle_meshes
+from simconsole.world.drawing import Drawing
+from simconsole.world.drawing_layers import Light
+
+Array = NDArray[np.float64]
+
+PIECE_M: Final = 120.0
+POST: Final[Colour] = (66, 70, 74)
+CASE: Final[Colour] = (22, 24, 26)
+LAMPS: Final[tuple[Colour, ...]] = ((232, 44, 36), (240, 168, 24), (46, 206, 106))
+LAMP_HEIGHTS_M: Final = (3.05, 2.75, 2.45)
+
+
+class Pieces(NamedTuple):
+    """Vertices sorted by place: piece i is `length[i]` vertices from `first[i]`, inside a ball about `centre[i]`."""
+
+    vertices: Vertices
+    first: NDArray[np.int64]
+    length: NDArray[np.int64]
+    centre: Array  # [N, 3] in m
+    radius: Array  # [N] in m
+
+
+class ViewScene(NamedTuple):
+    """All that a renderer needs before the first frame."""
+
+    layers: tuple[Pieces, ...]  # flat, from the ground up
+    solids: Pieces
+    vehicle: VehicleMeshes
+    size: Size
+
+
+def view_scene(drawing: Drawing | None, limit_kmh: float, size: Size) -> ViewScene:
+    """Return the scene of a world, or of an empty plain with a grid of lines where a session has none."""
+    if drawing is None:
+        land = _plain()
+        return ViewScene((pieces(land[0]), pieces(land[1])), pieces(joined([])), vehicle_meshes(size), size)
+    taken = occupancy_of(drawing)
+    road = road_meshes(drawing, taken)
+    solids = [road.solids, surroundings(drawing.path, limit_kmh, taken), *(_light(light) for light in drawing.lights)]
+    return ViewScene(tuple(pieces(layer) for layer in road.layers), pieces(joined(solids)), vehicle_meshes(size), size)
+
+
+def pieces(mesh: Vertices) -> Pieces:
+    """Return a mesh cut into squares of PIECE_M by the middles of its triangles."""
+    if len(mesh) == 0:
+        none = np.zeros(0, np.int64)
+        return Pieces(np.zeros(0, VERTEX), none, none, np.zeros((0, 3)), np.zeros(0))
+    corners = mesh["position"].reshape(-1, 3, 3).astype(np.float64)
+    cells = np.floor(corners.mean(axis=1)[:, :2] / PIECE_M).astype(np.int64)
+    order = np.lexsort((cells[:, 1], cells[:, 0]))
+    cells, corners = cells[order], corners[order]
+    starts = np.concatenate(((0,), np.flatnonzero((np.diff(cells, axis=0) != 0).any(axis=1)) + 1))
+    counts = np.diff(np.append(starts, len(cells)))
+    low = np.minimum.reduceat(corners.min(axis=1), starts)
+    high = np.maximum.reduceat(corners.max(axis=1), starts)
+    return Pieces(
+        vertices=mesh.reshape(-1, 3)[order].reshape(-1),
+        first=3 * starts,
+        length=3 * counts,
+        centre=0.5 * (low + high),
+        radius=0.5 * np.linalg.norm(high - low, axis=1),
+    )
+
+
+def in_sight(part: Pieces, view_projection: Array, reach_m: float, eye: Array) -> list[tuple[int, int]]:
+    """Return (first vertex, count) of the runs that a camera may see, of pieces nearer than `reach_m`.
+
+    Args:
+        part: the pieces.
+        view_projection: from `map` to clip space [4, 4].
+        reach_m: how far anything is seen (fog).
+        eye: the camera's place [3].
+    """
+    if len(part.first) == 0:
+        return []
+    planes = np.vstack([view_projection[3] + sign * view_projection[axis] for axis in (0, 1) for sign in (1.0, -1.0)])
+    planes = planes / np.linalg.norm(planes[:, :3], axis=1)[:, None]
+    distance = part.centre @ planes[:, :3].T + planes[:, 3]
+    seen = (distance > -part.radius[:, None]).all(axis=1)
+    away = part.centre - eye
+    seen &= np.einsum("ij,ij->i", away, away) < (part.radius + reach_m) ** 2
+    indices = np.flatnonzero(seen)
+    if len(indices) == 0:
+        return []
+    last = np.append(indices[1:] - indices[:-1] != 1, True)
+    first = np.append(True, last[:-1])
+    starts = part.first[indices[first]]
+    ends = part.first[indices[last]] + part.length[indices[last]]
+    return list(zip(starts.tolist(), (ends - starts).tolist(), strict=True))
+
+
+def _light(light: Light) -> Vertices:
+    """Return a traffic light's post and case, its lamps facing those who come."""
+    x, y = light.x_m, light.y_m
+    place = Box(
+        x_m=x, y_m=y, z_m=2.3, half_length_m=0.11, half_width_m=0.17, height_m=1.0, yaw_rad=light.yaw_rad,
+    )  # fmt: skip
+    case = box(place, CASE)
+    cosine, sine = np.cos(light.yaw_rad), np.sin(light.yaw_rad)
+    back, left = np.array((-cosine, -sine, 0.0)), np.array((-sine, cosine, 0.0))
+    up = np.array((0.0, 0.0, 1.0))
+    lamps = []
+    for height, colour in zip(LAMP_HEIGHTS_M, LAMPS, strict=True):
+        centre = np.array((x, y, height)) + 0.115 * back
+        corners = [
+            (0.1 * (a * left + b * up) + centre) for a, b in ((1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0))
+        ]
+        dim = tuple(channel // 3 for channel in colour)
+        lamps.append(quads(np.array([corners]), (dim[0], dim[1], dim[2]), Material.PLAIN))
+    return joined([cone(x, y, (0.0, 2.3), (0.06, 0.05), POST), case, *lamps])
+
+
+def _plain() -> tuple[Vertices, Vertices]:
+    """Return an empty plain, and lines every 10 m on it for 200 m around the origin."""
+    reach, wide = 1500.0, 0.05
+    land = np.array([((-reach, -reach, 0.0), (reach, -reach, 0.0), (reach, reach, 0.0), (-reach, reach, 0.0))])
+    at = np.arange(-200.0, 200.1, 10.0)
+    lines = []
+    for value in at.tolist():
+        lines.append(
+            (
+                (-200.0, value - wide, 0.0),
+                (200.0, value - wide, 0.0),
+                (200.0, value + wide, 0.0),
+                (-200.0, value + wide, 0.0),
+            )
+        )
+        lines.append(
+            (
+                (value - wide, -200.0, 0.0),
+                (value + wide, -200.0, 0.0),
+                (value + wide, 200.0, 0.0),
+                (value - wide, 200.0, 0.0),
+            )
+        )
+    return quads(land, MEADOW, Material.MEADOW), quads(np.array(lines), (150, 156, 150))

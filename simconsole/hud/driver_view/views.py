@@ -1,0 +1,104 @@
+"""Which cameras look where: the driver's eyes on one or several screens, three mirrors, chase and bird's eye."""
+
+import math
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simconsole.hud.driver_view.camera import Camera, Lens, Viewport, rotation
+from simconsole.hud.driver_view.motion import ShownVehicle
+from simconsole.hud.driver_view.vehicle_body import Size
+from simconsole.profiles.view import DriverViewProfile
+
+Array = NDArray[np.float64]
+
+MIRROR_FOV_DEG: Final = {"left": 26.0, "inner": 22.0, "right": 30.0}
+MIRROR_PLACES: Final = {
+    "left": Viewport(0.01, 0.38, 0.16, 0.17),
+    "inner": Viewport(0.62, 0.80, 0.22, 0.12),
+    "right": Viewport(0.83, 0.38, 0.16, 0.17),
+}
+"""In shares of the road's part of the window; the inner mirror right of the middle, as from a seat on the left."""
+CHASE_BACK: Final = 2.1  # of the vehicle's length
+CHASE_UP: Final = 1.7  # of the vehicle's height
+BIRD_UP_M: Final = 55.0
+
+
+class Look(NamedTuple):
+    """One picture in the window: who looks, with what, where it goes, and whether the car's inside is in it."""
+
+    camera: Camera
+    lens: Lens
+    viewport: Viewport
+    from_seat: bool  # the driver's own eyes: bonnet and hand wheel instead of the car's outside
+    is_mirror: bool = False
+
+
+def looks(
+    profile: DriverViewProfile, shown: ShownVehicle, size: Size, window: Viewport, width_px: int, height_px: int
+) -> list[Look]:
+    """Return every picture of one frame.
+
+    Args:
+        profile: Cameras and mirrors.
+        shown: The vehicle now.
+        size: Its outer size.
+        window: The part of the window that shows the road.
+        width_px: Width of the window.
+        height_px: Height of the window.
+    """
+    kind = "chase" if profile.camera == "driver" and size.is_ball else profile.camera
+    found = []
+    for screen in profile.screens:
+        viewport = _inside(window, Viewport(screen.left, screen.bottom, screen.width, screen.height))
+        lens = Lens(math.radians(screen.horizontal_fov_deg), _aspect(viewport, width_px, height_px), profile.horizon)
+        camera = _camera(kind, shown, size, math.radians(screen.yaw_deg))
+        found.append(Look(camera, lens, viewport, from_seat=kind == "driver"))
+    if profile.mirrors and kind == "driver":
+        found += [_mirror(name, shown, size, window, width_px, height_px) for name in MIRROR_PLACES]
+    return found
+
+
+def _camera(kind: str, shown: ShownVehicle, size: Size, yaw_rad: float) -> Camera:
+    place = np.array((shown.x_m, shown.y_m, shown.z_m))
+    if kind == "driver":
+        axes = rotation(shown.yaw_rad, shown.pitch_rad, shown.roll_rad)
+        return Camera(place + axes @ np.array(size.eye_m), axes @ rotation(yaw_rad))
+    level = rotation(shown.yaw_rad + yaw_rad)
+    if kind == "chase":
+        back, up = CHASE_BACK * size.length_m, CHASE_UP * size.height_m
+        halfway_rad = 0.5 * math.atan2(up - 0.5 * size.height_m, back)  # between the horizon and the vehicle
+        return Camera(place + level @ np.array((-back, 0.0, up)), level @ rotation(0.0, halfway_rad))
+    north_up = rotation(0.5 * math.pi, math.radians(89.9))
+    return Camera(place + np.array((0.0, 0.0, BIRD_UP_M * min(1.0, max(0.1, size.length_m / 4.0)))), north_up)
+
+
+def _mirror(name: str, shown: ShownVehicle, size: Size, window: Viewport, width_px: int, height_px: int) -> Look:
+    axes = rotation(shown.yaw_rad, shown.pitch_rad, shown.roll_rad)
+    eye, half = size.eye_m, 0.5 * size.width_m
+    place = {
+        "left": (eye[0] + 0.55, half + 0.12, eye[2] - 0.22),
+        "inner": (eye[0] + 0.45, 0.0, eye[2] + 0.08),
+        "right": (eye[0] + 0.55, -half - 0.12, eye[2] - 0.22),
+    }[name]
+    outwards = {"left": -0.10, "inner": 0.0, "right": 0.10}[name]
+    viewport = _inside(window, MIRROR_PLACES[name])
+    lens = Lens(math.radians(MIRROR_FOV_DEG[name]), _aspect(viewport, width_px, height_px), 0.55, is_mirror=True)
+    base = np.array((shown.x_m, shown.y_m, shown.z_m))
+    camera = Camera(base + axes @ np.array(place), axes @ rotation(math.pi + outwards))
+    return Look(camera, lens, viewport, from_seat=name == "inner", is_mirror=True)
+
+
+def _inside(outer: Viewport, inner: Viewport) -> Viewport:
+    return Viewport(
+        outer.left + inner.left * outer.width,
+        outer.bottom + inner.bottom * outer.height,
+        inner.width * outer.width,
+        inner.height * outer.height,
+    )
+
+
+def _aspect(viewport: Viewport, width_px: int, height_px: int) -> float:
+    _, _, width, height = viewport.pixels(width_px, height_px)
+    return width / height

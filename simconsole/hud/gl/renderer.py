@@ -1,0 +1,259 @@
+"""Draws a scene: sky, flat layers from the ground up, what has height, the vehicle; into any framebuffer."""
+
+import math
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simconsole.hud.driver_view.camera import Camera, rotation
+from simconsole.hud.driver_view.light import Light, reach_m, shadow_matrix
+from simconsole.hud.driver_view.mesh import Vertices
+from simconsole.hud.driver_view.motion import ShownVehicle
+from simconsole.hud.driver_view.scene import Pieces, ViewScene, in_sight
+from simconsole.hud.driver_view.vehicle_body import WHEEL_RADIUS_M
+from simconsole.hud.driver_view.views import Look
+from simconsole.hud.gl.programs import (
+    SHADOW_FRAGMENT,
+    SHADOW_VERTEX,
+    SKY_FRAGMENT,
+    SKY_VERTEX,
+    SURFACE_FRAGMENT,
+    SURFACE_VERTEX,
+    variant,
+)
+
+if TYPE_CHECKING:
+    import moderngl
+
+Array = NDArray[np.float64]
+
+SHADOW_PX: Final = 2048
+SHADOW_HALF_M: Final = 70.0
+SHADOW_AHEAD_M: Final = 45.0
+LAYER_SLOPE: Final = 1.0
+LAYER_STEPS: Final = 8.0
+FRAME: Final = 0.004  # of the window's width
+FRAME_COLOUR: Final = (0.07, 0.07, 0.08)
+BLINK_S: Final = 0.67
+"""Period of the indicators (UN R48: 60 to 120 a minute)."""
+
+
+class Quality(NamedTuple):
+    """What a picture costs."""
+
+    shadows: bool = False
+    detail: bool = False
+
+
+class _Drawn(NamedTuple):
+    """A mesh on the card."""
+
+    surface: "moderngl.VertexArray"
+    shadow: "moderngl.VertexArray | None"
+    length: int
+
+
+class Renderer:
+    """One scene on one context. Light and quality are fixed when it is made."""
+
+    def __init__(
+        self, context: "moderngl.Context", scene: ViewScene, light: Light, quality: Quality, ratio: float
+    ) -> None:
+        """Put the scene on the card.
+
+        Args:
+            context: OpenGL 3.3 or later.
+            scene: What there is.
+            light: Day or night.
+            quality: What a picture may cost.
+            ratio: Hand-wheel angle per road-wheel angle.
+        """
+        import moderngl
+
+        self._context, self._scene, self._light, self._quality, self._ratio = context, scene, light, quality, ratio
+        self._surface = context.program(
+            vertex_shader=variant(SURFACE_VERTEX, shadows=quality.shadows, detail=quality.detail),
+            fragment_shader=variant(SURFACE_FRAGMENT, shadows=quality.shadows, detail=quality.detail),
+        )
+        self._sky = context.program(vertex_shader=SKY_VERTEX, fragment_shader=SKY_FRAGMENT)
+        self._shadow = context.program(vertex_shader=SHADOW_VERTEX, fragment_shader=SHADOW_FRAGMENT)
+        for name in ("sun", "sun_light", "sky_light", "fog", "fog_per_m", "night"):
+            _set(self._surface, name, getattr(light, name))
+        for name in ("sun", "horizon", "zenith", "night"):
+            _set(self._sky, name, getattr(light, name))
+        corners = np.array(((-1.0, -1.0), (3.0, -1.0), (-1.0, 3.0)), dtype="<f4")
+        self._backdrop = context.vertex_array(self._sky, [(context.buffer(corners.tobytes()), "2f4", "in_place")])
+        self._layers = [self._put(layer.vertices) for layer in scene.layers]
+        self._solids = self._put(scene.solids.vertices)
+        vehicle = scene.vehicle
+        self._body, self._wheel = self._put(vehicle.body), self._put(vehicle.wheel)
+        self._bonnet, self._hand_wheel = self._put(vehicle.bonnet), self._put(vehicle.hand_wheel)
+        self._brake_lamps = self._put(vehicle.brake_lamps)
+        self._indicators = (self._put(vehicle.left_indicators), self._put(vehicle.right_indicators))
+        self._map: moderngl.Framebuffer | None = None
+        if quality.shadows:
+            depth = context.depth_texture((SHADOW_PX, SHADOW_PX))
+            depth.compare_func, depth.repeat_x, depth.repeat_y = "<=", False, False
+            depth.filter = (moderngl.LINEAR, moderngl.LINEAR)
+            self._depth = depth
+            self._map = context.framebuffer(depth_attachment=depth)
+
+    def draw(self, target: "moderngl.Framebuffer", looks: list[Look], shown: ShownVehicle) -> None:
+        """Draw all pictures of one frame."""
+        import moderngl
+
+        context = self._context
+        pose = _pose(shown)
+        context.enable_only(moderngl.DEPTH_TEST)
+        if self._map is not None:
+            self._draw_shadows(shown, pose)
+        target.use()
+        width, height = target.size
+        for look in looks:
+            place = look.viewport.pixels(width, height)
+            if look.is_mirror:
+                _frame(target, place)
+            target.viewport = target.scissor = place
+            target.clear(depth=1.0)
+            self._draw_look(look, shown, pose)
+        target.viewport = target.scissor = (0, 0, width, height)
+
+    def _draw_look(self, look: Look, shown: ShownVehicle, pose: Array) -> None:
+        context, camera, light = self._context, look.camera, self._light
+        projection = look.lens.projection()
+        view_projection = projection @ camera.view(np.zeros(3))
+        self._set_light(camera, shown, pose)
+        _set(self._surface, "view_projection", _bytes(view_projection))
+        self._set_model(np.eye(4))
+        reach = reach_m(light)
+        for height, (layer, part) in enumerate(zip(self._layers, self._scene.layers, strict=True)):
+            # Layers lie in one plane: each counts as a little nearer than the one below it, at any slope and distance.
+            context.polygon_offset = (-LAYER_SLOPE * height, -LAYER_STEPS * height)
+            self._draw_runs(layer, part, view_projection, reach, camera)
+        context.polygon_offset = (0.0, 0.0)
+        self._draw_runs(self._solids, self._scene.solids, view_projection, reach, camera)
+        if look.from_seat:
+            if not look.is_mirror:
+                self._draw_inside(shown, pose)
+        else:
+            self._draw_outside(shown, pose)
+        self._draw_sky(camera, projection)
+
+    def _draw_runs(self, mesh: _Drawn, part: Pieces, view_projection: Array, reach: float, camera: Camera) -> None:
+        for first, count in in_sight(part, view_projection, reach, camera.eye):
+            mesh.surface.render(vertices=count, first=first)
+
+    def _draw_inside(self, shown: ShownVehicle, pose: Array) -> None:
+        vehicle = self._scene.vehicle
+        self._draw_mesh(self._bonnet, pose)
+        turn, tilt = shown.road_wheel_rad * self._ratio, vehicle.hand_wheel_tilt_rad
+        placed = _transform(rotation(0.0, tilt) @ rotation(0.0, 0.0, -turn), np.array(vehicle.hand_wheel_place))
+        self._draw_mesh(self._hand_wheel, pose @ placed)
+
+    def _draw_outside(self, shown: ShownVehicle, pose: Array) -> None:
+        self._draw_mesh(self._body, pose)
+        roll = shown.distance_m / WHEEL_RADIUS_M
+        for index, (x, y) in enumerate(self._scene.vehicle.wheel_places):
+            steer = shown.road_wheel_rad if index < 2 else 0.0
+            up = np.array((0.0, 0.0, WHEEL_RADIUS_M))
+            hub = _transform(rotation(steer, math.remainder(roll, math.tau)), np.array((x, y, 0.0)) + up)
+            self._draw_mesh(self._wheel, pose @ hub @ _transform(np.eye(3), -up))
+        if shown.brake > 0.0:
+            self._draw_mesh(self._brake_lamps, pose)
+        if shown.t_s % BLINK_S < 0.5 * BLINK_S:
+            for lamps, side in zip(self._indicators, (1.0, -1.0), strict=True):
+                if shown.hazard_lights > 0.0 or shown.turn_indicators == side:
+                    self._draw_mesh(lamps, pose)
+
+    def _draw_mesh(self, mesh: _Drawn, model: Array) -> None:
+        if mesh.length:
+            self._set_model(model)
+            mesh.surface.render(vertices=mesh.length)
+
+    def _draw_sky(self, camera: Camera, projection: Array) -> None:
+        rotated = np.eye(4)
+        rotated[:3, :3] = camera.view(np.zeros(3))[:3, :3]
+        _set(self._sky, "from_clip", _bytes(np.linalg.inv(projection @ rotated)))
+        self._backdrop.render()
+
+    def _draw_shadows(self, shown: ShownVehicle, pose: Array) -> None:
+        assert self._map is not None
+        centre = pose @ np.array((SHADOW_AHEAD_M, 0.0, 0.0, 1.0))
+        matrix = shadow_matrix(self._light, centre[:3], SHADOW_HALF_M)
+        self._map.use()
+        self._map.clear(depth=1.0)
+        _set(self._shadow, "to_shadow", _bytes(matrix))
+        _set(self._shadow, "model", _bytes(np.eye(4)))
+        part = self._scene.solids
+        near = np.linalg.norm(part.centre - centre[:3], axis=1) - part.radius < 2.0 * SHADOW_HALF_M
+        if self._solids.shadow is not None:
+            for index in np.flatnonzero(near).tolist():
+                self._solids.shadow.render(vertices=int(part.length[index]), first=int(part.first[index]))
+        if self._body.shadow is not None:
+            _set(self._shadow, "model", _bytes(pose))
+            self._body.shadow.render(vertices=self._body.length)
+        _set(self._surface, "to_shadow", _bytes(matrix))
+        self._depth.use(0)
+
+    def _set_light(self, camera: Camera, shown: ShownVehicle, pose: Array) -> None:
+        _set(self._surface, "eye", tuple(camera.eye.tolist()))
+        if self._light.night > 0.0:
+            place = (pose @ np.array((self._scene.size.front_m, 0.0, 0.62, 1.0)))[:3]
+            _set(self._surface, "lamp_place", tuple(place.tolist()))
+            _set(self._surface, "lamp_heading", (math.cos(shown.yaw_rad), math.sin(shown.yaw_rad)))
+
+    def _set_model(self, model: Array) -> None:
+        _set(self._surface, "model", _bytes(model))
+
+    def _put(self, mesh: Vertices) -> _Drawn:
+        """Put a mesh on the card."""
+        if len(mesh) == 0:
+            return _Drawn(None, None, 0)  # type: ignore[arg-type]
+        buffer = self._context.buffer(mesh.tobytes())
+        content = "3f4 4f1 4f1"
+        surface = self._context.vertex_array(
+            self._surface, [(buffer, content, "in_position", "in_normal", "in_colour")]
+        )
+        shadow = None
+        if self._quality.shadows:
+            shadow = self._context.vertex_array(self._shadow, [(buffer, "3f4 8x1", "in_position")])
+        return _Drawn(surface, shadow, len(mesh))
+
+
+def _frame(target: "moderngl.Framebuffer", place: tuple[int, int, int, int]) -> None:
+    """Paint what a mirror stands in: a dark rim around its place."""
+    left, bottom, width, height = place
+    rim = max(2, round(FRAME * target.width))
+    right, top = min(target.width, left + width + rim), min(target.height, bottom + height + rim)
+    left, bottom = max(0, left - rim), max(0, bottom - rim)
+    target.scissor = (left, bottom, right - left, top - bottom)
+    target.clear(*FRAME_COLOUR)
+
+
+def _pose(shown: ShownVehicle) -> Array:
+    axes = rotation(shown.yaw_rad, shown.pitch_rad, shown.roll_rad)
+    return _transform(axes, np.array((shown.x_m, shown.y_m, shown.z_m)))
+
+
+def _transform(axes: Array, place: Array) -> Array:
+    matrix = np.eye(4)
+    matrix[:3, :3], matrix[:3, 3] = axes, place
+    return matrix
+
+
+def _set(program: "moderngl.Program", name: str, value: bytes | float | tuple[float, ...]) -> None:
+    """Give a program's uniform a value; a matrix comes as bytes."""
+    import moderngl
+
+    uniform = program[name]
+    assert isinstance(uniform, moderngl.Uniform)
+    if isinstance(value, bytes):
+        uniform.write(value)
+    else:
+        uniform.value = value
+
+
+def _bytes(matrix: NDArray[np.floating[Any]]) -> bytes:
+    """Return a matrix as OpenGL wants it: columns first, single precision."""
+    return matrix.T.astype("<f4").tobytes()

@@ -1,0 +1,45 @@
+"""`simconsole video` as people run it."""
+
+from pathlib import Path
+
+import av
+import pygame
+import pytest
+
+from tests.drives.console import complaint, results, simconsole
+
+
+def test_a_video_shows_the_drive(short: Path, tmp_path: Path) -> None:
+    path = tmp_path / "drive.mp4"
+    words = ("--from", 1, "--to", 2, "--fps", 10, "--size", "640x480", "--out", path)
+    done = simconsole("video", short, *words, "--json")
+    assert done.returncode == 0, done.stderr
+    assert results(done) == {
+        "video": str(path), "frames": 11, "fps": 10, "bytes": path.stat().st_size, "problems": [],
+    }  # fmt: skip
+    assert done.stdout.startswith(f"{path}: 11 frames, 1.1 s\n")
+    with av.open(str(path)) as file:
+        decoded = [frame.to_ndarray(format="rgb24") for frame in file.decode(video=0)]
+    assert [picture.shape for picture in decoded] == [(480, 640, 3)] * 11
+
+
+def test_one_moment_is_a_picture(short: Path, tmp_path: Path) -> None:
+    path = tmp_path / "moment.png"
+    done = simconsole("video", short, "--png", 2, path, "--size", "640x480", "--camera", "chase", "--json")
+    assert done.returncode == 0, done.stderr
+    assert results(done) == {"picture": str(path), "t_s": 2.0, "tick": 500}
+    assert pygame.image.load(path).get_size() == (640, 480)
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("--size", "641x480"), "--size: value '641x480': WIDTHxHEIGHT, both even and from 320 to 4096"),
+        (("--size", "large"), "--size: value 'large': "),
+        (("--fps", 0), "--fps: value 0: 1 to 240"),
+        (("--from", -1), "--from: value -1: a time in s, at least 0"),
+        (("--from", 2, "--to", 1), "--to: value 1: a time in s after --from (2)"),
+    ],
+)
+def test_what_cannot_be_meant_is_one_line(short: Path, words: tuple[object, ...], told: str) -> None:
+    assert told in complaint(simconsole("video", short, *words))

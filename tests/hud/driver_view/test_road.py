@@ -1,0 +1,82 @@
+import numpy as np
+import pytest
+
+from simconsole.hud.driver_view.occupancy import Occupancy
+from simconsole.hud.driver_view.road import (
+    DASH_M,
+    KERB_HEIGHT_M,
+    LINE_M,
+    RoadMeshes,
+    dashes_of,
+    flat,
+    occupancy_of,
+    road_meshes,
+)
+from simconsole.profiles.files.loader import load
+from simconsole.profiles.world import CourseProfile
+from simconsole.world.course import Course
+from simconsole.world.drawing import draw
+
+MARKING_M = 0.02
+
+
+@pytest.fixture(scope="module")
+def course() -> Course:
+    return Course(load("worlds", "urban", CourseProfile))
+
+
+@pytest.fixture(scope="module")
+def meshes(course: Course) -> RoadMeshes:
+    drawing = draw(course)
+    return road_meshes(drawing, occupancy_of(drawing))
+
+
+def test_markings_lie_on_the_lane_geometry(course: Course, meshes: RoadMeshes) -> None:
+    """Where the road is plain, each painted point is half a line's width beside an edge of a lane."""
+    paint = meshes.layers[-1]["position"].astype(float)
+    half_m = 0.5 * course.world.lane_width_m
+    plain = (paint[:, 0] > 20.0) & (paint[:, 0] < 250.0) & (np.abs(paint[:, 1]) < 12.0)
+    assert plain.sum() > 100
+    beside = np.abs(paint[plain, 1][:, None] - np.array((-half_m, half_m, 3.0 * half_m))).min(axis=1)
+    assert np.abs(beside - 0.5 * LINE_M).max() < MARKING_M
+
+
+def test_markings_follow_every_bend_of_the_lane(course: Course, meshes: RoadMeshes) -> None:
+    edges = [line for line in draw(course).edges if len(line) > 20]
+    points = np.vstack(edges)
+    s, lateral = course.project_all(points[:, 0], points[:, 1])
+    paint = meshes.layers[-1]["position"].astype(float)
+    for index in range(0, len(points), 97):
+        nearest = np.hypot(*(paint[:, :2] - points[index]).T).min()
+        assert nearest < 0.5 * LINE_M + MARKING_M, (s[index], lateral[index])
+
+
+def test_kerbs_stand_beside_the_road_and_never_on_it(course: Course, meshes: RoadMeshes) -> None:
+    kerb = meshes.solids["position"].astype(float)
+    assert kerb[:, 2].max() == pytest.approx(KERB_HEIGHT_M)
+    half_m = 0.5 * course.world.lane_width_m
+    straight = (kerb[:, 0] > 40.0) & (kerb[:, 0] < 240.0) & (np.abs(kerb[:, 1]) < 12.0)
+    assert straight.sum() > 100
+    on_road = (kerb[straight, 1] > -half_m) & (kerb[straight, 1] < 3.0 * half_m)
+    assert not on_road.any()
+
+
+def test_flat_polygons_face_up_whichever_way_they_turn() -> None:
+    square = np.array(((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)))
+    for polygon in (square, square[::-1]):
+        assert (flat(polygon, (1, 2, 3))["normal"][:, 2] == 255).all()
+
+
+def test_dashes_are_as_long_as_they_should_be_and_keep_the_bend() -> None:
+    angles = np.linspace(0.0, 2.0, 80)
+    line = 25.0 * np.column_stack((np.cos(angles), np.sin(angles)))
+    dashes = dashes_of(line)
+    assert len(dashes) >= 4
+    for dash in dashes[:-1]:
+        assert np.hypot(*np.diff(dash, axis=0).T).sum() == pytest.approx(DASH_M, abs=0.01)
+        assert np.abs(np.hypot(*dash.T) - 25.0).max() < MARKING_M
+
+
+def test_the_road_takes_its_ground(course: Course) -> None:
+    taken: Occupancy = occupancy_of(draw(course))
+    assert taken.is_taken(course.offset(0.0, 0.0, course.length_m)).all()

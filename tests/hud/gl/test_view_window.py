@@ -1,0 +1,119 @@
+from collections.abc import Iterator
+from functools import partial
+
+import numpy as np
+import pygame
+import pytest
+
+from simconsole.hud.driver_view.scene import view_scene
+from simconsole.hud.driver_view.vehicle_body import Size
+from simconsole.hud.gl import view_window
+from simconsole.hud.gl.context import is_software, renderer_name
+from simconsole.hud.gl.view_window import ViewWindow, open_window
+from simconsole.hud.screen import Screen
+from simconsole.hud.view import HudSettings
+from simconsole.hud.window.pygame_window import Motion, Ports, Window, run
+from simconsole.profiles.view import DriverViewProfile, HudProfile
+from simconsole.values.key_codes import Key
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT, Snapshot
+
+PROFILE = HudProfile(width_px=640, height_px=480, rate_hz=240, view=DriverViewProfile())
+SCENE = view_scene(None, 0.0, Size(3.99, 1.75, 1.45, 0.75, 2.5))
+
+
+@pytest.fixture(autouse=True)
+def offscreen_display(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """SDL's own window system in memory, with real OpenGL."""
+    monkeypatch.setenv("SDL_VIDEODRIVER", "offscreen")
+    yield
+    pygame.display.quit()
+
+
+def snapshot(tick: int, x_m: float = 0.0) -> Snapshot:
+    vector = np.zeros(PLATFORM_AT)
+    vector[LAYOUT.vehicle.start + LAYOUT.vehicle.names.index("x_m")] = x_m
+    return Snapshot(tick, 250, vector)
+
+
+def opened() -> ViewWindow:
+    window = open_window(PROFILE, HudSettings(), SCENE)
+    assert isinstance(window, ViewWindow)
+    return window
+
+
+def seen(window: ViewWindow) -> bytes:
+    return window._context.screen.read(components=3)
+
+
+def test_a_frame_is_drawn_between_the_two_newest_ticks() -> None:
+    window = opened()
+    pictures = []
+    for age_s in (0.0, 0.002, 0.004):
+        window.frame(snapshot(11, 2.0), 1.0, motion=Motion(snapshot(10, 0.0), snapshot(11, 2.0), age_s))
+        pictures.append(seen(window))
+    assert len(set(pictures)) == 3
+    window.frame(snapshot(11, 2.0), 1.0)
+    assert seen(window) == pictures[-1]
+    window.close()
+
+
+def test_a_display_that_was_opened_without_opengl_does_not_stay(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A process that read joysticks before has SDL's dummy display open."""
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    pygame.display.init()
+    monkeypatch.setenv("SDL_VIDEODRIVER", "offscreen")
+    opened().close()
+
+
+def test_a_processor_that_draws_is_told_of_once(capsys: pytest.CaptureFixture[str]) -> None:
+    window = opened()
+    for tick in range(3):
+        window.frame(snapshot(tick), 0.01 * tick)
+    name = renderer_name(window._context)
+    assert capsys.readouterr().err.count(f"{name} draws, no graphics card") == is_software(window._context)
+    window.close()
+
+
+def test_the_window_runs_reports_keys_and_ends() -> None:
+    keys: list[int] = []
+    ticks, ends = iter(range(100)), iter([False] * 5 + [True])
+    run(
+        Ports(lambda: snapshot(next(ticks)), keys.append, lambda: next(ends)),
+        PROFILE,
+        HudSettings(),
+        partial(open_window, scene=SCENE),
+    )
+    assert keys == [0] * 6
+    assert not pygame.display.get_init()
+
+
+def test_closing_the_window_asks_for_the_end_of_the_drive() -> None:
+    keys: list[int] = []
+    ends = iter([False] * 3 + [True])
+
+    def latest() -> Snapshot:
+        pygame.event.post(pygame.event.Event(pygame.QUIT))
+        return snapshot(len(keys))
+
+    run(Ports(latest, keys.append, lambda: next(ends)), PROFILE, HudSettings(), partial(open_window, scene=SCENE))
+    assert keys[0] == 0
+    assert keys[2] & Key.END
+
+
+def test_without_opengl_the_instruments_are_there_and_why_is_said(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    window = open_window(PROFILE, HudSettings(), SCENE)
+    assert isinstance(window, Window)
+    window.frame(snapshot(1), 1.0)
+    window.close()
+    assert "no OpenGL window can be opened" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("display", "size"), [((1366, 768), (1024, 768)), ((1000, 2000), (1000, 750)), ((9000, 9000), (1400, 1050))]
+)
+def test_the_window_is_never_larger_than_the_display(display: tuple[int, int], size: tuple[int, int]) -> None:
+    fitting = view_window._fitting(Screen(1400, 1050, 1.6, 2.2, has_view=True), [display])
+    assert (fitting.width_px, fitting.height_px) == size

@@ -1,0 +1,32 @@
+import io
+
+import numpy as np
+import pytest
+
+from simconsole.profiles.files.loader import load
+from simconsole.profiles.world import CourseProfile
+from simconsole.world.course import Course
+from simconsole.world.drawing import draw
+from simconsole.world.drawing_arrays import from_arrays, to_arrays
+
+
+def test_a_drawing_comes_out_of_a_file_as_it_went_in() -> None:
+    drawing = draw(Course(load("worlds", "urban", CourseProfile)))
+    file = io.BytesIO()
+    np.savez(file, **to_arrays(drawing))
+    file.seek(0)
+    with np.load(file, allow_pickle=False) as content:
+        back = from_arrays(content)
+    assert back is not None
+    assert back.lights == drawing.lights
+    assert (back.path == drawing.path).all()
+    for name in ("surfaces", "islands", "edges", "centre_lines", "zebras", "stop_lines"):
+        lines, wanted = getattr(back, name), getattr(drawing, name)
+        assert len(lines) == len(wanted) > 0
+        assert all((one == other).all() for one, other in zip(lines, wanted, strict=True))
+
+
+def test_no_drawing_is_none_and_a_part_of_one_is_an_error() -> None:
+    assert from_arrays({}) is None
+    with pytest.raises(KeyError):
+        from_arrays({"path": np.zeros((2, 2))})
