@@ -32,6 +32,9 @@ DEAD_RADPS: Final = 0.035
 """Yaw rate by which a car may differ from the model before ESC acts: 2 deg/s."""
 STABILITY_FROM_MPS: Final = 4.0
 STABILITY_LAG_S: Final = 0.02
+STABILITY_SLIP: Final = 0.12
+STABILITY_LEAST_NM: Final = 1.0
+"""Slip at which a wheel is held that ESC brakes, and the least torque that counts as braking."""
 SAME_NM: Final = 0.1
 HOLD_S: Final = 2.0
 HOLD_SLOPE: Final = 0.03
@@ -71,16 +74,23 @@ def slip_at_peak(axle: AxleParameters, force_n: float, speed_mps: float) -> floa
 
 
 @kernel
-def anti_lock_rate(axle: AxleParameters, wheel: Wheel, on: Contact) -> float:
-    """Return how fast ABS lets a brake build up, as share of its torque per second; negative: it releases."""
+def anti_lock_rate(axle: AxleParameters, wheel: Wheel, on: Contact, stability_nm: float) -> float:
+    """Return how fast ABS lets a brake build up, as share of its torque per second; negative: it releases.
+
+    A tyre that slides sideways has its peak along the wheel at nearly no slip. Where ESC brakes the wheel
+    (`stability_nm` above 0) that must not take the brake off: what turns the car back is that it brakes, and that its
+    side force is gone. Such a wheel is held at a slip of its own.
+    """
     speed = abs(on.ground_mps)
     rim = wheel.radps * axle.radius_m
     slip = speed - (rim if on.ground_mps > 0.0 else -rim)
     peak = slip_at_peak(axle, on.tyre.force_x_n, speed)
     loaded = on.load_n * slip
-    if speed < SLOW_MPS or loaded < RESUME_PEAKS * peak:
+    wanted = STABILITY_SLIP * speed if stability_nm > STABILITY_LEAST_NM else 0.0
+    if speed < SLOW_MPS or loaded < RESUME_PEAKS * peak or slip < RESUME_PEAKS * wanted:
         return FREE_PER_S
-    return -RELEASE_PER_S if loaded > RELEASE_PEAKS * peak and slip > LEAST_SLIP_MPS else FEEL_PER_S
+    least = wanted if wanted > LEAST_SLIP_MPS else LEAST_SLIP_MPS
+    return -RELEASE_PER_S if loaded > RELEASE_PEAKS * peak and slip > least else FEEL_PER_S
 
 
 @kernel
@@ -190,18 +200,18 @@ def brake_torques(car: Car, p: CarParameters, request: Request, axles: Axles, ai
     fl = FREE_PER_S
     fr = FREE_PER_S
     low = FREE_PER_S
-    if p.aids.anti_lock != 0.0 and (pedal > 0.02 or abs(aids.stability_nm) > 1.0):
-        fl = anti_lock_rate(front, car.fl, axles.fl)
-        fr = anti_lock_rate(front, car.fr, axles.fr)
-        rl = anti_lock_rate(rear, car.rl, axles.rl)
-        rr = anti_lock_rate(rear, car.rr, axles.rr)
-        low = rl if rl < rr else rr  # select-low: both rear wheels keep the side force of the better one
     turn = aids.stability_nm
     to_left = turn if turn > 0.0 else 0.0
     to_right = -turn if turn < 0.0 else 0.0
     inwards = turn * car.body.yaw_rate_radps > 0.0  # it turns too little
     front_share = 0.0 if inwards else 1.0
     rear_share = 1.0 - front_share
+    if p.aids.anti_lock != 0.0 and (pedal > 0.02 or abs(turn) > STABILITY_LEAST_NM):
+        fl = anti_lock_rate(front, car.fl, axles.fl, front_share * to_left)
+        fr = anti_lock_rate(front, car.fr, axles.fr, front_share * to_right)
+        rl = anti_lock_rate(rear, car.rl, axles.rl, rear_share * to_left)
+        rr = anti_lock_rate(rear, car.rr, axles.rr, rear_share * to_right)
+        low = rl if rl < rr else rr  # select-low: both rear wheels keep the side force of the better one
     return Brakes(
         fl_nm=pressed(front, car.fl, pedal * front.brake_nm + front_share * to_left, fl, step_s),
         fr_nm=pressed(front, car.fr, pedal * front.brake_nm + front_share * to_right, fr, step_s),
