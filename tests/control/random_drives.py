@@ -31,7 +31,7 @@ from simconsole.values.signals import (
 )
 
 Rows = NDArray[np.float64]
-SEED: Final = 20_260_301
+SEED: Final = 20_260_302
 STEPS: Final = 350_000
 DRIVER: Final = Part(DriverInput)
 ROS: Final = Part(RemoteCommand, DRIVER.stop)

@@ -108,7 +108,7 @@ def test_a_value_beyond_its_limit_fails_and_is_in_the_report(
 
 def test_a_value_that_there_is_not_is_one_line(altered: Callable[[str, str, str], Path]) -> None:
     path = altered("stall", "distance_m, max", "distnace_m, max")
-    with pytest.raises(ProfileError, match=r"stall\.yaml: limits: value: value distnace_m: one of distance_m, "):
+    with pytest.raises(ProfileError, match=r"stall\.yaml: limits: value: value distnace_m: one of clutch_over"):
         check_scenario(str(path))
 
 

@@ -64,10 +64,17 @@ def test_level_ground_needs_no_brake() -> None:
     assert creep(drive) == 0.0
 
 
+def stop(drive: Drive) -> None:
+    """Brake until no wheel turns and the tyres have sprung back."""
+    wheels = [f"{wheel}_radps" for wheel in ("fl", "fr", "rl", "rr")]
+    drive.until(lambda _: not any(getattr(drive.state, name) for name in wheels), 5.0, brake=0.6, clutch=1.0)
+    drive.hold(0.3, brake=0.6, clutch=1.0)
+
+
 def test_a_body_that_still_rocks_over_standing_wheels_has_no_speed_of_its_own() -> None:
     drive = rolling_car(altered(front={"support_deg": 0.0}, rear={"support_deg": 0.0}), 14.0)
     rocking = told = 0.0
-    drive.hold(2.5, brake=0.6, clutch=1.0)
+    stop(drive)
     for _ in range(250):
         seen = drive.hold(0.004, brake=0.6, clutch=1.0)
         rocking, told = max(rocking, abs(drive.state.vx_mps)), max(told, abs(seen.vx_mps))
@@ -80,7 +87,7 @@ def test_links_that_hold_the_dive_leave_base_link_as_quiet_and_rock_the_body_les
     told = []
     for deg in (0.0, HATCHBACK.rear.support_deg):
         drive = rolling_car(altered(front={"support_deg": 0.2 * deg}, rear={"support_deg": deg}), 14.0)
-        drive.hold(2.5, brake=0.6, clutch=1.0)
+        stop(drive)
         told.append(max(abs(drive.hold(0.004, brake=0.6, clutch=1.0).vx_mps) for _ in range(250)))
     assert told[1] < 1.5 * told[0] < 0.06
 
