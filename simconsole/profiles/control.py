@@ -26,7 +26,7 @@ class ControlProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_f
     steering_override_deg: Annotated[float, msgspec.Meta(ge=1.0, le=90.0)] = 8.0  # moved since engagement; to be tuned
     steering_override_hysteresis_deg: Annotated[float, msgspec.Meta(ge=0.0, le=10.0)] = 1.0  # a shaking hand counts on
     steering_override_rate_degps: Annotated[float, msgspec.Meta(ge=10.0, le=2000.0)] = 60.0  # a hand that means it
-    steering_override_nm: Annotated[float, msgspec.Meta(ge=0.3, le=20.0)] = 1.2  # more than hands that rest on the rim
+    steering_override_nm: Annotated[float, msgspec.Meta(ge=0.3, le=20.0)] = 1.4  # more than hands that rest on the rim
     steering_override_hold_s: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)] = 0.05  # OD: 5 frames of 10 ms
     brake_override: Threshold = 0.05  # R157 6.3.1; OD: any brake
     throttle_override: Threshold = 0.05  # longitudinal only, while held: OD "overriding"
