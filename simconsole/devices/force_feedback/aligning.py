@@ -64,7 +64,14 @@ def answered(before_rad: float, road_wheel_rad: float, speed_mps: float, force: 
 
 @kernel
 def aligning(
-    car_nm: float, answered_rad: float, swing_radps: float, rim: Rim, stiff: float, fast: float, force: ForceSettings
+    car_nm: float,
+    answered_rad: float,
+    swing_radps: float,
+    rim: Rim,
+    stiff: float,
+    fast: float,
+    guided: float,
+    force: ForceSettings,
 ) -> float:
     """Return the car's torque, led by what it has not answered yet, and damped, in N m.
 
@@ -75,8 +82,10 @@ def aligning(
         rim: The wheel when this torque acts.
         stiff: The car's stiffness about the middle, with the share that is in force, in N m per rad.
         fast: The speed, in shares of FAST_MPS.
+        guided: How much of the controller's guidance there is, 0 to 1: it leads the wheel, and damps it itself.
         force: Of this drive.
     """
+    lead_nm = stiff * (answered_rad - rim.rad)
     damping = force.aligning_damping * sqrt(stiff * force.inertia_kgm2) + fast * force.return_s * stiff
-    against_rad = force.hand_wheel_per_road_wheel * fast * force.yaw_damping_s * swing_radps
-    return car_nm + stiff * (answered_rad - rim.rad - against_rad) - damping * rim.radps
+    against_nm = stiff * force.hand_wheel_per_road_wheel * fast * force.yaw_damping_s * swing_radps
+    return car_nm + lead_nm - (1.0 - guided) * (against_nm + damping * rim.radps)

@@ -149,7 +149,7 @@ def torque_parts(
     fast = speed / FAST_MPS
     bears = share_of(stiff, fast, force)
     felt = bears * force.car_share * rolling * vehicle.hand_wheel_torque_nm
-    car = aligning(felt, answered_rad, swing_radps, rim, bears * stiff, fast, force)
+    car = aligning(felt, answered_rad, swing_radps, rim, bears * stiff, fast, share, force)
     guide = guidance(asked, rim, rolling, share, force)
     return TorqueParts(car, 0.0, guide, drag + end_stop(rim, force) + texture, bears)
 
