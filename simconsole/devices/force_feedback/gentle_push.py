@@ -18,7 +18,7 @@ MOVED_RAD: Final = 0.5 * RAD_PER_DEG
 """From here on the wheel turns, and the push is over."""
 LIMIT_RAD: Final = 12.0 * RAD_PER_DEG
 """A wheel that is further off is let go of; what is left to 15 deg is for the delay."""
-TRIES: Final = 4
+TRIES: Final = 5
 """Pushes until a wheel turns: each begins a little below what could not turn it before."""
 RELEASED: Final = 0.9
 SETTLE_S: Final = 1.5
