@@ -1,6 +1,6 @@
 """What hands feel about the centre: the weave of ISO 13674-1 at the rim of the simulated T500, not at the car's own."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 import pytest
@@ -50,8 +50,8 @@ def felt(vehicle: str, pilot: Pilot, longest_s: float) -> Drive:
     names = ("vehicle.ay_mps2", "vehicle.hand_wheel_torque_nm", "driver.hand_wheel_rad")
     table = np.array(rows)
 
-    def read(wanted: Sequence[str]) -> Iterable[Array]:
-        return [table[:, [names.index(name) for name in wanted]]]
+    def read(wanted: Sequence[str]) -> Iterator[Array]:
+        yield table[:, [names.index(name) for name in wanted]]
 
     return Drive(read, len(table), TICK_HZ)
 
