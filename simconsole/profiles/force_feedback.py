@@ -25,16 +25,17 @@ Gain: TypeAlias = Annotated[float, Meta(ge=0.0, le=3.0)]
 class Guidance(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Haptic guidance while control is shared: gains, each times the controller's authority over steering.
 
-    Support, feedback and stiffness are JOAN's; a belt-driven wheel needs more authority than its 1 N m/rad to be moved.
+    Support and feedback are JOAN's; stiffness is a hatchback's in slow bends. A belt-driven wheel needs more authority
+    than JOAN's 1 N m/rad to be moved.
     """
 
     support: Gain = 1.0  # level of haptic support: of the torque that the road's bend needs
     feedback: Gain = 1.0  # strength of haptic feedback: of the torque that corrections need
     authority_nm_per_rad: Annotated[float, Meta(ge=0.0, le=20.0)] = 6.0  # level of haptic authority
-    stiffness_nm_per_rad: Annotated[float, Meta(ge=0.0, le=10.0)] = 1.0  # of the car's steering about the middle
+    stiffness_nm_per_rad: Annotated[float, Meta(ge=0.0, le=10.0)] = 5.0  # of the car's steering about the middle
     damping_nms: Annotated[float, Meta(ge=0.0, le=3.0)] = 0.8
     slow_s: Annotated[float, Meta(ge=0.05, le=10.0)] = 0.8  # slower than this is the road's bend
-    most_nm: Annotated[float, Meta(ge=0.0, le=10.0)] = 3.0
+    most_nm: Annotated[float, Meta(ge=0.0, le=10.0)] = 4.0
 
 
 class ForceFeedback(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

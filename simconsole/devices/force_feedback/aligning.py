@@ -11,7 +11,6 @@ from math import sqrt
 from typing import Final
 
 from simconsole.devices.force_feedback.force_settings import ForceSettings
-from simconsole.devices.force_feedback.rim import Rim
 from simconsole.values.kernels import clip, kernel
 
 NODE_MPS: Final = 12.0
@@ -56,7 +55,15 @@ def share_of(stiff: float, fast: float, force: ForceSettings) -> float:
 
 @kernel
 def answered(before_rad: float, road_wheel_rad: float, speed_mps: float, force: ForceSettings, tick_s: float) -> float:
-    """Return the angle of the hand wheel that the tyres have answered: the rack's, through their relaxation."""
+    """Return the angle of the hand wheel that the tyres have answered: the rack's, through their relaxation.
+
+    Args:
+        before_rad: Of the tick before.
+        road_wheel_rad: What the hand wheel contributes to the road wheels' angle, as far as the rack has come.
+        speed_mps: At least 0.
+        force: Of this drive.
+        tick_s: Length of a tick.
+    """
     speed = clip(speed_mps, SLOWEST_MPS, 200.0)
     way = road_wheel_rad * force.hand_wheel_per_road_wheel - before_rad
     return before_rad + way * (tick_s / (tick_s + force.relaxation_m / speed))
@@ -64,19 +71,27 @@ def answered(before_rad: float, road_wheel_rad: float, speed_mps: float, force: 
 
 @kernel
 def aligning(
-    car_nm: float, answered_rad: float, swing_radps: float, rim: Rim, stiff: float, fast: float, force: ForceSettings
+    car_nm: float,
+    late_rad: float,
+    swing_radps: float,
+    rim_radps: float,
+    stiff: float,
+    fast: float,
+    guided: float,
+    force: ForceSettings,
 ) -> float:
     """Return the car's torque, led by what it has not answered yet, and damped, in N m.
 
     Args:
         car_nm: At the rim of the real car, left-positive.
-        answered_rad: The wheel's angle that caused it.
+        late_rad: How far the wheel, when this torque acts, is beyond the angle that caused it.
         swing_radps: The car's yaw rate, less its slow part.
-        rim: The wheel when this torque acts.
+        rim_radps: Rate of the wheel when this torque acts.
         stiff: The car's stiffness about the middle, with the share that is in force, in N m per rad.
         fast: The speed, in shares of FAST_MPS.
+        guided: How much of the controller's guidance there is, 0 to 1: it leads the wheel, and damps it itself.
         force: Of this drive.
     """
     damping = force.aligning_damping * sqrt(stiff * force.inertia_kgm2) + fast * force.return_s * stiff
-    against_rad = force.hand_wheel_per_road_wheel * fast * force.yaw_damping_s * swing_radps
-    return car_nm + stiff * (answered_rad - rim.rad - against_rad) - damping * rim.radps
+    against_nm = stiff * force.hand_wheel_per_road_wheel * fast * force.yaw_damping_s * swing_radps
+    return car_nm - stiff * late_rad - (1.0 - guided) * (against_nm + damping * rim_radps)

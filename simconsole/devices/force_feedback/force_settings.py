@@ -10,11 +10,11 @@ from simconsole.values.units import MPS_PER_KMH, RAD_PER_DEG
 PIPE_CELLS: Final = 6
 RATE_PHASE: Final = 2.0
 """Damping over inertia, times all delay of the motor, up to which the prediction holds where figures are 10 % off."""
-ALIGNING_DAMPING: Final = 3.0
+ALIGNING_DAMPING: Final = 2.3
 """Damping of a wheel that is let go of, in shares of the root of the car's stiffness times the wheel's inertia."""
 RETURN_S: Final = 0.14
 """Time by which the wheel follows its middle later than the car's own weaving, which steers it, at 40 m/s."""
-YAW_DAMPING_S: Final = 0.25
+YAW_DAMPING_S: Final = 0.12
 """Road-wheel angle by which the rim's torque is asked to steer against a quick change of the yaw rate, at 40 m/s."""
 YAW_SLOW_S: Final = 0.1
 """Changes of the yaw rate that are slower are driving, not weaving."""

@@ -18,7 +18,7 @@ MOVED_RAD: Final = 0.5 * RAD_PER_DEG
 """From here on the wheel turns, and the push is over."""
 LIMIT_RAD: Final = 12.0 * RAD_PER_DEG
 """A wheel that is further off is let go of; what is left to 15 deg is for the delay."""
-TRIES: Final = 4
+TRIES: Final = 5
 """Pushes until a wheel turns: each begins a little below what could not turn it before."""
 RELEASED: Final = 0.9
 SETTLE_S: Final = 1.5
@@ -88,17 +88,16 @@ class _Watched:
 
 
 def push(turn: Turn, rules: Gentle, direction: float) -> Pushed:
-    """Push until the wheel turns by MOVED_RAD, a few times for PUSH_S at most, then brake it.
+    """Push until the wheel turns by MOVED_RAD, a few times for PUSH_S at most, then brake it; the ways add up.
 
     Args:
         turn: The wheel.
         rules: Of its motor.
         direction: 1 to the left, -1 to the right.
     """
-    torque_nm, start_rad = 0.0, 0.0
+    torque_nm, start_rad = 0.0, turn(0.0)
     for _ in range(TRIES):
         wheel = _Watched(turn, rules.tick_hz)
-        start_rad = wheel.rad
         torque_nm *= RELEASED
         for _ in range(round(PUSH_S * rules.tick_hz)):
             torque_nm = min(rules.limit_nm, torque_nm + rules.ramp_nm)

@@ -121,6 +121,7 @@ def torque_parts(
     vehicle: VehicleState,
     asked: GuidanceReference,
     share: float,
+    by_hand: float,
     answered_rad: float,
     swing_radps: float,
     force: ForceSettings,
@@ -134,7 +135,8 @@ def torque_parts(
         vehicle: The vehicle after this tick.
         asked: What the controller asks of the hand wheel.
         share: How much of its guidance there is, 0 to 1.
-        answered_rad: The hand wheel's angle that the car's tyres have answered.
+        by_hand: How much of the road wheels' angle is the hand wheel's, 0 to 1; the rest is the controller's.
+        answered_rad: Of that part, what the car's tyres have answered, at the hand wheel.
         swing_radps: The car's yaw rate, less its slow part.
         force: Of this drive.
     """
@@ -148,8 +150,17 @@ def torque_parts(
     stiff = force.car_share * rolling * stiffness(speed, force)
     fast = speed / FAST_MPS
     bears = share_of(stiff, fast, force)
-    felt = bears * force.car_share * rolling * vehicle.hand_wheel_torque_nm
-    car = aligning(felt, answered_rad, swing_radps, rim, bears * stiff, fast, force)
+    felt = by_hand * bears
+    car = aligning(
+        felt * force.car_share * rolling * vehicle.hand_wheel_torque_nm,
+        by_hand * rim.rad - answered_rad,
+        swing_radps,
+        rim.radps,
+        felt * stiff,
+        fast,
+        share,
+        force,
+    )
     guide = guidance(asked, rim, rolling, share, force)
     return TorqueParts(car, 0.0, guide, drag + end_stop(rim, force) + texture, bears)
 
@@ -329,9 +340,11 @@ def wheel_torque(
     driven = follows or mode in (Mode.MANUAL, Mode.SHARED)
     enabled = live and target.known and driven and int(events) & _STANDING == 0
     ramp = approach(before.ramp, 1.0, force.ramp_per_tick) if enabled else 0.0
-    answered_rad = target.rim.rad
-    if target.known and memory.live > 0.0:
-        answered_rad = answered(memory.answered_rad, vehicle.road_wheel_rad, abs(vehicle.vx_mps), force, tick_s)
+    hands_rad = vehicle.road_wheel_rad - arbitration.remote_lateral * arbitration.remote_road_wheel_rad
+    answered_rad = memory.answered_rad
+    if target.known:
+        start_rad = answered_rad if memory.live > 0.0 else hands_rad * force.hand_wheel_per_road_wheel
+        answered_rad = answered(start_rad, hands_rad, abs(vehicle.vx_mps), force, tick_s)
     yaw_radps = memory.yaw_radps
     if target.known:
         yaw_radps += (vehicle.yaw_rate_radps - yaw_radps) * (tick_s / (tick_s + force.yaw_slow_s))
@@ -350,7 +363,10 @@ def wheel_torque(
     )
     if enabled:
         guided = arbitration.remote_guidance if mode == Mode.SHARED else 0.0
-        parts = torque_parts(follows, target.rim, rim, vehicle, target.asked, guided, answered_rad, swing_radps, force)
+        by_hand = 1.0 - arbitration.remote_lateral
+        parts = torque_parts(
+            follows, target.rim, rim, vehicle, target.asked, guided, by_hand, answered_rad, swing_radps, force
+        )
         torque = limited_torque(parts, ramp, estimated, before, force)
     share = ramp if follows else 0.0
     unattended = unattended_motion(

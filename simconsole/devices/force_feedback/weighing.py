@@ -28,12 +28,13 @@ LEARNS_PER_S: Final = 2.5
 
 
 class _Hold:
-    """Holds the wheel at a target that moves."""
+    """Holds the wheel at a target that moves, its friction fed forward: a short sweep is no time to learn it."""
 
     def __init__(self, turn: Turn, found: Identified, limit_nm: float, tick_hz: int) -> None:
         self._turn, self._limit_nm, self._tick_hz = turn, limit_nm, tick_hz
         self._stiff = STIFF_RADPS**2 / found.accel_per_nm
         self._damping = 2.0 * STIFF_RADPS / found.accel_per_nm
+        self._friction_nm = found.friction_radps2 / found.accel_per_nm
         self._learnt_nm = self._radps = 0.0
         self._rad = turn(0.0)
 
@@ -43,6 +44,8 @@ class _Hold:
         self._learnt_nm += LEARNS_PER_S * self._stiff * off / self._tick_hz
         self._learnt_nm = clip(self._learnt_nm, -self._limit_nm, self._limit_nm)
         torque_nm = self._learnt_nm + self._stiff * off + self._damping * (target_radps - self._radps)
+        if target_radps != 0.0:
+            torque_nm += math.copysign(self._friction_nm, target_radps)
         torque_nm = clip(torque_nm, -self._limit_nm, self._limit_nm)
         before, self._rad = self._rad, self._turn(torque_nm)
         self._radps += 0.3 * ((self._rad - before) * self._tick_hz - self._radps)

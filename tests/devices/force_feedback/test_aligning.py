@@ -4,7 +4,6 @@ import pytest
 
 from simconsole.devices.force_feedback.aligning import aligning, answered, share_of, stiffness
 from simconsole.devices.force_feedback.force_settings import ForceSettings, force_settings
-from simconsole.devices.force_feedback.rim import Rim
 from simconsole.profiles.device import CockpitProfile
 from simconsole.values.platform import RimStiffness
 
@@ -22,15 +21,20 @@ def test_stiffness_is_straight_between_its_figures_and_ends_with_the_last(force:
 
 
 def test_still_wheel_that_the_car_has_answered_gets_the_cars_torque_alone(force: ForceSettings) -> None:
-    assert aligning(-1.7, 0.3, 0.0, Rim(0.3, 0.0), 12.0, 0.7, force) == -1.7
+    assert aligning(-1.7, 0.0, 0.0, 0.0, 12.0, 0.7, 0.0, force) == -1.7
 
 
 def test_torque_leads_and_damps(force: ForceSettings) -> None:
-    assert aligning(0.0, 0.1, 0.0, Rim(0.2, 0.0), 12.0, 0.0, force) == pytest.approx(-1.2)
-    slow = aligning(0.0, 0.0, 0.0, Rim(0.0, 1.0), 12.0, 0.0, force)
-    fast = aligning(0.0, 0.0, 0.0, Rim(0.0, 1.0), 12.0, 1.0, force)
+    assert aligning(0.0, 0.1, 0.0, 0.0, 12.0, 0.0, 0.0, force) == pytest.approx(-1.2)
+    slow = aligning(0.0, 0.0, 0.0, 1.0, 12.0, 0.0, 0.0, force)
+    fast = aligning(0.0, 0.0, 0.0, 1.0, 12.0, 1.0, 0.0, force)
     assert fast < slow < 0.0
-    assert aligning(0.0, 0.0, 0.1, Rim(0.0, 0.0), 12.0, 1.0, force) < 0.0, "against a change of the yaw rate"
+    assert aligning(0.0, 0.0, 0.1, 0.0, 12.0, 1.0, 0.0, force) < 0.0, "against a change of the yaw rate"
+
+
+def test_guidance_takes_over_the_damping(force: ForceSettings) -> None:
+    turning = [aligning(0.0, 0.0, 0.1, 1.0, 12.0, 1.0, guided, force) for guided in (0.0, 0.5, 1.0)]
+    assert turning[0] < turning[1] < turning[2] == 0.0
 
 
 def test_share_falls_with_stiffness_and_delay_and_is_full_with_the_shipped_figures(force: ForceSettings) -> None:

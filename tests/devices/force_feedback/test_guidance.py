@@ -111,17 +111,21 @@ def test_hands_that_hold_on_feel_the_controller_and_win() -> None:
     loop = shared_loop()
     held = loop.wheel.state.rad
     strongest = 0.0
-    for _ in loop.seconds(20.0):
+    cars = []
+    for _ in loop.seconds(25.0):
         shot = drive_on(loop, FIRM, held)
         force = shot.torque.guide_nm
         wish = RATIO * shot.arbitration.remote_road_wheel_rad - shot.driver.hand_wheel_rad
         if abs(wish) > math.radians(25.0):
             assert force * wish > 0.0, "felt towards where the controller wants the wheel"
+            cars.append(math.copysign(shot.torque.car_nm, shot.torque.car_nm * wish))
         strongest = max(strongest, abs(force))
         assert abs(loop.wheel.state.rad - held) < math.radians(25.0), "and no stronger than a person"
         if shot.arbitration.mode != Mode.SHARED:
             break
     assert 0.5 < strongest <= 2.0
+    assert len(cars) > 500
+    assert max(cars) <= 0.1, "the car itself pulls back: guidance alone is bounded, so alone guides"
 
 
 def test_guidance_is_only_in_shared_control() -> None:

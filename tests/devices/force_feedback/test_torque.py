@@ -91,7 +91,7 @@ class Motor:
 
 def alone(force: ForceSettings, target: Rim, rim: Rim, vehicle: VehicleState) -> TorqueParts:
     """The parts in MANUAL."""
-    return torque_parts(False, target, rim, vehicle, GuidanceReference(0.0, 0.0), 0.0, 0.0, 0.0, force)
+    return torque_parts(False, target, rim, vehicle, GuidanceReference(0.0, 0.0), 0.0, 1.0, 0.0, 0.0, force)
 
 
 @pytest.fixture

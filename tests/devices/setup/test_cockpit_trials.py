@@ -26,10 +26,10 @@ def test_good_cockpit_passes_each_trial(t500: CockpitProfile) -> None:
 
 
 def test_what_is_wrong_is_named(t500: CockpitProfile, monkeypatch: pytest.MonkeyPatch) -> None:
-    pedals = msgspec.structs.replace(t500.pedals, brake=t500.pedals.throttle)
+    pedals = msgspec.structs.replace(t500.pedals, clutch=t500.pedals.throttle)
     with ExitStack() as stack:
         trials = Trials(msgspec.structs.replace(t500, pedals=pedals), True, unpaced, quiet, stack)
-        assert trials.pedal("throttle").how == "moved brake, too"
+        assert trials.pedal("clutch").how == "moved throttle, too"
     with ExitStack() as stack:
         trials = Trials(t500, True, unpaced, quiet, stack)
         trials.rest()
