@@ -122,10 +122,9 @@ class LockstepConnection:
         if self.closed:
             return
         session = self.session
-        if session is not None and self._web.state is State.OPEN:
-            self._collect()
-            self._unsent += self._writer.batch(partial(session.next_text, now_ns), UNSENT_BYTES - len(self._unsent))
         self._collect()
+        if session is not None and self._web.state is State.OPEN:
+            self._unsent += self._writer.batch(partial(session.next_text, now_ns), UNSENT_BYTES - len(self._unsent))
         self._send()
 
     def check(self) -> None:
