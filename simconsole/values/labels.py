@@ -107,7 +107,7 @@ def reason_label(reason: float) -> str:
 
 def notice_label(notice: float) -> str:
     """Return the text of a notice, in at most seven words; empty for NONE."""
-    return _NOTICES[notice] if notice in _NOTICES else f"notice {notice:g}"
+    return _NOTICES.get(notice, f"notice {notice:g}")
 
 
 def arbitration_label(mode: float, reason: float, refusal: float, notice: float, broken: str = "") -> str:

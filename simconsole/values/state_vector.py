@@ -156,7 +156,7 @@ class Snapshot(NamedTuple):
         if self.recording_failed:
             return float(Notice.RECORDING_FAILED)
         notice = float(self.vector[_NOTICE_AT])
-        if notice == Notice.NONE and self.vector[_MODE_AT] == Mode.PARKED and self._is_commanded:
+        if not notice and float(self.vector[_MODE_AT]) == Mode.PARKED and self._is_commanded:
             return float(Notice.NOT_ENGAGED)
         return notice
 

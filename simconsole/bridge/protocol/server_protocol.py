@@ -114,7 +114,7 @@ class Router:
         return self.topic_registry.find(name)
 
     def add_output(self, name: str, type_name: str, depth: int = 1, latch: bool = False) -> Topic:
-        """Add and return a topic that only the console publishes, with the `depth` newest messages for a slow client."""
+        """Add and return a topic that only the console publishes, keeping `depth` messages for a slow client."""
         topic = Topic(name, self.registry.resolve(type_name), depth, owned=True, latch=latch)
         self.topic_registry.add(topic)
         return topic
