@@ -135,7 +135,7 @@ class Tracker:
         if not self._line.is_over(s_m):
             ahead += self._line.curvature(way)
         offset, heading, across, turning, wheel, command = gains[:_STATES].tolist()
-        fed_back = (
+        fed_back: float = (
             offset * lateral_m
             + heading * heading_rad
             + across * seen.vy_mps
