@@ -122,9 +122,10 @@ class LockstepConnection:
         if self.closed:
             return
         session = self.session
-        self._collect()
         if session is not None and self._web.state is State.OPEN:
+            self._collect()
             self._unsent += self._writer.batch(partial(session.next_text, now_ns), UNSENT_BYTES - len(self._unsent))
+        self._collect()
         self._send()
 
     def check(self) -> None:

@@ -94,8 +94,6 @@ class LockstepBridge:
         self._next_check_s = 0.0
         self._connections: dict[LockstepConnection, float] = {}
         """Each with when it was accepted, in s."""
-        self._writing: set[LockstepConnection] = set()
-        """Those that the selector watches for room to write."""
         self._listener = listen(profile.host, profile.port)
         self._selector = selectors.DefaultSelector()
         self._selector.register(self._listener, selectors.EVENT_READ, None)
@@ -329,7 +327,6 @@ class LockstepBridge:
         if self._connections.pop(connection, None) is None:
             return
         self._selector.unregister(connection.socket)
-        self._writing.discard(connection)
         session, connection.session = connection.session, None
         if session is not None:
             commanded = self.console.disconnect(session, self._now_ns)
@@ -343,7 +340,6 @@ class LockstepBridge:
         if connection.closed:
             self._remove(connection)
             return
-        if connection.waits_to_write is not (connection in self._writing):
-            wanted = selectors.EVENT_READ | (selectors.EVENT_WRITE if connection.waits_to_write else 0)
+        wanted = selectors.EVENT_READ | (selectors.EVENT_WRITE if connection.waits_to_write else 0)
+        if self._selector.get_key(connection.socket).events != wanted:
             self._selector.modify(connection.socket, wanted, connection)
-            self._writing ^= {connection}
