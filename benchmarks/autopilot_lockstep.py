@@ -54,7 +54,8 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--seconds", type=float, default=120.0, help="simulated")
     given = parser.parse_args()
-    resolved = resolve(parse(SESSION, SessionProfile, "session"))
+    session = parse(SESSION, SessionProfile, "session")
+    resolved = resolve(session)
     console, state = assemble(resolved, compiled)
     warm_up(console, state)
     header = LogHeader(
@@ -67,7 +68,7 @@ def main() -> None:
     profile = BridgeProfile(port=0)
     with tempfile.TemporaryDirectory() as folder, LogWriter(Path(folder) / "drive.log", header) as log:
         bridge = LockstepBridge(profile, odometry_hz=console.tick_hz / PERIOD_TICKS, drive=DRIVE)
-        autopilot = start_autopilot(bridge.url, "urban", profile, DRIVE, None, "hatchback")
+        autopilot = start_autopilot(bridge.url, session, profile, DRIVE, None)
         if not bridge.wait_for_client(60.0):
             raise SystemExit("the autopilot did not come")
         link = LockstepLink(bridge, PERIOD_TICKS, 2.0)

@@ -145,7 +145,7 @@ class Foresight:
 def _up_to_pause(rows: Row) -> int:
     """Return how many of these ticks there are up to the first in which the button for a pause is pressed."""
     edges = rows[:, _EDGES_AT]
-    if not edges.any():
+    if not np.count_nonzero(edges):
         return len(rows)
     pressed = np.flatnonzero(edges.astype(np.int64) & _BUTTON_PAUSE)
     return int(pressed[0]) + 1 if len(pressed) else len(rows)

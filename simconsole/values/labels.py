@@ -97,12 +97,12 @@ _VALIDITIES: Final[dict[float, str]] = {
 
 def mode_label(mode: float) -> str:
     """Return the name of a mode as shown to people, in capitals; an unknown number names itself."""
-    return _MODES.get(mode, f"MODE {mode:g}")
+    return _MODES.get(mode) or f"MODE {mode:g}"
 
 
 def reason_label(reason: float) -> str:
     """Return why the mode changed, or why a request was refused ("refused: ..."), in at most seven words."""
-    return _REASONS.get(reason, f"reason {reason:g}")
+    return _REASONS.get(reason) or f"reason {reason:g}"
 
 
 def notice_label(notice: float) -> str:
@@ -125,17 +125,17 @@ def arbitration_label(mode: float, reason: float, refusal: float, notice: float,
 
 def commander_label(commander: float) -> str:
     """Return whose commands are the remote side's: ROS, CAN or none."""
-    return _COMMANDERS.get(commander, f"commander {commander:g}")
+    return _COMMANDERS.get(commander) or f"commander {commander:g}"
 
 
 def link_label(state: float) -> str:
     """Return how far a controller's commands may be relied on."""
-    return _LINKS.get(state, f"link {state:g}")
+    return _LINKS.get(state) or f"link {state:g}"
 
 
 def validity_label(validity: float) -> str:
     """Return how far a device is trusted."""
-    return _VALIDITIES.get(validity, f"validity {validity:g}")
+    return _VALIDITIES.get(validity) or f"validity {validity:g}"
 
 
 def gear_label(gear: float) -> str:

@@ -59,6 +59,8 @@ PLATFORM_AT: Final = LAYOUT.pipe.stop
 """Where the platform's own state begins."""
 
 _RECORDING_FAILED: Final = int(Event.RECORDING_FAILED)
+_NOTICE_AT: Final = LAYOUT.arbitration.at("notice")
+_MODE_AT: Final = LAYOUT.arbitration.at("mode")
 
 
 class TickInputs(NamedTuple):
@@ -153,10 +155,10 @@ class Snapshot(NamedTuple):
         """What people are told (`Notice`): a failed recording first, then the arbiter's, then a missing engagement."""
         if self.recording_failed:
             return float(Notice.RECORDING_FAILED)
-        arbitration = self.arbitration
-        if arbitration.notice == Notice.NONE and arbitration.mode == Mode.PARKED and self._is_commanded:
+        notice = float(self.vector[_NOTICE_AT])
+        if not notice and float(self.vector[_MODE_AT]) == Mode.PARKED and self._is_commanded:
             return float(Notice.NOT_ENGAGED)
-        return arbitration.notice
+        return notice
 
     @property
     def _is_commanded(self) -> bool:

@@ -67,8 +67,10 @@ class ConsoleBridge:
         outputs, commands = self._out.topics(), self._command_decoder.topics()
         self.names = topic_names(profile, [*(topic.name for topic in outputs), *(topic.name for topic in commands)])
         self._schedule = OutputSchedule(outputs, self.names, profile)
-        for output in self._schedule.outputs:
-            self.router.add_output(output.name, output.type, latch=output.latched)
+        self._topics = {
+            output.name: self.router.add_output(output.name, output.type, latch=output.latched)
+            for output in self._schedule.outputs
+        }
         self.router.add_shared(ROSOUT, ROSOUT_TYPE)
         self._happened: tuple[float, float, float, float] | None = None
         self._steering = steering
@@ -84,9 +86,10 @@ class ConsoleBridge:
             self.router.tell_commander("error", f"command not followed: {broken}", now_ns)
         tick = self._tell(snapshot, broken, now_ns)
         for output in self._schedule.due(snapshot, odometry=odometry):
-            if self.router.has_subscribers(output.name):
+            topic = self._topics[output.name]
+            if topic.is_wanted:
                 tick = tick or self._out.published_tick(snapshot)
-                self.router.publish(output.name, output.build(tick), now_ns)
+                self.router.topic_registry.distribute(topic, output.build(tick), now_ns)
 
     def keep_time(self, snapshot: Snapshot, now_ns: int) -> None:
         """Take what time it is from a finished tick, without publishing anything."""
@@ -108,8 +111,10 @@ class ConsoleBridge:
 
     def _broken_limit(self, snapshot: Snapshot) -> str:
         """Return why the arbiter has refused the ROS side's newest command since the last tick; empty: it has not."""
+        if self._steering is None:
+            return ""
         before, self._implausible = self._implausible, snapshot.ros_link.implausible
-        if self._steering is None or self._implausible <= before:
+        if self._implausible <= before:
             return ""
         return broken_limit(snapshot.ros, snapshot.vehicle, self._steering)
 

@@ -74,8 +74,8 @@ class BridgeInputs:
         """
         events, self._events = self._events, 0
         command = self.command
-        if self.receipt_ns is not None:
-            command = command._replace(age_ticks=float(max(0, tick - 1 - self._receipt_tick)))
+        if self.receipt_ns is not None and tick - 1 > self._receipt_tick:  # fresh, its age is 0 already
+            command = command._replace(age_ticks=float(tick - 1 - self._receipt_tick))
         return command, EventInput(events=float(events))
 
     def _announce(self) -> None:

@@ -1,6 +1,6 @@
 """Which output topics are due in which tick, under the names and at the rates of a bridge's profile."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 from simconsole.bridge.console.topics import GLOBAL_TOPICS, ODOMETRY, ONCE, OutputTopic, PublishedTick, is_due
@@ -33,17 +33,25 @@ class OutputSchedule:
         _check_known("rates_hz", profile.rates_hz, [output.name for output in outputs])
         rated = [(output, profile.rates_hz.get(output.name, output.rate_hz)) for output in outputs]
         self.outputs = tuple(ScheduledOutput(output, names[output.name], rate) for output, rate in rated if rate)
-        self._rates_hz = {output.rate_hz for output in self.outputs}
+        self._rates_hz = tuple({output.rate_hz for output in self.outputs})
+        self._together: dict[tuple[bool, ...], tuple[ScheduledOutput, ...]] = {}
+        """The topics that are due when these rates are, found once: a drive has a handful of such sets."""
         self._last_tick: int | None = None  # that was asked about
 
-    def due(self, snapshot: Snapshot, *, odometry: bool = False) -> Iterator[ScheduledOutput]:
-        """Yield the topics that are due in this tick, in the table's order; with `odometry`, that in any case."""
+    def due(self, snapshot: Snapshot, *, odometry: bool = False) -> tuple[ScheduledOutput, ...]:
+        """Return the topics that are due in this tick, in the table's order; with `odometry`, that in any case."""
         tick, last, tick_hz = snapshot.tick, self._last_tick, snapshot.tick_hz
         self._last_tick = tick
-        rates = {rate_hz for rate_hz in self._rates_hz if is_due(tick, last, tick_hz, rate_hz)}
-        for output in self.outputs:
-            if output.rate_hz in rates or (odometry and output.standard == ODOMETRY):
-                yield output
+        which = (odometry, *[is_due(tick, last, tick_hz, rate_hz) for rate_hz in self._rates_hz])
+        found = self._together.get(which)
+        if found is None:
+            rates = {rate_hz for rate_hz, due in zip(self._rates_hz, which[1:], strict=True) if due}
+            found = self._together[which] = tuple(
+                output
+                for output in self.outputs
+                if output.rate_hz in rates or (odometry and output.standard == ODOMETRY)
+            )
+        return found
 
 
 def topic_names(profile: BridgeProfile, standard: list[str]) -> dict[str, str]:

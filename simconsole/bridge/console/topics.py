@@ -13,7 +13,7 @@ from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.labels import commander_label, link_label, mode_label, notice_label, reason_label
 from simconsole.values.signals import NEVER_TICKS, Link, Mode, RemoteCommand, VehicleState
 from simconsole.values.state_vector import Snapshot
-from simconsole.values.trigonometry import cos, sin
+from simconsole.values.trigonometry import direction
 from simconsole.values.units import NS_PER_S
 
 CLOCK: Final = "/clock"
@@ -374,9 +374,9 @@ def is_due(tick: int, last_tick: int | None, tick_hz: int, rate_hz: float) -> bo
 
 def quaternion(roll_rad: float, pitch_rad: float, yaw_rad: float) -> tuple[float, float, float, float]:
     """Return x, y, z, w of the rotation by yaw about z, then pitch about the new y, then roll about the new x."""
-    sr, cr = sin(0.5 * roll_rad), cos(0.5 * roll_rad)
-    sp, cp = sin(0.5 * pitch_rad), cos(0.5 * pitch_rad)
-    sy, cy = sin(0.5 * yaw_rad), cos(0.5 * yaw_rad)
+    cr, sr = direction(0.5 * roll_rad)
+    cp, sp = direction(0.5 * pitch_rad)
+    cy, sy = direction(0.5 * yaw_rad)
     return (
         sr * cp * cy - cr * sp * sy,
         cr * sp * cy + sr * cp * sy,

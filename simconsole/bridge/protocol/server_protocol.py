@@ -113,9 +113,11 @@ class Router:
         """Return a topic, None if there is none of that name."""
         return self.topic_registry.find(name)
 
-    def add_output(self, name: str, type_name: str, depth: int = 1, latch: bool = False) -> None:
-        """Add a topic that only the console publishes, keeping the `depth` newest messages for a slow client."""
-        self.topic_registry.add(Topic(name, self.registry.resolve(type_name), depth, owned=True, latch=latch))
+    def add_output(self, name: str, type_name: str, depth: int = 1, latch: bool = False) -> Topic:
+        """Add and return a topic that only the console publishes, keeping `depth` messages for a slow client."""
+        topic = Topic(name, self.registry.resolve(type_name), depth, owned=True, latch=latch)
+        self.topic_registry.add(topic)
+        return topic
 
     def add_shared(self, name: str, type_name: str) -> None:
         """Add a topic that the console publishes as its clients may, and that stays without any of them."""
@@ -164,7 +166,7 @@ class Router:
     def has_subscribers(self, name: str) -> bool:
         """Return whether publishing on an output would reach anyone, now or by a latch."""
         topic = self.topic_registry.find(name)
-        return topic is not None and (bool(topic.subscribers) or topic.latch)
+        return topic is not None and topic.is_wanted
 
     def publish(self, name: str, message: Any, now_ns: int) -> None:
         """Send a typed message of the console to all subscribers: encoded once, queued for each."""

@@ -69,6 +69,11 @@ class Topic:
         self.publishers: set[int] = set()
         self.subscribers: dict[int, tuple[ClientSession, SubscriptionQueue]] = {}
 
+    @property
+    def is_wanted(self) -> bool:
+        """Whether a message would reach anyone, now or by a latch."""
+        return self.latch or bool(self.subscribers)
+
     def latched_messages(self, session: int, now_ns: int) -> list[Encoder]:
         """Return what a new subscriber gets: no message whose lifespan is over, nor a graph its own."""
         if self.lifespan_ns is not None:

@@ -25,6 +25,8 @@ FURTHEST_M: Final = 1.3
 """No way back is begun that leads further than this from the path."""
 MOST_HEADING_RAD: Final = 25.0 * RAD_PER_DEG
 """Nor one that begins with a larger angle: from a standstill the car could not keep to it."""
+_OVER_LENGTHS: Final = 40.0
+"""Of an offset of a metre a few femtometres are left here, less than any position is rounded by."""
 LEFT_M: Final = 3.0
 """A car that is driven and finds itself further away than this has not been brought there by its own commands."""
 _LOOK_LENGTHS: Final = tuple(0.25 * part for part in range(1, 17))
@@ -48,6 +50,12 @@ class Approach(NamedTuple):
         decay = math.exp(-x / self.length_m)
         bracket = self.offset_m + (self.rate + self.bend_1pm * x) * x
         return bracket * decay, (self.rate + 2.0 * self.bend_1pm * x - bracket / self.length_m) * decay
+
+    def is_over(self, s_m: float) -> bool:
+        """Return whether nothing of the line is left at `s_m` and after it."""
+        return s_m - self.start_m > _OVER_LENGTHS * self.length_m or (
+            self.offset_m == 0.0 and self.rate == 0.0 and self.bend_1pm == 0.0
+        )
 
     @property
     def furthest_m(self) -> float:

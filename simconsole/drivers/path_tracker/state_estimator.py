@@ -55,6 +55,7 @@ class StateEstimator:
         self._wheel = 0.0
         self._acting = 0.0
         self._under_way: list[tuple[float, float]] = []  # (when it takes effect, command), oldest first
+        self._single_track = _single_track(car)
 
     def __copy__(self) -> "StateEstimator":
         """Return an estimator that goes on from here by itself."""
@@ -77,7 +78,7 @@ class StateEstimator:
             accel_mps2: what has been asked of the car.
         """
         time_s = self._time_s + self._timing.period_s if time_s is None else time_s
-        passed_s = min(max(time_s - self._time_s, 0.0), _LONGEST_S)
+        passed_s = clip(time_s - self._time_s, 0.0, _LONGEST_S)
         self._pose = self._filtered(seen, passed_s)
         self._velocity = (seen.vx_mps, seen.vy_mps, seen.yaw_rate_radps)
         while self._under_way and self._under_way[0][0] <= time_s + _ROUNDING_S:
@@ -92,8 +93,9 @@ class StateEstimator:
         self._under_way.append((self._time_s + self._timing.delay_s, command))
 
     def _turn_wheel(self, until_s: float) -> None:
-        self._wheel = self._lagged(self._wheel, self._acting, max(until_s - self._time_s, 0.0))
-        self._time_s = max(until_s, self._time_s)
+        if until_s > self._time_s:
+            self._wheel = self._lagged(self._wheel, self._acting, until_s - self._time_s)
+            self._time_s = until_s
 
     def _filtered(self, seen: VehicleMotion, passed_s: float) -> tuple[float, float, float]:
         if self._pose is None:
@@ -129,7 +131,9 @@ class StateEstimator:
             until = min(end, time + _SUBSTEP_S, coming[0][0] if coming else end)
             h, wheel_before, vy_before, rate_before = until - time, wheel, vy, rate
             wheel = self._lagged(wheel, command, h)
-            vx = max(0.0, vx + h * accel_mps2)
+            vx += h * accel_mps2
+            if vx < 0.0:
+                vx = 0.0
             vy, rate = self._turned(vx, vy, rate, 0.5 * (wheel_before + wheel), h)
             turned = 0.5 * h * (rate_before + rate)
             x, y = _moved(x, y, yaw + 0.5 * turned, h * vx, 0.5 * h * (vy_before + vy))
@@ -142,20 +146,44 @@ class StateEstimator:
 
     def _turned(self, vx: float, vy: float, rate: float, wheel: float, h: float) -> tuple[float, float]:
         """Return lateral speed and yaw rate of base_link after `h` s: one implicit step of the linear single track."""
-        car = self._car
         if vx < _KINEMATIC_MPS:
-            return 0.0, vx * wheel / car.wheelbase_m
-        m, j, lf, lr = car.mass_kg, car.yaw_inertia_kgm2, car.front_m, car.rear_m
-        cf, cr = car.front_stiffness_nprad, car.rear_stiffness_nprad
-        # front = cf (wheel - (vy + L r) / vx), rear = -cr vy / vx, at base_link as in the tracker's design
-        front_v, front_r, rear_v = -cf / vx, -cf * car.wheelbase_m / vx, -cr / vx
-        yaw_v, yaw_r, yaw_w = (lf * front_v - lr * rear_v) / j, lf * front_r / j, lf * cf / j
-        side_v, side_r = (front_v + rear_v) / m - lr * yaw_v, front_r / m - vx - lr * yaw_r
-        side_w = cf / m - lr * yaw_w
-        a, b, c, d = 1.0 - h * side_v, -h * side_r, -h * yaw_v, 1.0 - h * yaw_r
+            return 0.0, vx * wheel / self._car.wheelbase_m
+        yaw_v, yaw_r, yaw_w, side_v, side_r, side_w = self._single_track
+        g = h / vx
+        a, b, c, d = 1.0 - g * side_v, h * vx - g * side_r, -g * yaw_v, 1.0 - g * yaw_r
         p, q = vy + h * side_w * wheel, rate + h * yaw_w * wheel
         determinant = a * d - b * c
         return (p * d - b * q) / determinant, (a * q - c * p) / determinant
+
+
+class _SingleTrack(NamedTuple):
+    """Accelerations of base_link per lateral speed, yaw rate and road-wheel angle; the first two times forward speed.
+
+    What turning the velocity with the car costs, vx per yaw rate, comes on top of `side_r`.
+    """
+
+    yaw_v: float
+    yaw_r: float
+    yaw_w: float
+    side_v: float
+    side_r: float
+    side_w: float
+
+
+def _single_track(car: CarModel) -> _SingleTrack:
+    m, j, lf, lr = car.mass_kg, car.yaw_inertia_kgm2, car.front_m, car.rear_m
+    cf, cr = car.front_stiffness_nprad, car.rear_stiffness_nprad
+    # front = cf (wheel - (vy + L r) / vx), rear = -cr vy / vx, at base_link as in the tracker's design
+    front_r = -cf * car.wheelbase_m
+    yaw_v, yaw_r, yaw_w = (lr * cr - lf * cf) / j, lf * front_r / j, lf * cf / j
+    return _SingleTrack(
+        yaw_v=yaw_v,
+        yaw_r=yaw_r,
+        yaw_w=yaw_w,
+        side_v=-(cf + cr) / m - lr * yaw_v,
+        side_r=front_r / m - lr * yaw_r,
+        side_w=cf / m - lr * yaw_w,
+    )
 
 
 def _moved(x: float, y: float, yaw: float, forward: float, left: float) -> tuple[float, float]:

@@ -10,8 +10,9 @@ beside the path, or is pushed off it, is led back along a smooth line (approach.
 """
 
 import math
+from bisect import bisect_right
 from copy import copy
-from typing import Final, NamedTuple
+from typing import Final, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,6 +38,7 @@ from simconsole.world.route import Route
 Array = NDArray[np.float64]
 
 _SPEEDS_MPS: Final = (1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5, 8.5, 10.0, 11.5, 13.0, 14.5, 17.0, 20.0, 24.0, 29.0, 36.0)
+_STATES: Final = 6
 _CURVATURE_STEP_M: Final = 0.1
 _PUSHED_OFF_M: Final = 0.3
 _STEERING_RATE_RADPS: Final = 0.8
@@ -72,10 +74,12 @@ class Tracker:
         self._car, self._timing = car, timing
         self._along = SpeedControl(course, comfort, timing.period_s)
         designs = [_design(car, timing, weights, speed) for speed in _SPEEDS_MPS]
-        self._feedback = np.array([gains.feedback for gains in designs])
-        self._preview = np.array([gains.preview for gains in designs])
+        self._gains = np.array([[*gains.feedback, *gains.preview] for gains in designs])
+        self._more = np.diff(self._gains, axis=0)  # from one speed's gains to the next one's
         self._ahead_s = (np.arange(timing.preview_steps) + 0.5) * timing.period_s
+        self._half_square_s2 = 0.5 * self._ahead_s * self._ahead_s
         self._curvature_step_m, self._curvature = _curvatures(course)
+        self._beyond: Literal["wrap", "clip"] = "wrap" if course.closed else "clip"
         self._command = 0.0  # the last command, as the tangent of the road-wheel angle
         self._wheel = 0.0  # where the wheels will be when the next command takes effect, by the model; a tangent too
         self._estimator = StateEstimator(car, timing)
@@ -125,14 +129,21 @@ class Tracker:
         """Return by how much the command's tangent should change in the coming period."""
         speed = seen.vx_mps
         index, share = _between(speed)
-        feedback = self._feedback[index] * (1.0 - share) + self._feedback[index + 1] * share
-        preview = self._preview[index] * (1.0 - share) + self._preview[index + 1] * share
-        way = s_m + self._ahead_s * (speed + 0.5 * self._along.accel_mps2 * self._ahead_s)
-        cells, last = (way / self._curvature_step_m).astype(np.int64), len(self._curvature) - 1
-        cells = cells % (last + 1) if self.course.closed else np.clip(cells, 0, last)
-        ahead = self._curvature[cells] + self._line.curvature(way)
-        state = (lateral_m, heading_rad, seen.vy_mps, seen.yaw_rate_radps, self._wheel, self._command)
-        return -float(feedback @ state) - float(preview @ ahead)
+        gains = self._gains[index] + share * self._more[index]
+        way = s_m + speed * self._ahead_s + self._along.accel_mps2 * self._half_square_s2
+        ahead = self._curvature.take((way / self._curvature_step_m).astype(np.int64), mode=self._beyond)
+        if not self._line.is_over(s_m):
+            ahead += self._line.curvature(way)
+        offset, heading, across, turning, wheel, command = gains[:_STATES].tolist()
+        fed_back: float = (
+            offset * lateral_m
+            + heading * heading_rad
+            + across * seen.vy_mps
+            + turning * seen.yaw_rate_radps
+            + wheel * self._wheel
+            + command * self._command
+        )
+        return -fed_back - float(gains[_STATES:].dot(ahead))
 
     def _limited(self, change: float, speed: float, engaged: bool) -> float:
         """Return the command after a change, as far as steering and gate go; while not engaged no gate holds it."""
@@ -162,11 +173,9 @@ def _curvatures(course: Route) -> tuple[float, Array]:
 
 
 def _between(speed: float) -> tuple[int, float]:
-    for index in range(len(_SPEEDS_MPS) - 1):
-        low, high = _SPEEDS_MPS[index], _SPEEDS_MPS[index + 1]
-        if speed < high:
-            return index, clip((speed - low) / (high - low), 0.0, 1.0)
-    return len(_SPEEDS_MPS) - 2, 1.0
+    index = min(max(bisect_right(_SPEEDS_MPS, speed) - 1, 0), len(_SPEEDS_MPS) - 2)
+    low, high = _SPEEDS_MPS[index], _SPEEDS_MPS[index + 1]
+    return index, clip((speed - low) / (high - low), 0.0, 1.0)
 
 
 def _design(car: CarModel, timing: Timing, weights: Weights, speed: float) -> Gains:

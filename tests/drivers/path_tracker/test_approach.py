@@ -35,6 +35,16 @@ def test_steep_heading_is_bounded_and_nothing_happens_on_the_path() -> None:
     assert ON_PATH.curvature(np.array((1.0, 50.0))).tolist() == [0.0, 0.0]
 
 
+def test_nothing_is_left_of_a_line_that_is_over() -> None:
+    line = approach_from(100.0, 1.3, 0.2, 8.0)
+    assert not line.is_over(100.0 + 30.0 * line.length_m)
+    end = 100.0 + 41.0 * line.length_m
+    assert line.is_over(end)
+    assert line.at(end) == pytest.approx((0.0, 0.0), abs=1e-13)
+    assert line.curvature(np.array((end, end + 50.0))) == pytest.approx((0.0, 0.0), abs=1e-14)
+    assert ON_PATH.is_over(0.0)
+
+
 def test_how_far_a_way_back_leads() -> None:
     """Towards the path it never leads further than it begins; away from it, the furthest is where the slope is 0."""
     assert approach_from(0.0, 1.0, -0.3, 0.0).furthest_m == pytest.approx(1.0)
