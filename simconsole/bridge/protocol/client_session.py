@@ -61,26 +61,23 @@ class ClientSession:
         self.max_calls: int | None = None
         """How many calls it may have open; without, what the server's limits say of one client."""
         self.send_queue = SendQueue(max_bytes, budget, self._tell_dropped)
+        self.next_text = self.send_queue.take
+        """Returns the next text to send to the client, or None when nothing may be sent at a time in ns."""
+        self.due_ns = self.send_queue.due_ns
+        """Returns when `next_text` has something (0: now), None while nothing waits."""
         self.queues: dict[str, SubscriptionQueue] = {}
         self.advertised: dict[str, set[Id]] = {}
         self.received = 0
         self.refused = 0
         self.throttled = 0
-        self.sent = 0
         self._level = SEVERITY[DEFAULT_LEVEL]
         self._warned_ns: int | None = None
         self._wake = wake
 
-    def next_text(self, now_ns: int) -> bytes | None:
-        """Return the next text to send to the client, or None when nothing may be sent at `now_ns`."""
-        text = self.send_queue.take(now_ns)
-        if text is not None:
-            self.sent += 1
-        return text
-
-    def due_ns(self) -> int | None:
-        """Return when `next_text` has something (0: now), None while nothing waits."""
-        return self.send_queue.due_ns()
+    @property
+    def sent(self) -> int:
+        """How many texts were taken to be sent to the client."""
+        return self.send_queue.taken
 
     def set_level(self, level: str) -> None:
         """Set how severe a status must be to be sent."""

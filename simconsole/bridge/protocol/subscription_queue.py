@@ -145,6 +145,8 @@ class SendQueue:
         self.max_bytes = max_bytes
         self.bytes = 0
         self.dropped = 0
+        self.taken = 0
+        """Texts that were taken to be sent."""
         self._budget = budget or SendBudget(2**63)
         self._budget.join(self)
         self._on_dropped = on_dropped
@@ -180,17 +182,19 @@ class SendQueue:
 
     def put(self, queue: SubscriptionQueue, text: bytes, now_ns: int = 0) -> None:
         """Queue a message of a topic; what must make room for it is dropped."""
-        if len(queue.texts) >= queue.depth:
+        texts = queue.texts
+        if len(texts) >= queue.depth:
             self._shorten(queue, now_ns)
         size, budget = len(text), self._budget
         if budget.bytes + size > budget.max_bytes:
             budget.make_room(size, now_ns)
-        if queue.texts:
-            self._backlog += len(queue.texts[-1])
-        queue.texts.append(text)
+        if texts:
+            self._backlog += len(texts[-1])
+        else:
+            self._waiting[queue] = None
+        texts.append(text)
         self.bytes += size
         budget.bytes += size
-        self._waiting[queue] = None
         while self.bytes > self.max_bytes and self._backlog:
             longer = queue if len(queue.texts) > 1 else next(each for each in self._waiting if len(each.texts) > 1)
             self._drop(longer, now_ns)
@@ -198,9 +202,11 @@ class SendQueue:
     def take(self, now_ns: int) -> bytes | None:
         """Return the next text that may be sent at `now_ns`, or None."""
         if self._piece is not None:
+            self.taken += 1
             piece, self._piece = self._piece, next(self._pieces, None)
             return piece
         if self._replies:
+            self.taken += 1
             return self._in_pieces(*self._take_reply())
         if not self._waiting:
             return None
@@ -209,6 +215,7 @@ class SendQueue:
                 break
         else:
             return None
+        self.taken += 1
         text = self._pop(queue)
         queue.next_ns = now_ns + queue.throttle_ns
         if queue.texts:  # behind the others
@@ -229,7 +236,9 @@ class SendQueue:
         """Return when the next waiting text may be sent (0: now), None when nothing waits."""
         if self._replies or self._piece is not None:
             return 0
-        return min((queue.next_ns for queue in self._waiting), default=None)
+        if not self._waiting:
+            return None
+        return min(queue.next_ns for queue in self._waiting)
 
     def forget(self, queue: SubscriptionQueue) -> None:
         """Discard what waits of a topic that the client has unsubscribed from."""

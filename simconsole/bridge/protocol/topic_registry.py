@@ -5,7 +5,7 @@ from typing import Any, Final, NamedTuple
 
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.protocol.client_session import ClientSession
-from simconsole.bridge.protocol.message_encoding import Encoder, Encoding
+from simconsole.bridge.protocol.message_encoding import PLAIN_JSON, Encoder, Encoding
 from simconsole.bridge.protocol.operations import NO_QOS, Advertise, Publish, Qos, Subscribe, publish_head
 from simconsole.bridge.protocol.subscription_queue import SubscriptionQueue
 from simconsole.profiles.bridge import BridgeLimits
@@ -121,8 +121,12 @@ class TopicRegistry:
         encoder = Encoder(self.registry, topic.type, message, topic.sequence, self.ros_time_ns)
         if topic.latch or origin is not None:
             topic.latched[origin] = (encoder, now_ns)
+        encoding, head, text = PLAIN_JSON, b"", b""
         for session, queue in topic.subscribers.values():
-            session.deliver(queue, encoder.text(queue.encoding, queue.head, queue.topic), now_ns)
+            if queue.head is not head or queue.encoding != encoding:  # else the same text as for the one before
+                encoding, head = queue.encoding, queue.head
+                text = encoder.text(encoding, head, queue.topic)
+            session.deliver(queue, text, now_ns)
 
     def subscribe(self, session: ClientSession, name: str, operation: Subscribe, now_ns: int) -> None:
         """Add or change a subscription. Raises RemoteProtocolError with the reason why not."""

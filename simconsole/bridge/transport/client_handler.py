@@ -34,6 +34,8 @@ class ClientTurns:
 
     def __init__(self, clock_ns: Callable[[], int]) -> None:
         self.clock_ns = clock_ns
+        self.batch_messages = 0
+        """As many may wait for one client before they are sent."""
         self._turns = Turns()
         self._paused: set[ClientHandler] = set()
         self._due: asyncio.Handle | None = None
@@ -49,8 +51,13 @@ class ClientTurns:
             self._paused.add(client)
             client.connection.pause_reading()
 
+    def join(self) -> None:
+        """Count a client more."""
+        self.batch_messages += _BATCH_PER_CLIENT
+
     def leave(self, client: "ClientHandler") -> None:
         """Forget a client."""
+        self.batch_messages -= _BATCH_PER_CLIENT
         self._paused.discard(client)
         self._turns.leave(client.inbox, self.clock_ns())
 
@@ -80,10 +87,6 @@ class Server(Protocol):
     console: ConsoleBridge
     turns: ClientTurns
 
-    @property
-    def clients(self) -> int:
-        """How many clients are connected."""
-
     def remove(self, client: "ClientHandler") -> None:
         """Forget a client whose connection has ended."""
 
@@ -95,6 +98,8 @@ class ClientHandler:
         self.connection = connection
         self.stalled_since_ns: int | None = None
         self._server = server
+        self._turns = server.turns
+        self._turns.join()
         router = server.console.router
         self._receive = router.receive
         self._limits = server.console.profile.limits
@@ -113,7 +118,7 @@ class ClientHandler:
 
     def receive(self, message: bytes) -> None:
         """Take a message."""
-        self._server.turns.receive(self, message)
+        self._turns.receive(self, message)
 
     def resume(self) -> None:
         """Continue sending."""
@@ -122,7 +127,7 @@ class ClientHandler:
 
     def closed(self) -> None:
         """Remove the client from the server."""
-        self._server.turns.leave(self)
+        self._turns.leave(self)
         if self._timer is not None:
             self._timer.cancel()
         self._server.remove(self)
@@ -141,7 +146,7 @@ class ClientHandler:
     def _wake(self) -> None:
         """Send what is queued by the loop's next turn in one piece; many messages are sent at once."""
         self._queued += 1
-        if self._queued >= _BATCH_PER_CLIENT * self._server.clients:
+        if self._queued >= self._turns.batch_messages:
             self._send()
         elif not self._is_woken:
             self._is_woken = True
@@ -163,15 +168,15 @@ class ClientHandler:
         if not connection.takes_more:
             self.stalled_since_ns = now_ns
         elif len(frames) < _WRITE_BYTES:
-            self._set_timer(now_ns)
+            due_ns = self.session.due_ns()
+            if due_ns is not None:
+                self._set_timer(due_ns, now_ns)
         elif not self._is_woken:
             self._is_woken = True
             self._loop.call_soon(self._send_rest)
 
-    def _set_timer(self, now_ns: int) -> None:
+    def _set_timer(self, due_ns: int, now_ns: int) -> None:
         """Wake up when the first throttled message is due, whether or not more is published until then."""
-        due_ns = self.session.due_ns()
-        if due_ns is not None:
-            if self._timer is not None:
-                self._timer.cancel()
-            self._timer = self._loop.call_later(max(0, due_ns - now_ns) / NS_PER_S, self._wake)
+        if self._timer is not None:
+            self._timer.cancel()
+        self._timer = self._loop.call_later(max(0, due_ns - now_ns) / NS_PER_S, self._wake)

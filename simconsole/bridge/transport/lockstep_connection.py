@@ -93,6 +93,7 @@ class LockstepConnection:
         except OSError:
             self.close()
             return
+        has_ended = not data
         if data:
             self._checks.heard(time.monotonic_ns())
             frames, rest = take_whole(self._web, data)
@@ -114,7 +115,7 @@ class LockstepConnection:
                 self._answer(event)
             elif isinstance(event, Frame) and event.opcode < CLOSE and self.session is not None:
                 self._take(event.opcode, bytes(event.data), event.fin, self.session)
-        if not data or self._web.state is State.CLOSED:
+        if has_ended or self._web.state is State.CLOSED:
             self.close()
 
     def flush(self, now_ns: int) -> None:

@@ -19,6 +19,7 @@ from simconsole.bridge.protocol.handshake import Admission, Refusal, handshake_r
 from simconsole.bridge.transport import sockets
 from simconsole.bridge.transport.connection_checks import ConnectionChecks
 from simconsole.bridge.transport.interface import Acceptor, ConnectionHandler
+from simconsole.bridge.transport.whole_frames import take_whole
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import FrameError
 
@@ -42,7 +43,7 @@ class WebsocketsConnection(ServerConnection):
     @property
     def is_open(self) -> bool:
         """Whether messages can pass, as far as this side knows."""
-        return self.state is State.OPEN
+        return self.protocol.state is State.OPEN
 
     @property
     def takes_more(self) -> bool:
@@ -92,8 +93,14 @@ class WebsocketsConnection(ServerConnection):
         self.transport.resume_reading()
 
     def data_received(self, data: bytes) -> None:
-        """Note the time of everything that arrives, pongs too."""
-        self._checks.heard(self._clock_ns())
+        """Note the time of everything that arrives, pongs too; take what needs the library's parser through it."""
+        now_ns = self._clock_ns()
+        self._checks.heard(now_ns)
+        frames, data = take_whole(self.protocol, data)
+        for frame in frames:
+            self._take(frame.opcode, frame.data, True, now_ns)
+        if frames and not data:
+            return
         super().data_received(data)
         if self.protocol.close_rcvd is not None:
             self.transport.close()  # both have sent close frames: the server closes (RFC 6455, 7.1.1)
@@ -104,11 +111,14 @@ class WebsocketsConnection(ServerConnection):
         """Join frames here and now: the library's queue and its reader would cost as much as reading them."""
         if not isinstance(event, Frame) or event.opcode >= CLOSE:
             super().process_event(event)
-            return
+        else:
+            self._take(event.opcode, bytes(event.data), event.fin, self._clock_ns())
+
+    def _take(self, opcode: int, data: bytes, fin: bool, now_ns: int) -> None:
         if self._has_failed:
             return
         try:
-            message = self._checks.assembler.add(event.opcode, bytes(event.data), event.fin, self._clock_ns())
+            message = self._checks.assembler.add(opcode, data, fin, now_ns)
         except FrameError as error:
             self._has_failed = True
             self.protocol.fail(error.code, str(error))

@@ -1,11 +1,14 @@
 """Quality of service: what a publisher or subscriber asks for is done. The rest is in test_server_protocol.py."""
 
+import json
 from collections.abc import Callable
 from typing import Any
 
+import cbor2
 import pytest
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.protocol.message_decoding import Binary
 
 S = 10**9
 CHATTER = {"topic": "/chatter", "type": "std_msgs/String"}
@@ -168,3 +171,28 @@ def test_topics_of_the_console_keep_what_they_have(pair: tuple[Any, Any]) -> Non
     talker.send(op="advertise", **control, qos={"durability": "transient_local", "depth": 7}, latch=True)
     topic = talker.bridge.router.topics[control["topic"]]
     assert (topic.latch, topic.depth, topic.lifespan_ns) == (False, 100, None)
+
+
+def test_clients_of_one_spelling_and_encoding_share_a_text_and_others_get_their_own(
+    bridge: ConsoleBridge, join: Callable[..., Any]
+) -> None:
+    talker = join(bridge)
+    asked = [
+        {"topic": "/chatter"},
+        {"topic": "/chatter"},
+        {"topic": "chatter"},
+        {"topic": "/chatter", "compression": "cbor"},
+        {"topic": "/chatter"},
+    ]
+    clients = [join(bridge) for _ in asked]
+    for client, how in zip(clients, asked, strict=True):
+        client.send(op="subscribe", type="std_msgs/String", **how)
+    talker.send(op="advertise", **CHATTER)
+    for word in ("one", "two"):
+        say(talker, word)
+        texts = [client.session.next_text(0) for client in clients]
+        decoded = [(cbor2 if isinstance(text, Binary) else json).loads(text) for text in texts]
+        assert [text["topic"] for text in decoded] == [how["topic"] for how in asked]
+        assert [text["msg"]["data"] for text in decoded] == [word] * len(asked)
+        assert [isinstance(text, Binary) for text in texts] == ["compression" in how for how in asked]
+        assert texts[0] is texts[1]

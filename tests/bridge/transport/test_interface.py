@@ -9,12 +9,12 @@ from typing import Any, Protocol
 
 import pytest
 from websockets.asyncio.client import ClientConnection, connect
-from websockets.frames import Frame
+from websockets.frames import Frame, Opcode
 from websockets.protocol import Protocol as WebSocketProtocol
 from websockets.protocol import Side
 
 from simconsole.bridge.protocol.access import Role
-from simconsole.bridge.protocol.frames import FRAME_BYTES, FrameWriter, MessageAssembler, framed
+from simconsole.bridge.protocol.frames import FRAME_BYTES, INVALID_DATA, FrameWriter, MessageAssembler, framed
 from simconsole.bridge.protocol.handshake import Admission, HandshakeRequest, Refusal
 from simconsole.bridge.protocol.message_decoding import Binary
 from simconsole.bridge.transport.interface import Connection, ConnectionHandler
@@ -145,6 +145,14 @@ class OverSockets:
     async def leave(self) -> None:
         await self._peer.close()
 
+    def write(self, data: bytes) -> None:
+        """Send octets as they are, in one piece."""
+        self._peer.transport.write(data)
+
+    async def close_code(self) -> int | None:
+        await self._peer.wait_closed()
+        return self._peer.close_code
+
 
 @asynccontextmanager
 async def in_memory(
@@ -204,6 +212,28 @@ def test_messages_come_in_whole_and_say_whether_they_are_text(pair: Pair) -> Non
         assert not connection.is_open
 
     run(pair, check)
+
+
+@pytest.mark.parametrize("library", ["websockets", "picows"])
+def test_what_arrives_in_one_piece_is_taken_in_order_up_to_wrong_text(library: str) -> None:
+    said = [(Opcode.TEXT, b"{}"), (Opcode.PING, b"p"), (Opcode.BINARY, b"\xa0"), (Opcode.TEXT, b"[]")]
+    wrong = [(Opcode.TEXT, b"1"), (Opcode.TEXT, b"\xff"), (Opcode.TEXT, b"2")]
+
+    def piece(messages: list[tuple[Opcode, bytes]]) -> bytes:
+        return b"".join(Frame(opcode, data).serialize(mask=True) for opcode, data in messages)
+
+    async def check(connection: Connection, client: Notes, far: Far) -> None:
+        assert isinstance(far, OverSockets)
+        whole = piece(said)
+        far.write(whole + whole[:5])
+        await until(lambda: len(client.heard) == 3)
+        far.write(whole[5:])
+        await until(lambda: len(client.heard) == 6)
+        far.write(piece(wrong))
+        assert await far.close_code() == INVALID_DATA
+        assert client.heard == [b"{}", b"\xa0", b"[]", b"{}", b"\xa0", b"[]", b"1"]
+
+    run(partial(over_sockets, library), check)
 
 
 @each
