@@ -47,7 +47,7 @@ class DriveResult(NamedTuple):
 def drive(
     resolved: ResolvedSession,
     folder: Path,
-    watch: Callable[[Snapshot], bool] = lambda snapshot: False,
+    watch: Callable[[Snapshot], bool] | None = None,
     on_bridge: Callable[[str], None] = lambda url: None,
     given: Given = NOTHING_GIVEN,
 ) -> DriveResult:
@@ -83,8 +83,14 @@ def drive(
             state,
             opened.components,
             ticks,
-            lambda snapshot: interrupt.raised or opened.left() or watch(snapshot) or opened.finished(snapshot),
-            resolved.session.mode.start == "on_request",
+            lambda snapshot: (
+                interrupt.raised
+                or opened.left()
+                or (watch is not None and watch(snapshot))
+                or opened.finished(snapshot)
+            ),
+            on_request=resolved.session.mode.start == "on_request",
+            at_once=watch is None,
         )
         if interrupt.raised or opened.left():
             state = come_to_rest(console, state, opened.components.recorder)

@@ -69,6 +69,7 @@ def run(
     ticks: int,
     finished: Callable[[Snapshot], bool] = lambda snapshot: False,
     on_request: bool = False,
+    at_once: bool = True,
 ) -> ConsoleState:
     """Drive until `ticks` have passed or `finished` says so; return the last state.
 
@@ -77,14 +78,15 @@ def run(
     the last one before simulated time stands; the one with START goes on after it. With `on_request` the first tick
     pauses.
 
-    Ticks that all parts foresee are made at once (`Foresight`): `finished` is asked after them, not between them.
+    Ticks that all parts foresee are made at once (`Foresight`): `finished` is asked after them, not between them. It is
+    asked after each tick without `at_once`.
     """
     carried = _PAUSE if on_request else 0
     carried_ecu = 0
     snapshot = Snapshot(state.tick, console.tick_hz, state.vector)
     end, latencies = state.tick + ticks, components.latencies
     outputs = [(output, getattr(output, "hop", Hop.OTHERS)) for output in components.outputs]
-    foresight = _foresight(console, components)
+    foresight = _foresight(console, components) if at_once else None
     while state.tick < end and not finished(snapshot):
         if foresight is not None and not carried:
             state, carried = foresight.advance(state, end)

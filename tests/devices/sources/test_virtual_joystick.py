@@ -18,7 +18,7 @@ PAD = VirtualSpec("Pad", 0x1234, 0x5678, 2, 3, 1)
 def test_pygame_sees_the_real_ids_names_and_counts(plugged: VirtualCockpit) -> None:
     pygame = sdl_runtime.acquire()
     pygame.event.get()
-    seen = {entry[:3] + entry[4:] for entry, _ in connected_joysticks(pygame)}
+    seen = {entry[:3] + entry[4:7] for entry, _ in connected_joysticks(pygame)}
     sdl_runtime.release()
     assert seen == {
         (0x044F, 0xB65E, "Thrustmaster TRS Racing wheel", 4, 13, 1),
