@@ -143,6 +143,6 @@ def test_person_who_pulls_hard_enough_for_long_enough_takes_the_wheel(control: C
     watch = START
     for tick in range(int(control.steering_override_ticks) + 1):
         assert not steering_taken(watch, control), tick
-        watch = watch_wheel(watch, 0.0, 0.0, 0.0, 1.3, True, True, control)
+        watch = watch_wheel(watch, 0.0, 0.0, 0.0, control.steering_override_nm + 0.1, True, True, control)
     assert steering_taken(watch, control)
-    assert watch_wheel(watch, 0.0, 0.0, 0.0, 1.1, True, True, control).past_ticks == 0.0
+    assert watch_wheel(watch, 0.0, 0.0, 0.0, control.steering_override_nm - 0.1, True, True, control).past_ticks == 0.0
