@@ -32,7 +32,7 @@ DEAD_RADPS: Final = 0.035
 """Yaw rate by which a car may differ from the model before ESC acts: 2 deg/s."""
 STABILITY_FROM_MPS: Final = 4.0
 STABILITY_LAG_S: Final = 0.02
-STABILITY_SLIP: Final = 0.12
+STABILITY_SLIP: Final = 0.08
 STABILITY_LEAST_NM: Final = 1.0
 """Slip at which a wheel is held that ESC brakes, and the least torque that counts as braking."""
 SAME_NM: Final = 0.1
