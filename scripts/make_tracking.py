@@ -53,6 +53,9 @@ COLUMNS: Final = (
 )
 
 
+LABELS = {"hatchback": "hatchback", "light_van": "light van", "commonroad_bmw320i": "BMW 320i"}
+
+
 class Row(NamedTuple):
     """What one row of the table measures."""
 
@@ -100,7 +103,7 @@ def line(row: Row, done: list[Tracked]) -> str:
     rms = (sum(one.rms_cm**2 * one.driven_s for one in done) / driven_s) ** 0.5
     cells = (
         NAMES[row.tracker],
-        f"`{row.vehicle}`",
+        LABELS[row.vehicle],
         row.link,
         f"{rms:.2f} cm",
         f"{max(one.rms_cm for one in done):.2f} cm",
