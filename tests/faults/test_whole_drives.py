@@ -164,6 +164,7 @@ def test_n04_a_real_half_open_connection_in_a_drive_is_stale_in_time(
     controller.start()
     session = override(load_session(str(tmp_path / "session.yaml")), outputs={"bridge": {"port": port}})
     drive(resolve(session), tmp_path / "bundle")
+    controller.sock.shutdown(socket.SHUT_RDWR)  # deaf, it would never hear that the drive has ended
     controller.join(PATIENCE_S)
     table = open_bundle(tmp_path / "bundle").log.table()
     modes, last = table.column("arbitration.mode"), newest(table)
