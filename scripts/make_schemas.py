@@ -38,11 +38,18 @@ def schemas() -> dict[str, str]:
     """Return the text of each schema by its file name."""
     dialect = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
     found = {kind: msgspec.json.schema(profile) for kind, profile in KINDS.items()}
+    with_default_kind(found["world"])
     found |= {kind: with_checksum(msgspec.json.schema(record)) for kind, record in SEALED.items()}
     return {
         f"{kind}.schema.json": json.dumps(dialect | unindented(schema), indent=1) + "\n"
         for kind, schema in found.items()
     }
+
+
+def with_default_kind(schema: dict[str, Any]) -> dict[str, Any]:
+    """Return the schema of worlds: one that names no kind is a course."""
+    schema["$defs"]["CourseProfile"]["required"].remove("kind")
+    return schema
 
 
 def with_checksum(schema: dict[str, Any]) -> dict[str, Any]:
