@@ -367,7 +367,7 @@ def is_due(tick: int, last_tick: int | None, tick_hz: int, rate_hz: float) -> bo
     """
     if rate_hz == ONCE:
         return last_tick is None
-    if last_tick is None or tick <= last_tick:  # at the start, or after it has begun anew
+    if last_tick is None or tick < last_tick:  # at the start, or after it has begun anew
         last_tick = 0
     return int(tick * rate_hz / tick_hz) > int(last_tick * rate_hz / tick_hz)
 
