@@ -65,7 +65,7 @@ BOUNDS: Final[dict[str, tuple[float, float]]] = {
     **dict.fromkeys([f"{wheel}_deflection_x_m" for wheel in WHEELS], (-0.252, 0.252)),
     **dict.fromkeys([f"{wheel}_deflection_y_m" for wheel in WHEELS], (-0.454, 0.454)),
     **dict.fromkeys([f"{wheel}_lift_mps" for wheel in WHEELS], (-50.0, 50.0)),  # 37 kg thrown by a stop over 0.5 m
-    **dict.fromkeys([f"{wheel}_brake_nm" for wheel in WHEELS], (0.0, 3550.0)),  # pedal 1650 N m and ESC 1900
+    **dict.fromkeys([f"{wheel}_brake_nm" for wheel in WHEELS], (0.0, 3600.0)),  # pedal 1700 N m and ESC 1900
     "engine_radps": (-4750.0, 4750.0),  # 330 rad/s at a wheel in first gear, clutch closed
     "engine_running": (0.0, 1.0),
     "engine_impulse_nms": (-0.27, 0.27),  # friction at that speed, in 1 ms
