@@ -29,7 +29,8 @@ def test_a_stop_that_nobody_steers_is_short_and_stays_stopped(make_rig: MakeRig)
     assert decel[-1] == pytest.approx(3.5, abs=0.2)
     assert 4.0 < max(jerk[2:]) < 6.0
     held_s = rig.memory.mode_ticks * rig.tick_s
-    assert rig.command.road_wheel_rad == pytest.approx(0.05 - rig.settings.stop_road_wheel_decay_radps * held_s, abs=1e-3)
+    straightened_rad = rig.settings.stop_road_wheel_decay_radps * held_s
+    assert rig.command.road_wheel_rad == pytest.approx(0.05 - straightened_rad, abs=1e-3)
     rig.until(Mode.STOPPED)
     assert rig.reason is Reason.STANDSTILL
     rig.send()
