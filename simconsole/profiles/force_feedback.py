@@ -69,7 +69,7 @@ class ForceFeedback(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     gain_after_percent: Percent = 100  # what is left behind when the console lets go of the wheel
     autocentre_after_percent: Annotated[int, Meta(ge=0, le=99)] = 20
     device_damper: Annotated[float, Meta(ge=0.0, le=1.0)] = 0.1  # share of the device's own damper; 0: none
-    # Hands. The first is the largest torque of hands that only rest on the rim while the wheel turns under them: what they
-    # drag (0.8 N m) and their mass in a tight turn at walking pace, where the wheel spins up with 30 rad/s2.
+    # Hands. The first is the largest torque of hands that only rest on the rim while the wheel turns under them: their
+    # drag (0.8 N m), and their mass in a tight turn at walking pace, where the wheel spins up with 30 rad/s2.
     resting_hands_nm: Annotated[float, Meta(ge=0.0, le=3.0)] = 1.4
     hands_on_nm: Annotated[float, Meta(ge=0.05, le=5.0)] = 0.25
