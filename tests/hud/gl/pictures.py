@@ -1,6 +1,5 @@
 """Real pictures by EGL, as arrays: rows from the top."""
 
-from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,15 +13,25 @@ if TYPE_CHECKING:
 Pixels = NDArray[np.uint8]
 
 
-@cache
-def _made() -> "moderngl.Context":
-    return windowless_context()
+_contexts: "list[moderngl.Context]" = []
 
 
 def context() -> "moderngl.Context":
-    """The one context of all pictures, current again if a window was opened since."""
-    _made().mglo.__enter__()  # what `with context:` begins with: makes it current
-    return _made()
+    """The context of all pictures, current; another one if SDL has closed the display that both drew on."""
+    if not _contexts or not _is_alive(_contexts[-1]):
+        _contexts.append(windowless_context())
+    return _contexts[-1]
+
+
+def _is_alive(made: "moderngl.Context") -> bool:
+    import moderngl
+
+    made.mglo.__enter__()  # what `with context:` begins with: makes it current
+    try:
+        made.program(vertex_shader="#version 330\nvoid main() { gl_Position = vec4(0.0); }").release()
+    except moderngl.Error:
+        return False
+    return True
 
 
 def target(width_px: int, height_px: int) -> "moderngl.Framebuffer":
