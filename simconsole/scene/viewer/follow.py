@@ -66,6 +66,7 @@ def follow(ports: Ports, job: Job, path: Path) -> None:
             ticks = np.array([snapshot.tick for snapshot in waiting], dtype=np.int64)
             added, memory = piece(vectors, job.columns, ticks, job.tick_hz, job.profile.rate_hz, memory)
             view.add(added._replace(lanes=(*added.lanes, link)))
+            view.settle()
             link = Lane(LINK_LANE, [], [])
             waiting.clear()
             written_s = time.monotonic()

@@ -94,6 +94,14 @@ class RerunView:
         self._driven(piece.strips)
         self._entries(piece.entries)
 
+    def settle(self) -> None:
+        """Wait until all added is in the file: what rerun has queued for a slow disk would grow in memory.
+
+        Raises:
+            WorkerError: the disk did not take it within the profile's wait; the file holds what came before.
+        """
+        self._flush()
+
     def close(self) -> None:
         """Write what is still queued, but never wait longer than the profile says.
 
