@@ -92,3 +92,40 @@ def test_finder_of_records_built_by_position_finds_them() -> None:
         "A(1, 2, 3, 4, 5, 6)\nA(1, 2, 3, 4, 5, *rest)\nA(a=1)\nB(1, 2, 3, 4, 5, 6)\nA(*rest)\nA(1, 2, 3, 4, 5, f=6)"
     )
     assert built_by_position(tree, {"A"}) == ["A, line 1"]
+
+
+def members_chosen_in_calls(tree: ast.AST) -> list[str]:
+    """Calls within kernels in whose arguments a conditional expression chooses a member of an enumeration.
+
+    Python 3.12 and later compile such a call for each branch. numba then finds a record of an integer and one of a
+    number, and unifies neither.
+    """
+    kernels = [
+        node
+        for node in ast.walk(tree)
+        if isinstance(node, ast.FunctionDef) and any("kernel" in ast.unparse(one) for one in node.decorator_list)
+    ]
+    arguments = [
+        (call, value)
+        for kernel in kernels
+        for call in ast.walk(kernel)
+        if isinstance(call, ast.Call)
+        for value in (*call.args, *(keyword.value for keyword in call.keywords))
+        if isinstance(value, ast.IfExp)
+    ]
+    return [
+        f"{ast.unparse(call.func)}, line {value.lineno}"
+        for call, value in arguments
+        if any(isinstance(branch, ast.Attribute) and branch.attr.isupper() for branch in (value.body, value.orelse))
+    ]
+
+
+def test_kernels_compile_with_every_python() -> None:
+    found = {name: members_chosen_in_calls(ast.parse(path.read_text())) for name, path in modules().items()}
+    assert {name: calls for name, calls in found.items() if calls} == {}
+
+
+def test_finder_of_chosen_members_finds_them() -> None:
+    kernel = "@kernel\ndef f(a, b):\n    return A(a, fault=Fault.HOT if b else 0.0, gear=a if b else 0.0)\n"
+    assert members_chosen_in_calls(ast.parse(kernel)) == ["A, line 3"]
+    assert members_chosen_in_calls(ast.parse(kernel.removeprefix("@kernel\n"))) == []

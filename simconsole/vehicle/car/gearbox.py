@@ -262,6 +262,11 @@ def by_automatic(
         gear_fault=0.0,
     )
     clutch = automatic_clutch(p, shifted, request, turning, step_s)
+    # No conditional expression within the call: Python 3.12 and later compile a call for each branch, and numba does
+    # not unify their types.
+    fault = 0.0
+    if turning.hot != 0.0:
+        fault += GearFault.CLUTCH_HOT
     return Gearbox(
         gear=gear,
         clutch=clutch,
@@ -269,7 +274,7 @@ def by_automatic(
         wanted_gear=target,
         shift_left_s=left,
         since_shift_s=since,
-        gear_fault=GearFault.CLUTCH_HOT if turning.hot != 0.0 else 0.0,
+        gear_fault=fault,
     )
 
 
