@@ -4,6 +4,7 @@ Topics are of std_msgs/String, services of std_srvs/SetBool, actions of test_msg
 input does.
 """
 
+import itertools
 import json
 import sys
 import threading
@@ -12,6 +13,7 @@ from collections.abc import Callable
 from typing import Any
 
 import rclpy
+from nav_msgs.msg import Path
 from rclpy.action import ActionClient, ActionServer
 from rclpy.action.server import CancelResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
@@ -19,13 +21,15 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.task import Future
-from std_msgs.msg import Int32, String
+from sensor_msgs.msg import Image, PointCloud2, PointField
+from std_msgs.msg import Float64, Int32, String
 from std_srvs.srv import SetBool
 from test_msgs.action import Fibonacci
 
 QUEUE = QoSProfile(depth=1000)
 """Of a calling node's own: with rclpy's 10 two busy nodes lose answers without any relay between them."""
-TYPES = {"String": String, "Int32": Int32}
+TYPES = {"String": String, "Int32": Int32, "Float64": Float64, "Path": Path, "Image": Image, "PointCloud2": PointCloud2}
+CLOUD_POINTS = 62_500  # of 16 bytes: 1 MB
 
 
 class Puppet(Node):  # type: ignore[misc]  # rclpy has no types here
@@ -54,11 +58,40 @@ class Puppet(Node):  # type: ignore[misc]  # rclpy has no types here
         for number in range(count):
             publisher.publish(String(data=str(number)))
 
-    def _do_subscribe(self, name: str, kind: str = "String") -> None:
-        def hear(message: Any) -> None:
-            say(heard=name, data=message.data)
+    def _do_stream(self, name: str, kind: str, hz: float) -> None:
+        """Publish numbered pictures or clouds until the stream is destroyed; each byte of data is the number's last."""
+        publisher = self._keep("publisher", name, lambda: self.create_publisher(TYPES[kind], name, 10))
+        numbers = itertools.count()
 
-        self._keep("subscription", name, lambda: self.create_subscription(TYPES[kind], name, hear, 100))
+        def send() -> None:
+            publisher.publish(large(kind, next(numbers)))
+
+        self._keep("stream", name, lambda: self.create_timer(1.0 / hz, send, callback_group=self._group))
+
+    def _do_log(self, text: str) -> None:
+        self.get_logger().info(text)
+
+    def _do_offers(self, name: str) -> None:
+        found = [info.qos_profile for info in self.get_publishers_info_by_topic(name)]
+        say(
+            offers=name,
+            qos=[
+                {
+                    "reliability": qos.reliability.name,
+                    "deadline_ns": qos.deadline.nanoseconds,
+                    "lifespan_ns": qos.lifespan.nanoseconds,
+                }
+                for qos in found
+            ],
+        )
+
+    def _do_subscribe(self, name: str, kind: str = "String", latched: bool = False) -> None:
+        def hear(message: Any) -> None:
+            say(heard=name, data=message.header.frame_id if kind == "Path" else message.data)
+
+        durability = DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE
+        qos = QoSProfile(depth=100, durability=durability)
+        self._keep("subscription", name, lambda: self.create_subscription(TYPES[kind], name, hear, qos))
 
     def _do_serve(self, name: str) -> None:
         def flip(request: Any, response: Any) -> Any:
@@ -167,6 +200,7 @@ class Puppet(Node):  # type: ignore[misc]  # rclpy has no types here
             "subscription": self.destroy_subscription,
             "service": self.destroy_service,
             "client": self.destroy_client,
+            "stream": self.destroy_timer,
         }
         ends.get(kind, lambda entity: entity.destroy())(entity)
 
@@ -199,6 +233,22 @@ class Puppet(Node):  # type: ignore[misc]  # rclpy has no types here
         end_s = time.monotonic() + patience_s
         while not is_ready() and time.monotonic() < end_s:
             time.sleep(0.005)
+
+
+def large(kind: str, number: int) -> Any:
+    """A picture of 640x480 in colour, or a cloud of 1 MB, with its number as the frame."""
+    if kind == "Image":
+        message = Image(height=480, width=640, encoding="rgb8", step=640 * 3)
+        message.data = bytes([number % 256]) * (640 * 480 * 3)
+    else:
+        fields = [
+            PointField(name=name, offset=4 * place, datatype=PointField.FLOAT32, count=1)
+            for place, name in enumerate(("x", "y", "z", "intensity"))
+        ]
+        message = PointCloud2(height=1, width=CLOUD_POINTS, fields=fields, point_step=16, row_step=16 * CLOUD_POINTS)
+        message.data = bytes([number % 256]) * (16 * CLOUD_POINTS)
+    message.header.frame_id = str(number)
+    return message
 
 
 def say(**seen: Any) -> None:

@@ -129,6 +129,13 @@ class Relay:
             # What was drained before was for the graph; what waits now came from it and must not go back.
             self._main.send_queue.forget(echo)
 
+    def lost(self, name: str, count: int, now_ns: int) -> None:
+        """Take the news that so many messages of a topic came faster than they could be taken; tell who subscribes."""
+        topic = self._router.topic(name)
+        if topic is not None:
+            for session, queue in topic.subscribers.values():
+                session.send_queue.lose(queue, count, now_ns)
+
     def failed(self, kind: Kind, name: str, why: str, now_ns: int) -> None:
         """Take the news that the graph could not make an endpoint, or, with an empty `why`, that it now could."""
         self._failed[kind, name] = why

@@ -293,10 +293,10 @@ class Router:
         self._require(session, Role.PUBLISH)
         # A name that is registered as given needs no resolving.
         topic = self.topic_registry.find(operation.topic) or self.topic_registry.find(resolve_topic(operation.topic))
-        if operation.type is not None:
-            topic = self._advertised(session, topic, operation, operation.type)
-        if topic is None:
-            raise RemoteProtocolError("advertise the topic first: nobody has said its type")
+        if operation.type is not None and topic is not None and self.registry.resolve(operation.type) != topic.type:
+            raise RemoteProtocolError(f"the topic is {topic.type}, not {self.registry.resolve(operation.type)}")
+        if topic is None or not (topic.owned or session.in_graph or session.number in topic.publishers):
+            topic = self._advertise_by_publishing(session, topic, operation)
         if not isinstance(operation.msg, dict):
             raise RemoteProtocolError("msg must be an object")
         if topic.command is not None:
@@ -310,15 +310,13 @@ class Router:
         self.topic_registry.distribute(topic, message, now_ns, origin)
         return Outcome("done", topic.name, "")
 
-    def _advertised(self, session: ClientSession, topic: Topic | None, operation: Publish, type_name: str) -> Topic:
-        """Return the topic of a message that says its type: whoever has not advertised it does so by this."""
-        if topic is None:
-            return self.topic_registry.advertise(
-                session, resolve_topic(operation.topic), Advertise(operation.topic, type_name)
-            )
-        if self.registry.resolve(type_name) != topic.type:
-            raise RemoteProtocolError(f"the topic is {topic.type}, not {self.registry.resolve(type_name)}")
-        return topic
+    def _advertise_by_publishing(self, session: ClientSession, topic: Topic | None, operation: Publish) -> Topic:
+        """Return the topic of a message whose sender has not advertised it and does so by this: nodes get it too."""
+        type_name = operation.type if topic is None else topic.type
+        if type_name is None:
+            raise RemoteProtocolError("advertise the topic first: nobody has said its type")
+        name = resolve_topic(operation.topic)
+        return self.topic_registry.advertise(session, name, Advertise(operation.topic, type_name))
 
     def _command(
         self,

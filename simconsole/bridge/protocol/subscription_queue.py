@@ -199,6 +199,13 @@ class SendQueue:
             longer = queue if len(queue.texts) > 1 else next(each for each in self._waiting if len(each.texts) > 1)
             self._drop(longer, now_ns)
 
+    def lose(self, queue: SubscriptionQueue, count: int, now_ns: int) -> None:
+        """Count lost messages of a topic; a client that has asked for the newest now and then is not told."""
+        queue.dropped += count
+        self.dropped += count
+        if queue.depth > 1 and not queue.throttle_ns:
+            self._on_dropped(queue, now_ns)
+
     def take(self, now_ns: int) -> bytes | None:
         """Return the next text that may be sent at `now_ns`, or None."""
         if self._piece is not None:
@@ -256,12 +263,8 @@ class SendQueue:
     def _shorten(self, queue: SubscriptionQueue, now_ns: int) -> None:
         """Make room for one more message in a topic's queue that is full."""
         while len(queue.texts) >= queue.depth:
-            if queue.depth == 1 or queue.throttle_ns:
-                self._pop(queue)  # the client asked for the newest now and then: it is not told
-                queue.dropped += 1
-                self.dropped += 1
-            else:
-                self._drop(queue, now_ns)
+            self._pop(queue)
+            self.lose(queue, 1, now_ns)
 
     def _drop(self, queue: SubscriptionQueue, now_ns: int) -> None:
         self._pop(queue)

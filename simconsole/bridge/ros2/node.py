@@ -7,7 +7,7 @@ which does everything else in `pump`.
 import importlib.util
 import logging
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any, Final
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
@@ -16,7 +16,7 @@ from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.ros2.graph import NOT_INSTALLED, Graph
 from simconsole.bridge.ros2.graph_topics import ReceivedMessage
 from simconsole.bridge.ros2.message_types import describe
-from simconsole.bridge.ros2.received_messages import ReceivedMessages
+from simconsole.bridge.ros2.received_messages import TURN_BYTES, TURN_MESSAGES, ReceivedMessages
 from simconsole.profiles.bridge import BridgeProfile, Ros2Profile
 from simconsole.values.errors import BridgeError, ProfileError
 
@@ -60,9 +60,8 @@ class Ros2Link:
             raise BridgeError("outputs.bridge.ros2: rclpy has failed; its own message stands above")
 
     def pump(self, now_ns: int) -> None:
-        """Pass on what has come from the graph and what is for it."""
-        while self._inbox:
-            event, arguments = self._inbox.popleft()
+        """Pass on what has come from the graph, as much as one turn may take, and what is for it."""
+        for event, arguments in self._events_of_turn():
             if event == "view":
                 self._graph.set_entities(self._relay.observe(arguments[0], now_ns))
             elif event in ("failed", "remarked"):
@@ -71,7 +70,9 @@ class Ros2Link:
                 getattr(self._relay.calls, event)(*arguments, now_ns)
         for message in self._received.take():
             self._relay.receive(*message, now_ns)
-        if self._received.waits:
+        for topic, count in self._received.take_dropped().items():
+            self._relay.lost(topic, count, now_ns)
+        if self._inbox or self._received.waits:
             self._wake()
         for operation in self._relay.operations(now_ns):
             if operation.kind == "remark":
@@ -82,6 +83,16 @@ class Ros2Link:
     def close(self) -> None:
         """Leave the graph; harmless when closed."""
         self._graph.close()
+
+    def _events_of_turn(self) -> Iterator[tuple[str, tuple[Any, ...]]]:
+        """Take from the inbox what one turn may: clients need not wait for a flood of calls."""
+        size = 0
+        for _ in range(TURN_MESSAGES):
+            if not self._inbox or size >= TURN_BYTES:
+                return
+            event, arguments = self._inbox.popleft()
+            size += sum(len(each) for each in arguments if isinstance(each, bytes))
+            yield event, arguments
 
     def _log(self, node: str, text: str) -> None:
         count = self._remarks[node] = self._remarks.get(node, 0) + 1

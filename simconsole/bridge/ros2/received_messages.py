@@ -25,8 +25,7 @@ class ReceivedMessages:
         self._lock = threading.Lock()
         self._topics: dict[str, deque[ReceivedMessage]] = {}
         self._bytes: dict[str, int] = {}
-        self.dropped: dict[str, int] = {}
-        """Messages lost so far, by topic."""
+        self._dropped: dict[str, int] = {}
 
     @property
     def waits(self) -> bool:
@@ -42,7 +41,7 @@ class ReceivedMessages:
             self._bytes[name] = self._bytes.get(name, 0) + len(message.data)
             while len(queue) > 1 and (len(queue) > TOPIC_MESSAGES or self._bytes[name] > TOPIC_BYTES):
                 self._bytes[name] -= len(queue.popleft().data)
-                self.dropped[name] = self.dropped.get(name, 0) + 1
+                self._dropped[name] = self._dropped.get(name, 0) + 1
 
     def take(self) -> list[ReceivedMessage]:
         """Return some messages, topic by topic in turn; what is left is for the next time."""
@@ -59,3 +58,9 @@ class ReceivedMessages:
                 if queue:
                     self._topics[name] = queue  # behind the others
         return taken
+
+    def take_dropped(self) -> dict[str, int]:
+        """Return how many messages of each topic were lost since this was last asked."""
+        with self._lock:
+            dropped, self._dropped = self._dropped, {}
+        return dropped

@@ -56,6 +56,7 @@ def test_second_subscription_of_a_client_is_served_by_one_delivery(peer: Any) ->
     peer.publish("/chatter", {"data": "y"})
     assert len(peer.heard()) == 1
     peer.send(op="unsubscribe", topic="/chatter", id="b")
+    peer.send(op="unadvertise", topic="/chatter")
     assert peer.publish("/chatter", {"data": "z"}).kind == "refused"
 
 
@@ -196,8 +197,9 @@ def test_topic_stays_while_one_side_uses_it(bridge: ConsoleBridge, join: Callabl
     talker.send(op="unadvertise", topic="/chatter", id="a")
     listener.send(op="subscribe", **CHATTER)
     talker.send(op="unadvertise", topic="/chatter", id="b")
-    assert talker.publish("/chatter", {"data": "still known"}).kind == "done"
+    assert talker.publish("/chatter", {"data": "still known"}).kind == "done"  # and it publishes again
     listener.send(op="unsubscribe", topic="/chatter")
+    assert talker.send(op="unadvertise", topic="/chatter").kind == "done"
     assert talker.publish("/chatter", {"data": "gone"}).kind == "refused"
 
 

@@ -110,6 +110,18 @@ def test_publishing_with_a_type_advertises(pair: tuple[Any, Any]) -> None:
     assert "/other" not in talker.bridge.router.topics
 
 
+def test_publishing_on_a_topic_that_another_has_made_advertises_too(pair: tuple[Any, Any]) -> None:
+    talker, listener = pair
+    for more in ({}, {"type": "std_msgs/String"}):
+        listener.send(op="subscribe", **CHATTER)
+        say(talker, "here", **more)
+        assert talker.bridge.router.topics["/chatter"].publishers == {talker.session.number}
+        assert words(listener) == ["here"]
+        talker.send(op="unadvertise", topic="/chatter")
+        listener.send(op="unsubscribe", topic="/chatter")
+    assert "/chatter" not in talker.bridge.router.topics
+
+
 def test_publishing_with_a_type_cannot_take_a_topic_of_the_console(pair: tuple[Any, Any]) -> None:
     talker, _ = pair
     assert talker.publish("/odom", {}, type="nav_msgs/Odometry").kind == "refused"

@@ -9,6 +9,7 @@ from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.ros2 import node as ros2
 from simconsole.bridge.ros2.message_types import describe, load
 from simconsole.bridge.ros2.node import Ros2Link, check, role_of_graph
+from simconsole.bridge.ros2.received_messages import TURN_BYTES, TURN_MESSAGES
 from simconsole.profiles.bridge import BridgeProfile, Ros2Profile
 from simconsole.values.errors import BridgeError, ProfileError
 
@@ -56,3 +57,22 @@ def test_a_flood_of_remarks_is_logged_sparingly(
     for _ in range(3000):
         link._log("/driver", "wrong")
     assert caplog.text.count("/driver") == ros2.LOGGED + 3
+
+
+def test_a_flood_of_calls_is_taken_in_turns(monkeypatch: pytest.MonkeyPatch) -> None:
+    handled: list[str] = []
+    woken: list[int] = []
+    monkeypatch.setattr(ros2, "Graph", lambda *arguments: None)
+    link = Ros2Link(ConsoleBridge(BridgeProfile(port=0)), BridgeProfile(port=0), lambda: woken.append(1))
+    monkeypatch.setattr(link._relay.calls, "call_service", lambda key, name, data, now_ns: handled.append(key))
+    for number in range(TURN_MESSAGES + 1):
+        link._put("call_service", str(number), "/flip", b"")
+    for _ in range(3):
+        link._put("call_service", "long", "/flip", bytes(TURN_BYTES))
+    counts = []
+    while not counts or counts[-1] < TURN_MESSAGES + 4:
+        woken.clear()
+        link.pump(0)
+        counts.append(len(handled))
+        assert bool(woken) is (counts[-1] < TURN_MESSAGES + 4), "it asks for another turn while something is left"
+    assert counts == [TURN_MESSAGES, TURN_MESSAGES + 2, TURN_MESSAGES + 3, TURN_MESSAGES + 4]
