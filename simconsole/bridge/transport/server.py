@@ -261,34 +261,41 @@ def serve(
         ProfileError: as `ConsoleBridge`.
     """
 
-    async def main() -> None:
-        """Start; publish and report until told to stop; close."""
-        server = BridgeServer(
-            profile,
-            registry=registry,
-            on_command=write_command,
-            on_events=write_events,
-            on_act=on_act,
-            folder=folder,
-            drive=drive,
-            route=route,
-            steering=steering,
-        )
-        await server.start()
-        on_ready(server.port)
-        reporter = _StatusReporter(server, on_counts, on_link_state)
-        try:
-            while not stop():
-                reporter.update(time.monotonic())
-                snapshot = read_snapshot()
-                if snapshot is not None:
-                    server.publish(snapshot)
-                await asyncio.sleep(_POLL_S)
-        finally:
-            on_counts(server.console.counts())
-            await server.close()
+    server = BridgeServer(
+        profile,
+        registry=registry,
+        on_command=write_command,
+        on_events=write_events,
+        on_act=on_act,
+        folder=folder,
+        drive=drive,
+        route=route,
+        steering=steering,
+    )
+    reporter = _StatusReporter(server, on_counts, on_link_state)
+    asyncio.run(_run(server, read_snapshot, stop, on_ready, reporter))
 
-    asyncio.run(main())
+
+async def _run(
+    server: BridgeServer,
+    read_snapshot: Callable[[], Snapshot | None],
+    stop: Callable[[], bool],
+    on_ready: Callable[[int], None],
+    reporter: "_StatusReporter",
+) -> None:
+    """Start; publish and report until told to stop; close."""
+    await server.start()
+    on_ready(server.port)
+    try:
+        while not stop():
+            reporter.update(time.monotonic())
+            snapshot = read_snapshot()
+            if snapshot is not None:
+                server.publish(snapshot)
+            await asyncio.sleep(_POLL_S)
+    finally:
+        reporter.report_counts()
+        await server.close()
 
 
 class _StatusReporter:
@@ -307,7 +314,7 @@ class _StatusReporter:
         """Report what is due at `now_s` of the monotonic clock."""
         if now_s >= self._next_count_s:
             self._next_count_s = now_s + _COUNT_S
-            self._on_counts(self._server.console.counts())
+            self.report_counts()
             self._reported = ""
         if now_s >= self._next_state_s or not self._reported:
             self._next_state_s = now_s + _LINK_STATE_S
@@ -315,3 +322,7 @@ class _StatusReporter:
             if state != self._reported:
                 self._reported = state
                 self._on_link_state(state)
+
+    def report_counts(self) -> None:
+        """Report the counts as they are now."""
+        self._on_counts(self._server.console.counts())
