@@ -8,7 +8,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
+from websockets.typing import Origin
 
 from tests.drives.console import Running, complaint, results, simconsole
 from tests.drives.controllers import Controller, command, free_port
@@ -132,3 +134,21 @@ def test_our_own_server_passes_the_check(tmp_path: Path) -> None:
 
 def test_check_of_a_server_that_is_not_there() -> None:
     assert "ws://127.0.0.1" in complaint(simconsole("bridge", "check", f"ws://127.0.0.1:{free_port()}"))
+
+
+def test_limits_and_origins_are_those_of_the_options(tmp_path: Path) -> None:
+    port = free_port()
+    options = ("--origin", "null", "--limit", "message_bytes=2000", "--limit", "clients=3")
+    with Running(tmp_path, "bridge", "serve", "--port", port, *options) as server:
+        wait_until(lambda: "rosbridge at" in server.out.read_text(), "the address")
+        url = f"ws://127.0.0.1:{port}"
+        with pytest.raises(InvalidStatus):
+            connect(url, origin=Origin("file://"))
+        with connect(url, origin=Origin("null")) as page:
+            page.send("x" * 2001)
+            with pytest.raises(ConnectionClosed) as closed:
+                page.recv(timeout=PATIENCE_S)
+        assert closed.value.rcvd is not None
+        assert closed.value.rcvd.code == 1009
+        server.process.send_signal(signal.SIGINT)
+        server.end()

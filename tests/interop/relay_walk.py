@@ -10,6 +10,7 @@ from typing import Any, Final
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
+from tests.interop.programs import Client
 from tests.interop.puppets import Puppet
 from tests.patience import wait_until
 
@@ -33,12 +34,13 @@ class Walker:
         self._numbers = 0
         self.sent = 0
         self.answered = 0
+        self.unexpected: list[Any] = []
+        """Answers that nobody waits for, and failures without a reason, of all connections."""
         self.connect()
 
     def connect(self) -> None:
         self.waiting: dict[str, str] = {}
         """Calls and goals without an end, on the present connection."""
-        self.unexpected: list[Any] = []
         self._stack = ExitStack()
         self._web = self._stack.enter_context(connect(self._url, close_timeout=0.2, max_size=None))
         threading.Thread(target=self._read, args=(self._web, self.waiting), daemon=True).start()
@@ -113,9 +115,7 @@ class Walker:
     def _hear(self, web: Any, waiting: dict[str, str], heard: dict[str, Any], answers: Random) -> None:
         match heard["op"]:
             case "service_response" | "action_result":
-                if waiting.pop(heard["id"], None) is None or (
-                    heard["result"] is False and not heard["values"] and heard["op"] == "service_response"
-                ):
+                if waiting.pop(heard["id"], None) is None or (heard["result"] is False and not heard["values"]):
                     self.unexpected.append(heard)
                 self.answered += 1
             case "call_service":
@@ -159,6 +159,16 @@ def endpoints(node: Puppet) -> dict[str, list[str]]:
         kind: sorted(name for name in names if "walk" in name or "nnnn" in name)
         for kind, names in found.items()
     }  # fmt: skip
+
+
+def known(witness: Client) -> list[str]:
+    """The names of this walk that the console still knows, of topics, services and actions."""
+    found: list[str] = []
+    for service, key in (("topics", "topics"), ("services", "services"), ("action_servers", "action_servers")):
+        witness.say(op="call_service", id=service, service=f"/rosapi/{service}")
+        answer = witness.hear(lambda heard, service=service: heard.get("id") == service)
+        found += [name for name in answer["values"][key] if "walk" in name or "nnnn" in name]
+    return found
 
 
 def wait_for_all(walkers: list[Walker]) -> None:

@@ -2,6 +2,8 @@
 
 from typing import Any
 
+import pytest
+
 from tests.interop.programs import Client
 from tests.interop.puppets import Puppet, Served
 from tests.interop.ros2 import needs_ros2
@@ -119,13 +121,16 @@ def test_calls_and_goals_whose_node_leaves_end(sides: tuple[Served, Puppet], web
         ended[heard["op"]].add(heard["id"])
 
 
-def test_a_burst_of_goals_that_are_cancelled(web: Client, node: Puppet) -> None:
+@pytest.mark.parametrize("all_at_once", [False, True])
+def test_a_burst_of_goals_that_are_cancelled(web: Client, node: Puppet, all_at_once: bool) -> None:
     node.do("act", name="/ros/patient", step_s=0.5)
     wait_for(web, "action_servers", "action_servers", "/ros/patient")
     goal = {"op": "send_action_goal", "action": "/ros/patient", "action_type": FIBONACCI, "args": {"order": 20}}
     for number in range(GOALS):
         web.say(**goal, id=number)
-    for number in range(GOALS):
+    if all_at_once:  # as roslibjs' cancelAllGoals
+        web.say(op="cancel_action_goal", action="/ros/patient")
+    for number in range(0 if all_at_once else GOALS):
         web.say(op="cancel_action_goal", action="/ros/patient", id=number)
     ends: dict[int, int] = {}
     while len(ends) < GOALS:

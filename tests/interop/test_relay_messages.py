@@ -69,13 +69,21 @@ def test_log_of_nodes_reaches_clients(web: Client, node: Puppet) -> None:
     assert (log["name"], log["level"]) == ("puppet", 20)
 
 
-def test_authority_and_route_are_relayed_as_standard_messages(web: Client, node: Puppet) -> None:
-    for kind in ("Float64", "Path"):
-        topics = {"Float64": "/console/authority/lateral", "Path": "/route"}
-        node.do("subscribe", name=topics[kind], kind=kind, latched=kind == "Path")
-        heard = node.hear(lambda said, name=topics[kind]: said.get("heard") == name)
-        assert heard["data"] == {"Float64": 0.0, "Path": "map"}[kind]
-        node.do("destroy", kind="subscription", name=topics[kind])
+@pytest.mark.parametrize(
+    ("name", "kind", "latched", "data"),
+    [
+        ("/console/mode", "String", False, "PARKED"),
+        ("/console/authority/lateral", "Float64", False, 1.0),
+        ("/console/authority/longitudinal", "Float64", False, 1.0),
+        ("/route", "Path", True, "map"),
+    ],
+)
+def test_mode_authority_and_route_are_relayed_as_standard_messages(
+    node: Puppet, name: str, kind: str, latched: bool, data: str | float
+) -> None:
+    node.do("subscribe", name=name, kind=kind, latched=latched)
+    assert node.hear(lambda said: said.get("heard") == name)["data"] == data
+    node.do("destroy", kind="subscription", name=name)
 
 
 @pytest.mark.parametrize("compression", ["none", "cbor", "cbor-raw"])

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import pytest
 
+from simconsole.bridge.console.graph_view import LONGEST, Kind
 from tests.interop.programs import Client, client
 from tests.interop.puppets import Puppet, Served
 from tests.interop.ros2 import needs_ros2
@@ -112,7 +113,7 @@ def wait_for_subscribers(node: Puppet, name: str, count: int) -> None:
 
 @pytest.mark.parametrize(
     ("operation", "length"),
-    [("advertise", 248), ("subscribe", 251), ("advertise_service", 251), ("advertise_action", 228)],
+    [("advertise", 248), ("subscribe", 251), ("advertise_service", 245), ("advertise_action", 225)],
 )
 def test_a_name_too_long_for_a_graph_is_refused(web: Client, operation: str, length: int) -> None:
     name = "/" + "n" * (length - 1)
@@ -127,6 +128,28 @@ def test_a_name_too_long_for_a_graph_is_refused(web: Client, operation: str, len
     status = web.status()
     assert status["level"] == "error"
     assert "is not relayed to the ROS 2 graph: its name is longer than" in status["msg"]
+
+
+@pytest.mark.parametrize(
+    ("operation", "kind", "type_name", "inside", "counted"),
+    [
+        ("advertise", "topic", "std_msgs/String", "", "publishers"),
+        ("subscribe", "topic", "std_msgs/String", "", "subscribers"),
+        ("advertise_service", "service", FLIP, "", "services"),
+        ("advertise_action", "action", FIBONACCI, "/_action/cancel_goal", "services"),
+    ],
+)
+def test_the_longest_name_that_is_not_refused_is_found_in_the_graph(
+    web: Client, node: Puppet, operation: str, kind: Kind, type_name: str, inside: str, counted: str
+) -> None:
+    name = "/".ljust(LONGEST[kind], operation[-1])
+    web.say(op=operation, type=type_name, **{kind: name})
+
+    def is_found() -> bool:
+        node.do("count", name=name + inside)
+        return bool(node.hear(lambda said: said.get("count") == name + inside)[counted])
+
+    wait_until(is_found, f"{kind} of {len(name)} characters in the graph")
 
 
 @pytest.mark.parametrize(("operation", "key"), [("advertise_service", "service"), ("advertise_action", "action")])

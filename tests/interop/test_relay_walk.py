@@ -7,7 +7,7 @@ import pytest
 
 from tests.interop.programs import client
 from tests.interop.puppets import puppet, served
-from tests.interop.relay_walk import Walker, endpoints, node_step, wait_for_all
+from tests.interop.relay_walk import Walker, endpoints, known, node_step, wait_for_all
 from tests.interop.ros2 import domain, needs_ros2
 from tests.patience import pause, wait_until
 from tests.samples import Sample
@@ -54,3 +54,5 @@ def test_walk(sample: Sample, record_property: Callable[[str, object], None]) ->
             node.process.kill()
         one.do("destroy_all")
         wait_until(lambda: not any(endpoints(one).values()), "an end of all that the console had for the walk")
+        with client(console.url) as witness:
+            wait_until(lambda: not known(witness), "an end of all that the console knew of the walk")

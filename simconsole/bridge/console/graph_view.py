@@ -11,9 +11,14 @@ Kind = Literal["topic", "service", "action"]
 ANYONE: Final = "graph"
 """The publishing node where ROS does not name it: all unnamed publishers count as one node."""
 
-MAX_NAME: Final = 247
-"""Characters of a topic's or service's name: rmw takes 255, less the eight of its prefix."""
-MAX_ACTION_NAME: Final = MAX_NAME - len("/_action/cancel_goal")
+_MAX_DDS_NAME: Final = 253
+"""The longest that other processes find with Fast DDS (of Kilted); of a longer one it cuts the end off."""
+LONGEST: Final[Mapping[Kind, int]] = {
+    "topic": 247,
+    "service": _MAX_DDS_NAME - len("rq" + "Request"),
+    "action": _MAX_DDS_NAME - len("rq" + "/_action/cancel_goal" + "Request"),
+}
+"""Characters of a name: of a topic rmw takes 255, less the eight of its prefix."""
 _TYPE: Final = re.compile(r"[a-z][a-z0-9_]*/(msg|srv|action)/[A-Z][A-Za-z0-9]*")
 _INTERFACES: Final = {"topic": "msg", "service": "srv", "action": "action"}
 
@@ -82,9 +87,8 @@ def full_type(name: str, kind: Kind) -> str:
 
 def why_unfit(kind: Kind, name: str, type_name: str) -> str:
     """Return why ROS 2 would refuse a name or a type in three parts, empty if it would not."""
-    longest = MAX_ACTION_NAME if kind == "action" else MAX_NAME
-    if len(name) > longest:
-        return f"its name is longer than {longest} characters"
+    if len(name) > LONGEST[kind]:
+        return f"its name is longer than {LONGEST[kind]} characters"
     found = _TYPE.fullmatch(type_name)
     if found is None or found[1] != _INTERFACES[kind]:
         return f"{type_name[:80]!r} is no type such as package/{_INTERFACES[kind]}/Name"

@@ -1,14 +1,17 @@
 import json
 import math
 import struct
+import tracemalloc
 from typing import Any
 
 import cbor2
 import pytest
 
 from simconsole.bridge.messages import standard_registry
+from simconsole.bridge.messages.cdr import deserialize, serialize
 from simconsole.bridge.protocol.message_decoding import Binary
-from simconsole.bridge.protocol.message_encoding import PLAIN_JSON, Encoder, Encoding, png, to_plain
+from simconsole.bridge.protocol.message_encoding import PLAIN_JSON, Dialect, Encoder, Encoding, png, to_plain
+from simconsole.bridge.protocol.operations import Compression
 from tests.bridge.reading import unpacked
 
 HEAD = b'{"op":"publish","topic":"/a","msg":'
@@ -92,3 +95,23 @@ def test_cbor_raw_is_ros_1_s_serialization_for_its_clients() -> None:
     raw = cbor2.loads(encoder.text(Encoding("ros1", "cbor-raw"), b"", "/h"))["msg"]["bytes"]
     assert raw == bytes.fromhex("07000000 01000000 00000000 01000000 6d")
     assert encoder.text(Encoding("ros2", "cbor-raw"), b"", "/h") != raw
+
+
+@pytest.mark.parametrize("name", ["sensor_msgs/Image", "sensor_msgs/PointCloud2"])
+@pytest.mark.parametrize("dialect", ["ros2", "ros1"])
+@pytest.mark.parametrize("compression", ["none", "cbor", "cbor-raw"])
+def test_octets_are_copied_not_packed_one_by_one(name: str, dialect: Dialect, compression: Compression) -> None:
+    """A list of a million octets, whatever makes it, is eight times as large as they are."""
+    registry = standard_registry()
+    full, size = registry.resolve(name), 1_000_000
+    data = serialize(registry, full, registry.from_plain(full, {"data": b"x" * size}))
+    encoder(name, {}).text(Encoding(dialect, compression), HEAD, "/a")  # what is made once
+    tracemalloc.start()
+    try:
+        message = registry.from_plain(full, deserialize(registry, full, data))
+        text = Encoder(registry, full, message, 7, 0).text(Encoding(dialect, compression), HEAD, "/a")
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert len(text) > size
+    assert peak < 7 * size
