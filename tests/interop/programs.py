@@ -95,5 +95,7 @@ class Client:
 
 @contextmanager
 def client(url: str) -> Iterator[Client]:
-    with connect(url, close_timeout=0.1, max_size=None) as web:  # it may have stopped reading, and the server then waits to say bye
+    with connect(
+        url, close_timeout=0.1, max_size=None
+    ) as web:  # it may have stopped reading, and the server then waits to say bye
         yield Client(web)

@@ -88,9 +88,7 @@ def test_mode_authority_and_route_are_relayed_as_standard_messages(
 
 @pytest.mark.parametrize("compression", ["none", "cbor", "cbor-raw"])
 @pytest.mark.parametrize("kind", ["Image", "PointCloud2"])
-def test_pictures_and_clouds_pass_ten_times_a_second(
-    web: Client, node: Puppet, kind: str, compression: str
-) -> None:
+def test_pictures_and_clouds_pass_ten_times_a_second(web: Client, node: Puppet, kind: str, compression: str) -> None:
     """640x480 in colour, and a cloud of 1 MB: all that was published since the first arrives, in order."""
     name = f"/large/{kind.lower()}/{compression.replace('-', '_')}"
     web.say(op="subscribe", topic=name, type=f"sensor_msgs/msg/{kind}", compression=compression)

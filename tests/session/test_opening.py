@@ -1,5 +1,10 @@
-import pytest
+import re
+from pathlib import Path
 
+import pytest
+import yaml
+
+from simconsole.cli.main import main
 from simconsole.profiles.session import SessionProfile
 from simconsole.session.opening import check_commander
 from simconsole.session.resolution import load_session, override
@@ -44,3 +49,21 @@ def test_a_bag_commands_only_where_no_other_controller_is_waited_for(changes: di
     check_commander(override(session, mode={"pacing": "free"}))
     with pytest.raises(ProfileError, match=r"features\.commands: value bag:drive\.mcap: mode\.pacing free"):
         check_commander(override(session, **changes))
+
+
+@pytest.mark.parametrize(
+    ("bridge", "words"),
+    [
+        ({"upstream": {"url": "ws://robot:9090"}}, r"value free: realtime, where outputs\.bridge\.upstream"),
+        ({"ros2": {}}, r"value free: lockstep or realtime, where outputs\.bridge\.ros2"),
+    ],
+)
+def test_links_that_a_drive_without_a_bridge_has_not_are_refused(
+    bridge: dict[str, object], words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "session.yaml"
+    outputs = {"bridge": bridge, "hud": None, "scene": None, "report": False}
+    told = {"schema": 1, "outputs": outputs, "devices": {"driver": "none"}, "mode": {"pacing": "free"}}
+    path.write_text(yaml.safe_dump(told))
+    assert main(["drive", str(path), "--headless", "--for", "1", "--out", str(tmp_path / "bundle")]) == 2
+    assert re.search(rf"mode\.pacing: {words}", capsys.readouterr().err)

@@ -260,7 +260,6 @@ def serve(
         BridgeError: the address cannot be listened on.
         ProfileError: as `ConsoleBridge`.
     """
-
     server = BridgeServer(
         profile,
         registry=registry,

@@ -218,7 +218,9 @@ def test_latched_topics_of_the_graph_reach_every_later_subscriber(graph: Graph, 
     assert [graph.plain("std_msgs/String", operation.data)["data"] for operation in graph.operations()] == ["here"]
 
 
-def test_what_the_graph_sends_too_fast_is_said_once_a_second_and_counted(graph: Graph, join: Callable[..., Any]) -> None:
+def test_what_the_graph_sends_too_fast_is_said_once_a_second_and_counted(
+    graph: Graph, join: Callable[..., Any]
+) -> None:
     peer, other = join(graph.bridge), join(graph.bridge)
     graph.observe(topics={"/scan": "std_msgs/msg/String"}, listened=frozenset({"/scan"}))
     peer.send(op="subscribe", topic="/scan", queue_length=10)

@@ -1,9 +1,13 @@
+import json
 import random
 
 import pytest
 
+from simconsole.bridge.messages import standard_registry
 from simconsole.bridge.protocol.message_encoding import Encoding
+from simconsole.bridge.protocol.server_protocol import Router
 from simconsole.bridge.protocol.subscription_queue import MAX_REPLIES, SendBudget, SendQueue, SubscriptionQueue
+from simconsole.profiles.bridge import BridgeLimits
 
 
 def queue(depth: int, throttle_ms: float = 0.0) -> SubscriptionQueue:
@@ -121,6 +125,21 @@ def test_all_clients_together_have_a_bound_that_the_longest_queue_pays_for() -> 
     healthy.put(one, b"z" * 5000, 8)
     assert drain(healthy) == [b"z" * 5000]
     assert (stalled.waiting_bytes, budget.bytes) == (0, 0)
+
+
+def test_clients_of_a_server_share_64_mb() -> None:
+    assert BridgeLimits().all_queued_bytes == 64 * 2**20
+    limits = BridgeLimits(all_queued_bytes=2_000_000, queued_bytes=1_000_000)
+    router = Router(standard_registry(), limits, 1)
+    sessions = [router.connect(str(number)) for number in range(5)]
+    for session in sessions:
+        wish = {"op": "subscribe", "topic": "/s", "type": "std_msgs/String"}
+        assert router.receive(session, json.dumps(wish).encode(), 0).kind == "done"
+    text = json.dumps({"op": "publish", "topic": "/s", "msg": {"data": "x" * 90_000}}).encode()
+    for _ in range(30):
+        assert router.receive(sessions[0], text, 0).kind == "done"
+        assert sum(session.send_queue.waiting_bytes for session in sessions) <= 2_000_000
+    assert min(session.send_queue.waiting_bytes for session in sessions) > 90_000
 
 
 def test_answers_count_towards_the_bound_and_who_leaves_gives_back() -> None:

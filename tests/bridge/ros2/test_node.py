@@ -69,7 +69,7 @@ def test_a_flood_of_calls_is_taken_in_turns(monkeypatch: pytest.MonkeyPatch) -> 
         link._put("call_service", str(number), "/flip", b"")
     for _ in range(3):
         link._put("call_service", "long", "/flip", bytes(TURN_BYTES))
-    counts = []
+    counts: list[int] = []
     while not counts or counts[-1] < TURN_MESSAGES + 4:
         woken.clear()
         link.pump(0)
