@@ -1,10 +1,11 @@
 """Tokens and TLS over real sockets, on both servers and from our own client."""
 
+import itertools
 import socket
 import ssl
 import threading
 from collections.abc import Callable
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,7 @@ from simconsole.bridge.transport.server import BridgeServer
 from simconsole.cli.certificate import make, write_private
 from simconsole.profiles.bridge import BridgeLimits, BridgeProfile
 from simconsole.values.errors import BridgeError, ProfileError
-from tests.patience import PATIENCE_S
+from tests.patience import PATIENCE_S, wait_until
 
 TOKEN = "c" * 20
 
@@ -115,6 +116,28 @@ def test_lockstep_asks_for_the_token_too(files: dict[str, str]) -> None:
         assert failures == [401]
     for thread in (stranger, friend):
         thread.join(timeout=PATIENCE_S)
+
+
+def test_who_shows_no_token_does_not_stay_in_lockstep_either(
+    files: dict[str, str], snapshot: Callable[..., Any]
+) -> None:
+    profile = BridgeProfile(port=0, tokens=files["tokens"], limits=BridgeLimits(tokenless_s=0.5))
+    with LockstepBridge(profile) as bridge:
+        gone = threading.Event()
+
+        def stay() -> None:
+            with connect(bridge.url) as stranger, suppress(ConnectionClosed):
+                stranger.recv(timeout=PATIENCE_S)
+            gone.set()
+
+        threading.Thread(target=stay, daemon=True).start()
+        ticks = itertools.count(1)
+
+        def is_gone() -> bool:
+            bridge.publish(snapshot(next(ticks)))
+            return gone.is_set()
+
+        wait_until(is_gone, "the end of a connection without token")
 
 
 def test_lockstep_is_encrypted_too(

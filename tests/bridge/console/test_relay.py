@@ -218,23 +218,6 @@ def test_latched_topics_of_the_graph_reach_every_later_subscriber(graph: Graph, 
     assert [graph.plain("std_msgs/String", operation.data)["data"] for operation in graph.operations()] == ["here"]
 
 
-def test_what_the_graph_sends_too_fast_is_said_once_a_second_and_counted(
-    graph: Graph, join: Callable[..., Any]
-) -> None:
-    peer, other = join(graph.bridge), join(graph.bridge)
-    graph.observe(topics={"/scan": "std_msgs/msg/String"}, listened=frozenset({"/scan"}))
-    peer.send(op="subscribe", topic="/scan", queue_length=10)
-    other.send(op="subscribe", topic="/scan", queue_length=1)
-    for now_ns, count in ((0, 3), (1, 4), (1000 * MS, 1)):
-        graph.relay.lost("/scan", count, now_ns)
-    graph.relay.lost("/gone", 1, 0)
-    assert [(message["level"], message["msg"]) for message in peer.heard()] == [
-        ("error", f"/scan: too slow: {count} messages dropped so far") for count in (3, 8)
-    ]
-    assert other.heard() == [], "it wants the newest only"
-    assert peer.session.counts().dropped == other.session.counts().dropped == 8
-
-
 def test_what_leaves_the_graph_is_no_longer_advertised(graph: Graph) -> None:
     graph.observe(topics={"/grip": "demo/msg/Grip"}, services={"/sum": ADD}, actions={"/go": FIBONACCI})
     router = graph.bridge.router

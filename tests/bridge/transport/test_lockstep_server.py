@@ -1,3 +1,4 @@
+import http.client
 import json
 import logging
 import socket
@@ -259,6 +260,15 @@ def test_who_may_not_connect_is_turned_away(snapshot: Callable[..., Any]) -> Non
             with pytest.raises(InvalidStatus) as caught:
                 connect(bridge.url)
             assert caught.value.response.status_code == 503
+
+
+def test_plain_http_is_answered(lockstep: LockstepBridge, snapshot: Callable[..., Any]) -> None:
+    with served(lockstep, snapshot):
+        for path, code in (("/", 426), ("/version", 200)):
+            connection = http.client.HTTPConnection("127.0.0.1", lockstep.port, timeout=PATIENCE_S)
+            connection.request("GET", path)
+            response = connection.getresponse()
+            assert (response.status, b"simconsole" in response.read()) == (code, code == 200)
 
 
 def test_what_is_no_websocket_is_dropped(lockstep: LockstepBridge, snapshot: Callable[..., Any]) -> None:
