@@ -128,6 +128,8 @@ class BridgeProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """A client is taken for gone when for so long nothing came from it and its machine acknowledged nothing."""
     stall_close_s: Annotated[float, Meta(gt=0.0, le=600.0)] = 10.0
     """A client that is connected but reads nothing for so long is disconnected."""
+    external_view: bool = False
+    """Publish what a renderer of another program needs to be the driver's eyes, the car's true pose included."""
     link: LinkProfile = LinkProfile()
     """Errors, delays and losses on purpose, between the car and whoever commands it here."""
     limits: BridgeLimits = BridgeLimits()

@@ -286,7 +286,10 @@ def new_nonce() -> str:
 def _open_lockstep(
     resolved: ResolvedSession, console: Console, folder: Path, interrupt: Interrupt, stack: ExitStack
 ) -> LockstepLink:
+    from simconsole.bridge.console.view_topics import NO_VIEW
     from simconsole.bridge.transport.lockstep_server import LockstepBridge
+    from simconsole.session.external_view import display_settings, external_view
+    from simconsole.session.view_job import view_job
 
     session = resolved.session
     if session.outputs.bridge is None:
@@ -294,6 +297,9 @@ def _open_lockstep(
     period_ticks = session.mode.control_period_ticks
     token, drive = _own_token(session), new_nonce()
     odometry_hz = console.tick_hz / period_ticks
+    view = NO_VIEW
+    if session.outputs.bridge.external_view:
+        view = external_view(view_job(resolved), display_settings(resolved))
     bridge = LockstepBridge(
         session.outputs.bridge,
         odometry_hz=odometry_hz,
@@ -301,6 +307,7 @@ def _open_lockstep(
         drive=drive,
         route=route_points(resolved.world),
         steering=steering_limit(session.features.control, console.platform.wheelbase_m),
+        view=view,
     )
     program = None
     if session.features.autopilot is not None:

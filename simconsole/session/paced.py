@@ -9,10 +9,9 @@ import msgspec
 
 from simconsole.bridge.console.operator_acts import ACT_BYTES, ACTS_MAX
 from simconsole.control.requests.refusals import steering_limit
-from simconsole.hud.view import HudSettings, settings_of
 from simconsole.processes.shared_memory import EventCounters, Ring, TextQueue
 from simconsole.processes.worker import Worker, WorkerSpec
-from simconsole.profiles.view import HudProfile
+from simconsole.session.external_view import display_settings
 from simconsole.session.scene_job import LIVE_SCENE, scene_job
 from simconsole.session.view_job import save_view_job, view_job
 from simconsole.session.worker_programs import (
@@ -187,6 +186,7 @@ def worker_specs(
             bundle=str(bundle.absolute()),
             route=route_points(resolved.world),
             steering=steering_limit(resolved.session.features.control, console.platform.wheelbase_m),
+            display=display_settings(resolved) if outputs.bridge.external_view else None,
         )
     if outputs.can is not None:
         from simconsole.canbus.messages import wheel_columns
@@ -194,12 +194,13 @@ def worker_specs(
         workers["canbus"] = CanWorker(
             profile=outputs.can, tick_hz=tick_hz, wheels=wheel_columns(console.columns), bundle=str(bundle.absolute())
         )
+    has_view = outputs.hud is not None and outputs.hud.view is not None
+    if has_view or (outputs.bridge is not None and outputs.bridge.external_view):
+        save_view_job(folder / VIEW_JOB, view_job(resolved))
     if outputs.hud is not None:
-        if outputs.hud.view is not None:
-            save_view_job(folder / VIEW_JOB, view_job(resolved))
         workers["hud"] = HudWorker(
             profile=outputs.hud,
-            settings=_hud_settings(resolved, outputs.hud),
+            settings=display_settings(resolved),
             tick_hz=tick_hz,
             has_can=has_can,
             has_bridge=has_bridge,
@@ -211,11 +212,6 @@ def worker_specs(
         path = str((bundle / LIVE_SCENE).absolute())
         workers["scene"] = SceneWorker(path=path, tick_hz=tick_hz, has_bridge=has_bridge)
     return [WorkerSpec.of(name, worker) for name, worker in workers.items()]
-
-
-def _hud_settings(resolved: ResolvedSession, profile: HudProfile) -> HudSettings:
-    control, by_keyboard = resolved.session.features.control, resolved.session.devices.driver == "keyboard"
-    return settings_of(profile, control, resolved.cockpit, resolved.vehicle, by_keyboard=by_keyboard)
 
 
 def bridge_address(folder: Path, alive: Callable[[], bool], patience_s: float = START_PATIENCE_S) -> str:

@@ -63,12 +63,18 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
     """What /route shows."""
     steering: SteeringLimit | None = None
     """Beyond it the arbiter refuses a command."""
+    display: HudSettings | None = None
+    """What a display of another program must know of the drive; what there is to see lies in the run folder. None:
+    there is no such display."""
 
     def run(self, folder: Path, stop: Callable[[], bool]) -> None:
         """Serve until `stop`."""
         from simconsole.bridge.console.operator_acts import Act
+        from simconsole.bridge.console.view_topics import NO_VIEW
         from simconsole.bridge.transport.server import serve
         from simconsole.bridge.transport.sockets import address_url
+        from simconsole.session.external_view import external_view
+        from simconsole.session.view_job import load_view_job
 
         profile = self.profile
         receipts = Receipts(folder / f"{LATENCY}.bridge.json")
@@ -76,6 +82,8 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
         events = EventCounters.open(folder / EVENTS, writable=True)
 
         acts = TextQueue.open(folder / ACTS, writable=True)
+
+        view = NO_VIEW if self.display is None else external_view(load_view_job(folder / VIEW_JOB), self.display)
 
         def keep_act(act: Act) -> bool:
             return acts.put(msgspec.json.encode(act))
@@ -94,6 +102,7 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
             profile, snapshots, command_writer(folder / COMMAND), events.raise_events, stop,
             on_ready=ready, on_act=keep_act, on_counts=write_counts, on_link_state=write_link_state,
             folder=Path(self.bundle), drive=self.drive, route=self.route, steering=self.steering,
+            view=view,
         )  # fmt: skip
 
 

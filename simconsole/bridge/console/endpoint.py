@@ -8,6 +8,7 @@ from simconsole.bridge.console.input_slots import BridgeInputs, OnCommand, OnEve
 from simconsole.bridge.console.operator_acts import ACTS_MAX, OPERATE, OPERATE_TYPE, Act, OnAct, Operator
 from simconsole.bridge.console.output_schedule import OutputSchedule, topic_names
 from simconsole.bridge.console.topics import ROSOUT, ROSOUT_TYPE, Outputs, PublishedTick, Route
+from simconsole.bridge.console.view_topics import NO_VIEW, ExternalView, view_topics
 from simconsole.bridge.messages import Registry, standard_registry
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.client_session import ClientSession
@@ -33,6 +34,7 @@ class ConsoleBridge:
         on_act: OnAct | None = None,
         route: Route = (),
         steering: SteeringLimit | None = None,
+        view: ExternalView = NO_VIEW,
     ) -> None:
         """Build the topics of `profile`.
 
@@ -44,6 +46,7 @@ class ConsoleBridge:
             on_act: sees each act of an operator at once; without, they are kept until `take_acts`.
             route: what /route shows.
             steering: beyond it the arbiter refuses a command, and its sender is told so; without, nobody is.
+            view: what the topics of `external_view` show.
 
         Raises:
             ProfileError: the profile renames or rates a topic that does not exist, or gives two topics one name.
@@ -64,7 +67,8 @@ class ConsoleBridge:
         self.router.on_new_commander = self._command_decoder.forget_stamps
         self._now_ns = 0
         self._out = Outputs(self.router.registry, profile, lambda: bridge_status(self.router, self._now_ns), route)
-        outputs, commands = self._out.topics(), self._command_decoder.topics()
+        outputs = (*view_topics(self.router.registry, profile, view), *self._out.topics())
+        commands = self._command_decoder.topics()
         self.names = topic_names(profile, [*(topic.name for topic in outputs), *(topic.name for topic in commands)])
         self._schedule = OutputSchedule(outputs, self.names, profile)
         self._topics = {

@@ -18,6 +18,7 @@ import msgspec
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.topics import ODOMETRY, Route
+from simconsole.bridge.console.view_topics import NO_VIEW, ExternalView
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.protocol.access import Access
 from simconsole.bridge.protocol.client_session import ClientSession
@@ -58,6 +59,7 @@ class LockstepBridge:
         drive: str | None = None,
         route: Route = (),
         steering: SteeringLimit | None = None,
+        view: ExternalView = NO_VIEW,
     ) -> None:
         """Listen on the profile's host and port.
 
@@ -68,6 +70,7 @@ class LockstepBridge:
             drive: the nonce of the drive whose bridge it is.
             route: what /route shows.
             steering: as `ConsoleBridge`.
+            view: as `ConsoleBridge`.
             odometry_hz: rate of /odom in place of the profile's: the control rate, so that every answer is waited for.
 
         Raises:
@@ -80,7 +83,7 @@ class LockstepBridge:
             rates_hz = {**profile.rates_hz, ODOMETRY: odometry_hz}
             profile = msgspec.structs.replace(profile, rates_hz=rates_hz, limits=limits)
         registry = load_registry(profile) if registry is None else registry
-        self.console = ConsoleBridge(profile, registry, route=route, steering=steering)
+        self.console = ConsoleBridge(profile, registry, route=route, steering=steering, view=view)
         self.console.router.access = load_access(profile)
         if profile.upstream is not None:
             raise ProfileError("outputs.bridge.upstream: a drive in lockstep waits for its own clients only")

@@ -13,9 +13,9 @@ from simconsole.hud.gl.cockpit_picture import CockpitPicture
 from simconsole.hud.gl.context import renderer_name, windowless_context
 from simconsole.hud.layout import check_screen
 from simconsole.hud.screen import Screen
-from simconsole.hud.view import settings_of
 from simconsole.hud.window.display_memory import DisplayMemory
 from simconsole.profiles.view import DriverViewProfile, HudProfile
+from simconsole.session.external_view import display_settings
 from simconsole.session.view_job import view_job
 from simconsole.tick.assembly import ResolvedSession
 
@@ -57,11 +57,7 @@ class DrivePictures:
         self._picture = CockpitPicture(context, scene, profile, self._screen, job.steering_ratio)
         self.is_cheap = self._picture.is_cheap
         self._target = context.simple_framebuffer((wanted.width_px, wanted.height_px), components=RGB)
-        by_keyboard = resolved.session.devices.driver == "keyboard"
-        control = resolved.session.features.control
-        self._memory = DisplayMemory(
-            settings_of(hud, control, resolved.cockpit, resolved.vehicle, by_keyboard=by_keyboard)
-        )
+        self._memory = DisplayMemory(display_settings(resolved))
 
     def draw(self, moment: Moment) -> Pixels:
         """Return one frame as red, green and blue, uint8 [height, width, 3] from the top."""

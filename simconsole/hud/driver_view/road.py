@@ -1,6 +1,7 @@
 """The road as meshes: asphalt, kerbs, pavement and paint, in layers from the ground up."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -28,13 +29,20 @@ KERB_WIDTH_M: Final = 0.15
 PAVEMENT_M: Final = 2.2
 LAND_M: Final = 3000.0  # from the course to the rim of the land
 PROBE_M: Final = 0.9
+THIN_M: Final = 0.005
+THIN_RUN: Final = 32
 
 
 class RoadMeshes(NamedTuple):
-    """Flat layers from the ground up, then what has height."""
+    """All of a road; everything but the kerbs is flat."""
 
-    layers: tuple[Vertices, ...]
-    solids: Vertices
+    land: Vertices
+    asphalt: Vertices
+    islands: Vertices
+    markings: Vertices
+    crossings: Vertices
+    stop_lines: Vertices
+    kerbs: Vertices
 
 
 def occupancy_of(drawing: Drawing) -> Occupancy:
@@ -49,22 +57,16 @@ def occupancy_of(drawing: Drawing) -> Occupancy:
 
 def road_meshes(drawing: Drawing, taken: Occupancy) -> RoadMeshes:
     """Return a drawing's meshes; `taken` is the road's ground, by which a kerb finds its outer side."""
-    kerbs = [_kerb(line, taken) for line in drawing.edges]
-    lines = [ribbon(line, -0.5 * LINE_M, 0.5 * LINE_M, 0.0, PAINT, Material.PLAIN) for line in drawing.edges]
-    dashes = [
-        ribbon(dash, -0.5 * LINE_M, 0.5 * LINE_M, 0.0, PAINT, Material.PLAIN)
-        for line in drawing.centre_lines
-        for dash in dashes_of(line)
-    ]
-    painted = [flat(polygon, PAINT) for polygon in (*drawing.zebras, *drawing.stop_lines)]
+    dashes = [dash for line in drawing.centre_lines for dash in dashes_of(line)]
+    lines = [thinned(line) for line in (*drawing.edges, *dashes)]
     return RoadMeshes(
-        layers=(
-            _land(drawing.path),
-            joined([flat(polygon, ASPHALT, Material.ROAD) for polygon in drawing.surfaces]),
-            joined([flat(polygon, LAWN, Material.MEADOW) for polygon in drawing.islands]),
-            joined([*lines, *dashes, *painted]),
-        ),
-        solids=joined(kerbs),
+        land=_land(drawing.path),
+        asphalt=joined([flat(polygon, ASPHALT, Material.ROAD) for polygon in drawing.surfaces]),
+        islands=joined([flat(polygon, LAWN, Material.MEADOW) for polygon in drawing.islands]),
+        markings=joined([ribbon(line, -0.5 * LINE_M, 0.5 * LINE_M, 0.0, PAINT, Material.PLAIN) for line in lines]),
+        crossings=joined([flat(polygon, PAINT) for polygon in drawing.zebras]),
+        stop_lines=joined([flat(polygon, PAINT) for polygon in drawing.stop_lines]),
+        kerbs=joined([_kerb(line, taken) for line in drawing.edges]),
     )
 
 
@@ -75,6 +77,31 @@ def flat(polygon: Array, colour: Colour, material: Material = Material.PLAIN) ->
     turned = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] < 0.0
     corners[turned] = corners[turned][:, ::-1]
     return facets(corners, colour, material)
+
+
+def thinned(line: Array) -> Array:
+    """Return a line [N, 2] without the points that lie within THIN_M of it anyway (Douglas and Peucker 1973).
+
+    One point in THIN_RUN stays in any case, so that no part is much longer than a piece of the scene.
+    """
+    keep = np.zeros(len(line), dtype=bool)
+    keep[::THIN_RUN] = keep[-1:] = True
+    ends = np.flatnonzero(keep)
+    open_runs = list(pairwise(ends.tolist()))
+    while open_runs:
+        start, end = open_runs.pop()
+        along = line[end] - line[start]
+        away = line[start + 1 : end] - line[start]
+        if len(away) == 0:
+            continue
+        length = float(np.hypot(*along))
+        across = np.abs(away @ np.array((-along[1], along[0]))) / length if length > 0.0 else np.hypot(*away.T)
+        far = int(across.argmax())
+        if across[far] > THIN_M:
+            middle = start + 1 + far
+            keep[middle] = True
+            open_runs += [(start, middle), (middle, end)]
+    return line[keep]
 
 
 def dashes_of(line: Array) -> list[Array]:
@@ -97,7 +124,8 @@ def _kerb(line: Array, taken: Occupancy) -> Vertices:
     for side in (-1.0, 1.0):
         free = ~taken.is_taken(line + side * PROBE_M * across)
         for start, end in _runs(free):
-            parts += _kerb_part(line[start:end], across[start:end], side)
+            part = thinned(line[start:end])
+            parts += _kerb_part(part, left_of(part), side)
     return joined(parts)
 
 

@@ -18,6 +18,7 @@ PIECE_M: Final = 120.0
 POST: Final[Colour] = (66, 70, 74)
 CASE: Final[Colour] = (22, 24, 26)
 LAMPS: Final[tuple[Colour, ...]] = ((232, 44, 36), (240, 168, 24), (46, 206, 106))
+LAMP_NAMES: Final = ("red", "amber", "green")
 LAMP_HEIGHTS_M: Final = (3.05, 2.75, 2.45)
 
 
@@ -40,15 +41,50 @@ class ViewScene(NamedTuple):
     size: Size
 
 
-def view_scene(drawing: Drawing | None, limit_kmh: float, size: Size) -> ViewScene:
-    """Return the scene of a world, or of an empty plain with a grid of lines where a session has none."""
+class Part(NamedTuple):
+    """What stands still and is of one kind; flat parts lie in layers, 0 the lowest."""
+
+    name: str
+    mesh: Vertices
+    layer: int | None = None  # None: it has height
+
+
+def world_parts(drawing: Drawing | None, limit_kmh: float) -> tuple[Part, ...]:
+    """Return all that stands still: of a world, or an empty plain with a grid of lines where a session has none."""
     if drawing is None:
-        land = _plain()
-        return ViewScene((pieces(land[0]), pieces(land[1])), pieces(joined([])), vehicle_meshes(size), size)
+        land, grid = _plain()
+        return Part("land", land, 0), Part("grid", grid, 1)
     taken = occupancy_of(drawing)
     road = road_meshes(drawing, taken)
-    solids = [road.solids, surroundings(drawing.path, limit_kmh, taken), *(_light(light) for light in drawing.lights)]
-    return ViewScene(tuple(pieces(layer) for layer in road.layers), pieces(joined(solids)), vehicle_meshes(size), size)
+    beside = surroundings(drawing.path, limit_kmh, taken)
+    lamps = [
+        Part(f"signal_{index}_{name}", _lamp(light, height_m, colour))
+        for index, light in enumerate(drawing.lights)
+        for name, height_m, colour in zip(LAMP_NAMES, LAMP_HEIGHTS_M, LAMPS, strict=True)
+    ]
+    return (
+        Part("land", road.land, 0),
+        Part("asphalt", road.asphalt, 1),
+        Part("islands", road.islands, 2),
+        Part("markings", road.markings, 3),
+        Part("crossings", road.crossings, 3),
+        Part("stop_lines", road.stop_lines, 3),
+        Part("kerbs", road.kerbs),
+        Part("signs", beside.signs),
+        Part("buildings", beside.houses),
+        Part("trees", beside.trees),
+        Part("signals", joined([_signal_post(light) for light in drawing.lights])),
+        *lamps,
+    )
+
+
+def view_scene(drawing: Drawing | None, limit_kmh: float, size: Size) -> ViewScene:
+    """Return the scene of a world, or of an empty plain where a session has none, and of a vehicle."""
+    parts = world_parts(drawing, limit_kmh)
+    heights = sorted({part.layer for part in parts if part.layer is not None})
+    layers = [joined([part.mesh for part in parts if part.layer == height]) for height in heights]
+    solids = joined([part.mesh for part in parts if part.layer is None])
+    return ViewScene(tuple(pieces(layer) for layer in layers), pieces(solids), vehicle_meshes(size), size)
 
 
 def pieces(mesh: Vertices) -> Pieces:
@@ -100,25 +136,24 @@ def in_sight(part: Pieces, view_projection: Array, reach_m: float, eye: Array) -
     return list(zip(starts.tolist(), (ends - starts).tolist(), strict=True))
 
 
-def _light(light: Light) -> Vertices:
-    """Return a traffic light's post and case, its lamps facing those who come."""
-    x, y = light.x_m, light.y_m
+def _signal_post(light: Light) -> Vertices:
+    """Return a traffic light's post and case."""
     place = Box(
-        x_m=x, y_m=y, z_m=2.3, half_length_m=0.11, half_width_m=0.17, height_m=1.0, yaw_rad=light.yaw_rad,
+        x_m=light.x_m, y_m=light.y_m, z_m=2.3, half_length_m=0.11, half_width_m=0.17, height_m=1.0,
+        yaw_rad=light.yaw_rad,
     )  # fmt: skip
-    case = box(place, CASE)
+    return joined([cone(light.x_m, light.y_m, (0.0, 2.3), (0.06, 0.05), POST), box(place, CASE)])
+
+
+def _lamp(light: Light, height_m: float, colour: Colour) -> Vertices:
+    """Return one of its lamps, unlit, facing those who come."""
     cosine, sine = np.cos(light.yaw_rad), np.sin(light.yaw_rad)
     back, left = np.array((-cosine, -sine, 0.0)), np.array((-sine, cosine, 0.0))
     up = np.array((0.0, 0.0, 1.0))
-    lamps = []
-    for height, colour in zip(LAMP_HEIGHTS_M, LAMPS, strict=True):
-        centre = np.array((x, y, height)) + 0.115 * back
-        corners = [
-            (0.1 * (a * left + b * up) + centre) for a, b in ((1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0))
-        ]
-        dim = tuple(channel // 3 for channel in colour)
-        lamps.append(quads(np.array([corners]), (dim[0], dim[1], dim[2]), Material.PLAIN))
-    return joined([cone(x, y, (0.0, 2.3), (0.06, 0.05), POST), case, *lamps])
+    centre = np.array((light.x_m, light.y_m, height_m)) + 0.115 * back
+    corners = [0.1 * (a * left + b * up) + centre for a, b in ((1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0))]
+    dim = tuple(channel // 3 for channel in colour)
+    return quads(np.array([corners]), (dim[0], dim[1], dim[2]), Material.PLAIN)
 
 
 def _plain() -> tuple[Vertices, Vertices]:

@@ -1,7 +1,7 @@
 """What stands beside the road where the world does not say: houses, trees and speed signs, the same in every drive."""
 
 import math
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,20 +33,27 @@ _DIGITS: Final = {
 }  # fmt: skip
 
 
-def surroundings(path: Array, limit_kmh: float, taken: Occupancy) -> Vertices:
+class Surroundings(NamedTuple):
+    """What stands beside the road."""
+
+    signs: Vertices
+    houses: Vertices
+    trees: Vertices
+
+
+def surroundings(path: Array, limit_kmh: float, taken: Occupancy) -> Surroundings:
     """Return houses, trees and signs along a path [N, 2], on ground that is free; takes it. Limit 0: no signs."""
     generator = np.random.Generator(np.random.PCG64(SEED))
     across = left_of(path)
     way = np.concatenate(((0.0,), np.cumsum(np.hypot(*np.diff(path, axis=0).T))))
-    parts = []
-    if limit_kmh > 0.0:
-        places = [_place(path, across, way, s) for s in np.arange(30.0, way[-1], SIGN_EVERY_M).tolist()]
-        parts = [_sign(*place, limit_kmh, taken) for place in places]
-    for s in np.arange(10.0, way[-1], HOUSE_EVERY_M).tolist():
-        parts += [_house(*_place(path, across, way, s), side, taken, generator) for side in SIDES_M]
-    for s in np.arange(4.0, way[-1], TREE_EVERY_M).tolist():
-        parts += [_tree(*_place(path, across, way, s), side, taken, generator) for side in SIDES_M]
-    return joined(parts)
+
+    def places(first_m: float, every_m: float) -> list[tuple[Array, Array]]:
+        return [_place(path, across, way, s) for s in np.arange(first_m, way[-1], every_m).tolist()]
+
+    signs = [_sign(*place, limit_kmh, taken) for place in (places(30.0, SIGN_EVERY_M) if limit_kmh > 0.0 else ())]
+    houses = [_house(*place, side, taken, generator) for place in places(10.0, HOUSE_EVERY_M) for side in SIDES_M]
+    trees = [_tree(*place, side, taken, generator) for place in places(4.0, TREE_EVERY_M) for side in SIDES_M]
+    return Surroundings(joined(signs), joined(houses), joined(trees))
 
 
 def _place(path: Array, across: Array, way: Array, s_m: float) -> tuple[Array, Array]:

@@ -11,6 +11,7 @@ from simconsole.bridge.console.command_messages import CommandMessages
 from simconsole.bridge.console.input_slots import BridgeInputs
 from simconsole.bridge.console.output_schedule import OutputSchedule, topic_names
 from simconsole.bridge.console.topics import BRIDGE, ODOMETRY, Outputs, Route
+from simconsole.bridge.console.view_topics import VIEW_TOPICS, view_topics
 from simconsole.bridge.messages import standard_registry
 from simconsole.bridge.messages.cdr import serialize
 from simconsole.profiles.bridge import BridgeProfile
@@ -26,8 +27,8 @@ from simconsole.values.units import tick_time_ns
 OnTick = Callable[[int], None]
 """Told, now and then, the last tick that was written."""
 
-UNRECORDED: Final = (BRIDGE,)
-"""Topics whose content is not in the log: counters of connections."""
+UNRECORDED: Final = (BRIDGE, *VIEW_TOPICS)
+"""Topics whose content is not in the log: counters of connections, and a view that is made from the world."""
 
 
 ACTS_TOPIC: Final = "/console/acts"
@@ -65,7 +66,8 @@ class DriveTopics:
             odometry_hz = session.mode.tick_hz / self._step_ticks
             profile = msgspec.structs.replace(profile, rates_hz={**profile.rates_hz, ODOMETRY: odometry_hz})
         self._outputs = Outputs(self.registry, profile, route=route)
-        outputs, commands = self._outputs.topics(), CommandDecoder(BridgeInputs(), profile).topics()
+        outputs = (*view_topics(self.registry, profile), *self._outputs.topics())
+        commands = CommandDecoder(BridgeInputs(), profile).topics()
         self.names = topic_names(profile, [*(topic.name for topic in outputs), *(topic.name for topic in commands)])
         recorded = tuple(output for output in outputs if output.name not in UNRECORDED)
         self.names[ACTS_TOPIC] = profile.namespace + ACTS_TOPIC

@@ -6,11 +6,14 @@ from simconsole.hud.driver_view.road import (
     DASH_M,
     KERB_HEIGHT_M,
     LINE_M,
+    THIN_M,
+    Array,
     RoadMeshes,
     dashes_of,
     flat,
     occupancy_of,
     road_meshes,
+    thinned,
 )
 from simconsole.profiles.files.loader import load
 from simconsole.profiles.world import CourseProfile
@@ -33,7 +36,7 @@ def meshes(course: Course) -> RoadMeshes:
 
 def test_markings_lie_on_the_lane_geometry(course: Course, meshes: RoadMeshes) -> None:
     """Where the road is plain, each painted point is half a line's width beside an edge of a lane."""
-    paint = meshes.layers[-1]["position"].astype(float)
+    paint = meshes.markings["position"].astype(float)
     half_m = 0.5 * course.world.lane_width_m
     plain = (paint[:, 0] > 20.0) & (paint[:, 0] < 250.0) & (np.abs(paint[:, 1]) < 12.0)
     assert plain.sum() > 100
@@ -43,16 +46,40 @@ def test_markings_lie_on_the_lane_geometry(course: Course, meshes: RoadMeshes) -
 
 def test_markings_follow_every_bend_of_the_lane(course: Course, meshes: RoadMeshes) -> None:
     edges = [line for line in draw(course).edges if len(line) > 20]
-    points = np.vstack(edges)
+    points = np.vstack([thinned(line) for line in edges])
     s, lateral = course.project_all(points[:, 0], points[:, 1])
-    paint = meshes.layers[-1]["position"].astype(float)
-    for index in range(0, len(points), 97):
+    paint = meshes.markings["position"].astype(float)
+    for index in range(0, len(points), 17):
         nearest = np.hypot(*(paint[:, :2] - points[index]).T).min()
         assert nearest < 0.5 * LINE_M + MARKING_M, (s[index], lateral[index])
 
 
+def test_thinned_lines_stay_where_they_were(course: Course) -> None:
+    lines = draw(course).edges
+    for line in lines:
+        sparse = thinned(line)
+        assert (sparse[0] == line[0]).all()
+        assert (sparse[-1] == line[-1]).all()
+        assert distances_m(line, sparse).max() <= THIN_M
+    assert sum(len(thinned(line)) for line in lines) < 0.5 * sum(len(line) for line in lines)
+
+
+def test_lines_that_turn_back_keep_their_end() -> None:
+    there_and_back = np.array(((0.0, 0.0), (5.0, 0.0), (10.0, 0.0), (5.0, 0.0), (0.0, 0.0)))
+    assert thinned(there_and_back).tolist() == [[0.0, 0.0], [10.0, 0.0], [0.0, 0.0]]
+    assert thinned(there_and_back[:2]).tolist() == there_and_back[:2].tolist()
+
+
+def distances_m(points: Array, line: Array) -> Array:
+    """Of points [N, 2] from a line [M, 2]."""
+    starts, steps = line[:-1], np.diff(line, axis=0)
+    square = np.maximum((steps * steps).sum(axis=1), 1e-12)
+    share = (((points[:, None] - starts) * steps).sum(axis=2) / square).clip(0.0, 1.0)
+    return np.asarray(np.hypot(*(points[:, None] - starts - share[..., None] * steps).T).min(axis=0))
+
+
 def test_kerbs_stand_beside_the_road_and_never_on_it(course: Course, meshes: RoadMeshes) -> None:
-    kerb = meshes.solids["position"].astype(float)
+    kerb = meshes.kerbs["position"].astype(float)
     assert kerb[:, 2].max() == pytest.approx(KERB_HEIGHT_M)
     half_m = 0.5 * course.world.lane_width_m
     straight = (kerb[:, 0] > 40.0) & (kerb[:, 0] < 240.0) & (np.abs(kerb[:, 1]) < 12.0)
