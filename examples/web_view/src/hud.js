@@ -1,0 +1,50 @@
+import { seconds } from "./rosbridge.js";
+
+const STALE_S = 0.5;
+const DANGER = 6; // alerts from "the car is stopping" on
+const TAKE_OVER = [5, 7];
+const BLINK_S = 0.67;
+
+/** The driver's display, from simconsole_msgs/Hud. */
+export class Hud {
+  message = null;
+  arrived = -Infinity;
+  text = {};
+
+  take(message, now) {
+    this.message = message;
+    this.arrived = now;
+  }
+
+  draw(now) {
+    const told = this.message;
+    const paused = told?.mode_words === "PAUSED"; // then nothing comes, and nothing is wrong
+    const stale = told === null || (now - this.arrived > STALE_S && !paused);
+    document.getElementById("hud").classList.toggle("stale", stale);
+    if (stale) return this.say({ speed: "–", gear: "–", mode: "NO DATA", reason: "", authority: "", alert: "", limit: "" });
+    const count = TAKE_OVER.includes(told.alert) ? ` ${Math.ceil(told.takeover_remaining)}` : "";
+    this.stamp = seconds(told.header.stamp);
+    this.say({
+      speed: String(told.shown_speed),
+      gear: (told.automatic ? "A " : "") + told.gear,
+      mode: told.mode_words,
+      reason: told.todo_words || told.reason_words,
+      authority: told.remote_lateral > 0 ? `${told.other_side} ${Math.round(100 * told.remote_lateral)} %` : "DRIVER",
+      limit: told.speed_limit > 0 ? `limit ${Math.round(3.6 * told.speed_limit)}` : "",
+      alert: told.alert_words + count,
+    });
+    document.getElementById("alert").classList.toggle("danger", told.alert >= DANGER);
+    const lit = seconds(told.header.stamp) % BLINK_S < 0.5 * BLINK_S;
+    this.lamp("left", lit && (told.hazard_lights || told.turn_indicators > 0));
+    this.lamp("right", lit && (told.hazard_lights || told.turn_indicators < 0));
+  }
+
+  say(text) {
+    this.text = text;
+    for (const [name, value] of Object.entries(text)) document.getElementById(name).textContent = value;
+  }
+
+  lamp(name, on) {
+    document.getElementById(name).classList.toggle("on", on);
+  }
+}

@@ -1,0 +1,94 @@
+"""Chromium without a display, driven by its own DevTools protocol; WebGL is drawn by the processor."""
+
+import base64
+import json
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+from urllib.request import urlopen
+
+from websockets.sync.client import ClientConnection, connect
+
+from tests.interop.programs import program
+from tests.patience import PATIENCE_S, wait_until
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+OPTIONS = (
+    "--headless=new",
+    "--no-sandbox",  # as root, as in a container, there is none
+    "--disable-dev-shm-usage",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--remote-debugging-port=0",
+    "--no-first-run",
+    "--disable-background-networking",
+)
+
+
+class Page:
+    """One page."""
+
+    def __init__(self, web: ClientConnection) -> None:
+        self._web = web
+        self._number = 0
+        self.complaints: list[Any] = []
+        """Errors and warnings of its console, and exceptions that nobody caught."""
+        for domain in ("Page", "Runtime"):
+            self.call(f"{domain}.enable")
+
+    def call(self, method: str, **parameters: Any) -> dict[str, Any]:
+        """Return a method's result."""
+        self._number += 1
+        self._web.send(json.dumps({"id": self._number, "method": method, "params": parameters}))
+        while True:
+            heard = json.loads(self._web.recv(timeout=PATIENCE_S))
+            if heard.get("id") == self._number:
+                assert "error" not in heard, heard
+                return dict(heard["result"])
+            if heard.get("method") == "Runtime.exceptionThrown":
+                self.complaints.append(heard["params"]["exceptionDetails"])
+            elif heard.get("method") == "Runtime.consoleAPICalled" and heard["params"]["type"] in ("error", "warning"):
+                self.complaints.append([argument.get("value") for argument in heard["params"]["args"]])
+
+    def value(self, expression: str) -> Any:
+        """Return what a JavaScript expression is."""
+        result = self.call("Runtime.evaluate", expression=expression, returnByValue=True)
+        assert "exceptionDetails" not in result, result
+        return result["result"].get("value")
+
+    def screenshot(self) -> bytes:
+        """Return the picture of it as a PNG."""
+        return base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
+
+
+@contextmanager
+def browse(url: str, folder: Path, width_px: int, height_px: int) -> Iterator[Page]:
+    """Open a page; `folder` is the browser's own."""
+    assert CHROMIUM is not None
+    words = (CHROMIUM, *OPTIONS, f"--user-data-dir={folder}", "about:blank")
+    told = folder / "DevToolsActivePort"
+    with program({"HOME": str(folder), "PATH": "/usr/bin:/bin"}, *words) as chromium:
+        wait_until(lambda: chromium.poll() or (told.exists() and "\n" in told.read_text()), "the browser")
+        with connect(_debugger(told.read_text().split("\n")[0]), max_size=None, compression=None) as web:
+            page = Page(web)
+            page.call(
+                "Emulation.setDeviceMetricsOverride",
+                width=width_px,
+                height=height_px,
+                deviceScaleFactor=1,
+                mobile=False,
+            )
+            page.call("Page.navigate", url=url)
+            yield page
+
+
+def _debugger(port: str) -> str:
+    """Return where the browser's one page is driven."""
+
+    def found() -> list[str]:
+        with urlopen(f"http://127.0.0.1:{port}/json/list", timeout=PATIENCE_S) as answer:
+            return [one["webSocketDebuggerUrl"] for one in json.load(answer) if one["type"] == "page"]
+
+    return wait_until(found, "a page")[0]

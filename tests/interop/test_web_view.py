@@ -1,0 +1,244 @@
+"""examples/web_view in a browser: the page follows a drive of ours, and its picture shows the road."""
+
+import hashlib
+import json
+import math
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+from matplotlib.image import imread
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.client import ClientConnection
+
+from simconsole.recording.bundles.bundle import open_bundle
+from tests.drives.controllers import free_port
+from tests.interop.browser import CHROMIUM, Page, browse
+from tests.interop.programs import CACHE, client, environment, program, wait_for_port
+from tests.paths import ROOT
+from tests.patience import PATIENCE_S, wait_until
+
+EXAMPLE = ROOT / "examples" / "web_view"
+NPM = shutil.which("npm")
+SAMPLES = 40
+MET_M, MET_RAD = 0.01, 0.002
+"""How far the page's car may be from the recorded one at the moment that the page says it shows."""
+SIZE_PX = (640, 480)
+
+pytestmark = [
+    pytest.mark.skipif(NPM is None, reason="no npm: system-packages.txt"),
+    pytest.mark.skipif(CHROMIUM is None, reason="no Chromium: system-packages.txt"),
+]
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The page, built by the command that its README names; npm fetches the libraries once."""
+    lock = hashlib.sha256((EXAMPLE / "package-lock.json").read_bytes()).hexdigest()[:16]
+    libraries = CACHE / f"web_view-{lock}"
+    if not (libraries / "node_modules" / "three").exists():
+        libraries.mkdir(parents=True, exist_ok=True)
+        for name in ("package.json", "package-lock.json", ".npmrc"):
+            shutil.copy(EXAMPLE / name, libraries)
+        npm(libraries, "ci", "--ignore-scripts")
+    folder = tmp_path_factory.mktemp("web_view")
+    ignored = shutil.ignore_patterns("node_modules", "dist")
+    shutil.copytree(EXAMPLE, folder, ignore=ignored, dirs_exist_ok=True)
+    (folder / "node_modules").symlink_to(libraries / "node_modules")
+    npm(folder, "run", "build")
+    return folder / "dist"
+
+
+def npm(folder: Path, *words: str) -> None:
+    done = subprocess.run([str(NPM), *words], cwd=folder, capture_output=True, text=True, timeout=PATIENCE_S)
+    assert done.returncode == 0, done.stderr
+
+
+class Ear:
+    """Hears /view/hud beside the page, and asks for things."""
+
+    def __init__(self, web: ClientConnection) -> None:
+        self._web = web
+        for operation in (
+            {"op": "subscribe", "topic": "/view/hud", "queue_length": 1000},
+            {"op": "advertise", "topic": "/console/request", "type": "std_msgs/String"},
+        ):
+            self._web.send(json.dumps(operation))
+        self.readings: dict[float, dict[str, Any]] = {}
+        """By stamp in s."""
+        self.newest: dict[str, Any] = {}
+        self._thread = threading.Thread(target=self._listen, daemon=True)
+        self._thread.start()
+
+    def ask(self, word: str) -> None:
+        self._web.send(json.dumps({"op": "publish", "topic": "/console/request", "msg": {"data": word}}))
+
+    def ask_until(self, word: str, mode: str) -> None:
+        """Ask, with each new reading again, until the console is in a mode."""
+        asked: list[float] = []
+
+        def there() -> bool:
+            if self.newest.get("mode_words") == mode:
+                return True
+            newest = next(reversed(self.readings), 0.0)
+            if not asked or newest > asked[-1] + 0.5:
+                asked.append(newest)
+                self.ask(word)
+            return False
+
+        wait_until(there, mode)
+
+    def _listen(self) -> None:
+        try:
+            for text in self._web:
+                message = json.loads(text)
+                if message["op"] == "publish":
+                    stamp = message["msg"]["header"]["stamp"]
+                    self.readings[stamp["sec"] + 1e-9 * stamp["nanosec"]] = self.newest = message["msg"]
+        except ConnectionClosed:
+            return
+
+
+@contextmanager
+def drive(folder: Path, port: int) -> Iterator["subprocess.Popen[str]"]:
+    """The sample's own session, on a port of the test's."""
+    session = yaml.safe_load((EXAMPLE / "session.yaml").read_text())
+    session["outputs"]["bridge"]["port"] = port
+    path = folder / "session.yaml"
+    path.write_text(yaml.safe_dump(session))
+    words = ("-m", "simconsole", "drive", str(path), "--out", str(folder / "bundle"))
+    with program(environment(), sys.executable, *words) as process:
+        wait_for_port(port)
+        yield process
+
+
+@contextmanager
+def served(folder: Path) -> Iterator[int]:
+    """A folder over HTTP: the port."""
+
+    class Quiet(SimpleHTTPRequestHandler):
+        def log_request(self, code: int | str = "-", size: int | str = "-") -> None:
+            pass
+
+    with ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=str(folder))) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        yield int(server.server_address[1])
+        server.shutdown()
+
+
+def shown(page: Page) -> dict[str, Any]:
+    """What the page says it shows."""
+    state: dict[str, Any] | None = page.value("globalThis.view?.()")
+    return state or {}
+
+
+def test_the_page_follows_a_drive(built: Path, tmp_path: Path, record_property: Any) -> None:
+    port = free_port()
+    (tmp_path / "browser").mkdir()
+    with drive(tmp_path, port) as process, served(built) as web:
+        url = f"http://127.0.0.1:{web}/?host=127.0.0.1:{port}"
+        with client(f"ws://127.0.0.1:{port}") as heard, browse(url, tmp_path / "browser", *SIZE_PX) as page:
+            ear = Ear(heard.web)
+            wait_until(lambda: shown(page).get("parts"), "the scene")
+            ear.ask_until("autonomous", "AUTONOMOUS")
+            wait_until(lambda: ear.newest["speed"] > 5.0 and float(shown(page)["hud"]["speed"]) > 15.0, "a moving car")
+            states = [shown(page) for _ in range(SAMPLES)]
+            picture = page.screenshot()
+            ear.ask_until("takeover", "TAKE OVER")
+            alert = wait_until(lambda: (s := shown(page))["hud"]["alert"].startswith("TAKE OVER") and s, "the alert")
+            process.send_signal(signal.SIGINT)
+            process.communicate(timeout=PATIENCE_S)
+            wait_until(lambda: shown(page)["hud"]["mode"] == "NO DATA", "no data")
+            complaints = [one for one in page.complaints if "WebSocket" not in str(one) and "GPU stall" not in str(one)]
+    assert complaints == []
+    has_all_parts(states[-1]["parts"])
+    for state in (*states, alert):
+        reads_as_told(state["hud"], ear.readings[state["hud"]["stamp"]])
+    assert alert["hud"]["alert"] == f"TAKE OVER {math.ceil(ear.readings[alert['hud']['stamp']]['takeover_remaining'])}"
+    met = follows(states, tmp_path / "bundle")
+    record_property("web view", f"pose met within {1000.0 * met:.1f} mm over {SAMPLES} looks")
+    shows_a_road(picture, tmp_path)
+
+
+def has_all_parts(parts: list[str]) -> None:
+    still = {
+        "land",
+        "asphalt",
+        "markings",
+        "crossings",
+        "stop_lines",
+        "kerbs",
+        "signs",
+        "buildings",
+        "trees",
+        "signals",
+    }
+    moving = {"body", "front_left_wheel", "front_right_wheel", "rear_left_wheel", "rear_right_wheel", "hand_wheel"}
+    assert still | moving <= set(parts)
+    assert sum(name.startswith("signal_") for name in parts) == 12
+
+
+def reads_as_told(text: dict[str, Any], told: dict[str, Any]) -> None:
+    assert text["speed"] == str(told["shown_speed"])
+    assert text["gear"] == ("A " if told["automatic"] else "") + told["gear"]
+    assert text["mode"] == told["mode_words"]
+    assert text["reason"] == (told["todo_words"] or told["reason_words"])
+    assert text["limit"] == "limit 50"
+
+
+def follows(states: list[dict[str, Any]], bundle: Path) -> float:
+    """Assert that the page's car is where the recorded one was; return the largest distance in m."""
+    log = open_bundle(bundle).log.table(("vehicle.x_m", "vehicle.y_m", "vehicle.yaw_rad", "vehicle.road_wheel_rad"))
+    times = log.ticks / log.tick_hz
+    worst = 0.0
+    for state in states:
+        assert state["older"] <= state["time"] <= state["newer"]
+        x, y, yaw, steer = (float(np.interp(state["time"], times, log.column(name))) for name in log.columns)
+        px, py, _, *turn = state["poses"]["base_link"]
+        worst = max(worst, math.hypot(px - x, py - y))
+        assert abs(math.remainder(yaw_of(turn) - yaw, math.tau)) < MET_RAD
+        left, rear = (state["poses"][name] for name in ("front_left_wheel", "rear_left_wheel"))
+        assert abs(axle_yaw(left[3:]) - steer) < MET_RAD
+        assert abs(axle_yaw(rear[3:])) < MET_RAD
+        assert left[0] == pytest.approx(2.5, abs=0.5)
+    assert worst < MET_M
+    first, last = states[0], states[-1]
+    assert last["time"] > first["time"]
+    assert last["frames"] > first["frames"]
+    assert first["poses"]["base_link"][0] != last["poses"]["base_link"][0]
+    assert first["poses"]["rear_left_wheel"][3:] != last["poses"]["rear_left_wheel"][3:]
+    return worst
+
+
+def yaw_of(turn: list[float]) -> float:
+    x, y, z, w = turn
+    return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+
+
+def axle_yaw(turn: list[float]) -> float:
+    """The yaw of the y axis of a wheel, which its rolling leaves alone."""
+    x, y, z, w = turn
+    return math.atan2(-2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z))
+
+
+def shows_a_road(png: bytes, folder: Path) -> None:
+    """Sky above, road below, and much in between; not one colour everywhere."""
+    path = folder / "web_view.png"
+    path.write_bytes(png)
+    pixels = np.rint(255.0 * imread(path)[:, :, :3]).astype(int)
+    height = len(pixels)
+    sky, road = pixels[: height // 8].reshape(-1, 3), pixels[height * 5 // 8 : height * 6 // 8].reshape(-1, 3)
+    assert sky[:, 2].mean() > sky[:, 0].mean() + 20.0
+    assert np.abs(road.max(axis=1) - road.min(axis=1)).mean() < 40.0
+    assert len(np.unique((pixels // 8).reshape(-1, 3), axis=0)) > 200
