@@ -29,7 +29,7 @@ export class Hud {
       gear: (told.automatic ? "A " : "") + told.gear,
       mode: told.mode_words,
       reason: told.todo_words || told.reason_words,
-      authority: told.remote_lateral > 0 ? `${told.other_side} ${Math.round(100 * told.remote_lateral)} %` : "DRIVER",
+      authority: steers(told),
       limit: told.speed_limit > 0 ? `limit ${Math.round(3.6 * told.speed_limit)}` : "",
       alert: told.alert_words + count,
     });
@@ -47,4 +47,10 @@ export class Hud {
   lamp(name, on) {
     document.getElementById(name).classList.toggle("on", on);
   }
+}
+
+/** Who steers, and with what share where it is not all. */
+function steers({ remote_lateral: share, other_side: other }) {
+  if (share <= 0) return "DRIVER";
+  return share < 1 ? `${other} ${Math.round(100 * share)} %` : other;
 }

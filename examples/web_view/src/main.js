@@ -46,8 +46,8 @@ globalThis.view = () => ({
   parts: stage.parts.map((part) => part.name),
   hud: { ...hud.text, stamp: hud.stamp },
   time: state.drawn?.time,
-  older: motion.older?.stamp,
-  newer: motion.newer?.stamp,
+  older: state.drawn?.older,
+  newer: state.drawn?.newer,
   poses: Object.fromEntries(
     [...(state.drawn?.frames.keys() ?? [])].map((name) => {
       const { position, quaternion } = stage.frame(name, "map");

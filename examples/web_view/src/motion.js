@@ -22,7 +22,7 @@ export class Motion {
     this.last = this.newer;
   }
 
-  /** Return simulated time and frames to draw at `now`, null before the first message. */
+  /** Return what to draw at `now`: simulated time, the stamps around it, frames; null before the first message. */
   at(now) {
     if (this.newer === null) return null;
     const { older, newer } = this;
@@ -38,7 +38,7 @@ export class Motion {
         turn: from.turn.clone().slerp(to.turn, share), // the short way round
       });
     }
-    return { time, frames };
+    return { time, older: older.stamp, newer: newer.stamp, frames };
   }
 }
 

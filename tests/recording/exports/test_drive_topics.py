@@ -38,6 +38,13 @@ def test_every_topic_but_that_of_connections_at_its_rate(recording: MadeRecordin
     assert "/console/bridge" not in found
 
 
+def test_a_view_of_another_program_is_not_exported_though_it_may_be_rated_and_renamed(recording: MadeRecording) -> None:
+    session = with_bridge(external_view=True, rates_hz={"/view/poses": 10.0}, rename={"/view/hud": "/hud"})
+    found = counts(DriveTopics(session).messages(recording))
+    assert {"/view/scene", "/view/poses", "/view/hud", "/hud"}.isdisjoint(found)
+    assert found == counts(DriveTopics(with_bridge()).messages(recording))
+
+
 def test_times_never_go_back_and_values_are_those_of_the_tick(recording: MadeRecording) -> None:
     topics = DriveTopics(SESSION)
     last_ns = 0

@@ -1,0 +1,54 @@
+import pytest
+
+from simconsole.bridge.messages import standard_registry
+from simconsole.hud.banner import Alert
+from simconsole.hud.reading import HudReading
+from simconsole.hud.view import HudSettings
+from simconsole.values.signals import Event, Mode, Notice, Reason
+from tests.hud.test_view import TICK_HZ, snapshot
+
+SETTINGS = HudSettings(takeover_window_s=10.0, hand_wheel_per_road_wheel=15.0)
+
+
+def test_every_field_of_the_message_is_read_and_fits() -> None:
+    read = HudReading(SETTINGS, 50.0)(snapshot(vehicle__vx_mps=10.0, vehicle__gear=3.0, vehicle__engine_radps=200.0))
+    kind = standard_registry().struct("simconsole_msgs/Hud")
+    assert {"header", *read} == set(kind.__struct_fields__)
+    kind(**read)
+    assert (read["speed"], read["shown_speed"], read["gear"], read["engine_speed"]) == (10.0, 36, "3", 200.0)
+    assert read["speed_limit"] == pytest.approx(50.0 / 3.6)
+    assert (read["mode_words"], read["alert"], read["alert_words"]) == ("PARKED", Alert.NONE, "")
+
+
+def test_a_takeover_counts_down_to_the_moment_the_console_acts() -> None:
+    reading = HudReading(SETTINGS, 0.0)
+    mode = float(Mode.TAKEOVER_REQUESTED)
+    first = reading(snapshot(memory__mode_ticks=0.0, arbitration__takeover_stage=1.0, arbitration__mode=mode))
+    ticks = 6.5 * TICK_HZ
+    later = reading(snapshot(memory__mode_ticks=ticks, arbitration__takeover_stage=2.0, arbitration__mode=mode))
+    assert (first["alert"], first["alert_words"], first["takeover_remaining"]) == (Alert.TAKE_OVER, "TAKE OVER", 10.0)
+    assert (later["alert"], later["alert_words"]) == (Alert.TAKE_OVER_NOW, "TAKE OVER NOW")
+    assert later["takeover_remaining"] == pytest.approx(3.5)
+    assert later["takeover_stage"] == 2
+
+
+def test_notices_and_refusals_are_alerts_in_their_own_words() -> None:
+    reading = HudReading(SETTINGS, 0.0)
+    refused = reading(snapshot(arbitration__refusal=float(Reason.REFUSED_TOO_FAST)))
+    assert refused["alert"] == Alert.REFUSED
+    assert refused["alert_words"] == refused["refusal_words"] != ""
+    noticed = reading(snapshot(arbitration__notice=float(Notice.CENTRE_WHEEL)))
+    assert noticed["alert"] == Alert.NOTICE
+    assert noticed["alert_words"] == noticed["notice_words"] != ""
+
+
+def test_a_pause_says_so() -> None:
+    assert HudReading(SETTINGS, 0.0)(snapshot(events__events=float(Event.PAUSE)))["mode_words"] == "PAUSED"
+
+
+def test_steering_and_lamps_are_as_the_car_has_them() -> None:
+    read = HudReading(SETTINGS, 0.0)(
+        snapshot(vehicle__road_wheel_rad=0.1, command__turn_indicators=-1.0, command__hazard_lights=1.0)
+    )
+    assert read["hand_wheel"] == pytest.approx(1.5)
+    assert (read["turn_indicators"], read["hazard_lights"]) == (-1, True)
