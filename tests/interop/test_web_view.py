@@ -149,6 +149,54 @@ def served(folder: Path) -> Iterator[int]:
         server.shutdown()
 
 
+MOTION = """
+import { Motion } from "./src/motion.js";
+const motion = new Motion(), seen = [];
+for (const [kind, now, stamp] of JSON.parse(process.argv[1])) {
+  if (kind === "take") {
+    const header = { stamp: { sec: 0, nanosec: Math.round(1e9 * stamp) }, frame_id: "map" };
+    const transform = { translation: { x: 10 * stamp, y: 0, z: 0 }, rotation: { x: 0, y: 0, z: 0, w: 1 } };
+    motion.take({ transforms: [{ header, child_frame_id: "base_link", transform }] }, now);
+  } else {
+    const { time, frames } = motion.at(now);
+    seen.push([time, frames.get("base_link").place.x]);
+  }
+}
+console.log(JSON.stringify(seen));
+"""
+
+
+def moved(built: Path, happened: list[tuple[Any, ...]]) -> list[tuple[float, float]]:
+    """Simulated time and place, at 10 m/s, of each `("at", now)` between the messages `("take", now, stamp)`."""
+    words = [str(shutil.which("node")), "--input-type=module", "--eval", MOTION, json.dumps(happened)]
+    done = subprocess.run(words, cwd=built.parent, capture_output=True, text=True, timeout=PATIENCE_S)
+    assert done.returncode == 0, done.stderr
+    return [(time, place) for time, place in json.loads(done.stdout)]
+
+
+def test_messages_that_come_unevenly_are_drawn_evenly(built: Path) -> None:
+    jitter = np.random.Generator(np.random.PCG64(3)).uniform(0.0, 0.008, 100).tolist()
+    comes = [("take", 100.0 + 0.02 * n + late, 0.02 * n) for n, late in enumerate(jitter, 1)]
+    looks = [("at", 100.5 + 0.0037 * n) for n in range(300)]
+    seen = moved(built, sorted((*comes, *looks), key=lambda one: float(one[1])))
+    steps = np.diff([time for time, _ in seen])
+    assert (steps >= 0.0).all()
+    assert steps.max() < 0.0037 + 0.008 + 0.001
+    assert [place for _, place in seen] == pytest.approx([10.0 * time for time, _ in seen])
+
+
+def test_nothing_is_drawn_beyond_the_newest_pose_and_a_new_drive_begins_at_its_start(built: Path) -> None:
+    seen = moved(
+        built,
+        [
+            *(("take", 100.0, 1.0), ("at", 100.0), ("take", 100.02, 1.02), ("at", 100.03), ("at", 107.0)),
+            *(("take", 107.0, 1.04), ("at", 107.0), ("take", 107.02, 1.06), ("at", 107.035)),  # after a pause
+            *(("take", 108.0, 0.02), ("at", 108.0)),  # another drive
+        ],
+    )
+    assert [time for time, _ in seen] == pytest.approx([1.0, 1.01, 1.02, 1.04, 1.055, 0.02])
+
+
 def shown(page: Page) -> dict[str, Any]:
     """What the page says it shows."""
     state: dict[str, Any] | None = page.value("globalThis.view?.()")
