@@ -26,7 +26,7 @@ scenario: {vehicle: hatchback, duration_s: 1}
 features: {control: {person_required: false}}
 outputs: {bridge: {port: 0, external_view: true}, hud: null, scene: null, report: false}
 devices: {driver: none}
-mode: {pacing: lockstep, tick_hz: 250}
+mode: {pacing: lockstep, tick_hz: 250, answer_timeout_s: 60}
 """
 
 
@@ -60,7 +60,9 @@ def watch_and_answer(port: int, heard: dict[str, list[Any]]) -> None:
         except OSError:
             return None
 
-    with wait_until(connected, "the console") as web:
+    web = wait_until(connected, "the console")
+    assert web is not None
+    with web:
         for topic in (*heard, "/odom"):
             web.send(json.dumps({"op": "subscribe", "topic": topic}))
         try:
