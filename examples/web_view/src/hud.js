@@ -10,6 +10,7 @@ export class Hud {
   message = null;
   arrived = -Infinity;
   text = {};
+  lamps = {}; // those of the car: parts of its model, shown while they are on
 
   take(message, now) {
     this.message = message;
@@ -35,8 +36,11 @@ export class Hud {
     });
     document.getElementById("alert").classList.toggle("danger", told.alert >= DANGER);
     const lit = seconds(told.header.stamp) % BLINK_S < 0.5 * BLINK_S;
-    this.lamp("left", lit && (told.hazard_lights || told.turn_indicators > 0));
-    this.lamp("right", lit && (told.hazard_lights || told.turn_indicators < 0));
+    const left = lit && (told.hazard_lights || told.turn_indicators > 0);
+    const right = lit && (told.hazard_lights || told.turn_indicators < 0);
+    this.lamp("left", left);
+    this.lamp("right", right);
+    this.lamps = { brake_lamps: told.brake > 0, left_indicators: left, right_indicators: right };
   }
 
   say(text) {

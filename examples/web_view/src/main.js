@@ -33,6 +33,7 @@ function draw() {
   state.drawn = motion.at(now);
   if (state.drawn) stage.move(state.drawn.frames);
   hud.draw(now);
+  for (const [name, on] of Object.entries(hud.lamps)) stage.show(name, on);
   stage.draw();
   state.frames += 1;
   requestAnimationFrame(draw);

@@ -66,6 +66,7 @@ export class Stage {
     this.camera.position.copy(place);
     const [right, up, back] = [new THREE.Vector3(0, -1, 0), new THREE.Vector3(0, 0, 1), new THREE.Vector3(-1, 0, 0)];
     this.camera.quaternion.setFromRotationMatrix(new THREE.Matrix4().makeBasis(right, up, back));
+    if (!inside) this.camera.rotateX(-0.18); // down to the car
     vehicle.add(this.camera);
   }
 
@@ -116,6 +117,7 @@ function sunlight() {
   const sun = new THREE.DirectionalLight(0xfff2dc, 2.4);
   sun.castShadow = true;
   sun.shadow.mapSize.set(2048, 2048);
+  sun.shadow.bias = -0.001; // of its reach: faces do not shade themselves
   Object.assign(sun.shadow.camera, { left: -70, right: 70, top: 70, bottom: -70, near: 1, far: 300 });
   return sun;
 }
