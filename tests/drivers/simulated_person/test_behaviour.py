@@ -7,7 +7,8 @@ import pytest
 
 from simconsole.devices.calibration.inverse_calibration import Intent
 from simconsole.drivers.line_keeper import Line
-from simconsole.drivers.simulated_person.behaviour import PersonBehaviour, Phase, steer_along
+from simconsole.drivers.simulated_person.behaviour import PersonBehaviour, Phase
+from simconsole.drivers.simulated_person.guidance import steer_along
 from simconsole.drivers.simulated_person.launch import launch_throttle
 from simconsole.drivers.simulated_person.view import View
 from simconsole.drivers.speed_holder import hold_speed

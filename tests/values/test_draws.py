@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from simconsole.bridge.link.draws import Channel, even, normal
+from simconsole.values.draws import Channel, even, normal
 from tests.samples import Sample
 
 
