@@ -1,7 +1,7 @@
 """What a controller is told of the car: the true state with the errors of its localisation."""
 
-from simconsole.values.draws import Channel, normal, wandering
 from simconsole.profiles.link import LinkProfile, LocalisationProfile
+from simconsole.values.draws import Channel, normal, wandering
 from simconsole.values.signals import VehicleState
 from simconsole.values.units import RAD_PER_DEG
 
