@@ -1,6 +1,6 @@
 """The simulated person's plan: what they do in a drive, and their habits in doing so."""
 
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, Final, Literal, TypeAlias
 
 from msgspec import Meta, Struct
 
@@ -44,7 +44,7 @@ class Habits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 class RoadHabits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """How a person drives along a road: what they look at, how late and how exactly they act, how briskly they drive.
 
-    `drivers/simulated_person/two_point.py`, `pace.py` and `following.py` name the sources of the figures.
+    `drivers/simulated_person/two_point.py`, `along_route.py` and `following.py` name the sources of the figures.
     """
 
     near_m: Annotated[float, Meta(ge=4.0, le=20.0)] = 8.0  # how far ahead the near point is, at most
@@ -53,7 +53,7 @@ class RoadHabits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     near_rate_1ps: Annotated[float, Meta(ge=0.0, le=1.0)] = 0.15
     visual_delay_s: Annotated[float, Meta(ge=0.0, le=0.5)] = 0.2  # from the eye to the hand
     reaction_s: Annotated[float, Meta(ge=0.0, le=3.0)] = 0.75  # to what others do and to signals
-    aim_deviation_m: Annotated[float, Meta(ge=0.0, le=0.5)] = 0.2  # of what they take for the middle of their lane
+    aim_deviation_m: Annotated[float, Meta(ge=0.0, le=0.5)] = 0.13  # of what they take for the middle of their lane
     aim_time_s: Annotated[float, Meta(ge=1.0, le=60.0)] = 4.0
     hand_deviation_deg: Annotated[float, Meta(ge=0.0, le=5.0)] = 0.25
     hand_time_s: Annotated[float, Meta(ge=0.1, le=5.0)] = 0.4
@@ -71,7 +71,8 @@ class RoadHabits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 class PersonPlan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """One drive: drive off, hand over, take back, stop. A point left out is never reached (`stop`: at once).
 
-    Along a route the person keeps to its limits and bends, no faster than `cruise_kmh`, and stops at its end.
+    Along a route the person keeps to its limits and bends, no faster than `cruise_kmh`, and stops at its end: that of
+    a closed one is a lap, where no `stop` is given.
     """
 
     schema: Literal[1] = 1
@@ -88,3 +89,7 @@ class PersonPlan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     seed: Annotated[int, Meta(ge=0, le=2**53)] = 0
     """Which person: what their eyes and hands do wrong along a route."""
     road: RoadHabits = RoadHabits()
+
+
+ROUTE_DRIVER: Final = PersonPlan(title="drives the route by hand", cruise_kmh=130.0, top_gear=6, along="route")
+"""What a simulated person does who is not told."""

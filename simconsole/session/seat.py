@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.force_feedback import ForceFeedback
-from simconsole.profiles.person import PersonPlan
+from simconsole.profiles.person import ROUTE_DRIVER, PersonPlan
 from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import DeviceError, ProfileError
@@ -160,12 +160,14 @@ def _open_person(resolved: ResolvedSession, console: Console, stack: ExitStack) 
 
 
 def _plan(resolved: ResolvedSession, tick_hz: int) -> "tuple[PersonPlan, Guidance | None]":
-    """Return what the simulated person does, and where they go; None: straight on."""
+    """Return what the simulated person does, and where they go; None: straight on.
+
+    Raises:
+        ProfileError: they should drive along a route, and there is none.
+    """
     from simconsole.drivers.simulated_person.along_route import AlongRoute
 
-    plan = resolved.session.devices.person
-    if plan is None:
-        raise ProfileError("devices.person: value missing: a plan, where devices.driver is virtual")
+    plan = resolved.session.devices.person or ROUTE_DRIVER
     if plan.along == "straight":
         return plan, None
     if resolved.world is None:

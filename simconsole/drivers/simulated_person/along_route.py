@@ -63,10 +63,13 @@ class AlongRoute:
         self._situations: deque[Situation] = deque(maxlen=1 + round(road.reaction_s * tick_hz))
         self._obedience = Obedience()
         self._s_m: float | None = None
+        self._began_m = 0.0
 
     def look(self, view: View) -> None:
         """See where the two points are, and who and what is ahead."""
-        self._s_m = s_m = self._route.project(view.x_m, view.y_m, self._s_m).s_m
+        s_m = self._route.project(view.x_m, view.y_m, self._s_m).s_m
+        self._began_m = s_m if self._s_m is None else self._began_m
+        self._s_m = s_m
         near_m, far_m = distances_m(view.speed_mps, self._road)
         aim_m = self._road.aim_deviation_m * wandering(
             self._plan.seed, Channel.PERSON_AIM, view.time_s / self._road.aim_time_s
@@ -130,5 +133,8 @@ class AlongRoute:
         return Pace(min(target_mps, speed_mps + EAGER_MPS), 0.0, target_mps > speed_mps + HURRIED_MPS)
 
     def arrived(self, view: View) -> bool:
-        """Return whether an open route is about to end."""
-        return not self._route.closed and (self._s_m or 0.0) > self._route.length_m - ARRIVED_M
+        """Return whether an open route is about to end, or the lap that is the whole plan."""
+        s_m = self._began_m if self._s_m is None else self._s_m
+        if not self._route.closed:
+            return s_m > self._route.length_m - ARRIVED_M
+        return self._plan.stop is None and self._plan.autonomy is None and s_m - self._began_m > self._route.length_m
