@@ -53,9 +53,9 @@ class RoadHabits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     near_rate_1ps: Annotated[float, Meta(ge=0.0, le=1.0)] = 0.15
     visual_delay_s: Annotated[float, Meta(ge=0.0, le=0.5)] = 0.2  # from the eye to the hand
     reaction_s: Annotated[float, Meta(ge=0.0, le=3.0)] = 0.75  # to what others do and to signals
-    aim_deviation_m: Annotated[float, Meta(ge=0.0, le=0.5)] = 0.18  # of what they take for the middle of their lane
-    aim_time_s: Annotated[float, Meta(ge=1.0, le=60.0)] = 4.0
-    hand_deviation_deg: Annotated[float, Meta(ge=0.0, le=5.0)] = 0.33
+    aim_deviation_m: Annotated[float, Meta(ge=0.0, le=0.5)] = 0.22  # of what they take for the middle of their lane
+    aim_time_s: Annotated[float, Meta(ge=1.0, le=60.0)] = 6.0
+    hand_deviation_deg: Annotated[float, Meta(ge=0.0, le=5.0)] = 0.2
     hand_time_s: Annotated[float, Meta(ge=0.1, le=5.0)] = 0.4
     understeer_radps2pm: Annotated[float, Meta(ge=0.0, le=0.02)] = 0.007  # of the car and of their arms
     lateral_mps2: Annotated[float, Meta(ge=0.5, le=6.0)] = 2.0

@@ -94,7 +94,7 @@ def test_a_route_is_driven_by_hand_to_its_end(world: str, tmp_path: Path) -> Non
     assert stays(done, world)
     assert -0.5 < done.left_m < 6.0
     assert done.speed_kmh[-1] < 0.2
-    found = metrics(recorded_drive(open_bundle(done.bundle)), route(world))
+    found = metrics(recorded_drive(open_bundle(done.bundle).log), route(world))
     assert found["autonomous"] is None
     assert 0.1 < found["manual"]["lateral_deviation_m"] < MOST_M
     assert replay_bundle(done.bundle).problems == ()

@@ -1,7 +1,8 @@
 """A person who drives along a route: what they see of it, late and not exactly, and what hands and feet make of it.
 
 Pure. Position is seen `visual_delay_s` late, other road users and signals `reaction_s` late. What the person takes for
-the middle of the lane wanders, and so do the hands: smooth curves from the plan's seed (`values/draws.py`).
+the middle of the lane wanders within bounds, for nobody aims at the line, and so do the hands: smooth curves from the
+plan's seed (`values/draws.py`).
 """
 
 import math
@@ -16,7 +17,7 @@ from simconsole.drivers.simulated_person.situation import Situation
 from simconsole.drivers.simulated_person.two_point import Points, TwoPointSteering, distances_m, wheel_to
 from simconsole.drivers.simulated_person.view import View
 from simconsole.profiles.person import PersonPlan
-from simconsole.values.draws import Channel, wandering
+from simconsole.values.draws import Channel, bounded, wandering
 from simconsole.values.units import MPS_PER_KMH, RAD_PER_DEG
 from simconsole.world.route import Route
 
@@ -72,7 +73,7 @@ class AlongRoute:
         self._s_m = s_m
         near_m, far_m = distances_m(view.speed_mps, self._road)
         aim_m = self._road.aim_deviation_m * wandering(
-            self._plan.seed, Channel.PERSON_AIM, view.time_s / self._road.aim_time_s
+            self._plan.seed, Channel.PERSON_AIM, view.time_s / self._road.aim_time_s, bounded
         )
         points = Points(self._wheel_to(s_m + near_m, aim_m, view), self._wheel_to(s_m + far_m, aim_m, view))
         self._seen.append(Seen(points, view.speed_mps))
