@@ -62,9 +62,7 @@ def bounded(seed: int, channel: Channel, number: int) -> float:
     return _ROOT_3 * (2.0 * even(seed, channel, number) - 1.0)
 
 
-def wandering(
-    seed: int, channel: Channel, place: float, draw: Callable[[int, Channel, int], float] = normal
-) -> float:
+def wandering(seed: int, channel: Channel, place: float, draw: Callable[[int, Channel, int], float] = normal) -> float:
     """Return a smooth curve through independent numbers, one at each whole `place` but 0, where it is 0.
 
     Between two of them it is a cubic without a corner; its standard deviation over a long time is 0.86.

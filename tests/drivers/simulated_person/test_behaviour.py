@@ -27,7 +27,9 @@ class Watched:
 
     def live(self, seconds: float, **seen: float) -> Intent:
         for _ in range(round(seconds * HZ)):
-            self.view = self.view._replace(**seen)._replace(time_s=self.view.time_s + 1.0 / HZ)
+            self.view = self.view._replace(**seen)._replace(  # type: ignore[arg-type]  # tests name floats
+                time_s=self.view.time_s + 1.0 / HZ
+            )
             intent = self.person.decide(self.view)
         return intent
 

@@ -9,6 +9,7 @@ from simconsole.drivers.simulated_person.guidance import Pace, StraightOn, steer
 from simconsole.drivers.simulated_person.view import View
 from simconsole.profiles.person import Habits, PersonPlan
 from simconsole.values.signals import Mode
+from simconsole.values.units import MPS_PER_KMH
 
 STANDING = View(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 84.0, 1.0, 0.0, float(Mode.MANUAL))
 
@@ -39,5 +40,5 @@ def test_the_line_is_that_of_the_first_look_until_somebody_else_has_driven() -> 
     assert guidance.steer(aside) == 0.3, "the wheel is held until the console lets go"
     guidance.settle(aside)
     assert guidance.steer(aside) == pytest.approx(0.0)
-    assert guidance.pace(aside) == Pace(pytest.approx(10.0), 0.0)
+    assert guidance.pace(aside) == Pace(36.0 * MPS_PER_KMH, 0.0)
     assert not guidance.arrived(aside._replace(distance_m=1e6))
