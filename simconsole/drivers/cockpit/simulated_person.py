@@ -6,7 +6,7 @@ from simconsole.devices.force_feedback.simulated_wheel import RELAXED, STEERING,
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.drivers.simulated_person.behaviour import PersonBehaviour
 from simconsole.drivers.simulated_person.guidance import Guidance
-from simconsole.drivers.simulated_person.situation import Look, empty_road
+from simconsole.drivers.simulated_person.situation import Look, ahead_in
 from simconsole.drivers.simulated_person.view import view_of
 from simconsole.profiles.person import PersonPlan
 from simconsole.values.state_vector import Snapshot
@@ -24,7 +24,7 @@ class SimulatedPerson:
         tick_hz: int,
         wheel: SimulatedWheel | None = None,
         guidance: Guidance | None = None,
-        look: Look = empty_road,
+        look: Look = ahead_in,
     ) -> None:
         """Put the person at the devices.
 

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 from enum import IntEnum
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from simconsole.values.state_vector import Snapshot
 
@@ -32,7 +32,33 @@ NOTHING_AHEAD: Final = Situation()
 Look = Callable[[Snapshot], Situation]
 """What is ahead in a snapshot."""
 
+_RED: Final = (2.0, 3.0, 4.0)
+_AMBER: Final = (7.0, 8.0)
+_GREEN: Final = (5.0, 6.0)
+"""MovementPhaseState of SAE J2735: stop, clearance, movement allowed."""
+_PASSED_M: Final = -1.0
+_FAR_M: Final = 1e8
+"""The state vector has no infinity: further than this there is nothing."""
 
-def empty_road(snapshot: Snapshot) -> Situation:
-    """Return a situation with nobody ahead: that of a world without traffic and signals."""
-    return NOTHING_AHEAD
+
+def ahead_in(snapshot: Snapshot) -> Situation:
+    """Return what the state vector's situation tells of the way ahead; of an older one without it, that it is empty."""
+    seen: Any = getattr(snapshot, "situation", None)
+    if seen is None:
+        return NOTHING_AHEAD
+    is_ahead = _PASSED_M < seen.signal_distance_m < _FAR_M
+    return Situation(
+        lead_gap_m=_metres(seen.lead_gap_m),
+        lead_speed_mps=seen.lead_speed_mps,
+        light=_light(seen.signal_state) if is_ahead else float(Light.NONE),
+        line_m=seen.signal_distance_m if is_ahead else math.inf,
+    )
+
+
+def _metres(value: float) -> float:
+    return value if value < _FAR_M else math.inf
+
+
+def _light(state: float) -> float:
+    shown = ((_RED, Light.RED), (_AMBER, Light.AMBER), (_GREEN, Light.GREEN))
+    return float(next((light for states, light in shown if state in states), Light.NONE))
