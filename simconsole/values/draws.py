@@ -32,7 +32,7 @@ class Channel(IntEnum):
     LOSS = 12
     PERSON_AIM = 13
     PERSON_HAND = 14
-    PERSON_PACE = 15
+    PERSON_CARE = 15
 
 
 def _mixed(value: int) -> int:

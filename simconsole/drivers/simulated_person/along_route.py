@@ -17,7 +17,7 @@ from simconsole.drivers.simulated_person.situation import Situation
 from simconsole.drivers.simulated_person.two_point import Points, TwoPointSteering, distances_m, wheel_to
 from simconsole.drivers.simulated_person.view import View
 from simconsole.profiles.person import PersonPlan
-from simconsole.values.draws import Channel, bounded, wandering
+from simconsole.values.draws import Channel, bounded, even, wandering
 from simconsole.values.units import MPS_PER_KMH, RAD_PER_DEG
 from simconsole.world.route import Route
 
@@ -33,6 +33,8 @@ EAGER_MPS: Final = 2.5
 HURRIED_MPS: Final = 1.5
 STANDING_MPS: Final = 0.3
 HOLD_BRAKE: Final = 0.3
+LEAST_SHARE: Final = 0.85
+"""Of the habit's aim deviation that the most careful person has; the least careful one has as much more."""
 ARRIVED_M: Final = 2.0
 
 
@@ -63,6 +65,8 @@ class AlongRoute:
         self._seen: deque[Seen] = deque(maxlen=1 + round(road.visual_delay_s * tick_hz))
         self._situations: deque[Situation] = deque(maxlen=1 + round(road.reaction_s * tick_hz))
         self._obedience = Obedience()
+        care = LEAST_SHARE + 2.0 * (1.0 - LEAST_SHARE) * even(plan.seed, Channel.PERSON_CARE, 0)
+        self._aim_deviation_m = road.aim_deviation_m * care
         self._s_m: float | None = None
         self._began_m = 0.0
 
@@ -72,7 +76,7 @@ class AlongRoute:
         self._began_m = s_m if self._s_m is None else self._began_m
         self._s_m = s_m
         near_m, far_m = distances_m(view.speed_mps, self._road)
-        aim_m = self._road.aim_deviation_m * wandering(
+        aim_m = self._aim_deviation_m * wandering(
             self._plan.seed, Channel.PERSON_AIM, view.time_s / self._road.aim_time_s, bounded
         )
         points = Points(self._wheel_to(s_m + near_m, aim_m, view), self._wheel_to(s_m + far_m, aim_m, view))
