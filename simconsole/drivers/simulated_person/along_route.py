@@ -61,9 +61,10 @@ class AlongRoute:
                 margin_mps=road.below_limit_mps,
             ),
         )
-        self._steering = TwoPointSteering(road, 1.0 / tick_hz)
+        self._tick_s = 1.0 / tick_hz
+        self._steering = TwoPointSteering(road, self._tick_s)
         self._seen: deque[Seen] = deque(maxlen=1 + round(road.visual_delay_s * tick_hz))
-        self._situations: deque[Situation] = deque(maxlen=1 + round(road.reaction_s * tick_hz))
+        self._situations: deque[tuple[Situation, float]] = deque(maxlen=1 + round(road.reaction_s * tick_hz))
         self._obedience = Obedience()
         care = LEAST_SHARE + 2.0 * (1.0 - LEAST_SHARE) * even(plan.seed, Channel.PERSON_CARE, 0)
         self._aim_deviation_m = road.aim_deviation_m * care
@@ -81,7 +82,7 @@ class AlongRoute:
         )
         points = Points(self._wheel_to(s_m + near_m, aim_m, view), self._wheel_to(s_m + far_m, aim_m, view))
         self._seen.append(Seen(points, view.speed_mps))
-        self._situations.append(view.situation)
+        self._situations.append((view.situation, view.distance_m))
 
     def _wheel_to(self, s_m: float, aim_m: float, view: View) -> float:
         point = self._route.at(s_m)
@@ -114,14 +115,14 @@ class AlongRoute:
         if planned_mps > cruise_mps:
             planned_mps, planned_mps2 = cruise_mps, 0.0
         on_road = planned_mps2 + SPEED_GAIN_1PS * (planned_mps - speed_mps)
-        among_others = self._allowed_mps2(speed_mps)
+        among_others = self._allowed_mps2(view)
         if on_road <= among_others:
             return self._feet(speed_mps, on_road, planned_mps)
         return self._feet(speed_mps, among_others, speed_mps + among_others / SPEED_GAIN_1PS)
 
-    def _allowed_mps2(self, speed_mps: float) -> float:
+    def _allowed_mps2(self, view: View) -> float:
         """Return the acceleration that vehicles ahead, signals and those with right of way allow."""
-        seen, road = self._situations[0], self._road
+        seen, road, speed_mps = self._known_ahead(view.distance_m), self._road, view.speed_mps
         allowed = min(
             following_mps2(seen.lead_gap_m, seen.lead_speed_mps, speed_mps, road),
             stopping_mps2(seen.yield_m, speed_mps, road),
@@ -129,6 +130,20 @@ class AlongRoute:
         if self._obedience.must_stop(seen, speed_mps):
             allowed = min(allowed, stopping_mps2(seen.line_m, speed_mps, road))
         return allowed
+
+    def _known_ahead(self, distance_m: float) -> Situation:
+        """Return what is ahead as it was when it was seen, less the way driven since then.
+
+        What others do is known late; one's own motion, and that of a vehicle that goes on as it did, is not.
+        """
+        seen, then_m = self._situations[0]
+        driven_m = distance_m - then_m
+        late_s = (len(self._situations) - 1) * self._tick_s
+        return seen._replace(
+            lead_gap_m=seen.lead_gap_m - driven_m + seen.lead_speed_mps * late_s,
+            line_m=seen.line_m - driven_m,
+            yield_m=seen.yield_m - driven_m,
+        )
 
     def _feet(self, speed_mps: float, accel_mps2: float, target_mps: float) -> Pace:
         if speed_mps < STANDING_MPS and target_mps < STANDING_MPS:

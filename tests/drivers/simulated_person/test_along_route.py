@@ -5,7 +5,7 @@ from functools import cache
 
 import pytest
 
-from simconsole.drivers.simulated_person.along_route import COAST_MPS2, HOLD_BRAKE, AlongRoute
+from simconsole.drivers.simulated_person.along_route import COAST_MPS2, FULL_BRAKE_MPS2, HOLD_BRAKE, AlongRoute
 from simconsole.drivers.simulated_person.guidance import Pace
 from simconsole.drivers.simulated_person.situation import NOTHING_AHEAD, Light, Situation
 from simconsole.drivers.simulated_person.view import View
@@ -89,6 +89,21 @@ def test_at_a_line_the_person_waits_on_the_brake_and_goes_when_it_is_green() -> 
     gone = seated.pace(100.0, 0.0, Situation(light=float(Light.GREEN), line_m=EXACT.gap_m))
     assert gone.brake == 0.0
     assert gone.target_mps > 1.0
+
+
+@pytest.mark.parametrize("light", [Light.RED, Light.AMBER])
+@pytest.mark.parametrize("speed_mps", [6.0, 13.0])
+def test_a_car_on_the_way_stops_before_the_line_although_the_light_is_seen_late(light: Light, speed_mps: float) -> None:
+    seated, s_m, line_m = Seated(), 100.0, 160.0
+    for _ in range(40 * HZ):
+        view = seated.at(s_m, speed_mps, Situation(light=float(light), line_m=line_m - s_m))
+        seated.guidance.look(view)
+        pace = seated.guidance.pace(view)
+        accel = -FULL_BRAKE_MPS2 * pace.brake - COAST_MPS2 if pace.brake else min(1.5, pace.target_mps - speed_mps)
+        speed_mps = max(0.0, speed_mps + accel / HZ)
+        s_m += speed_mps / HZ
+    assert speed_mps < 0.05
+    assert 0.5 < line_m - s_m < EXACT.gap_m + 2.0
 
 
 def test_small_decelerations_need_no_brake() -> None:
