@@ -49,9 +49,9 @@ class Driven(NamedTuple):
 
     @property
     def deviation_m(self) -> float:
-        """Of the lateral position, at 50 to 100 km/h."""
+        """Of the lateral position, at 50 to 100 km/h; nan of a drive that is never that fast."""
         quick = (self.speed_kmh >= 50.0) & (self.speed_kmh <= 100.0)
-        return float(self.lateral_m[quick].std(ddof=1))
+        return float(self.lateral_m[quick].std(ddof=1)) if quick.sum() > 1 else math.nan
 
 
 def route(world: str) -> Route:
