@@ -5,9 +5,12 @@ import time
 from argparse import Namespace
 from pathlib import Path
 
+import msgspec
+
 from simconsole.cli.driven import finish
 from simconsole.cli.outcome import Outcome
 from simconsole.cli.progress import Progress
+from simconsole.profiles.person import ROUTE_DRIVER
 from simconsole.profiles.session import SessionProfile
 from simconsole.recording.bundles.provenance import Given
 from simconsole.session.lifecycle import drive as drive_session
@@ -41,6 +44,8 @@ def _with_options(session: SessionProfile, options: Namespace) -> SessionProfile
         if options.driver == "keyboard":
             devices["cockpit"] = "keyboard"  # keys are not the axes of the session's wheel
         session = override(session, devices=devices)
+    if options.person is not None:
+        session = _with_person(session, options.person)
     if options.commands is not None:
         session = override(session, features={"commands": options.commands, "autopilot": None})
         if options.headless and session.mode.pacing == "lockstep":
@@ -49,3 +54,11 @@ def _with_options(session: SessionProfile, options: Namespace) -> SessionProfile
         pacing = "free" if session.mode.pacing == "realtime" else session.mode.pacing
         session = override(session, outputs={"hud": None}, mode={"pacing": pacing})
     return session
+
+
+def _with_person(session: SessionProfile, seed: int) -> SessionProfile:
+    """Return `session` with the simulated person of that seed."""
+    if session.devices.driver != "virtual":
+        raise ProfileError(f"command line: --person: value {seed}: only with --driver virtual")
+    plan = session.devices.person or ROUTE_DRIVER
+    return override(session, devices={"person": {**msgspec.to_builtins(plan), "seed": seed}})

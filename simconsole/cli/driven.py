@@ -98,5 +98,10 @@ def _rows(result: DriveResult, metrics: dict[str, Any], link: str) -> list[tuple
             ("lateral error", f"RMS {rms:.2f} cm, max {largest:.2f} cm (base_link against the theoretical path)")
         )
         rows.append(("autopilot's link", link))
+    manual = metrics["manual"]
+    if manual and manual["lateral_deviation_m"] is not None:
+        spread, largest = manual["lateral_deviation_m"] * 100.0, manual["lateral_max_m"] * 100.0
+        shown = f"{manual['distance_m']:.1f} m, lateral position: SD {spread:.1f} cm, max {largest:.1f} cm"
+        rows.append(("by the person", shown))
     rows += [(f"mode at {c['t_s']:7.2f} s", f"{c['mode']} ({c['reason']})") for c in metrics["mode_changes"]]
     return rows + _driven_rows(result)

@@ -128,6 +128,7 @@ def _driving(commands: Any) -> None:
     )
     drive.add_argument("--headless", action="store_true", help="no window, as fast as it goes")
     drive.add_argument("--driver", metavar="D", help="sdl | virtual | trace:F | script:F | keyboard | none")
+    drive.add_argument("--person", type=int, metavar="SEED", help="with the driver virtual: which simulated person")
     drive.add_argument("--commands", metavar="C", help="bag:FILE[:TOPIC]: recorded commands in place of a controller's")
     drive.add_argument("--cockpit", metavar="PROFILE", help="a cockpit by name, or the file that `calibrate` wrote")
     drive.add_argument("--for", dest="duration_s", type=float, metavar="S", help="end after S simulated seconds")

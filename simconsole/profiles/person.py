@@ -1,6 +1,6 @@
 """The simulated person's plan: what they do in a drive, and their habits in doing so."""
 
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, Final, Literal, TypeAlias
 
 from msgspec import Meta, Struct
 
@@ -41,8 +41,39 @@ class Habits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     take_back_deg: Annotated[float, Meta(ge=1.0, le=90.0)] = 12.0
 
 
+class RoadHabits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """How a person drives along a road: what they look at, how late and how exactly they act, how briskly they drive.
+
+    `drivers/simulated_person/two_point.py`, `along_route.py` and `following.py` name the sources of the figures.
+    """
+
+    near_m: Annotated[float, Meta(ge=4.0, le=20.0)] = 8.0  # how far ahead the near point is, at most
+    far_s: Annotated[float, Meta(ge=0.5, le=3.0)] = 1.3  # how far ahead the far point is
+    near_gain: Annotated[float, Meta(ge=0.0, le=1.0)] = 0.2
+    near_rate_1ps: Annotated[float, Meta(ge=0.0, le=1.0)] = 0.15
+    visual_delay_s: Annotated[float, Meta(ge=0.0, le=0.5)] = 0.2  # from the eye to the hand
+    reaction_s: Annotated[float, Meta(ge=0.0, le=3.0)] = 0.75  # to what others do and to signals
+    aim_deviation_m: Annotated[float, Meta(ge=0.0, le=0.5)] = 0.22  # of what they take for the middle of their lane
+    aim_time_s: Annotated[float, Meta(ge=1.0, le=60.0)] = 6.0
+    hand_deviation_deg: Annotated[float, Meta(ge=0.0, le=5.0)] = 0.2
+    hand_time_s: Annotated[float, Meta(ge=0.1, le=5.0)] = 0.4
+    understeer_radps2pm: Annotated[float, Meta(ge=0.0, le=0.02)] = 0.007  # of the car and of their arms
+    lateral_mps2: Annotated[float, Meta(ge=0.5, le=6.0)] = 2.0
+    accelerate_mps2: Annotated[float, Meta(ge=0.3, le=4.0)] = 1.5
+    brake_mps2: Annotated[float, Meta(ge=0.5, le=5.0)] = 1.7
+    below_limit_mps: Annotated[float, Meta(ge=0.0, le=5.0)] = 0.8
+    headway_s: Annotated[float, Meta(ge=0.5, le=4.0)] = 1.5
+    gap_m: Annotated[float, Meta(ge=1.0, le=10.0)] = 2.0  # to who stands ahead, and to a stop line
+    shift_down_rpm: Annotated[float, Meta(ge=900.0, le=3000.0)] = 1200.0
+    hurried_rpm: Annotated[float, Meta(ge=1500.0, le=7000.0)] = 3600.0  # to shift up while they want to be faster
+
+
 class PersonPlan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """One drive: drive off, hand over, take back, stop. A point left out is never reached (`stop`: at once)."""
+    """One drive: drive off, hand over, take back, stop. A point left out is never reached (`stop`: at once).
+
+    Along a route the person keeps to its limits and bends, no faster than `cruise_kmh`, and stops at its end: that of
+    a closed one is a lap, where no `stop` is given.
+    """
 
     schema: Literal[1] = 1
     title: Annotated[str, Meta(max_length=200)] = ""
@@ -53,3 +84,12 @@ class PersonPlan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     take_back: When | None = None
     stop: When | None = None
     habits: Habits = Habits()
+    along: Literal["straight", "route"] = "straight"
+    """Where to: straight on from the start and from each take-over, or along the route of the session's world."""
+    seed: Annotated[int, Meta(ge=0, le=2**53)] = 0
+    """Which person: what their eyes and hands do wrong along a route."""
+    road: RoadHabits = RoadHabits()
+
+
+ROUTE_DRIVER: Final = PersonPlan(title="drives the route by hand", cruise_kmh=130.0, top_gear=6, along="route")
+"""What a simulated person does who is not told."""

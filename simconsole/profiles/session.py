@@ -101,7 +101,7 @@ class Devices(Section, frozen=True, kw_only=True):
     cockpit: ProfileName = "t500rs_th8rs"
     driver: Annotated[str, Meta(pattern=r"^(none|sdl|keyboard|virtual|(trace|script):.+)$")] = "sdl"
     person: PersonPlan | None = None
-    """What the simulated person does where `driver` is virtual."""
+    """What the simulated person does where `driver` is virtual; without it they drive the world's route by hand."""
 
 
 class ModeSection(Section, frozen=True, kw_only=True):

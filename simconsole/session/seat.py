@@ -8,16 +8,19 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.force_feedback import ForceFeedback
+from simconsole.profiles.person import ROUTE_DRIVER, PersonPlan
 from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import DeviceError, ProfileError
 from simconsole.values.host.jit import compiled
 from simconsole.values.protocols import DeviceIdentity, DeviceSource, NobodySeated, Output, Seat
 from simconsole.values.state_vector import Snapshot
+from simconsole.world.kinds.worlds import open_world
 
 if TYPE_CHECKING:
     from simconsole.devices.force_feedback.motor import HapticPort
     from simconsole.devices.sources.sdl_source import SdlSource
+    from simconsole.drivers.simulated_person.guidance import Guidance
 
 
 class Seating(NamedTuple):
@@ -133,9 +136,7 @@ def _open_person(resolved: ResolvedSession, console: Console, stack: ExitStack) 
     from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
     from simconsole.drivers.cockpit.simulated_person import SimulatedPerson
 
-    plan = resolved.session.devices.person
-    if plan is None:
-        raise ProfileError("devices.person: value missing: a plan, where devices.driver is virtual")
+    plan, guidance = _plan(resolved, console.tick_hz)
     cockpit = VirtualCockpit(resolved.cockpit)
     stack.callback(cockpit.close)
     devices = SdlSource(resolved.cockpit)
@@ -143,10 +144,10 @@ def _open_person(resolved: ResolvedSession, console: Console, stack: ExitStack) 
     numbers, tick_hz = cockpit_settings(resolved.cockpit, console.tick_hz), console.tick_hz
     force = resolved.cockpit.force_feedback
     if force is None:
-        person = SimulatedPerson(plan, cockpit, numbers, tick_hz=tick_hz)
+        person = SimulatedPerson(plan, cockpit, numbers, tick_hz=tick_hz, guidance=guidance)
         return Seating(devices, person, finished=lambda snapshot: person.finished, identities=devices.identities())
     wheel = SimulatedWheel(force, resolved.cockpit.wheel.lock_to_lock_deg, tick_hz=tick_hz, step=compiled(step_wheel))
-    person = SimulatedPerson(plan, cockpit, numbers, tick_hz=tick_hz, wheel=wheel)
+    person = SimulatedPerson(plan, cockpit, numbers, tick_hz=tick_hz, wheel=wheel, guidance=guidance)
     motor = WheelMotor(SimulatedWheelPort(wheel), force, lambda snapshot: snapshot.t_s)
     stack.callback(motor.close)
     return Seating(
@@ -156,3 +157,19 @@ def _open_person(resolved: ResolvedSession, console: Console, stack: ExitStack) 
         finished=lambda snapshot: person.finished,
         identities=devices.identities(),
     )
+
+
+def _plan(resolved: ResolvedSession, tick_hz: int) -> "tuple[PersonPlan, Guidance | None]":
+    """Return what the simulated person does, and where they go; None: straight on.
+
+    Raises:
+        ProfileError: they should drive along a route, and there is none.
+    """
+    from simconsole.drivers.simulated_person.along_route import AlongRoute
+
+    plan = resolved.session.devices.person or ROUTE_DRIVER
+    if plan.along == "straight":
+        return plan, None
+    if resolved.world is None:
+        raise ProfileError("devices.person.along: value route: straight, without environment.world")
+    return plan, AlongRoute(plan, open_world(resolved.world).route, tick_hz)

@@ -18,6 +18,7 @@ METRICS = {
     "distance_m": 100.0,
     "duration_s": 12.0,
     "autonomous": PART,
+    "manual": {"distance_m": 10.0, "lateral_deviation_m": 0.0234, "lateral_max_m": 0.1},
     "mode_changes": [{"t_s": 1.5, "mode": "MANUAL", "reason": "controls ready"}],
 }
 
@@ -49,6 +50,7 @@ def test_a_good_drive_is_told_in_a_table(wanted: list[tuple[bool, bool]]) -> Non
     lines = [line.split(maxsplit=1) for line in outcome.text.splitlines()]
     assert ["distance", "100.0 m"] in lines
     assert "RMS 1.23 cm, max 20.00 cm" in outcome.text
+    assert "10.0 m, lateral position: SD 2.3 cm, max 10.0 cm" in outcome.text
     assert "mode at    1.50 s" in outcome.text
     assert "out/it/report.html" in outcome.text
     assert "scene.rrd" not in outcome.text

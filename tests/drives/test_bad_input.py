@@ -75,7 +75,8 @@ def test_a_session_cannot_reach_outside_its_folder(tmp_path: Path, driver: str) 
         (["--driver", "script:missing.yaml", "--for", "1"], "missing.yaml"),
         (["--driver", "trace:missing.csv", "--for", "1"], "missing.csv: file: No such file"),
         (["--driver", "keyboard", "--for", "1"], "devices.driver: value keyboard: "),
-        (["--driver", "virtual", "--for", "1"], "devices.person: value missing: "),
+        (["--driver", "none", "--person", "3", "--for", "1"], "--person: value 3: only with --driver virtual"),
+        (["--driver", "virtual", "--person", "-3", "--for", "1"], "devices.person.seed: value -3"),
     ],
 )
 def test_bad_words_name_the_key(tmp_path: Path, arguments: list[str], message: str) -> None:

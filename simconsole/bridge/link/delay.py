@@ -1,7 +1,7 @@
 """Commands that act late, late by different times, or never: between what a controller sent and the command slot."""
 
-from simconsole.bridge.link.draws import Channel, even
 from simconsole.profiles.link import LinkProfile
+from simconsole.values.draws import Channel, even
 from simconsole.values.protocols import CommandSource
 from simconsole.values.signals import NO_COMMAND, EventInput, RemoteCommand
 

@@ -1,7 +1,7 @@
 """What a controller is told of the car: the true state with the errors of its localisation."""
 
-from simconsole.bridge.link.draws import Channel, normal
 from simconsole.profiles.link import LinkProfile, LocalisationProfile
+from simconsole.values.draws import Channel, normal, wandering
 from simconsole.values.signals import VehicleState
 from simconsole.values.units import RAD_PER_DEG
 
@@ -52,12 +52,7 @@ class Localisation:
         """Return a smooth curve through independent values, `drift_time_s` apart; it begins at 0."""
         if not deviation:
             return 0.0
-        place = time_s / self._errors.drift_time_s
-        knot = int(place)
-        share = place - knot
-        blend = share * share * (3.0 - 2.0 * share)
-        before = normal(self._seed, channel, knot) if knot else 0.0
-        return deviation * (before + blend * (normal(self._seed, channel, knot + 1) - before))
+        return deviation * wandering(self._seed, channel, time_s / self._errors.drift_time_s)
 
 
 def covariances(errors: LocalisationProfile) -> tuple[list[float], list[float]]:

@@ -5,6 +5,8 @@ from simconsole.devices.calibration.inverse_calibration import Intent, raw_sampl
 from simconsole.devices.force_feedback.simulated_wheel import RELAXED, STEERING, SimulatedWheel
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.drivers.simulated_person.behaviour import PersonBehaviour
+from simconsole.drivers.simulated_person.guidance import Guidance
+from simconsole.drivers.simulated_person.situation import Look, ahead_in
 from simconsole.drivers.simulated_person.view import view_of
 from simconsole.profiles.person import PersonPlan
 from simconsole.values.state_vector import Snapshot
@@ -21,6 +23,8 @@ class SimulatedPerson:
         *,
         tick_hz: int,
         wheel: SimulatedWheel | None = None,
+        guidance: Guidance | None = None,
+        look: Look = ahead_in,
     ) -> None:
         """Put the person at the devices.
 
@@ -30,9 +34,12 @@ class SimulatedPerson:
             settings: The cockpit's, as `calibrate` gets them: a person knows their own pedals.
             tick_hz: The session's tick rate.
             wheel: The wheel between the hands and the axis, with its motor; None: the axis is where the hands are.
+            guidance: Where to drive and how fast; None: straight on.
+            look: What of other road users and signals there is to see in a tick.
         """
         self._wheel = wheel
-        self.person = PersonBehaviour(plan, tick_hz)
+        self.person = PersonBehaviour(plan, tick_hz, guidance)
+        self._look = look
         self._cockpit = cockpit
         self._settings = settings
         self._written: tuple[Intent, int] | None = None
@@ -48,7 +55,7 @@ class SimulatedPerson:
         Raises:
             DeviceError: SDL refuses.
         """
-        intent = self.person.decide(view_of(snapshot))
+        intent = self.person.decide(view_of(snapshot, self._look(snapshot)))
         if self._wheel is not None:
             intent = intent._replace(hand_wheel_rad=self._turn(self._wheel, intent.hand_wheel_rad))
         now = (intent, self._cockpit.plugged)

@@ -6,13 +6,13 @@ from enum import Enum, auto
 from typing import Final, NamedTuple
 
 from simconsole.devices.calibration.inverse_calibration import Intent
-from simconsole.drivers.line_keeper import Line, pure_pursuit
+from simconsole.drivers.simulated_person.guidance import Guidance, StraightOn
 from simconsole.drivers.simulated_person.launch import clutch_through_bite, launch_throttle
 from simconsole.drivers.simulated_person.view import View
 from simconsole.drivers.speed_holder import hold_speed
-from simconsole.profiles.person import Habits, PersonPlan, When
+from simconsole.profiles.person import PersonPlan, When
 from simconsole.values.signals import Button, Mode
-from simconsole.values.units import MPS_PER_KMH, RAD_PER_DEG, RADPS_PER_RPM
+from simconsole.values.units import RAD_PER_DEG, RPM_PER_RADPS
 
 PRESS_S: Final = 0.2
 PRESS_AGAIN_S: Final = 1.5
@@ -26,6 +26,16 @@ ROLLING_MPS: Final = 2.5
 STANDING_MPS: Final = 0.05
 STAND_S: Final = 0.5
 HOLD_BRAKE: Final = 0.3
+LABOURING_RPM: Final = 950.0
+"""Slower than this an engine labours in the lowest gear that fits: the clutch goes down."""
+SECOND_MPS: Final = 3.5
+"""Faster than this a car drives on in second gear."""
+SECOND: Final = 2.0
+HURRIED_SHARE: Final = 0.5
+"""Of the engine speed to shift up at: below this who wants to be faster shifts down."""
+GO_MPS: Final = 0.3
+HALF_UP: Final = 0.5
+"""Where the clutch comes up with the engine still alone: from here on the other foot is on the accelerator."""
 CLUTCH_BY_MPS: Final = 6.0
 """While braking, the clutch goes down at the latest here, before a middle gear labours the engine."""
 
@@ -41,6 +51,7 @@ class Phase(Enum):
     SHIFT_GATE = auto()
     SHIFT_MESH = auto()
     SHIFT_CLOSE = auto()
+    ROLL = auto()
     WATCH = auto()
     TAKE_BACK = auto()
     BRAKE = auto()
@@ -62,18 +73,24 @@ PEDALS_RELEASED: Final = _PedalTarget(0.0, 0.0, 0.0)
 class PersonBehaviour:
     """One simulated person. `decide` once per tick; `finished` once they have stopped."""
 
-    def __init__(self, plan: PersonPlan, tick_hz: int) -> None:
+    def __init__(self, plan: PersonPlan, tick_hz: int, guidance: Guidance | None = None) -> None:
+        """Sit down.
+
+        Args:
+            plan: What to do.
+            tick_hz: The session's tick rate.
+            guidance: Where to and how fast; None: straight on.
+        """
         self._plan = plan
+        self._guidance = StraightOn(plan) if guidance is None else guidance
         self._tick_s = 1.0 / tick_hz
         self.phase = Phase.SIT
         self._since_s = 0.0
         self._intent = Intent()
-        self._line: Line | None = None
         self._next_gear = 1.0
         self._integral = 0.0
         self._pressed_s = -PRESS_AGAIN_S
         self._has_driven_itself = False
-        self._steady_rad = 0.0
         self._feet: dict[Phase, Callable[[View], _PedalTarget]] = {
             Phase.SIT: self._sit,
             Phase.CLUTCH_DOWN: self._clutch_down,
@@ -83,6 +100,7 @@ class PersonBehaviour:
             Phase.SHIFT_GATE: self._shift_gate,
             Phase.SHIFT_MESH: self._shift_mesh,
             Phase.SHIFT_CLOSE: self._shift_close,
+            Phase.ROLL: self._roll,
             Phase.WATCH: self._watch,
             Phase.TAKE_BACK: self._take_back,
             Phase.BRAKE: self._brake,
@@ -111,8 +129,7 @@ class PersonBehaviour:
 
     def decide(self, view: View) -> Intent:
         """Look at one tick and move hands and feet towards what the phase wants, at a person's speed."""
-        if self._line is None:
-            self._line = Line(view.x_m, view.y_m, view.yaw_rad)
+        self._guidance.look(view)
         target = self._feet[self.phase](view)
         self._move(target, self._wheel(view), view)
         return self._intent
@@ -165,57 +182,87 @@ class PersonBehaviour:
                 return PEDALS_RELEASED
             if view.time_s - self._pressed_s >= PRESS_AGAIN_S:
                 self._pressed_s = view.time_s
-        if view.time_s - self._pressed_s >= ANSWER_S and self._wants_next_gear(view):
-            self._next_gear = self._intent.gear + 1.0
+        if view.time_s - self._pressed_s >= ANSWER_S:
+            self._choose_gear(view)
+        return self._paced(view)
+
+    def _choose_gear(self, view: View) -> None:
+        """Go on to another gear, or to rolling without one, where the engine is too fast or too slow."""
+        gear, rpm = self._intent.gear, view.engine_radps * RPM_PER_RADPS
+        hurried = self._guidance.pace(view).hurried
+        up_rpm, down_rpm = self._plan.habits.shift_up_rpm, self._plan.road.shift_down_rpm
+        if hurried:
+            up_rpm, down_rpm = self._plan.road.hurried_rpm, HURRIED_SHARE * self._plan.road.hurried_rpm
+        if rpm > up_rpm and gear < self._plan.top_gear:
+            self._next_gear = gear + 1.0
             self._go(Phase.SHIFT_OPEN, view)
-        return _PedalTarget(self._cruise(view), 0.0, 0.0)
+        elif rpm < LABOURING_RPM and gear <= SECOND:
+            self._go(Phase.ROLL, view)
+        elif rpm < down_rpm and gear > SECOND:
+            self._next_gear = gear - 1.0
+            self._go(Phase.SHIFT_OPEN, view)
 
-    def _wants_next_gear(self, view: View) -> bool:
-        fast = view.engine_radps > self._plan.habits.shift_up_rpm * RADPS_PER_RPM
-        return fast and self._intent.gear < self._plan.top_gear
-
-    def _cruise(self, view: View) -> float:
-        target_mps = self._plan.cruise_kmh * MPS_PER_KMH
+    def _paced(self, view: View) -> _PedalTarget:
+        """Hold the speed that the way asks for, in gear."""
+        target_mps, brake, _ = self._guidance.pace(view)
+        if brake > 0.0:
+            return _PedalTarget(0.0, brake, 0.0)
         throttle, self._integral = hold_speed(
             target_mps, view.speed_mps, self._integral, self._tick_s, self._plan.habits.throttle_max
         )
-        return throttle
+        return _PedalTarget(throttle, 0.0, 0.0)
+
+    def _declutched(self, view: View) -> _PedalTarget:
+        """Brake as the way asks for, the clutch down."""
+        return _PedalTarget(0.0, self._guidance.pace(view).brake, 1.0)
+
+    def _roll(self, view: View) -> _PedalTarget:
+        """Roll in neutral, to a stop or until the way is free."""
+        if self._may_stop(view):
+            self._go(Phase.BRAKE, view)
+            return PEDALS_RELEASED
+        if self._intent.clutch >= 1.0:
+            self._lever(0.0)
+            target_mps, brake, _ = self._guidance.pace(view)
+            if brake == 0.0 and target_mps > max(view.speed_mps, 0.0) + GO_MPS:
+                self._next_gear = SECOND if view.speed_mps > SECOND_MPS else 1.0
+                self._go(Phase.SHIFT_GATE, view)
+        return self._declutched(view)
 
     def _shift_open(self, view: View) -> _PedalTarget:
         if self._intent.clutch >= 1.0:
             self._lever(0.0)
             self._go(Phase.SHIFT_GATE, view)
-        return _PedalTarget(0.0, 0.0, 1.0)
+        return self._declutched(view)
 
     def _shift_gate(self, view: View) -> _PedalTarget:
         if self._in_phase_s(view) >= GATE_S:
             self._lever(self._next_gear)
             self._go(Phase.SHIFT_MESH, view)
-        return _PedalTarget(0.0, 0.0, 1.0)
+        return self._declutched(view)
 
     def _shift_mesh(self, view: View) -> _PedalTarget:
         if view.gear == self._intent.gear or self._in_phase_s(view) > MESH_S:
-            self._go(Phase.SHIFT_CLOSE, view)
-        return _PedalTarget(0.0, 0.0, 1.0)
+            self._go(Phase.SHIFT_CLOSE if view.speed_mps > ROLLING_MPS else Phase.BITE, view)
+        return self._declutched(view)
 
     def _shift_close(self, view: View) -> _PedalTarget:
         foot = max(0.0, self._intent.clutch - 0.5 * self._plan.habits.foot_per_s * self._tick_s)
         if foot == 0.0:
             self._go(Phase.DRIVE, view)
-        return _PedalTarget(self._cruise(view) if foot < 0.5 else 0.0, 0.0, foot)
+        return (self._paced(view) if foot < HALF_UP else self._declutched(view))._replace(clutch=foot)
 
     def _watch(self, view: View) -> _PedalTarget:
         if view.mode in (Mode.STOPPED, Mode.EMERGENCY_STOP, Mode.PARKED):
             self._go(Phase.STAND, view)
         elif view.mode != Mode.AUTONOMOUS or _reached(self._plan.take_back, view):
-            self._line = Line(view.x_m, view.y_m, view.yaw_rad)
-            self._steady_rad = self._intent.hand_wheel_rad
+            self._guidance.begin(view, self._intent.hand_wheel_rad)
             self._go(Phase.TAKE_BACK, view)
         return PEDALS_RELEASED
 
     def _take_back(self, view: View) -> _PedalTarget:
         if view.mode == Mode.MANUAL:
-            self._line = Line(view.x_m, view.y_m, view.yaw_rad)
+            self._guidance.settle(view)
             if self._may_stop(view):
                 self._go(Phase.BRAKE, view)
             else:
@@ -250,6 +297,8 @@ class PersonBehaviour:
     def _may_stop(self, view: View) -> bool:
         """Stop after everything else in the plan; without a `stop` of its own, as soon as the person has taken back."""
         plan = self._plan
+        if self._guidance.arrived(view):
+            return True
         if plan.autonomy is not None and not self._has_driven_itself:
             return False
         return _reached(plan.stop, view) if plan.stop is not None else plan.autonomy is not None
@@ -261,10 +310,10 @@ class PersonBehaviour:
             return self._intent.hand_wheel_rad
         if self.phase is Phase.TAKE_BACK:
             firmness = max(1.0, self._in_phase_s(view))  # turns further while the car does not hand over
-            return self._steady_rad + firmness * self._plan.habits.take_back_deg * RAD_PER_DEG
-        if abs(view.speed_mps) < STANDING_MPS or self._line is None:
+            return self._guidance.steer(view) + firmness * self._plan.habits.take_back_deg * RAD_PER_DEG
+        if abs(view.speed_mps) < STANDING_MPS:
             return self._intent.hand_wheel_rad
-        return steer_along(self._line, view, self._plan.habits)
+        return self._guidance.steer(view)
 
     # Hands and feet move at their own speed.
 
@@ -283,13 +332,6 @@ class PersonBehaviour:
             clutch=_towards(now.clutch, feet.clutch, foot),
             pressed=int(Button.AUTONOMOUS) if pressing else 0,
         )
-
-
-def steer_along(line: Line, view: View, habits: Habits) -> float:
-    """Return the hand-wheel angle in rad that leads back to the line."""
-    ahead_m = max(habits.look_ahead_min_m, abs(view.speed_mps) * habits.look_ahead_s)
-    beside = line.deviation(view.x_m, view.y_m, view.yaw_rad)
-    return pure_pursuit(beside, ahead_m, habits.wheelbase_m) * habits.steering_ratio
 
 
 def _towards(value: float, target: float, step: float) -> float:

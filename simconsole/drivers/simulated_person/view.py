@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+from simconsole.drivers.simulated_person.situation import NOTHING_AHEAD, Situation
 from simconsole.values.state_vector import Snapshot
 
 
@@ -18,10 +19,12 @@ class View(NamedTuple):
     engine_running: float
     gear: float  # in the gearbox
     mode: float
+    hand_wheel_rad: float = 0.0  # where the wheel is, which is not always where the hands want it
+    situation: Situation = NOTHING_AHEAD
 
 
-def view_of(snapshot: Snapshot) -> View:
-    """Return what a snapshot shows."""
+def view_of(snapshot: Snapshot, situation: Situation = NOTHING_AHEAD) -> View:
+    """Return what a snapshot shows, with what is ahead on the way."""
     vehicle = snapshot.vehicle
     return View(
         time_s=snapshot.t_s,
@@ -34,4 +37,6 @@ def view_of(snapshot: Snapshot) -> View:
         engine_running=vehicle.engine_running,
         gear=vehicle.gear,
         mode=snapshot.arbitration.mode,
+        hand_wheel_rad=snapshot.driver.hand_wheel_rad,
+        situation=situation,
     )

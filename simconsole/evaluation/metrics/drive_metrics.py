@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from typing import Any, Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from simconsole.evaluation.metrics.fault_metrics import plain_spans
 from simconsole.evaluation.metrics.table import Drive
@@ -15,6 +16,7 @@ from simconsole.values.units import KMH_PER_MPS
 from simconsole.world.route import Route
 
 _PERCENT: Final = 95.0
+_MOVING_MPS: Final = 1.0
 
 
 class ModeChange(NamedTuple):
@@ -31,12 +33,13 @@ class ModeChange(NamedTuple):
 
 
 class LateralErrors(NamedTuple):
-    """How far base_link was from the theoretical path, over all ticks in AUTONOMOUS."""
+    """How far base_link was from the theoretical path, over all ticks in which one side drove."""
 
     rms_m: float
     p95_m: float
     max_m: float
     max_at: int  # index of the tick
+    deviation_m: float | None  # standard deviation of the lateral position, SDLP of SAE J2944; None: it never moved
 
 
 def mode_changes(drive: Drive, way: Track) -> list[ModeChange]:
@@ -66,18 +69,23 @@ def mode_changes(drive: Drive, way: Track) -> list[ModeChange]:
     return found
 
 
-def lateral_errors(way: Track) -> LateralErrors | None:
-    """Return the lateral errors; None without a course or without a tick in AUTONOMOUS."""
-    driven = way.autonomous
+def lateral_errors(way: Track, driven: NDArray[np.bool_] | None = None) -> LateralErrors | None:
+    """Return the lateral errors where `driven` says, bool [ticks], by default in AUTONOMOUS; None without any there.
+
+    The standard deviation is that of the ticks in which the car moves: one that waits at a light keeps no lane.
+    """
+    driven = way.autonomous if driven is None else driven
     if not len(way.lateral_m) or not driven.any():
         return None
     errors = np.abs(way.lateral_m[driven])
     worst = int(errors.argmax())
+    moved = way.lateral_m[driven & (way.speed_mps > _MOVING_MPS)]
     return LateralErrors(
         rms_m=math.sqrt(float(np.mean(errors**2))),
         p95_m=float(np.percentile(errors, _PERCENT)),
         max_m=float(errors[worst]),
         max_at=int(np.flatnonzero(driven)[worst]),
+        deviation_m=float(moved.std(ddof=1)) if len(moved) > 1 else None,
     )
 
 
@@ -99,7 +107,7 @@ def metrics(
     """
     way = track(drive, route) if way is None else way
     duration = drive.ticks / drive.tick_hz
-    lateral_accel, autonomous_accel = _lateral_accel_mps2(drive, way)
+    lateral_accel, (autonomous_accel, manual_accel) = _lateral_accel_mps2(drive, (way.autonomous, way.manual))
     return {
         "ticks": drive.ticks,
         "duration_s": duration,
@@ -109,7 +117,8 @@ def metrics(
         "speed_limit_kmh": route.speed_limit_mps * KMH_PER_MPS if route is not None else None,
         "above_limit_s": float((way.speed_mps > way.limit_mps).sum()) / drive.tick_hz,
         "max_lateral_accel_mps2": lateral_accel,
-        "autonomous": _autonomous(drive, way, autonomous_accel),
+        "autonomous": _driven_part(drive, way, way.autonomous, autonomous_accel),
+        "manual": _driven_part(drive, way, way.manual, manual_accel),
         "time_in_mode_s": _time_in_mode(drive, way),
         "takeovers": takeovers(drive, way),
         "mode_changes": [
@@ -127,25 +136,27 @@ def metrics(
     }
 
 
-def _lateral_accel_mps2(drive: Drive, way: Track) -> tuple[float, float]:
-    """Return the largest of the whole drive, and of its ticks in AUTONOMOUS (0 without any)."""
-    driven, largest, autonomous, at = way.autonomous, 0.0, 0.0, 0
+def _lateral_accel_mps2(drive: Drive, parts: Sequence[NDArray[np.bool_]]) -> tuple[float, list[float]]:
+    """Return the largest of the whole drive, and of each of its parts (0 without any tick)."""
+    largest, of_part, at = 0.0, [0.0] * len(parts), 0
     for block in drive.read(("vehicle.ay_mps2",)):
         accel = np.abs(block[:, 0])
         largest = max(largest, float(accel.max()))
-        autonomous = max(autonomous, float(accel[driven[at : at + len(block)]].max(initial=0.0)))
+        for place, part in enumerate(parts):
+            of_part[place] = max(of_part[place], float(accel[part[at : at + len(block)]].max(initial=0.0)))
         at += len(block)
-    return largest, autonomous
+    return largest, of_part
 
 
-def _autonomous(drive: Drive, way: Track, max_lateral_accel_mps2: float) -> dict[str, float | None] | None:
-    """Metrics over all ticks in AUTONOMOUS; lateral errors are base_link's from the theoretical path."""
-    driven = way.autonomous
+def _driven_part(
+    drive: Drive, way: Track, driven: NDArray[np.bool_], max_lateral_accel_mps2: float
+) -> dict[str, float | None] | None:
+    """Metrics over the ticks in which one side drove; lateral errors are base_link's from the theoretical path."""
     count = int(driven.sum())
     if count == 0:
         return None
     distance = float(np.diff(way.distance_m, prepend=0.0)[driven].sum())
-    errors = lateral_errors(way)
+    errors = lateral_errors(way, driven)
     return {
         "duration_s": count / drive.tick_hz,
         "distance_m": distance,
@@ -153,6 +164,7 @@ def _autonomous(drive: Drive, way: Track, max_lateral_accel_mps2: float) -> dict
         "max_speed_kmh": float(way.speed_mps[driven].max()) * KMH_PER_MPS,
         "lateral_rms_m": None if errors is None else errors.rms_m,
         "lateral_p95_m": None if errors is None else errors.p95_m,
+        "lateral_deviation_m": None if errors is None else errors.deviation_m,
         "lateral_max_m": None if errors is None else errors.max_m,
         "lateral_max_at_m": None if errors is None else float(way.distance_m[errors.max_at]),
         "max_lateral_accel_mps2": max_lateral_accel_mps2,

@@ -31,6 +31,12 @@ class Track(NamedTuple):
         found: NDArray[np.bool_] = self.mode == np.int8(Mode.AUTONOMOUS)
         return found
 
+    @property
+    def manual(self) -> NDArray[np.bool_]:
+        """Where the person had the car alone."""
+        found: NDArray[np.bool_] = self.mode == np.int8(Mode.MANUAL)
+        return found
+
 
 def track(drive: Drive, route: Route | None) -> Track:
     """Return where the drive was, tick by tick."""

@@ -46,6 +46,7 @@ _LABELS: Final[tuple[tuple[str, str, str], ...]] = (
     ("above_limit_s", "Time above the limit", "{:.2f} s"),
     ("lateral_rms_m", "Lateral error, RMS", "{:.4f} m"),
     ("lateral_p95_m", "Lateral error, 95 %", "{:.4f} m"),
+    ("lateral_deviation_m", "Lateral position, standard deviation (SDLP)", "{:.4f} m"),
     ("lateral_max_m", "Lateral error, largest", "{:.4f} m"),
     ("lateral_max_at_m", "Largest error after", "{:.0f} m"),
     ("max_lateral_accel_mps2", "Highest lateral acceleration", "{:.2f} m/s²"),
@@ -104,7 +105,8 @@ def page(
         f"<title>{escape(title)}</title><style>{STYLE}</style></head><body>",
         f"<h1>{escape(title)}</h1>",
         '<p class="note">simconsole drive report. Lateral errors are those of base_link (centre of the rear axle) '
-        "from the theoretical path, over every tick in which the autopilot drove.</p>",
+        "from the theoretical path, over every tick in which the autopilot drove, and over those in which the person "
+        "did.</p>",
         _tiles(found),
         *(f"<figure>{svg}</figure>" for svg in svgs),
         "<h2>Metrics</h2>",
@@ -148,11 +150,11 @@ def _tiles(found: Mapping[str, Any]) -> str:
 
 
 def _metrics_table(found: Mapping[str, Any]) -> str:
-    part = found["autonomous"] or {}
-    lines = ["<table><tr><th></th><th class=n>whole drive</th><th class=n>autopilot</th></tr>"]
+    parts = (found, found["autonomous"] or {}, found["manual"] or {})
+    lines = ["<table><tr><th></th><th class=n>whole drive</th><th class=n>autopilot</th><th class=n>person</th></tr>"]
     for key, label, form in _LABELS:
-        cells = [form.format(values[key]) if values.get(key) is not None else "-" for values in (found, part)]
-        lines.append(f"<tr><th>{label}</th><td class=n>{cells[0]}</td><td class=n>{cells[1]}</td></tr>")
+        cells = (form.format(values[key]) if values.get(key) is not None else "-" for values in parts)
+        lines.append(f"<tr><th>{label}</th>{''.join(f'<td class=n>{cell}</td>' for cell in cells)}</tr>")
     return "\n".join((*lines, "</table>"))
 
 

@@ -6,8 +6,8 @@ import random
 import pytest
 
 from simconsole.devices.calibration.inverse_calibration import Intent
-from simconsole.drivers.line_keeper import Line
-from simconsole.drivers.simulated_person.behaviour import PersonBehaviour, Phase, steer_along
+from simconsole.drivers.simulated_person.behaviour import PersonBehaviour, Phase
+from simconsole.drivers.simulated_person.guidance import Pace
 from simconsole.drivers.simulated_person.launch import launch_throttle
 from simconsole.drivers.simulated_person.view import View
 from simconsole.drivers.speed_holder import hold_speed
@@ -27,7 +27,9 @@ class Watched:
 
     def live(self, seconds: float, **seen: float) -> Intent:
         for _ in range(round(seconds * HZ)):
-            self.view = self.view._replace(**seen)._replace(time_s=self.view.time_s + 1.0 / HZ)
+            self.view = self.view._replace(**seen)._replace(  # type: ignore[arg-type]  # tests name floats
+                time_s=self.view.time_s + 1.0 / HZ
+            )
             intent = self.person.decide(self.view)
         return intent
 
@@ -128,26 +130,58 @@ def test_after_taking_back_with_way_to_go_the_person_shifts_and_drives_on() -> N
     assert watched.live(0.5, distance_m=601.0).brake > 0.0
 
 
-@pytest.mark.parametrize("offset_m", [-2.0, -0.1, 0.1, 2.0])
-def test_steering_leads_back_to_the_line(offset_m: float) -> None:
-    line = Line(10.0, 20.0, 1.0)
-    beside = STANDING._replace(
-        x_m=10.0 - offset_m * math.sin(1.0), y_m=20.0 + offset_m * math.cos(1.0), yaw_rad=1.0, speed_mps=8.0
-    )
-    assert steer_along(line, beside, Habits()) * offset_m < 0.0
-    turned = STANDING._replace(x_m=10.0, y_m=20.0, yaw_rad=1.0 + 0.1 * offset_m + math.tau, speed_mps=8.0)
-    assert steer_along(line, turned, Habits()) * offset_m < 0.0
-
-
-def test_on_the_line_the_wheel_is_straight() -> None:
-    on_line = STANDING._replace(x_m=3.0, y_m=3.0, yaw_rad=math.pi / 4)
-    assert steer_along(Line(0.0, 0.0, math.pi / 4), on_line, Habits()) == pytest.approx(0.0)
-
-
 def test_throttle_stays_on_the_pedal() -> None:
     assert hold_speed(30.0, 0.0, 0.0, 0.004, 0.6) == (0.6, 0.0)
     assert hold_speed(0.0, 30.0, 0.4, 0.004, 0.6)[0] == 0.0
     assert launch_throttle(STANDING._replace(engine_radps=600.0), Habits()) == 0.0
+
+
+class Slow:
+    """A way that the test makes up: how fast, and how hard to brake."""
+
+    def __init__(self) -> None:
+        self.wanted = Pace(10.0, 0.0)
+
+    def look(self, view: View) -> None: ...
+
+    def begin(self, view: View, hand_wheel_rad: float) -> None: ...
+
+    def settle(self, view: View) -> None: ...
+
+    def steer(self, view: View) -> float:
+        return 0.0
+
+    def pace(self, view: View) -> Pace:
+        return self.wanted
+
+    def arrived(self, view: View) -> bool:
+        return False
+
+
+def test_for_a_stop_on_the_way_the_person_shifts_down_rolls_waits_and_drives_off_again() -> None:
+    watched, way = Watched(), Slow()
+    watched.person = PersonBehaviour(PersonPlan(), HZ, way)
+    watched.rolling()
+    way.wanted = Pace(0.0, 0.25)
+    assert watched.live(0.5).brake == pytest.approx(0.25)
+    watched.live(0.5, engine_radps=120.0, speed_mps=6.0)
+    assert watched.live(1.0, gear=2.0).gear == 2.0
+    assert watched.live(1.0, engine_radps=95.0, speed_mps=3.0).clutch == 1.0
+    waiting = watched.live(3.0, speed_mps=0.0, engine_radps=84.0, gear=0.0)
+    assert (watched.person.phase, waiting.gear, waiting.brake) == (Phase.ROLL, 0.0, 0.25)
+    way.wanted = Pace(2.5, 0.0)
+    assert watched.live(0.5).gear == 1.0
+    assert watched.live(0.3, gear=1.0, engine_radps=180.0).brake == 0.0
+    assert watched.person.phase is Phase.BITE
+
+
+@pytest.mark.parametrize(("hurried", "gear"), [(False, 3.0), (True, 2.0)])
+def test_who_is_in_a_hurry_lets_the_engine_work(hurried: bool, gear: float) -> None:
+    watched, way = Watched(), Slow()
+    watched.person = PersonBehaviour(PersonPlan(), HZ, way)
+    watched.rolling()
+    way.wanted = Pace(20.0, 0.0, hurried)
+    assert watched.live(1.0, engine_radps=150.0).gear == gear
 
 
 @pytest.mark.parametrize(

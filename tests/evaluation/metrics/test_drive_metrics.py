@@ -32,6 +32,27 @@ def test_lateral_errors_are_those_of_the_autonomous_part_only(known: Any, course
     assert 50.0 <= part["lateral_max_at_m"] <= 251.0
 
 
+def test_the_persons_part_is_measured_as_the_controllers(known: Any, course: Course) -> None:
+    """The known drive: 10 s by hand on the path, 20 s by a controller that swings by 2 cm."""
+    found = metrics(drive_of(*known), course)
+    assert (found["manual"]["duration_s"], found["manual"].keys()) == (10.0, found["autonomous"].keys())
+    assert found["autonomous"]["lateral_deviation_m"] == pytest.approx(0.02 / math.sqrt(2.0), rel=0.03)
+    rows = known.vectors.copy()
+    rows[:100, known.columns.index("vehicle.y_m")] += 0.3
+    rows[100:200, known.columns.index("vehicle.y_m")] -= 0.3
+    swung = metrics(drive_of(rows[:200], known.columns, 50), course)["manual"]
+    assert swung["lateral_deviation_m"] == pytest.approx(0.3, rel=0.05)
+
+
+def test_who_waits_keeps_no_lane(known: Any, course: Course) -> None:
+    rows = known.vectors[:200].copy()
+    rows[50:, known.columns.index("vehicle.vx_mps")] = 0.0
+    rows[50:, known.columns.index("vehicle.y_m")] += 0.3
+    assert metrics(drive_of(rows, known.columns, 50), course)["manual"]["lateral_deviation_m"] < 0.01
+    rows[:, known.columns.index("vehicle.vx_mps")] = 0.0
+    assert metrics(drive_of(rows, known.columns, 50), course)["manual"]["lateral_deviation_m"] is None
+
+
 def test_mode_changes_and_refusals_in_order(known: Any, course: Course) -> None:
     drive = drive_of(*known)
     changes = metrics(drive, course)["mode_changes"]

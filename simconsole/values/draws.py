@@ -4,6 +4,7 @@ The mixing is SplitMix64 (Steele, Lea and Flood, OOPSLA 2014). A normal number i
 Hall): only additions, so that every machine draws the same bits; it never exceeds six standard deviations.
 """
 
+from collections.abc import Callable
 from enum import IntEnum
 from typing import Final
 
@@ -11,6 +12,7 @@ _MASK: Final = (1 << 64) - 1
 _SHORT: Final = (1 << 16) - 1
 _STEP: Final = 0x9E3779B97F4A7C15
 _SCALE: Final = 1.0 / 65536.0
+_ROOT_3: Final = 3.0**0.5
 
 
 class Channel(IntEnum):
@@ -28,6 +30,9 @@ class Channel(IntEnum):
     DRIFT_YAW = 10
     JITTER = 11
     LOSS = 12
+    PERSON_AIM = 13
+    PERSON_HAND = 14
+    PERSON_CARE = 15
 
 
 def _mixed(value: int) -> int:
@@ -50,3 +55,20 @@ def normal(seed: int, channel: Channel, number: int) -> float:
         total += (bits & _SHORT) + (bits >> 16 & _SHORT) + (bits >> 32 & _SHORT) + (bits >> 48)
         bits = _mixed(bits)
     return (total + 6) * _SCALE - 6.0  # the mean of a sixteen-bit number is half a unit below one half
+
+
+def bounded(seed: int, channel: Channel, number: int) -> float:
+    """Return a number evenly between -1.73 and 1.73: of mean 0 and standard deviation 1, as `normal`, without tails."""
+    return _ROOT_3 * (2.0 * even(seed, channel, number) - 1.0)
+
+
+def wandering(seed: int, channel: Channel, place: float, draw: Callable[[int, Channel, int], float] = normal) -> float:
+    """Return a smooth curve through independent numbers, one at each whole `place` but 0, where it is 0.
+
+    Between two of them it is a cubic without a corner; its standard deviation over a long time is 0.86.
+    """
+    knot = int(place)
+    share = place - knot
+    blend = share * share * (3.0 - 2.0 * share)
+    before = draw(seed, channel, knot) if knot else 0.0
+    return before + blend * (draw(seed, channel, knot + 1) - before)

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from simconsole.bridge.link.draws import Channel, even, normal
+from simconsole.values.draws import Channel, bounded, even, normal, wandering
 from tests.samples import Sample
 
 
@@ -34,3 +34,22 @@ def test_even_numbers_fill_their_range(sample: Sample) -> None:
     assert drawn.max() < 1.0
     counts, _ = np.histogram(drawn, 20, (0.0, 1.0))
     assert np.abs(counts / count - 0.05).max() < 5.0 * np.sqrt(0.05 / count)
+
+
+def test_a_wandering_curve_goes_through_normal_numbers_without_a_corner(sample: Sample) -> None:
+    knots = [wandering(sample.seed, Channel.PERSON_AIM, float(place)) for place in range(1, 20)]
+    assert knots == [normal(sample.seed, Channel.PERSON_AIM, place) for place in range(1, 20)]
+    assert wandering(sample.seed, Channel.PERSON_AIM, 0.0) == 0.0
+    places = np.arange(0.0, 2000.0, 0.05)
+    curve = np.array([wandering(sample.seed, Channel.PERSON_AIM, place) for place in places.tolist()])
+    assert np.abs(np.diff(curve, 2)).max() < 0.2
+    assert abs(curve.std() - 0.86) < 0.06
+
+
+def test_bounded_numbers_spread_as_normal_ones_and_have_no_tails(sample: Sample) -> None:
+    count = sample.of(20_000, 1_000_000)
+    drawn = np.array([bounded(sample.seed, Channel.PERSON_AIM, number) for number in range(count)])
+    assert abs(drawn.mean()) < 5.0 / np.sqrt(count)
+    assert abs(drawn.std() - 1.0) < 5.0 / np.sqrt(count)
+    assert np.abs(drawn).max() <= np.sqrt(3.0)
+    assert wandering(sample.seed, Channel.PERSON_AIM, 7.0, bounded) == drawn[7]
