@@ -33,6 +33,7 @@ from simconsole.session.paced import (
 from simconsole.session.pacing import Pacer, UnpacedPacer, realtime_hints
 from simconsole.session.recorder import LogRecorder
 from simconsole.session.seat import open_seating
+from simconsole.session.traffic_source import TrafficSource, open_traffic
 from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.tick.isolation import isolated
@@ -108,13 +109,14 @@ def open_headless(
     can = _open_can(resolved, console, bundle, stack)
     if can is not None:
         outputs, of_can = (*outputs, can), can.summary
+    traffic = open_traffic(resolved, console)
     seating = open_seating(resolved, console, stack)
-    recorder = LogRecorder(log, take_acts)
+    recorder = LogRecorder(log, take_acts, traffic)
     components = Components(
         devices=seating.devices,
         commands=commands,
         recorder=recorder,
-        outputs=(*seating.outputs, *outputs),
+        outputs=(*seating.outputs, *_outputs_of(traffic), *outputs),
         pace=pace,
         seat=seating.seat,
         ecu=can or NobodyCommands(),
@@ -125,7 +127,7 @@ def open_headless(
     components = isolated(faulty, UnpacedPacer)._replace(latencies=latencies)
 
     def summary() -> dict[str, Any]:
-        own = {**counters(), **of_can(), **recorder.acts_summary()}
+        own = {**counters(), **of_can(), **recorder.acts_summary(), **_summary_of(traffic)}
         return {**pace.summary(), **own, "latency_us": latencies.summary_us()}
 
     return Opened(components, seating.finished, summary, identities=seating.identities)
@@ -159,7 +161,8 @@ def open_realtime(
     opening = stack.enter_context(ExitStack())
     opening.enter_context(undone(lambda: remove_run_folder(folder)))
     memory = make_memory(folder, console)
-    recorder = LogRecorder(log, memory.acts.take)
+    traffic = open_traffic(resolved, console)
+    recorder = LogRecorder(log, memory.acts.take, traffic)
     ecu = add_can_memory(resolved, console, folder)
     supervisor = SupervisorHandle(folder, worker_specs(resolved, console, folder, bundle, drive))
     programs = _started(supervisor, memory, stack)
@@ -176,7 +179,7 @@ def open_realtime(
             devices=seating.devices,
             commands=memory.commands,
             recorder=recorder,
-            outputs=(*seating.outputs, memory.snapshots, supervisor),
+            outputs=(*seating.outputs, *_outputs_of(traffic), memory.snapshots, supervisor),
             pace=pace,
             seat=seating.seat,
             ecu=ecu,
@@ -187,7 +190,7 @@ def open_realtime(
     def summary() -> dict[str, Any]:
         latency = {**latencies.summary_us(), **worker_latencies(folder)}
         workers = {"station_restarts": supervisor.counters(), **bridge_summary(folder), **can_summary(folder)}
-        own = {**recorder.acts_summary(), "latency_us": latency, "not_granted": missing}
+        own = {**recorder.acts_summary(), **_summary_of(traffic), "latency_us": latency, "not_granted": missing}
         return {**pace.summary(), **workers, **own}
 
     return Opened(
@@ -198,6 +201,14 @@ def open_realtime(
         identities=seating.identities,
         left=memory.keys.ended,
     )
+
+
+def _outputs_of(traffic: TrafficSource | None) -> tuple[Output, ...]:
+    return () if traffic is None else (traffic,)
+
+
+def _summary_of(traffic: TrafficSource | None) -> dict[str, Any]:
+    return {} if traffic is None else traffic.summary()
 
 
 def _started(supervisor: SupervisorHandle, memory: Memory, stack: ExitStack) -> "list[Popen[bytes]]":

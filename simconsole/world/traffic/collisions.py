@@ -1,6 +1,6 @@
 """Which road users overlap: oriented boxes by the separating axis theorem.
 
-Gottschalk, Lin, Manocha: OBBTree, a hierarchical structure for rapid interference detection, SIGGRAPH 1996, in the plane:
+Gottschalk, Lin, Manocha: OBBTree, SIGGRAPH 1996, in the plane:
 two rectangles are apart exactly if their projections onto one of the four directions of their sides are.
 """
 

@@ -1,6 +1,5 @@
 """What is in a vehicle's way: the first box, of whatever kind, in the corridor that its body sweeps along its path."""
 
-import math
 from typing import Final, NamedTuple
 
 from simconsole.values.kernels import Row, kernel
@@ -108,4 +107,3 @@ def horizon(speed_mps: float) -> float:
     """Return how far ahead a vehicle looks (m)."""
     found = 15.0 + 2.5 * speed_mps + speed_mps * speed_mps / 3.0
     return 200.0 if found > 200.0 else found
-

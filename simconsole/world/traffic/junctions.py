@@ -8,7 +8,18 @@ room behind the junction. So two vehicles of traffic never meet inside one.
 from typing import Final, NamedTuple
 
 from simconsole.values.kernels import Row, kernel
-from simconsole.world.traffic.columns import ALONG, BOX, CONNECTIONS, COUNT, GRANTS, LANE, LANES, LENGTH, S, SPEED, STOOD
+from simconsole.world.traffic.columns import (
+    ALONG,
+    CONNECTIONS,
+    COUNT,
+    GRANTS,
+    LANE,
+    LANES,
+    LENGTH,
+    SPEED,
+    STOOD,
+    S,
+)
 from simconsole.world.traffic.following import clearing_s
 from simconsole.world.traffic.network import Network
 

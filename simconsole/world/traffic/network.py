@@ -1,15 +1,18 @@
 """A road map as the flat arrays that traffic's kernels walk over."""
 
 from collections.abc import Iterable, Sequence
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from simconsole.world.roads.lane_graph import LaneGraph
-from simconsole.world.roads.road_map import Array, RoadMap
+from simconsole.world.roads.road_map import Array, Connection, RoadMap
 
 Numbers = NDArray[np.int64]
+
+CHANGING_M: Final = 120.0
+"""A lane that ends is used only if it is this long: time to find a gap in the lane beside it."""
 
 
 class Network(NamedTuple):
@@ -41,7 +44,9 @@ def network(road_map: RoadMap) -> Network:
     graph = LaneGraph(road_map)
     lanes, connections = road_map.lanes, road_map.connections
     points, point_starts = _rows([_points(lane.line) for lane in lanes])
-    own = [graph.out(place) for place in range(len(lanes))]
+    ways = [graph.out(place) for place in range(len(lanes))]
+    leaves = [not any(ways[other] for other in road_map.edges[lane.edge].lanes) for lane in lanes]
+    own = _without_traps(graph, road_map, ways, leaves)
     by_lane: dict[int, list[int]] = {}
     for place, one in enumerate(connections):
         for lane in one.via:
@@ -61,7 +66,7 @@ def network(road_map: RoadMap) -> Network:
         widths_m=np.array([lane.width_m for lane in lanes]),
         left=left,
         right=right,
-        leaves=np.array([not any(own[other] for other in road_map.edges[lane.edge].lanes) for lane in lanes], np.int64),
+        leaves=np.array(leaves, np.int64),
         out=out,
         out_starts=out_starts,
         goals=np.array([one.to_lane for one in connections], np.int64),
@@ -74,6 +79,26 @@ def network(road_map: RoadMap) -> Network:
         first_starts=first_starts,
         origins=np.array([one.from_lane for one in connections], np.int64),
     )
+
+
+def _without_traps(
+    graph: LaneGraph, road_map: RoadMap, ways: list[list[Connection]], leaves: Sequence[bool]
+) -> list[list[Connection]]:
+    """Return the connections of each lane without those to lanes that nobody gets on from, nor can leave in time."""
+    while True:
+        good = [
+            bool(own) or leaves[lane] or _left_in_time(graph, road_map, ways, lane) for lane, own in enumerate(ways)
+        ]
+        kept = [[one for one in own if good[one.to_lane]] for own in ways]
+        if kept == ways:
+            return kept
+        ways = kept
+
+
+def _left_in_time(graph: LaneGraph, road_map: RoadMap, ways: list[list[Connection]], lane: int) -> bool:
+    entries = graph.entries(road_map.lanes[lane].edge)
+    beside = any(other in entries and ways[other] for other in (lane - 1, lane + 1))
+    return beside and road_map.lanes[lane].length_m >= CHANGING_M
 
 
 def _points(line: Array) -> Array:

@@ -15,7 +15,6 @@ from simconsole.world.traffic.columns import (
     LANES,
     LENGTH,
     OFFSET,
-    S,
     SINCE_CHANGE,
     SINE,
     SPEED,
@@ -23,6 +22,7 @@ from simconsole.world.traffic.columns import (
     STOOD,
     TIME_GAP,
     WIDTH,
+    S,
     X,
     Y,
 )
@@ -99,9 +99,7 @@ def _wish(net: Network, path: Row, values: Row, own: int, boxes: Row, turn: Turn
     speed, s = values[own, SPEED], values[own, S]
     half = 0.5 * values[own, LENGTH]
     offset = _offset(values[own])
-    body = Body(
-        half, 0.5 * values[own, WIDTH], offset if offset < 0.0 else 0.0, offset if offset > 0.0 else 0.0
-    )
+    body = Body(half, 0.5 * values[own, WIDTH], offset if offset < 0.0 else 0.0, offset if offset > 0.0 else 0.0)
     reach = horizon(speed)
     count = near_boxes(boxes, own, reach, near)
     desired = desired_speed(net, path, s, values[own, SPEED_SHARE])

@@ -113,7 +113,7 @@ class Traffic:
             lane = self._index.locate(box.x_m, box.y_m, box.yaw_rad)
             heading = direction(box.yaw_rad)
             self._boxes[row] = (
-                *(box.x_m, box.y_m, heading.cosine, heading.sine, box.speed_mps, box.length_m, box.width_m),
+                *(box.x_m, box.y_m, heading.cos, heading.sin, box.speed_mps, box.length_m, box.width_m),
                 *((-1.0, 0.0) if lane.lane is None or not lane.on_lane else (float(lane.lane), lane.s_m)),
             )
 
