@@ -26,6 +26,7 @@ from simconsole.session.paced import (
     bridge_summary,
     can_summary,
     make_memory,
+    share_road_users,
     wait_for_can,
     worker_latencies,
     worker_specs,
@@ -97,8 +98,9 @@ def open_headless(
     counters: Callable[[], dict[str, Any]] = dict
     of_can: Callable[[], dict[str, Any]] = dict
     take_acts: Callable[[], list[bytes]] = list
+    traffic = open_traffic(resolved, console)
     if resolved.session.mode.pacing == "lockstep":
-        link = _open_lockstep(resolved, console, bundle, interrupt, stack)
+        link = _open_lockstep(resolved, console, bundle, interrupt, stack, traffic)
         commands, outputs, standby = _over_link(link, resolved, console), (link,), (link.stand,)
         counters, take_acts = link.counters, link.take_acts
     elif resolved.session.features.commands is not None:
@@ -109,7 +111,6 @@ def open_headless(
     can = _open_can(resolved, console, bundle, stack)
     if can is not None:
         outputs, of_can = (*outputs, can), can.summary
-    traffic = open_traffic(resolved, console)
     seating = open_seating(resolved, console, stack)
     recorder = LogRecorder(log, take_acts, traffic)
     components = Components(
@@ -163,6 +164,8 @@ def open_realtime(
     memory = make_memory(folder, console)
     traffic = open_traffic(resolved, console)
     recorder = LogRecorder(log, memory.acts.take, traffic)
+    if traffic is not None:
+        share_road_users(traffic, folder)
     ecu = add_can_memory(resolved, console, folder)
     supervisor = SupervisorHandle(folder, worker_specs(resolved, console, folder, bundle, drive))
     programs = _started(supervisor, memory, stack)
@@ -295,7 +298,12 @@ def new_nonce() -> str:
 
 
 def _open_lockstep(
-    resolved: ResolvedSession, console: Console, folder: Path, interrupt: Interrupt, stack: ExitStack
+    resolved: ResolvedSession,
+    console: Console,
+    folder: Path,
+    interrupt: Interrupt,
+    stack: ExitStack,
+    traffic: TrafficSource | None,
 ) -> LockstepLink:
     from simconsole.bridge.transport.lockstep_server import LockstepBridge
 
@@ -312,6 +320,7 @@ def _open_lockstep(
         drive=drive,
         route=route_points(resolved.world),
         steering=steering_limit(session.features.control, console.platform.wheelbase_m),
+        road_users=None if traffic is None else traffic.newest,
     )
     program = None
     if session.features.autopilot is not None:

@@ -14,6 +14,7 @@ from simconsole.processes.shared_memory import EventCounters, Ring, TextQueue
 from simconsole.processes.worker import Worker, WorkerSpec
 from simconsole.profiles.view import HudProfile
 from simconsole.session.scene_job import LIVE_SCENE, scene_job
+from simconsole.session.traffic_source import TrafficSource
 from simconsole.session.view_job import save_view_job, view_job
 from simconsole.session.worker_programs import (
     ACTS,
@@ -26,6 +27,8 @@ from simconsole.session.worker_programs import (
     EVENTS,
     KEY_CODES,
     LATENCY,
+    ROAD_USERS,
+    ROAD_USERS_CAPACITY,
     SCENE_JOB,
     SLOT_CAPACITY,
     SNAPSHOT_CAPACITY,
@@ -47,6 +50,7 @@ from simconsole.values.signals import NEVER_TICKS, NO_COMMAND, EventInput, Remot
 from simconsole.values.state_vector import LAYOUT, Snapshot
 from simconsole.values.units import NS_PER_S
 from simconsole.world.kinds.worlds import route_points
+from simconsole.world.traffic.road_users import RECORD_WIDTH, to_record
 
 START_PATIENCE_S = 20.0
 
@@ -169,6 +173,16 @@ def add_can_memory(resolved: ResolvedSession, console: Console, folder: Path) ->
     return CommandPort(slot, EventCounters.create(folder / CAN_EVENTS), console.tick_hz)
 
 
+def share_road_users(traffic: TrafficSource, folder: Path) -> None:
+    """Give every worker the road users, in a ring of their own.
+
+    Raises:
+        WorkerError: it cannot be made.
+    """
+    ring = Ring.create(folder / ROAD_USERS, RECORD_WIDTH, ROAD_USERS_CAPACITY)
+    traffic.show_to(lambda at: ring.write(to_record(at.users), at.tick))
+
+
 def worker_specs(
     resolved: ResolvedSession, console: Console, folder: Path, bundle: Path, drive: str
 ) -> list[WorkerSpec]:
@@ -187,6 +201,7 @@ def worker_specs(
             bundle=str(bundle.absolute()),
             route=route_points(resolved.world),
             steering=steering_limit(resolved.session.features.control, console.platform.wheelbase_m),
+            has_traffic=resolved.session.environment.traffic is not None,
         )
     if outputs.can is not None:
         from simconsole.canbus.messages import wheel_columns

@@ -15,13 +15,11 @@ from simconsole.values.signals import Event, VehicleState
 from simconsole.values.state_vector import Snapshot
 from simconsole.values.trigonometry import direction
 from simconsole.world.kinds.worlds import open_map, open_world
-from simconsole.world.roads.road_map import Array
 from simconsole.world.traffic.collisions import struck
-from simconsole.world.traffic.road_users import Box, to_bytes
+from simconsole.world.traffic.road_users import Box, RoadUsersAt, to_bytes
 from simconsole.world.traffic.traffic import Traffic
 
-ShowRoadUsers = Callable[[int, Array], None]
-"""Is shown the tick after which road users are where the table says, and the table, float64 [users, FIELDS]."""
+ShowRoadUsers = Callable[[RoadUsersAt], None]
 
 
 class TrafficSource:
@@ -36,7 +34,7 @@ class TrafficSource:
         self._traffic = traffic
         self._platform = platform
         self._period_ticks = period_ticks
-        self._rows = traffic.road_users()
+        self._newest = RoadUsersAt(0, traffic.road_users())
         self._fresh = True
         self._touched: frozenset[float] = frozenset()
         self._events = 0
@@ -46,22 +44,26 @@ class TrafficSource:
     def show_to(self, show: ShowRoadUsers) -> None:
         """Show each step's result from here on, and what there is now."""
         self._shown.append(show)
-        show(0, self._rows)
+        show(self._newest)
+
+    def newest(self) -> RoadUsersAt:
+        """Return the newest result."""
+        return self._newest
 
     def publish(self, snapshot: Snapshot) -> None:
         """Step, if a period has ended with this tick."""
         if snapshot.tick % self._period_ticks:
             return
         ego = ego_box(snapshot.vehicle, self._platform)
-        self._rows = self._traffic.step(ego)
+        self._newest = RoadUsersAt(snapshot.tick, self._traffic.step(ego))
         self._fresh = True
-        touched = frozenset(user.id for user in struck(ego, self._rows))
+        touched = frozenset(user.id for user in struck(ego, self._newest.users))
         if touched - self._touched:
             self._events |= int(Event.COLLISION)
             self.collisions += len(touched - self._touched)
         self._touched = touched
         for show in self._shown:
-            show(snapshot.tick, self._rows)
+            show(self._newest)
 
     def unseen(self, tick: int) -> int:
         """Return how many ticks, from `tick` on, do not end a period."""
@@ -70,7 +72,7 @@ class TrafficSource:
     def take_messages(self) -> list[tuple[str, bytes]]:
         """Return the newest road users, if nobody has taken them yet."""
         fresh, self._fresh = self._fresh, False
-        return [(ROAD_USERS, to_bytes(self._rows))] if fresh else []
+        return [(ROAD_USERS, to_bytes(self._newest.users))] if fresh else []
 
     def take_events(self) -> int:
         """Return what happened since the last call."""
@@ -79,7 +81,7 @@ class TrafficSource:
 
     def summary(self) -> dict[str, Any]:
         """Return what the drive's summary says of traffic."""
-        return {"traffic": {"road_users": len(self._rows), "collisions": self.collisions}}
+        return {"traffic": {"road_users": len(self._newest.users), "collisions": self.collisions}}
 
 
 def open_traffic(resolved: ResolvedSession, console: Console) -> TrafficSource | None:

@@ -27,6 +27,7 @@ from simconsole.values.latency import Hop, LatencyStatistics
 from simconsole.values.signals import RemoteCommand
 from simconsole.values.state_vector import LAYOUT, Snapshot
 from simconsole.values.units import NS_PER_S
+from simconsole.world.traffic.road_users import RoadUsersAt, from_record, table
 
 if TYPE_CHECKING:
     from simconsole.hud.driver_view.scene import ViewScene
@@ -42,11 +43,13 @@ LINK_STATUS: Final = "link.json"
 CAN_COMMAND: Final = "can.command"
 CAN_EVENTS: Final = "can.events"
 CAN_STATUS: Final = "can.json"
+ROAD_USERS: Final = "road_users"
 LATENCY: Final = "latency"
 SCENE_JOB: Final = "scene.npz"
 VIEW_JOB: Final = "view.npz"
 SNAPSHOT_CAPACITY: Final = 1024
 SLOT_CAPACITY: Final = 4
+ROAD_USERS_CAPACITY: Final = 64
 NO_RECEIPT: Final = -1
 
 
@@ -63,6 +66,7 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
     """What /route shows."""
     steering: SteeringLimit | None = None
     """Beyond it the arbiter refuses a command."""
+    has_traffic: bool = False
 
     def run(self, folder: Path, stop: Callable[[], bool]) -> None:
         """Serve until `stop`."""
@@ -94,6 +98,7 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
             profile, snapshots, command_writer(folder / COMMAND), events.raise_events, stop,
             on_ready=ready, on_act=keep_act, on_counts=write_counts, on_link_state=write_link_state,
             folder=Path(self.bundle), drive=self.drive, route=self.route, steering=self.steering,
+            road_users=RoadUsersRing(folder).newest if self.has_traffic else None,
         )  # fmt: skip
 
 
@@ -193,6 +198,30 @@ class SceneWorker(Worker, frozen=True, kw_only=True):
 
         link = LinkWatch(folder / LINK_STATUS, time.time, time.monotonic) if self.has_bridge else lambda: None
         follow(Ports(new_ticks, stop, link), load_job(folder / SCENE_JOB), Path(self.path))
+
+
+class RoadUsersRing:
+    """A worker's view of the road users, in a second ring of the run folder: how many, then the users."""
+
+    def __init__(self, folder: Path) -> None:
+        self._ring = Ring.open(folder / ROAD_USERS)
+        self._seen = 0
+
+    def newest(self) -> RoadUsersAt:
+        """Return those of the newest step; nobody before the first."""
+        record = self._ring.latest()
+        return RoadUsersAt(0, table(())) if record is None else _road_users_of(record)
+
+    def since(self) -> list[RoadUsersAt]:
+        """Return those of all steps since the last call, oldest first; gaps are allowed."""
+        records = self._ring.since(self._seen)
+        if records:
+            self._seen = records[-1].number
+        return [_road_users_of(record) for record in records]
+
+
+def _road_users_of(record: Record) -> RoadUsersAt:
+    return RoadUsersAt(record.stamp, from_record(record.values))
 
 
 def _view_scene(folder: Path) -> "ViewScene":

@@ -7,9 +7,9 @@ import pytest
 
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.pack import pack
-from simconsole.recording.bundles.recorded_road_users import recorded_road_users
 from simconsole.recording.bundles.replay_bundle import replay_bundle
 from simconsole.recording.bundles.verification import verify
+from simconsole.recording.recorded_road_users import recorded_road_users
 from simconsole.session.lifecycle import drive
 from simconsole.session.resolution import load_session, override, resolve
 from simconsole.session.traffic_source import TrafficSource, ego_box, open_traffic
@@ -21,7 +21,7 @@ from simconsole.values.state_vector import Snapshot
 from simconsole.world.traffic import traffic as modelled
 from simconsole.world.traffic.road_users import table, users
 
-PERIOD_TICKS = 10
+PERIOD_TICKS = 4  # 40 ms at 100 Hz
 
 
 def session(seed: int = 1, **changes: object) -> ResolvedSession:
@@ -46,16 +46,16 @@ def driven(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_every_step_lies_in_the_tick_that_could_know_of_it(driven: Path) -> None:
     bundle = open_bundle(driven)
-    ticks = [at.tick for at in recorded_road_users(bundle)]
+    ticks = [at.tick for at in recorded_road_users(bundle.log)]
     assert ticks == list(range(0, bundle.manifest.ticks, PERIOD_TICKS))
-    assert all(len(at.users) == 15 for at in recorded_road_users(bundle))
+    assert all(len(at.users) == 15 for at in recorded_road_users(bundle.log))
     assert not verify(driven).problems
 
 
 def test_equal_seeds_give_equal_logs_and_others_do_not(driven: Path, tmp_path: Path) -> None:
     again, other = drive(session(), tmp_path / "again").folder, drive(session(2), tmp_path / "other").folder
     assert (driven / "drive.log").read_bytes() == (again / "drive.log").read_bytes()
-    tables = [[at.users.tobytes() for at in recorded_road_users(open_bundle(one))] for one in (driven, other)]
+    tables = [[at.users.tobytes() for at in recorded_road_users(open_bundle(one).log)] for one in (driven, other)]
     assert tables[0] != tables[1]
 
 
@@ -72,14 +72,14 @@ def test_replay_reads_traffic_and_does_not_simulate_it(driven: Path, monkeypatch
     found = replay_bundle(driven)
     assert found.good
     assert found.hashes_equal
-    assert len(list(recorded_road_users(open_bundle(driven)))) > 10
+    assert len(list(recorded_road_users(open_bundle(driven).log))) > 10
 
 
 def test_packed_drive_has_the_same_road_users(tmp_path: Path) -> None:
     folder = drive(session(), tmp_path / "packed").folder
-    before = [at.users.tobytes() for at in recorded_road_users(open_bundle(folder))]
+    before = [at.users.tobytes() for at in recorded_road_users(open_bundle(folder).log)]
     pack(folder)
-    assert [at.users.tobytes() for at in recorded_road_users(open_bundle(folder))] == before
+    assert [at.users.tobytes() for at in recorded_road_users(open_bundle(folder).log)] == before
 
 
 def test_course_has_no_traffic() -> None:
@@ -134,7 +134,7 @@ def test_whoever_is_shown_road_users_sees_those_of_the_start_first() -> None:
     source = open_traffic(session(), console)
     assert source is not None
     seen: list[tuple[int, int]] = []
-    source.show_to(lambda tick, rows: seen.append((tick, len(users(rows)))))
+    source.show_to(lambda at: seen.append((at.tick, len(users(at.users)))))
     for tick in range(1, 2 * PERIOD_TICKS + 1):
         source.publish(Snapshot(tick, console.tick_hz, state.vector))
     assert seen == [(0, 15), (PERIOD_TICKS, 15), (2 * PERIOD_TICKS, 15)]

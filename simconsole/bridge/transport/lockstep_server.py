@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Final, Self
 import msgspec
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.console.road_user_topics import ReadRoadUsers
 from simconsole.bridge.console.topics import ODOMETRY, Route
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.protocol.access import Access
@@ -58,6 +59,7 @@ class LockstepBridge:
         drive: str | None = None,
         route: Route = (),
         steering: SteeringLimit | None = None,
+        road_users: ReadRoadUsers | None = None,
     ) -> None:
         """Listen on the profile's host and port.
 
@@ -68,6 +70,7 @@ class LockstepBridge:
             drive: the nonce of the drive whose bridge it is.
             route: what /route shows.
             steering: as `ConsoleBridge`.
+            road_users: as `ConsoleBridge`.
             odometry_hz: rate of /odom in place of the profile's: the control rate, so that every answer is waited for.
 
         Raises:
@@ -80,7 +83,7 @@ class LockstepBridge:
             rates_hz = {**profile.rates_hz, ODOMETRY: odometry_hz}
             profile = msgspec.structs.replace(profile, rates_hz=rates_hz, limits=limits)
         registry = load_registry(profile) if registry is None else registry
-        self.console = ConsoleBridge(profile, registry, route=route, steering=steering)
+        self.console = ConsoleBridge(profile, registry, route=route, steering=steering, road_users=road_users)
         self.console.router.access = load_access(profile)
         if profile.upstream is not None:
             raise ProfileError("outputs.bridge.upstream: a drive in lockstep waits for its own clients only")

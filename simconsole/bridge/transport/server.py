@@ -15,6 +15,7 @@ from simconsole.bridge.console.counters import link_state
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.input_slots import OnCommand, OnEvents
 from simconsole.bridge.console.operator_acts import OnAct
+from simconsole.bridge.console.road_user_topics import ReadRoadUsers
 from simconsole.bridge.console.topics import Route
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.protocol.access import Role
@@ -60,6 +61,7 @@ class BridgeServer:
         drive: str | None = None,
         route: Route = (),
         steering: SteeringLimit | None = None,
+        road_users: ReadRoadUsers | None = None,
     ) -> None:
         """Build the bridge; `start` opens it.
 
@@ -67,7 +69,7 @@ class BridgeServer:
         the nonce of the drive whose bridge it is.
         """
         registry = load_registry(profile) if registry is None else registry
-        self.console = ConsoleBridge(profile, registry, on_command, on_events, on_act, route, steering)
+        self.console = ConsoleBridge(profile, registry, on_command, on_events, on_act, route, steering, road_users)
         self._folder = folder
         self._drive = drive
         self._recorder: TopicRecorder | None = None
@@ -237,6 +239,7 @@ def serve(
     drive: str | None = None,
     route: Route = (),
     steering: SteeringLimit | None = None,
+    road_users: ReadRoadUsers | None = None,
 ) -> None:
     """Run a bridge server until `stop()` says so; for a process of its own.
 
@@ -255,6 +258,7 @@ def serve(
         drive: the nonce of the drive whose bridge it is.
         route: what /route shows.
         steering: as `ConsoleBridge`.
+        road_users: as `ConsoleBridge`.
 
     Raises:
         BridgeError: the address cannot be listened on.
@@ -270,6 +274,7 @@ def serve(
         drive=drive,
         route=route,
         steering=steering,
+        road_users=road_users,
     )
     reporter = _StatusReporter(server, on_counts, on_link_state)
     asyncio.run(_run(server, read_snapshot, stop, on_ready, reporter))

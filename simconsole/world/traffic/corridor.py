@@ -7,8 +7,9 @@ from simconsole.world.traffic.columns import COSINE, COUNT, LANES, LENGTH, SINE,
 from simconsole.world.traffic.following import FAR_M
 from simconsole.world.traffic.network import Network
 
-MARGIN_M: Final = 0.25
-_DISCS: Final = 3  # that cover a box: in its middle and at its ends
+MARGIN_M: Final = 0.35
+_DISCS: Final = 5  # that cover a box, from end to end
+_INSIDE: Final = 0.6  # of their radius the outermost lie inside it, so that its corners are covered too
 
 
 class Ahead(NamedTuple):
@@ -88,7 +89,7 @@ def _on_segment(net: Network, row: int, from_m: float, body: Body, boxes: Row, n
         ahead = dx * boxes[box, COSINE] + dy * boxes[box, SINE]
         aside = dx * boxes[box, SINE] - dy * boxes[box, COSINE]
         for disc in range(_DISCS):
-            shift = (disc - 1) * (0.5 * boxes[box, LENGTH] - radius)
+            shift = 0.5 * (disc - 2) * (0.5 * boxes[box, LENGTH] - _INSIDE * radius)
             there, off = along + shift * ahead, lateral + shift * aside
             beyond = there - length if there > length else (-there if there < 0.0 else 0.0)
             side = off - body.high_m if off > body.high_m else (body.low_m - off if off < body.low_m else 0.0)

@@ -43,13 +43,19 @@ class Box(NamedTuple):
     width_m: float
 
 
+class RoadUsersAt(NamedTuple):
+    """The road users after a tick: a table, float64 [users, FIELDS]."""
+
+    tick: int
+    users: Array
+
+
 CAPACITY: Final = 128
 """Road users that a record in shared memory has room for."""
 FIELDS: Final = len(RoadUser._fields)
 RECORD_WIDTH: Final = 1 + CAPACITY * FIELDS
 ENCODING: Final = f"float64[{FIELDS}]"
 """Of road users in a log: little-endian, one row a user."""
-NOBODY: Final[Array] = np.zeros((0, FIELDS))
 
 
 def users(rows: Array) -> tuple[RoadUser, ...]:

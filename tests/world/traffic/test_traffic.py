@@ -20,6 +20,7 @@ from tests.samples import Sample
 from tests.world.nets import CITY, SMALL, TOWN, generated_map, straight_map
 
 BY_RULE = ("--rand", "--rand.iterations", "60", "--seed", "9", "--default-junction-type", "right_before_left")
+SIGNALLED = ("--grid", "--grid.number", "3", "--grid.length", "80", "--default-junction-type", "traffic_light")
 MAPS = {"city": CITY, "town": TOWN, "small": SMALL, "right before left": BY_RULE}
 
 
@@ -107,7 +108,7 @@ def stop_line_passes(road_map: RoadMap, tables: list[Array], period_s: float) ->
 
 
 def test_signals_are_obeyed() -> None:
-    road_map = generated_map(*SMALL)
+    road_map = generated_map(*SIGNALLED)
     traffic = Traffic(road_map, TrafficProfile(seed=2, parked=0), compiled)
     tables = [traffic.step(None) for _ in range(4000)]
     seen = [letter for letter, _ in stop_line_passes(road_map, tables, traffic.period_s)]
