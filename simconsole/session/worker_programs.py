@@ -27,7 +27,7 @@ from simconsole.values.latency import Hop, LatencyStatistics
 from simconsole.values.signals import RemoteCommand
 from simconsole.values.state_vector import LAYOUT, Snapshot
 from simconsole.values.units import NS_PER_S
-from simconsole.world.traffic.road_users import RoadUsersAt, from_record, table
+from simconsole.world.traffic.road_users import NOBODY, RoadUsersAt, from_record
 
 if TYPE_CHECKING:
     from simconsole.hud.driver_view.scene import ViewScene
@@ -210,7 +210,7 @@ class RoadUsersRing:
     def newest(self) -> RoadUsersAt:
         """Return those of the newest step; nobody before the first."""
         record = self._ring.latest()
-        return RoadUsersAt(0, table(())) if record is None else _road_users_of(record)
+        return RoadUsersAt(0, NOBODY) if record is None else _road_users_of(record)
 
     def since(self) -> list[RoadUsersAt]:
         """Return those of all steps since the last call, oldest first; gaps are allowed."""

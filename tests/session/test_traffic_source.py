@@ -19,7 +19,7 @@ from simconsole.values.host.jit import compiled
 from simconsole.values.signals import Event
 from simconsole.values.state_vector import Snapshot
 from simconsole.world.traffic import traffic as modelled
-from simconsole.world.traffic.road_users import table, users
+from simconsole.world.traffic.road_users import Box, table, users
 
 PERIOD_TICKS = 4  # 40 ms at 100 Hz
 
@@ -49,7 +49,7 @@ def test_every_step_lies_in_the_tick_that_could_know_of_it(driven: Path) -> None
     ticks = [at.tick for at in recorded_road_users(bundle.log)]
     assert ticks == list(range(0, bundle.manifest.ticks, PERIOD_TICKS))
     assert all(len(at.users) == 15 for at in recorded_road_users(bundle.log))
-    assert not verify(driven).problems
+    assert verify(driven) == []
 
 
 def test_equal_seeds_give_equal_logs_and_others_do_not(driven: Path, tmp_path: Path) -> None:
@@ -84,13 +84,13 @@ def test_packed_drive_has_the_same_road_users(tmp_path: Path) -> None:
 
 def test_course_has_no_traffic() -> None:
     resolved = session(world="urban")
-    with pytest.raises(ProfileError, match="environment.traffic: needs an environment.world that is a road map"):
+    with pytest.raises(ProfileError, match=r"environment\.traffic: needs an environment\.world that is a road map"):
         open_traffic(resolved, assemble(resolved, compiled)[0])
 
 
 def test_period_is_a_whole_number_of_ticks() -> None:
     resolved = session(traffic={"period_ms": 33})
-    with pytest.raises(ProfileError, match="environment.traffic.period_ms: value 33: a whole number of ticks of"):
+    with pytest.raises(ProfileError, match=r"environment\.traffic\.period_ms: value 33: a whole number of ticks of"):
         open_traffic(resolved, assemble(resolved, compiled)[0])
 
 
@@ -103,7 +103,7 @@ class _InTheWay:
     def road_users(self) -> np.ndarray:
         return table([])
 
-    def step(self, ego: modelled.Box) -> np.ndarray:
+    def step(self, ego: Box) -> np.ndarray:
         self.steps += 1
         beside = 0.0 if self.steps > 1 else 50.0
         return np.array([(7.0, 1.0, ego.x_m + beside, ego.y_m, 0.3, 0.0, 4.5, 1.8, 1.5)])

@@ -24,7 +24,7 @@ from simconsole.values.kernels import Row
 from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE
 from simconsole.values.state_vector import INPUT_WIDTH, LAYOUT, PLATFORM_AT, Snapshot
 from simconsole.values.units import tick_time_ns
-from simconsole.world.traffic.road_users import RoadUsersAt, table
+from simconsole.world.traffic.road_users import NOBODY, RoadUsersAt
 
 OnTick = Callable[[int], None]
 """Told, now and then, the last tick that was written."""
@@ -69,7 +69,7 @@ class DriveTopics:
             profile = msgspec.structs.replace(profile, rates_hz={**profile.rates_hz, ODOMETRY: odometry_hz})
         self._outputs = Outputs(self.registry, profile, route=route)
         outputs, commands = self._outputs.topics(), CommandDecoder(BridgeInputs(), profile).topics()
-        self._road_users = RoadUsersAt(0, table(()))
+        self._road_users = RoadUsersAt(0, NOBODY)
         if session.environment.traffic is not None:
             outputs = (*RoadUserTopics(self.registry, lambda: self._road_users).topics(), *outputs)
         self.names = topic_names(profile, [*(topic.name for topic in outputs), *(topic.name for topic in commands)])

@@ -54,6 +54,7 @@ CAPACITY: Final = 128
 """Road users that a record in shared memory has room for."""
 FIELDS: Final = len(RoadUser._fields)
 RECORD_WIDTH: Final = 1 + CAPACITY * FIELDS
+NOBODY: Final[Array] = np.zeros((0, FIELDS))
 ENCODING: Final = f"float64[{FIELDS}]"
 """Of road users in a log: little-endian, one row a user."""
 
