@@ -192,6 +192,7 @@ def worker_specs(
     """
     outputs, tick_hz = resolved.session.outputs, console.tick_hz
     has_bridge, has_can = outputs.bridge is not None, outputs.can is not None
+    has_traffic = resolved.session.environment.traffic is not None
     workers: dict[str, Worker] = {}
     if outputs.bridge is not None:
         workers["bridge"] = BridgeWorker(
@@ -201,7 +202,7 @@ def worker_specs(
             bundle=str(bundle.absolute()),
             route=route_points(resolved.world),
             steering=steering_limit(resolved.session.features.control, console.platform.wheelbase_m),
-            has_traffic=resolved.session.environment.traffic is not None,
+            has_traffic=has_traffic,
         )
     if outputs.can is not None:
         from simconsole.canbus.messages import wheel_columns
@@ -224,7 +225,7 @@ def worker_specs(
 
         save_job(folder / SCENE_JOB, scene_job(resolved, console.columns, tick_hz))
         path = str((bundle / LIVE_SCENE).absolute())
-        workers["scene"] = SceneWorker(path=path, tick_hz=tick_hz, has_bridge=has_bridge)
+        workers["scene"] = SceneWorker(path=path, tick_hz=tick_hz, has_bridge=has_bridge, has_traffic=has_traffic)
     return [WorkerSpec.of(name, worker) for name, worker in workers.items()]
 
 

@@ -180,6 +180,7 @@ class SceneWorker(Worker, frozen=True, kw_only=True):
     """The .rrd file."""
     tick_hz: int
     has_bridge: bool
+    has_traffic: bool = False
 
     def run(self, folder: Path, stop: Callable[[], bool]) -> None:
         """Record until `stop`."""
@@ -197,7 +198,9 @@ class SceneWorker(Worker, frozen=True, kw_only=True):
             return [snapshot_of(record, self.tick_hz) for record in records]
 
         link = LinkWatch(folder / LINK_STATUS, time.time, time.monotonic) if self.has_bridge else lambda: None
-        follow(Ports(new_ticks, stop, link), load_job(folder / SCENE_JOB), Path(self.path))
+        steps = RoadUsersRing(folder).since if self.has_traffic else tuple
+        ports = Ports(new_ticks, stop, road_users=steps, link=link)
+        follow(ports, load_job(folder / SCENE_JOB), Path(self.path))
 
 
 class RoadUsersRing:

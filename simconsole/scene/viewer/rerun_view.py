@@ -30,6 +30,7 @@ from simconsole.scene.entities import (
     on_map,
     raised,
 )
+from simconsole.scene.road_user_shapes import RoadUserShapes
 from simconsole.scene.timeline import PLOTS, TAKEOVER_LABELS, Entry, Lane, Piece, Strip, Ticks
 from simconsole.scene.viewer.blueprint import MAP, TIMELINE, blueprint
 from simconsole.values.errors import WorkerError
@@ -71,6 +72,8 @@ class RerunView:
         self._still("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
         self._still(f"{MAP}/path/driven", rr.LineStrips2D.from_fields(draw_order=2.0))
         self._still(f"{MAP}/ego", rr.Points2D.from_fields(draw_order=3.0))
+        self._still(f"{MAP}/road_users", rr.Points2D.from_fields(draw_order=2.5))
+        self._still("world/road_users", rr.Boxes3D.from_fields(fill_mode="solid"))
         self._car(dimensions)
         for plot in PLOTS:
             names = [line.name for line in plot.series]
@@ -93,6 +96,22 @@ class RerunView:
             self._lane(lane)
         self._driven(piece.strips)
         self._entries(piece.entries)
+
+    def add_road_users(self, shapes: RoadUserShapes) -> None:
+        """Write steps of traffic, boxes in 3D and their middles on the map."""
+        import rerun as rr
+
+        boxes = rr.Boxes3D.columns(
+            centers=shapes.centres,
+            half_sizes=shapes.half_sizes,
+            quaternions=shapes.quaternions,
+            colors=shapes.colours,
+        )
+        self._send("world/road_users", shapes.times_ns, boxes.partition(shapes.counts))
+        spots = rr.Points2D.columns(
+            positions=on_map(shapes.centres), colors=shapes.colours, radii=[-4.0] * len(shapes.centres)
+        )
+        self._send(f"{MAP}/road_users", shapes.times_ns, spots.partition(shapes.counts))
 
     def settle(self) -> None:
         """Wait until all added is in the file: what rerun has queued for a slow disk would grow in memory.

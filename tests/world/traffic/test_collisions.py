@@ -53,7 +53,8 @@ def test_overlap_is_what_a_fine_raster_sees(sample: Sample) -> None:
     seen = 0
     for _ in range(sample.of(200, 5000)):
         one = box(0.0, 0.0, float(rng.uniform(-4, 4)))
-        other = box(*rng.uniform(-5, 5, 2).tolist(), float(rng.uniform(-4, 4)))
+        x_m, y_m, yaw_rad = (rng.uniform(-1, 1, 3) * (5.0, 5.0, 4.0)).tolist()
+        other = box(x_m, y_m, yaw_rad)
         if bool((inside(one, x, y) & inside(other, x, y)).any()):
             seen += 1
             assert overlap(one, other)

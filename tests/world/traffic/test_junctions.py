@@ -16,7 +16,7 @@ def crossing_ways(road_map: RoadMap, net: Network) -> tuple[int, int]:
     """A connection that must let another one go first, and that other."""
     for place in range(len(net.goals)):
         firsts = net.firsts[net.first_starts[place] : net.first_starts[place + 1]].tolist()
-        ahead = [first for first in firsts if not road_map.connections[first].direction == "t"]
+        ahead = [first for first in firsts if road_map.connections[first].direction != "t"]
         if ahead and road_map.connections[place].direction != "t":
             return place, ahead[0]
     raise AssertionError("no such junction")

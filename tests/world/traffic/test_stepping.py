@@ -1,3 +1,5 @@
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -26,7 +28,7 @@ def test_vehicle_alone_accelerates_over_the_map_and_leaves_it() -> None:
     assert 197.0 < way[-1][0] < 199.0
     assert max(speed for _, speed in way) > 9.0
     assert way[-1][1] < 8.6  # the second road has a lower limit
-    driven = sum(0.5 * (one[1] + other[1]) * PERIOD_S for one, other in zip(way, way[1:], strict=False))
+    driven = sum(0.5 * (one[1] + other[1]) * PERIOD_S for one, other in pairwise(way))
     assert way[-1][0] - way[0][0] == pytest.approx(driven, rel=1e-9)
 
 
