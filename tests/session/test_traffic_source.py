@@ -1,5 +1,7 @@
 """Traffic in a drive: recorded as an input, equal for equal seeds, read again and not simulated in a replay."""
 
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +22,8 @@ from simconsole.values.signals import Event
 from simconsole.values.state_vector import Snapshot
 from simconsole.world.traffic import traffic as modelled
 from simconsole.world.traffic.road_users import Box, table, users
+from tests.paths import ROOT
+from tests.scene.viewer.test_export import contents
 
 PERIOD_TICKS = 4  # 40 ms at 100 Hz
 
@@ -138,3 +142,11 @@ def test_whoever_is_shown_road_users_sees_those_of_the_start_first() -> None:
     for tick in range(1, 2 * PERIOD_TICKS + 1):
         source.publish(Snapshot(tick, console.tick_hz, state.vector))
     assert seen == [(0, 15), (PERIOD_TICKS, 15), (2 * PERIOD_TICKS, 15)]
+
+
+def test_scene_of_the_drive_has_every_step(driven: Path) -> None:
+    program = [sys.executable, "-m", "simconsole.evaluation.report.scene_export", str(driven)]
+    subprocess.run(program, check=True, capture_output=True, cwd=ROOT)
+    steps = len(list(recorded_road_users(open_bundle(driven).log)))
+    seen = contents(driven / "scene.rrd")
+    assert seen["/world/road_users"] == seen["/map/road_users"] == steps + 1  # one for what holds throughout

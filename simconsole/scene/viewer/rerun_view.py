@@ -62,6 +62,7 @@ class RerunView:
         import rerun as rr
 
         self._flush_s = profile.flush_s
+        self._has_road_users = False
         self._stream = rr.RecordingStream(APPLICATION, recording_id=path.stem, send_properties=True)
         rr.set_strict_mode(True)
         try:
@@ -72,8 +73,6 @@ class RerunView:
         self._still("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
         self._still(f"{MAP}/path/driven", rr.LineStrips2D.from_fields(draw_order=2.0))
         self._still(f"{MAP}/ego", rr.Points2D.from_fields(draw_order=3.0))
-        self._still(f"{MAP}/road_users", rr.Points2D.from_fields(draw_order=2.5))
-        self._still("world/road_users", rr.Boxes3D.from_fields(fill_mode="solid"))
         self._car(dimensions)
         for plot in PLOTS:
             names = [line.name for line in plot.series]
@@ -101,6 +100,10 @@ class RerunView:
         """Write steps of traffic, boxes in 3D and their middles on the map."""
         import rerun as rr
 
+        if not self._has_road_users:
+            self._has_road_users = True
+            self._still(f"{MAP}/road_users", rr.Points2D.from_fields(draw_order=2.5))
+            self._still("world/road_users", rr.Boxes3D.from_fields(fill_mode="solid"))
         boxes = rr.Boxes3D.columns(
             centers=shapes.centres,
             half_sizes=shapes.half_sizes,
