@@ -219,6 +219,7 @@ def worker_specs(
             tick_hz=tick_hz,
             has_can=has_can,
             has_bridge=has_bridge,
+            has_traffic=has_traffic,
         )
     if outputs.scene is not None:
         from simconsole.scene.viewer.job import save_job

@@ -139,6 +139,7 @@ class HudWorker(Worker, frozen=True, kw_only=True):
     tick_hz: int
     has_can: bool
     has_bridge: bool
+    has_traffic: bool = False
 
     def run(self, folder: Path, stop: Callable[[], bool]) -> None:
         """Draw until `stop`."""
@@ -148,6 +149,7 @@ class HudWorker(Worker, frozen=True, kw_only=True):
         ring = Ring.open(folder / SNAPSHOTS)
         keys = Ring.open(folder / KEY_CODES, writable=True)
         receipts = Receipts(folder / f"{LATENCY}.hud.json")
+        road_users = RoadUsersRing(folder) if self.has_traffic else None
 
         def latest() -> Snapshot | None:
             record = ring.latest()
@@ -161,7 +163,8 @@ class HudWorker(Worker, frozen=True, kw_only=True):
             if len(records) < 2:
                 return None
             older, newer = (snapshot_of(record, self.tick_hz) for record in records[-2:])
-            return Motion(older, newer, 1e-9 * (time.monotonic_ns() - records[-1].second_stamp))
+            age_s = 1e-9 * (time.monotonic_ns() - records[-1].second_stamp)
+            return Motion(older, newer, age_s, None if road_users is None else road_users.newest())
 
         def report_keys(mask: int) -> None:
             keys.write(np.array([float(mask)]), time.monotonic_ns())

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from simconsole.evaluation.video.moments import moments
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.pack import pack
 from simconsole.recording.bundles.replay_bundle import replay_bundle
@@ -150,3 +151,10 @@ def test_scene_of_the_drive_has_every_step(driven: Path) -> None:
     steps = len(list(recorded_road_users(open_bundle(driven).log)))
     seen = contents(driven / "scene.rrd")
     assert seen["/world/road_users"] == seen["/map/road_users"] == steps + 1  # one for what holds throughout
+
+
+def test_pictures_of_the_drive_have_everybody_at_their_moment(driven: Path) -> None:
+    found = list(moments(open_bundle(driven).log, 1.0, 3.0, 10))
+    assert [len(moment.shown.others) for moment in found] == [15] * len(found)
+    first, last = ({user.id: user.x_m for user in moment.shown.others} for moment in (found[0], found[-1]))
+    assert sum(abs(last[number] - x_m) > 1.0 for number, x_m in first.items()) > 3
