@@ -5,7 +5,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from simconsole.profiles.traffic import TrafficProfile
+from simconsole.profiles.traffic import LeadVehicle, TrafficProfile
 from simconsole.values.trigonometry import direction
 from simconsole.world.roads.lane_index import LaneIndex, nearest_segment
 from simconsole.world.roads.road_map import Array, RoadMap
@@ -60,7 +60,6 @@ class Traffic:
         self._values = np.zeros((count, at.VALUES))
         self._paths = np.zeros((count, at.PATH), np.int64)
         parked = parked_cars(road_map, profile.parked, self._rng)
-        has_lead = profile.lead is not None and route is not None
         self._ego, self._lead = count, count + 1
         self._boxes = np.zeros((count + 2 + len(parked), at.BOX))
         self._boxes[count:, at.LANE] = -1.0
@@ -69,20 +68,15 @@ class Traffic:
         self._ids = np.zeros(len(self._boxes))
         self._ids[count:] = np.arange(len(self._boxes) - count)  # the ego's is nobody's
         self._next_id = len(self._boxes) - count
-        self._driver = None
-        if has_lead and profile.lead is not None and route is not None:
-            start = 0.0 if ego is None else route.project(ego.x_m, ego.y_m).s_m
-            self._driver = LeadDriver(profile.lead, route, start)
-        self._turn = Turn(
-            np.zeros((count, LINE)),
-            np.zeros(len(road_map.connections), np.int64),
-            np.zeros(len(road_map.connections), np.int64),
-        )
+        self._driver = _lead_driver(profile.lead, route, ego)
+        granted, lights = (np.zeros(len(road_map.connections), np.int64) for _ in range(2))
+        self._turn = Turn(np.zeros((count, LINE)), granted, lights)
         self._near = np.zeros(len(self._boxes), np.int64)
         self._placement = Placement(self._net, self._rng)
         self._see_others(ego, 0.0)
         for row in range(count):
             self._place(row, anywhere=True)
+        self._advance(0)  # nobody moves, but the kernel is compiled or loaded before any clock runs
 
     def step(self, ego: Box | None) -> Array:
         """Move everybody on by one period and return where they are then, a table of road users.
@@ -91,9 +85,7 @@ class Traffic:
         """
         self._turn.lights[:] = self._lights.at(self._steps * self.period_s)
         self._see_others(ego, self.period_s)
-        self._step_kernel(
-            self._net, self._values, self._paths, self._boxes, self._turn, self._near, self._steps, self.period_s
-        )
+        self._advance(len(self._values))
         self._steps += 1
         self._let_others_come()
         return self.road_users()
@@ -102,6 +94,12 @@ class Traffic:
         """Return where everybody is, float64 [users, FIELDS] as `RoadUser`: traffic, lead vehicle, parked cars."""
         count = self._list_kernel(self._boxes, self._ids, self._ego, self._users)
         return self._users[: int(count)].copy()
+
+    def _advance(self, count: int) -> None:
+        """Run the kernel on the first `count` vehicles: all of them, or none."""
+        turn = self._turn._replace(lines=self._turn.lines[:count])
+        values, paths = self._values[:count], self._paths[:count]
+        self._step_kernel(self._net, values, paths, self._boxes, turn, self._near, self._steps, self.period_s)
 
     def _see_others(self, ego: Box | None, period_s: float) -> None:
         """Write the boxes of the ego and of the lead vehicle."""
@@ -136,3 +134,10 @@ class Traffic:
         clear[self._ego] = EGO_CLEAR_M
         on_road = boxes[:, at.LENGTH] > 0.0
         return np.column_stack((boxes[on_road, at.X], boxes[on_road, at.Y], clear[on_road]))
+
+
+def _lead_driver(profile: LeadVehicle | None, route: Route | None, ego: Box | None) -> LeadDriver | None:
+    """Return who drives the lead vehicle before the ego; None where there is none, or no route for it."""
+    if profile is None or route is None:
+        return None
+    return LeadDriver(profile, route, 0.0 if ego is None else route.project(ego.x_m, ego.y_m).s_m)
