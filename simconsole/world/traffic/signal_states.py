@@ -1,7 +1,9 @@
 """What signals show: the states of their links at a time, and what these ask of whoever comes to them."""
 
+from bisect import bisect_right
 from collections.abc import Callable, Sequence
-from typing import Final
+from itertools import accumulate
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -17,20 +19,29 @@ _MEANINGS: Final = {"G": GO, "g": GIVE_WAY, "o": GIVE_WAY, "O": GIVE_WAY, "y": S
 
 def by_programs(road_map: RoadMap) -> SignalStates:
     """Return the states of signals that run the first program of each for ever."""
-    programs = [signal.programs[0] if signal.programs else None for signal in road_map.signals]
-    return lambda time_s: [_shown(program, time_s) for program in programs]
+    tables = [_table(signal.programs[0]) if signal.programs else _DARK for signal in road_map.signals]
+    return lambda time_s: [_shown(one, time_s) for one in tables]
 
 
-def _shown(program: Program | None, time_s: float) -> str:
-    if program is None:
-        return ""
-    length = sum(phase.duration_s for phase in program.phases)
-    left = (time_s - program.offset_s) % length if length > 0.0 else 0.0
-    for phase in program.phases:
-        if left < phase.duration_s:
-            return phase.state
-        left -= phase.duration_s
-    return program.phases[-1].state
+class _Table(NamedTuple):
+    """A program: its phases' states, and when each ends."""
+
+    offset_s: float
+    ends_s: list[float]
+    states: list[str]
+
+
+_DARK: Final = _Table(0.0, [1.0], [""])
+
+
+def _table(program: Program) -> _Table:
+    ends = list(accumulate(phase.duration_s for phase in program.phases))
+    states = [phase.state for phase in program.phases]
+    return _Table(program.offset_s, ends, states) if ends[-1] > 0.0 else _Table(0.0, [1.0], states[-1:])
+
+
+def _shown(table: _Table, time_s: float) -> str:
+    return table.states[bisect_right(table.ends_s, (time_s - table.offset_s) % table.ends_s[-1])]
 
 
 class Lights:
