@@ -37,12 +37,12 @@ from simconsole.world.traffic.paths import look_ahead
 POLITENESS: Final = 0.2
 THRESHOLD_MPS2: Final = 0.2
 SAFE_MPS2: Final = 2.0
+FORCED_MPS2: Final = 4.0  # the paper's, for who must leave its lane: a change may make the follower brake so hard
 CHANGE_S: Final = 4.0
 """How long a change takes."""
 _REST_S: Final = 6.0
 _AFTER_M: Final = 20.0  # of its lane are behind it
 _BEFORE_M: Final = 45.0  # and so much lies ahead
-_BEFORE_END_M: Final = 12.0
 _SLOWEST_MPS: Final = 2.0
 _BESIDE_M: Final = 2.0
 
@@ -61,7 +61,7 @@ def consider(net: Network, paths: Row, boxes: Row, values: Row, own: int) -> Non
     left_m = net.lengths_m[lane] - along
     if net.left[lane] < 0 and net.right[lane] < 0:
         return
-    if along < _AFTER_M or left_m < (_BEFORE_END_M if ends else _BEFORE_M) or path[GRANTS + slot] == 1:
+    if along < _AFTER_M or (left_m < _BEFORE_M and not ends) or path[GRANTS + slot] == 1:
         return
     if values[own, SPEED] < _SLOWEST_MPS and not ends:
         return
@@ -100,14 +100,15 @@ def _wanted(
     speed = values[own, SPEED]
     desired = net.limits_mps[target] * values[own, SPEED_SHARE]
     after = acceleration(speed, desired, lead_gap, lead_speed, values[own, TIME_GAP])
-    if after < -SAFE_MPS2:
+    safe = FORCED_MPS2 if ends else SAFE_MPS2
+    if after < -safe:
         return False
     lost = 0.0
     if follower >= 0:
         behind = boxes[follower, SPEED]
         wish = behind if behind > 1.0 else 1.0
         cut = acceleration(behind, 1.2 * wish, gap, speed, 1.2)
-        if cut < -SAFE_MPS2:
+        if cut < -safe:
             return False
         before = values[follower, ACCELERATION] if follower < len(values) else 0.0
         lost = before - cut if before > cut else 0.0

@@ -6,9 +6,11 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from simconsole.profiles.files.world_files import load_world
 from simconsole.profiles.traffic import LeadVehicle, SpeedFrom, TrafficProfile
 from simconsole.values.host.jit import compiled, plain
 from simconsole.values.trigonometry import wrap_angle
+from simconsole.world.kinds.worlds import open_map
 from simconsole.world.roads.lane_graph import LaneGraph
 from simconsole.world.roads.lane_index import LaneIndex, nearest_segment
 from simconsole.world.roads.road_map import Array, RoadMap
@@ -49,6 +51,20 @@ def test_nobody_touches_anybody_and_everybody_gets_on(sample: Sample, name: str)
         print(f"measured: {name}: mean way of a vehicle {np.mean(moving):.0f} m in {steps * traffic.period_s:.0f} s")
         assert len(rows) >= 30
         assert np.mean(moving) > 100.0
+
+
+def test_nobody_stands_for_ever_where_a_lane_ends(sample: Sample) -> None:
+    road_map = open_map(load_world("motorway"))  # type: ignore[arg-type]  # it is a road map
+    for number in range(sample.of(1, 8)):
+        traffic = traffic_on(road_map, 100 + number)
+        stood: dict[float, float] = {}
+        for _ in range(round(240.0 / traffic.period_s)):
+            rows = traffic.step(None)
+            for user in users(rows):
+                waits = stood.get(user.id, 0.0) + traffic.period_s if user.speed_mps < 0.3 else 0.0
+                stood[user.id] = waits
+                assert waits < 90.0 or user.id <= 9  # the first are parked
+        assert overlapping(rows) == []
 
 
 def test_equal_seeds_give_equal_bits_and_others_do_not() -> None:
