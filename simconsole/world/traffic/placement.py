@@ -11,7 +11,7 @@ from simconsole.world.traffic.paths import middle_at
 
 CLEAR_M: Final = 16.0
 """As far apart are vehicles at least when one of them comes onto the road."""
-_TRIES: Final = 40
+_TRIES: Final = 40  # at the beginning; later one in each step, until there is room
 _FROM_START_M: Final = 8.0
 _FROM_END_M: Final = 25.0
 _START_SHARE: Final = 0.5  # of the limit, at which a vehicle begins
@@ -34,7 +34,7 @@ class Placement:
     def place(self, values: Array, path: Numbers, taken: Array, *, anywhere: bool) -> bool:
         """Put a new vehicle onto a lane, as far from others as `taken` [N, 3] says; return whether there was room."""
         lanes, rng, net = self._anywhere if anywhere else self._entries, self._rng, self._net
-        for _ in range(_TRIES if len(lanes) else 0):
+        for _ in range((_TRIES if anywhere else 1) if len(lanes) else 0):
             lane = int(lanes[rng.integers(len(lanes))])
             room = float(net.lengths_m[lane]) - _FROM_START_M - _FROM_END_M
             s = _FROM_START_M + (room * float(rng.random()) if anywhere else 0.0)

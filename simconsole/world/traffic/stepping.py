@@ -45,6 +45,7 @@ from simconsole.world.traffic.road_users import RoadUserKind
 
 VAN_M: Final = 5.2  # longer vehicles are vans
 _CONSIDER_EVERY: Final = 16  # steps; a vehicle's turn comes by its number
+_LOOK_EVERY: Final = 2  # steps: looking ahead is most of the work, and people take longer to react
 _STANDS_MPS: Final = 0.3
 
 
@@ -80,7 +81,7 @@ def step_traffic(
         if values[own, LENGTH] > 0.0:
             decide(net, paths, boxes, values, own, turn)
     for own in range(count):
-        if values[own, LENGTH] > 0.0:
+        if values[own, LENGTH] > 0.0 and (step + own) % _LOOK_EVERY == 0:
             values[own, ACCELERATION] = _wish(net, paths[own], values, own, boxes, turn, near)
     for own in range(count):
         if values[own, LENGTH] > 0.0:
