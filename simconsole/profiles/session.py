@@ -9,6 +9,7 @@ from simconsole.profiles.can import CanProfile
 from simconsole.profiles.control import ControlProfile
 from simconsole.profiles.faults import Faults
 from simconsole.profiles.person import PersonPlan
+from simconsole.profiles.traffic import TrafficProfile
 from simconsole.profiles.view import HudProfile, SceneProfile
 
 PROFILE_FILES: Final = (".yaml", ".yml")
@@ -49,6 +50,8 @@ class Environment(Section, frozen=True, kw_only=True):
     slope_y_percent: Annotated[float, Meta(ge=-40.0, le=40.0)] = 0.0
     wind_mps: Annotated[float, Meta(ge=0.0, le=60.0)] = 0.0
     wind_to_deg: Annotated[float, Meta(ge=-180.0, le=180.0)] = 0.0  # where the air moves to; 0: along x of map
+    traffic: TrafficProfile | None = None
+    """Other vehicles, where the world is a road map."""
 
 
 class Scenario(Section, frozen=True, kw_only=True):

@@ -27,6 +27,8 @@ STATE: Final = "state"
 """The stream of the state vectors."""
 ACTS: Final = "acts"
 """The stream of the operator's acts and notes, JSON."""
+ROAD_USERS: Final = "road_users"
+"""The stream of the road users, a table of float64."""
 _HEAD: Final = Struct("<II")
 
 

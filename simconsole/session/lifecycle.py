@@ -18,7 +18,7 @@ from simconsole.recording.bundles.bundle import SESSION_FILE, BundleWriter, add_
 from simconsole.recording.bundles.manifest import Manifest
 from simconsole.recording.bundles.provenance import NOTHING_GIVEN, Given
 from simconsole.recording.bundles.replay_bundle import sources_sha256
-from simconsole.recording.log_header import ACTS, LogHeader, message_stream, vector_stream
+from simconsole.recording.log_header import ACTS, ROAD_USERS, LogHeader, message_stream, vector_stream
 from simconsole.session.opening import Opened, open_headless, open_realtime
 from simconsole.session.provenance import package_versions, provenance_at_start, with_devices
 from simconsole.session.seat import look_for_devices
@@ -29,6 +29,7 @@ from simconsole.values.errors import RecordingError
 from simconsole.values.host.jit import compiled
 from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE
 from simconsole.values.state_vector import INPUT_WIDTH, Snapshot, TickInputs
+from simconsole.world.traffic.road_users import ENCODING as ROAD_USERS_ENCODING
 
 ENDLESS_TICKS = 2**53
 
@@ -142,9 +143,11 @@ def _list_what_workers_wrote(folder: Path, manifest: Manifest) -> None:
 def _bundle(resolved: ResolvedSession, console: Console, folder: Path, given: Given) -> BundleWriter:
     world, maps = (None, {}) if resolved.world is None else enclosed(resolved.world)
     text = to_text(msgspec.structs.replace(resolved, world=world))
+    traffic = resolved.session.environment.traffic is not None
+    road_users = (message_stream(ROAD_USERS, ROAD_USERS_ENCODING),) if traffic else ()
     header = LogHeader(
         tick_hz=console.tick_hz,
-        streams=(vector_stream(console.columns, INPUT_WIDTH), message_stream(ACTS)),
+        streams=(vector_stream(console.columns, INPUT_WIDTH), message_stream(ACTS), *road_users),
         console_version=__version__,
         source_sha256=sources_sha256(console),
         session_sha256=hashlib.sha256(text.encode()).hexdigest(),

@@ -26,6 +26,7 @@ from simconsole.session.paced import (
     bridge_summary,
     can_summary,
     make_memory,
+    share_road_users,
     wait_for_can,
     worker_latencies,
     worker_specs,
@@ -33,6 +34,7 @@ from simconsole.session.paced import (
 from simconsole.session.pacing import Pacer, UnpacedPacer, realtime_hints
 from simconsole.session.recorder import LogRecorder
 from simconsole.session.seat import open_seating
+from simconsole.session.traffic_source import TrafficSource, open_traffic
 from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.tick.isolation import isolated
@@ -96,8 +98,9 @@ def open_headless(
     counters: Callable[[], dict[str, Any]] = dict
     of_can: Callable[[], dict[str, Any]] = dict
     take_acts: Callable[[], list[bytes]] = list
+    traffic = open_traffic(resolved, console)
     if resolved.session.mode.pacing == "lockstep":
-        link = _open_lockstep(resolved, console, bundle, interrupt, stack)
+        link = _open_lockstep(resolved, console, bundle, interrupt, stack, traffic)
         commands, outputs, standby = _over_link(link, resolved, console), (link,), (link.stand,)
         counters, take_acts = link.counters, link.take_acts
     elif resolved.session.features.commands is not None:
@@ -109,12 +112,12 @@ def open_headless(
     if can is not None:
         outputs, of_can = (*outputs, can), can.summary
     seating = open_seating(resolved, console, stack)
-    recorder = LogRecorder(log, take_acts)
+    recorder = LogRecorder(log, take_acts, traffic)
     components = Components(
         devices=seating.devices,
         commands=commands,
         recorder=recorder,
-        outputs=(*seating.outputs, *outputs),
+        outputs=(*seating.outputs, *_outputs_of(traffic), *outputs),
         pace=pace,
         seat=seating.seat,
         ecu=can or NobodyCommands(),
@@ -125,7 +128,7 @@ def open_headless(
     components = isolated(faulty, UnpacedPacer)._replace(latencies=latencies)
 
     def summary() -> dict[str, Any]:
-        own = {**counters(), **of_can(), **recorder.acts_summary()}
+        own = {**counters(), **of_can(), **recorder.acts_summary(), **_summary_of(traffic)}
         return {**pace.summary(), **own, "latency_us": latencies.summary_us()}
 
     return Opened(components, seating.finished, summary, identities=seating.identities)
@@ -159,7 +162,10 @@ def open_realtime(
     opening = stack.enter_context(ExitStack())
     opening.enter_context(undone(lambda: remove_run_folder(folder)))
     memory = make_memory(folder, console)
-    recorder = LogRecorder(log, memory.acts.take)
+    traffic = open_traffic(resolved, console)
+    recorder = LogRecorder(log, memory.acts.take, traffic)
+    if traffic is not None:
+        share_road_users(traffic, folder)
     ecu = add_can_memory(resolved, console, folder)
     supervisor = SupervisorHandle(folder, worker_specs(resolved, console, folder, bundle, drive))
     programs = _started(supervisor, memory, stack)
@@ -176,7 +182,7 @@ def open_realtime(
             devices=seating.devices,
             commands=memory.commands,
             recorder=recorder,
-            outputs=(*seating.outputs, memory.snapshots, supervisor),
+            outputs=(*seating.outputs, *_outputs_of(traffic), memory.snapshots, supervisor),
             pace=pace,
             seat=seating.seat,
             ecu=ecu,
@@ -187,7 +193,7 @@ def open_realtime(
     def summary() -> dict[str, Any]:
         latency = {**latencies.summary_us(), **worker_latencies(folder)}
         workers = {"station_restarts": supervisor.counters(), **bridge_summary(folder), **can_summary(folder)}
-        own = {**recorder.acts_summary(), "latency_us": latency, "not_granted": missing}
+        own = {**recorder.acts_summary(), **_summary_of(traffic), "latency_us": latency, "not_granted": missing}
         return {**pace.summary(), **workers, **own}
 
     return Opened(
@@ -198,6 +204,14 @@ def open_realtime(
         identities=seating.identities,
         left=memory.keys.ended,
     )
+
+
+def _outputs_of(traffic: TrafficSource | None) -> tuple[Output, ...]:
+    return () if traffic is None else (traffic,)
+
+
+def _summary_of(traffic: TrafficSource | None) -> dict[str, Any]:
+    return {} if traffic is None else traffic.summary()
 
 
 def _started(supervisor: SupervisorHandle, memory: Memory, stack: ExitStack) -> "list[Popen[bytes]]":
@@ -284,7 +298,12 @@ def new_nonce() -> str:
 
 
 def _open_lockstep(
-    resolved: ResolvedSession, console: Console, folder: Path, interrupt: Interrupt, stack: ExitStack
+    resolved: ResolvedSession,
+    console: Console,
+    folder: Path,
+    interrupt: Interrupt,
+    stack: ExitStack,
+    traffic: TrafficSource | None,
 ) -> LockstepLink:
     from simconsole.bridge.console.view_topics import NO_VIEW
     from simconsole.bridge.transport.lockstep_server import LockstepBridge
@@ -308,6 +327,7 @@ def _open_lockstep(
         route=route_points(resolved.world),
         steering=steering_limit(session.features.control, console.platform.wheelbase_m),
         view=view,
+        road_users=None if traffic is None else traffic.newest,
     )
     program = None
     if session.features.autopilot is not None:

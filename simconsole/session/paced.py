@@ -13,6 +13,7 @@ from simconsole.processes.shared_memory import EventCounters, Ring, TextQueue
 from simconsole.processes.worker import Worker, WorkerSpec
 from simconsole.session.external_view import display_settings
 from simconsole.session.scene_job import LIVE_SCENE, scene_job
+from simconsole.session.traffic_source import TrafficSource
 from simconsole.session.view_job import save_view_job, view_job
 from simconsole.session.worker_programs import (
     ACTS,
@@ -25,6 +26,8 @@ from simconsole.session.worker_programs import (
     EVENTS,
     KEY_CODES,
     LATENCY,
+    ROAD_USERS,
+    ROAD_USERS_CAPACITY,
     SCENE_JOB,
     SLOT_CAPACITY,
     SNAPSHOT_CAPACITY,
@@ -46,6 +49,7 @@ from simconsole.values.signals import NEVER_TICKS, NO_COMMAND, EventInput, Remot
 from simconsole.values.state_vector import LAYOUT, Snapshot
 from simconsole.values.units import NS_PER_S
 from simconsole.world.kinds.worlds import route_points
+from simconsole.world.traffic.road_users import RECORD_WIDTH, to_record
 
 START_PATIENCE_S = 20.0
 
@@ -168,6 +172,16 @@ def add_can_memory(resolved: ResolvedSession, console: Console, folder: Path) ->
     return CommandPort(slot, EventCounters.create(folder / CAN_EVENTS), console.tick_hz)
 
 
+def share_road_users(traffic: TrafficSource, folder: Path) -> None:
+    """Give every worker the road users, in a ring of their own.
+
+    Raises:
+        WorkerError: it cannot be made.
+    """
+    ring = Ring.create(folder / ROAD_USERS, RECORD_WIDTH, ROAD_USERS_CAPACITY)
+    traffic.show_to(lambda at: ring.write(to_record(at.users), at.tick))
+
+
 def worker_specs(
     resolved: ResolvedSession, console: Console, folder: Path, bundle: Path, drive: str
 ) -> list[WorkerSpec]:
@@ -177,6 +191,7 @@ def worker_specs(
     """
     outputs, tick_hz = resolved.session.outputs, console.tick_hz
     has_bridge, has_can = outputs.bridge is not None, outputs.can is not None
+    has_traffic = resolved.session.environment.traffic is not None
     workers: dict[str, Worker] = {}
     if outputs.bridge is not None:
         workers["bridge"] = BridgeWorker(
@@ -187,6 +202,7 @@ def worker_specs(
             route=route_points(resolved.world),
             steering=steering_limit(resolved.session.features.control, console.platform.wheelbase_m),
             display=display_settings(resolved) if outputs.bridge.external_view else None,
+            has_traffic=has_traffic,
         )
     if outputs.can is not None:
         from simconsole.canbus.messages import wheel_columns
@@ -204,13 +220,14 @@ def worker_specs(
             tick_hz=tick_hz,
             has_can=has_can,
             has_bridge=has_bridge,
+            has_traffic=has_traffic,
         )
     if outputs.scene is not None:
         from simconsole.scene.viewer.job import save_job
 
         save_job(folder / SCENE_JOB, scene_job(resolved, console.columns, tick_hz))
         path = str((bundle / LIVE_SCENE).absolute())
-        workers["scene"] = SceneWorker(path=path, tick_hz=tick_hz, has_bridge=has_bridge)
+        workers["scene"] = SceneWorker(path=path, tick_hz=tick_hz, has_bridge=has_bridge, has_traffic=has_traffic)
     return [WorkerSpec.of(name, worker) for name, worker in workers.items()]
 
 

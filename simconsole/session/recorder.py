@@ -1,7 +1,7 @@
-"""The drive loop's recorder: each tick into the log, with the operator's acts that arrived in it."""
+"""The drive loop's recorder: each tick into the log, with the operator's acts and the road users that came with it."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Protocol
 
 from simconsole.bridge.console.operator_acts import ActsSummary
 from simconsole.recording.bundles.log import LogWriter
@@ -13,23 +13,36 @@ from simconsole.values.state_vector import Snapshot
 _RECORDING_FAILED = int(Event.RECORDING_FAILED)
 
 
+class MessageSource(Protocol):
+    """Somebody whose messages the log keeps."""
+
+    def take_messages(self) -> list[tuple[str, bytes]]:
+        """Return the messages since the last call, each with the name of its stream."""
+
+    def take_events(self) -> int:
+        """Return the events (mask) since the last call, which the next tick brings."""
+
+
 class LogRecorder:
     """Logs every tick, and raises an alarm in every tick after the log has failed."""
 
-    def __init__(self, log: LogWriter, take_acts: Callable[[], list[bytes]] = list) -> None:
+    def __init__(
+        self, log: LogWriter, take_acts: Callable[[], list[bytes]] = list, traffic: MessageSource | None = None
+    ) -> None:
         """Write to `log`; `take_acts` returns the operator's acts since its last call, each as JSON."""
         self._log = log
         self._take_acts = take_acts
+        self._traffic = traffic
         self._summary = ActsSummary()
 
     def write(self, snapshot: Snapshot) -> int:
         """Append one tick; an exception, as of a failing disk, goes into the log's `failure` and raises an event."""
         try:
-            self._append(snapshot.tick, snapshot.vector, self._take_acts())
+            self._append(snapshot.tick, snapshot.vector, self._messages())
         except Exception as error:
             self._note(error)
             raise
-        return 0 if self._log.failure is None else _RECORDING_FAILED
+        return self._events()
 
     def write_block(self, tick: int, vectors: Row) -> tuple[int, int]:
         """Append the ticks from `tick` on and return as `BlockRecorder`; exceptions as of `write`."""
@@ -38,19 +51,30 @@ class LogRecorder:
         except Exception as error:
             self._note(error)
             raise
-        return kept, 0 if self._log.failure is None else _RECORDING_FAILED
+        return kept, self._events()
 
-    def _append_block(self, tick: int, vectors: Row) -> int:
+    def _events(self) -> int:
+        raised = 0 if self._traffic is None else self._traffic.take_events()
+        return raised if self._log.failure is None else raised | _RECORDING_FAILED
+
+    def _messages(self) -> list[tuple[str, bytes]]:
+        """Return what the coming tick brings with it."""
         acts = self._take_acts()
-        if not acts:
-            return self._log.append_block(tick, vectors)
-        self._append(tick, vectors[0], acts)
-        return 1
-
-    def _append(self, tick: int, vector: Row, acts: list[bytes]) -> None:
-        self._log.append(tick, vector, [(ACTS, act) for act in acts])
         for act in acts:
             self._summary.add(act)
+        return [*((ACTS, act) for act in acts), *(() if self._traffic is None else self._traffic.take_messages())]
+
+    def _append_block(self, tick: int, vectors: Row) -> int:
+        messages = self._messages()
+        if not messages:
+            return self._log.append_block(tick, vectors)
+        self._append(tick, vectors[0], messages)
+        if len(vectors) == 1 or self._log.failure is not None:
+            return 1
+        return 1 + self._log.append_block(tick + 1, vectors[1:])
+
+    def _append(self, tick: int, vector: Row, messages: list[tuple[str, bytes]]) -> None:
+        self._log.append(tick, vector, messages)
 
     def _note(self, error: Exception) -> None:
         self._log.failure = self._log.failure or f"{type(error).__name__}: {error}"

@@ -27,6 +27,7 @@ from simconsole.values.latency import Hop, LatencyStatistics
 from simconsole.values.signals import RemoteCommand
 from simconsole.values.state_vector import LAYOUT, Snapshot
 from simconsole.values.units import NS_PER_S
+from simconsole.world.traffic.road_users import NOBODY, RoadUsersAt, from_record
 
 if TYPE_CHECKING:
     from simconsole.hud.driver_view.scene import ViewScene
@@ -42,11 +43,13 @@ LINK_STATUS: Final = "link.json"
 CAN_COMMAND: Final = "can.command"
 CAN_EVENTS: Final = "can.events"
 CAN_STATUS: Final = "can.json"
+ROAD_USERS: Final = "road_users"
 LATENCY: Final = "latency"
 SCENE_JOB: Final = "scene.npz"
 VIEW_JOB: Final = "view.npz"
 SNAPSHOT_CAPACITY: Final = 1024
 SLOT_CAPACITY: Final = 4
+ROAD_USERS_CAPACITY: Final = 64
 NO_RECEIPT: Final = -1
 
 
@@ -66,6 +69,7 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
     display: HudSettings | None = None
     """What a display of another program must know of the drive; what there is to see lies in the run folder. None:
     there is no such display."""
+    has_traffic: bool = False
 
     def run(self, folder: Path, stop: Callable[[], bool]) -> None:
         """Serve until `stop`."""
@@ -103,6 +107,7 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
             on_ready=ready, on_act=keep_act, on_counts=write_counts, on_link_state=write_link_state,
             folder=Path(self.bundle), drive=self.drive, route=self.route, steering=self.steering,
             view=view,
+            road_users=RoadUsersRing(folder).newest if self.has_traffic else None,
         )  # fmt: skip
 
 
@@ -143,6 +148,7 @@ class HudWorker(Worker, frozen=True, kw_only=True):
     tick_hz: int
     has_can: bool
     has_bridge: bool
+    has_traffic: bool = False
 
     def run(self, folder: Path, stop: Callable[[], bool]) -> None:
         """Draw until `stop`."""
@@ -152,6 +158,7 @@ class HudWorker(Worker, frozen=True, kw_only=True):
         ring = Ring.open(folder / SNAPSHOTS)
         keys = Ring.open(folder / KEY_CODES, writable=True)
         receipts = Receipts(folder / f"{LATENCY}.hud.json")
+        road_users = RoadUsersRing(folder) if self.has_traffic else None
 
         def latest() -> Snapshot | None:
             record = ring.latest()
@@ -165,7 +172,8 @@ class HudWorker(Worker, frozen=True, kw_only=True):
             if len(records) < 2:
                 return None
             older, newer = (snapshot_of(record, self.tick_hz) for record in records[-2:])
-            return Motion(older, newer, 1e-9 * (time.monotonic_ns() - records[-1].second_stamp))
+            age_s = 1e-9 * (time.monotonic_ns() - records[-1].second_stamp)
+            return Motion(older, newer, age_s, None if road_users is None else road_users.newest())
 
         def report_keys(mask: int) -> None:
             keys.write(np.array([float(mask)]), time.monotonic_ns())
@@ -184,6 +192,7 @@ class SceneWorker(Worker, frozen=True, kw_only=True):
     """The .rrd file."""
     tick_hz: int
     has_bridge: bool
+    has_traffic: bool = False
 
     def run(self, folder: Path, stop: Callable[[], bool]) -> None:
         """Record until `stop`."""
@@ -201,7 +210,33 @@ class SceneWorker(Worker, frozen=True, kw_only=True):
             return [snapshot_of(record, self.tick_hz) for record in records]
 
         link = LinkWatch(folder / LINK_STATUS, time.time, time.monotonic) if self.has_bridge else lambda: None
-        follow(Ports(new_ticks, stop, link), load_job(folder / SCENE_JOB), Path(self.path))
+        steps = RoadUsersRing(folder).since if self.has_traffic else tuple
+        ports = Ports(new_ticks, stop, road_users=steps, link=link)
+        follow(ports, load_job(folder / SCENE_JOB), Path(self.path))
+
+
+class RoadUsersRing:
+    """A worker's view of the road users, in a second ring of the run folder: how many, then the users."""
+
+    def __init__(self, folder: Path) -> None:
+        self._ring = Ring.open(folder / ROAD_USERS)
+        self._seen = 0
+
+    def newest(self) -> RoadUsersAt:
+        """Return those of the newest step; nobody before the first."""
+        record = self._ring.latest()
+        return RoadUsersAt(0, NOBODY) if record is None else _road_users_of(record)
+
+    def since(self) -> list[RoadUsersAt]:
+        """Return those of all steps since the last call, oldest first; gaps are allowed."""
+        records = self._ring.since(self._seen)
+        if records:
+            self._seen = records[-1].number
+        return [_road_users_of(record) for record in records]
+
+
+def _road_users_of(record: Record) -> RoadUsersAt:
+    return RoadUsersAt(record.stamp, from_record(record.values))
 
 
 def _view_scene(folder: Path) -> "ViewScene":

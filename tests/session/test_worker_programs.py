@@ -3,7 +3,11 @@
 import os
 from pathlib import Path
 
-from simconsole.session.worker_programs import CanWatch, LinkWatch
+import numpy as np
+
+from simconsole.processes.shared_memory import Ring
+from simconsole.session.worker_programs import ROAD_USERS, ROAD_USERS_CAPACITY, CanWatch, LinkWatch, RoadUsersRing
+from simconsole.world.traffic.road_users import FIELDS, RECORD_WIDTH, to_record
 
 
 def test_bus_is_up_only_while_its_worker_says_so(tmp_path: Path) -> None:
@@ -46,3 +50,16 @@ def test_link_stands_as_the_bridge_says_and_is_down_when_it_says_nothing(tmp_pat
     os.utime(path, (clock[0], clock[0]))
     clock[0] += 0.3
     assert watch() == "down", "not a status at all"
+
+
+def test_road_users_reach_a_worker_whole_and_in_order(tmp_path: Path) -> None:
+    ring = Ring.create(tmp_path / ROAD_USERS, RECORD_WIDTH, ROAD_USERS_CAPACITY)
+    worker = RoadUsersRing(tmp_path)
+    assert len(worker.newest().users) == 0
+    assert worker.since() == []
+    for step in range(1, 4):
+        ring.write(to_record(np.full((step, FIELDS), float(step))), stamp=10 * step)
+    assert worker.newest().tick == 30
+    assert worker.newest().users.tolist() == [[3.0] * FIELDS] * 3
+    assert [(at.tick, len(at.users)) for at in worker.since()] == [(10, 1), (20, 2), (30, 3)]
+    assert worker.since() == []

@@ -7,6 +7,7 @@ from simconsole.bridge.console.counters import bridge_status, total_counts
 from simconsole.bridge.console.input_slots import BridgeInputs, OnCommand, OnEvents
 from simconsole.bridge.console.operator_acts import ACTS_MAX, OPERATE, OPERATE_TYPE, Act, OnAct, Operator
 from simconsole.bridge.console.output_schedule import OutputSchedule, topic_names
+from simconsole.bridge.console.road_user_topics import ReadRoadUsers, RoadUserTopics
 from simconsole.bridge.console.topics import ROSOUT, ROSOUT_TYPE, Outputs, PublishedTick, Route
 from simconsole.bridge.console.view_topics import NO_VIEW, ExternalView, view_topics
 from simconsole.bridge.messages import Registry, standard_registry
@@ -35,6 +36,7 @@ class ConsoleBridge:
         route: Route = (),
         steering: SteeringLimit | None = None,
         view: ExternalView = NO_VIEW,
+        road_users: ReadRoadUsers | None = None,
     ) -> None:
         """Build the topics of `profile`.
 
@@ -47,6 +49,7 @@ class ConsoleBridge:
             route: what /route shows.
             steering: beyond it the arbiter refuses a command, and its sender is told so; without, nobody is.
             view: what the topics of `external_view` show.
+            road_users: returns the newest; without, they have no topics.
 
         Raises:
             ProfileError: the profile renames or rates a topic that does not exist, or gives two topics one name.
@@ -69,6 +72,8 @@ class ConsoleBridge:
         self._out = Outputs(self.router.registry, profile, lambda: bridge_status(self.router, self._now_ns), route)
         outputs = (*view_topics(self.router.registry, profile, view), *self._out.topics())
         commands = self._command_decoder.topics()
+        if road_users is not None:
+            outputs = (*RoadUserTopics(self.router.registry, road_users).topics(), *outputs)
         self.names = topic_names(profile, [*(topic.name for topic in outputs), *(topic.name for topic in commands)])
         self._schedule = OutputSchedule(outputs, self.names, profile)
         self._topics = {

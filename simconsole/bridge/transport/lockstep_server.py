@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Final, Self
 import msgspec
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.console.road_user_topics import ReadRoadUsers
 from simconsole.bridge.console.topics import ODOMETRY, Route
 from simconsole.bridge.console.view_topics import NO_VIEW, ExternalView
 from simconsole.bridge.messages import Registry
@@ -60,6 +61,7 @@ class LockstepBridge:
         route: Route = (),
         steering: SteeringLimit | None = None,
         view: ExternalView = NO_VIEW,
+        road_users: ReadRoadUsers | None = None,
     ) -> None:
         """Listen on the profile's host and port.
 
@@ -71,6 +73,7 @@ class LockstepBridge:
             route: what /route shows.
             steering: as `ConsoleBridge`.
             view: as `ConsoleBridge`.
+            road_users: as `ConsoleBridge`.
             odometry_hz: rate of /odom in place of the profile's: the control rate, so that every answer is waited for.
 
         Raises:
@@ -83,7 +86,9 @@ class LockstepBridge:
             rates_hz = {**profile.rates_hz, ODOMETRY: odometry_hz}
             profile = msgspec.structs.replace(profile, rates_hz=rates_hz, limits=limits)
         registry = load_registry(profile) if registry is None else registry
-        self.console = ConsoleBridge(profile, registry, route=route, steering=steering, view=view)
+        self.console = ConsoleBridge(
+            profile, registry, route=route, steering=steering, view=view, road_users=road_users
+        )
         self.console.router.access = load_access(profile)
         if profile.upstream is not None:
             raise ProfileError("outputs.bridge.upstream: a drive in lockstep waits for its own clients only")

@@ -15,6 +15,7 @@ from simconsole.bridge.console.counters import link_state
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.input_slots import OnCommand, OnEvents
 from simconsole.bridge.console.operator_acts import OnAct
+from simconsole.bridge.console.road_user_topics import ReadRoadUsers
 from simconsole.bridge.console.topics import Route
 from simconsole.bridge.console.view_topics import NO_VIEW, ExternalView
 from simconsole.bridge.messages import Registry
@@ -62,6 +63,7 @@ class BridgeServer:
         route: Route = (),
         steering: SteeringLimit | None = None,
         view: ExternalView = NO_VIEW,
+        road_users: ReadRoadUsers | None = None,
     ) -> None:
         """Build the bridge; `start` opens it.
 
@@ -69,7 +71,17 @@ class BridgeServer:
         the nonce of the drive whose bridge it is.
         """
         registry = load_registry(profile) if registry is None else registry
-        self.console = ConsoleBridge(profile, registry, on_command, on_events, on_act, route, steering, view)
+        self.console = ConsoleBridge(
+            profile,
+            registry,
+            on_command=on_command,
+            on_events=on_events,
+            on_act=on_act,
+            route=route,
+            steering=steering,
+            view=view,
+            road_users=road_users,
+        )
         self._folder = folder
         self._drive = drive
         self._recorder: TopicRecorder | None = None
@@ -240,6 +252,7 @@ def serve(
     route: Route = (),
     steering: SteeringLimit | None = None,
     view: ExternalView = NO_VIEW,
+    road_users: ReadRoadUsers | None = None,
 ) -> None:
     """Run a bridge server until `stop()` says so; for a process of its own.
 
@@ -259,6 +272,7 @@ def serve(
         route: what /route shows.
         steering: as `ConsoleBridge`.
         view: as `ConsoleBridge`.
+        road_users: as `ConsoleBridge`.
 
     Raises:
         BridgeError: the address cannot be listened on.
@@ -275,6 +289,7 @@ def serve(
         route=route,
         steering=steering,
         view=view,
+        road_users=road_users,
     )
     reporter = _StatusReporter(server, on_counts, on_link_state)
     asyncio.run(_run(server, read_snapshot, stop, on_ready, reporter))

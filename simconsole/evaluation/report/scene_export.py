@@ -19,6 +19,7 @@ from simconsole.processes.lifetimes import ATTACHED, end, follow_parent, spawn
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.replay_bundle import recorded_session
 from simconsole.recording.reading import Recording
+from simconsole.recording.recorded_road_users import recorded_road_users
 from simconsole.scene.entities import Array
 from simconsole.scene.timeline import NEEDED, Ticks
 from simconsole.scene.viewer.export import export
@@ -107,7 +108,8 @@ def write(folder: Path) -> None:
     ticks = (
         bundle.manifest.ticks if bundle.manifest.finished else sum(len(part.ticks) for part in bundle.log.blocks(()))
     )
-    export(scene_job(resolved, NEEDED, bundle.log.header.tick_hz), _told(bundle.log, ticks), folder / SCENE)
+    job = scene_job(resolved, NEEDED, bundle.log.header.tick_hz)
+    export(job, _told(bundle.log, ticks), folder / SCENE, recorded_road_users(bundle.log))
 
 
 def _told(recording: Recording, ticks: int) -> Iterator[tuple[Ticks, Array]]:

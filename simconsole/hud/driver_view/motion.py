@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from simconsole.values.signals import Mode
 from simconsole.values.state_vector import Snapshot
+from simconsole.world.traffic.road_users import RoadUser
 
 
 class ShownVehicle(NamedTuple):
@@ -23,6 +24,7 @@ class ShownVehicle(NamedTuple):
     turn_indicators: float = 0.0  # 1 left, -1 right
     hazard_lights: float = 0.0
     mode: float = float(Mode.PARKED)
+    others: tuple[RoadUser, ...] = ()
 
 
 def shown_vehicle(snapshot: Snapshot) -> ShownVehicle:

@@ -10,6 +10,7 @@ from simconsole.hud.driver_view.camera import Camera, rotation
 from simconsole.hud.driver_view.light import Light, reach_m, shadow_matrix
 from simconsole.hud.driver_view.mesh import Vertices
 from simconsole.hud.driver_view.motion import ShownVehicle
+from simconsole.hud.driver_view.other_vehicles import meshes, model
 from simconsole.hud.driver_view.scene import Pieces, ViewScene, in_sight
 from simconsole.hud.driver_view.vehicle_body import WHEEL_RADIUS_M
 from simconsole.hud.driver_view.views import Look
@@ -35,6 +36,8 @@ LAYER_SLOPE: Final = 1.0
 LAYER_STEPS: Final = 8.0
 FRAME: Final = 0.004  # of the window's width
 FRAME_COLOUR: Final = (0.07, 0.07, 0.08)
+WHEELS_M: Final = 80.0
+"""Nobody sees the wheels of other vehicles that are further away."""
 BLINK_S: Final = 0.67
 """Period of the indicators (UN R48: 60 to 120 a minute)."""
 
@@ -91,6 +94,12 @@ class Renderer:
         self._bonnet, self._hand_wheel = self._put(vehicle.bonnet), self._put(vehicle.hand_wheel)
         self._brake_lamps = self._put(vehicle.brake_lamps)
         self._indicators = (self._put(vehicle.left_indicators), self._put(vehicle.right_indicators))
+        other = meshes()
+        self._other_body, self._other_wheel, self._other_wheels = (
+            self._put(other.body),
+            self._put(other.wheel),
+            other.wheel_places,
+        )
         self._map: moderngl.Framebuffer | None = None
         if quality.shadows:
             depth = context.depth_texture((SHADOW_PX, SHADOW_PX))
@@ -133,6 +142,7 @@ class Renderer:
             self._draw_runs(layer, part, view_projection, reach, camera)
         context.polygon_offset = (0.0, 0.0)
         self._draw_runs(self._solids, self._scene.solids, view_projection, reach, camera)
+        self._draw_others(shown, camera, reach)
         if look.from_seat:
             if not look.is_mirror:
                 self._draw_inside(shown, pose)
@@ -165,6 +175,16 @@ class Renderer:
             for lamps, side in zip(self._indicators, (1.0, -1.0), strict=True):
                 if shown.hazard_lights > 0.0 or shown.turn_indicators == side:
                     self._draw_mesh(lamps, pose)
+
+    def _draw_others(self, shown: ShownVehicle, camera: Camera, reach: float) -> None:
+        for user in shown.others:
+            away = math.hypot(user.x_m - camera.eye[0], user.y_m - camera.eye[1])
+            if away > reach:
+                continue
+            place = model(user)
+            self._draw_mesh(self._other_body, place)
+            for x, y in self._other_wheels if away < WHEELS_M else ():
+                self._draw_mesh(self._other_wheel, place @ _transform(np.eye(3), np.array((x, y, 0.0))))
 
     def _draw_mesh(self, mesh: _Drawn, model: Array) -> None:
         if mesh.length:

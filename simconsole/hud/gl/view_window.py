@@ -6,6 +6,7 @@ import sys
 from msgspec.structs import replace
 
 from simconsole.hud.driver_view.motion import ShownVehicle, moved, shown_vehicle
+from simconsole.hud.driver_view.other_vehicles import at_moment
 from simconsole.hud.driver_view.scene import ViewScene
 from simconsole.hud.gl.cockpit_picture import CockpitPicture
 from simconsole.hud.gl.context import context_of_window, renderer_name
@@ -78,6 +79,9 @@ class ViewWindow:
         content = self._memory.content(snapshot, now_s, can_up, link)
         if motion is not None:
             self._shown = moved(motion.older, motion.newer, motion.age_s)
+            if motion.road_users is not None:
+                others = at_moment(motion.road_users, self._shown.t_s, motion.newer.tick_hz)
+                self._shown = self._shown._replace(others=others)
         elif snapshot is not None:
             self._shown = shown_vehicle(snapshot)
         self._picture.draw(self._context.screen, self._shown, content)

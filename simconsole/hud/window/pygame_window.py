@@ -20,6 +20,7 @@ from simconsole.profiles.view import HudProfile
 from simconsole.values.errors import WorkerError
 from simconsole.values.key_codes import Key
 from simconsole.values.state_vector import Snapshot
+from simconsole.world.traffic.road_users import RoadUsersAt
 
 
 class Motion(NamedTuple):
@@ -28,6 +29,7 @@ class Motion(NamedTuple):
     older: Snapshot
     newer: Snapshot
     age_s: float
+    road_users: RoadUsersAt | None = None  # of the newest step of traffic; None: there is none
 
 
 class Ports(NamedTuple):

@@ -10,6 +10,7 @@ from simconsole.bridge.console.command_decoder import CommandDecoder
 from simconsole.bridge.console.command_messages import CommandMessages
 from simconsole.bridge.console.input_slots import BridgeInputs
 from simconsole.bridge.console.output_schedule import OutputSchedule, topic_names
+from simconsole.bridge.console.road_user_topics import RoadUserTopics
 from simconsole.bridge.console.topics import BRIDGE, ODOMETRY, Outputs, Route
 from simconsole.bridge.console.view_topics import VIEW_TOPICS, view_topics
 from simconsole.bridge.messages import standard_registry
@@ -19,10 +20,12 @@ from simconsole.profiles.session import SessionProfile
 from simconsole.recording.framing import Message
 from simconsole.recording.log_header import ACTS
 from simconsole.recording.reading import Recording
+from simconsole.recording.recorded_road_users import recorded_road_users
 from simconsole.values.kernels import Row
 from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE
 from simconsole.values.state_vector import INPUT_WIDTH, LAYOUT, PLATFORM_AT, Snapshot
 from simconsole.values.units import tick_time_ns
+from simconsole.world.traffic.road_users import NOBODY, RoadUsersAt
 
 OnTick = Callable[[int], None]
 """Told, now and then, the last tick that was written."""
@@ -68,6 +71,9 @@ class DriveTopics:
         self._outputs = Outputs(self.registry, profile, route=route)
         outputs = (*view_topics(self.registry, profile), *self._outputs.topics())
         commands = CommandDecoder(BridgeInputs(), profile).topics()
+        self._road_users = RoadUsersAt(0, NOBODY)
+        if session.environment.traffic is not None:
+            outputs = (*RoadUserTopics(self.registry, lambda: self._road_users).topics(), *outputs)
         self.names = topic_names(profile, [*(topic.name for topic in outputs), *(topic.name for topic in commands)])
         recorded = tuple(output for output in outputs if output.name not in UNRECORDED)
         self.names[ACTS_TOPIC] = profile.namespace + ACTS_TOPIC
@@ -81,6 +87,8 @@ class DriveTopics:
         commands = CommandMessages(self.registry, self._command_types)
         acts = _acts(recording)
         act = next(acts, None)
+        steps = recorded_road_users(recording)
+        step = next(steps, None)
         for snapshot in snapshots(recording, on_tick):
             sent_ns = tick_time_ns(snapshot.tick - 1, snapshot.tick_hz)
             while act is not None and act.tick <= snapshot.tick:
@@ -89,6 +97,8 @@ class DriveTopics:
                 act = next(acts, None)
             for name, message in commands.of(snapshot):
                 yield self._message(name, self._command_types[name], False, sent_ns, message)
+            while step is not None and step.tick <= snapshot.tick:
+                self._road_users, step = step, next(steps, None)
             if snapshot.tick % self._step_ticks:
                 continue
             published = None

@@ -12,9 +12,11 @@ from typing import NamedTuple
 import numpy as np
 
 from simconsole.scene.entities import world_shapes
+from simconsole.scene.road_user_shapes import road_user_shapes
 from simconsole.scene.timeline import Lane, Memory, piece
 from simconsole.scene.viewer.job import Job
 from simconsole.values.state_vector import Snapshot
+from simconsole.world.traffic.road_users import RoadUsersAt
 
 POLL_S = 0.01
 LINK_LANE = "lanes/link"
@@ -27,6 +29,7 @@ class Ports(NamedTuple):
 
     new_ticks: Callable[[], Sequence[Snapshot]]  # all ticks since the last call, oldest first; gaps are allowed
     stop: Callable[[], bool]  # True ends the recording
+    road_users: Callable[[], Sequence[RoadUsersAt]] = tuple  # all steps of traffic since the last call
     link: Callable[[], str | None] = lambda: None  # how the rosbridge link stands; None where there is no bridge
 
 
@@ -48,6 +51,7 @@ def follow(ports: Ports, job: Job, path: Path) -> None:
     view = RerunView(path, job.profile, job.dimensions, world, index=False)
     memory = Memory()
     waiting: list[Snapshot] = []
+    steps: list[RoadUsersAt] = []
     link, seen = Lane(LINK_LANE, [], []), ""
     written_s = time.monotonic()
     running = True
@@ -55,6 +59,7 @@ def follow(ports: Ports, job: Job, path: Path) -> None:
         # Asked before reading, so that ticks from just before the end are still read.
         running = not ports.stop()
         waiting += ports.new_ticks()
+        steps += ports.road_users()
         state = ports.link()
         if waiting and state is not None and state != seen:
             # The link changes in wall time and is in no state vector: it is logged at the newest known tick.
@@ -66,6 +71,9 @@ def follow(ports: Ports, job: Job, path: Path) -> None:
             ticks = np.array([snapshot.tick for snapshot in waiting], dtype=np.int64)
             added, memory = piece(vectors, job.columns, ticks, job.tick_hz, job.profile.rate_hz, memory)
             view.add(added._replace(lanes=(*added.lanes, link)))
+            if steps:
+                view.add_road_users(road_user_shapes(steps, job.tick_hz))
+                steps.clear()
             view.settle()
             link = Lane(LINK_LANE, [], [])
             waiting.clear()

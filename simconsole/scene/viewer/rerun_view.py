@@ -30,6 +30,7 @@ from simconsole.scene.entities import (
     on_map,
     raised,
 )
+from simconsole.scene.road_user_shapes import RoadUserShapes
 from simconsole.scene.timeline import PLOTS, TAKEOVER_LABELS, Entry, Lane, Piece, Strip, Ticks
 from simconsole.scene.viewer.blueprint import MAP, TIMELINE, blueprint
 from simconsole.values.errors import WorkerError
@@ -61,6 +62,7 @@ class RerunView:
         import rerun as rr
 
         self._flush_s = profile.flush_s
+        self._has_road_users = False
         self._stream = rr.RecordingStream(APPLICATION, recording_id=path.stem, send_properties=True)
         rr.set_strict_mode(True)
         try:
@@ -93,6 +95,26 @@ class RerunView:
             self._lane(lane)
         self._driven(piece.strips)
         self._entries(piece.entries)
+
+    def add_road_users(self, shapes: RoadUserShapes) -> None:
+        """Write steps of traffic, boxes in 3D and their middles on the map."""
+        import rerun as rr
+
+        if not self._has_road_users:
+            self._has_road_users = True
+            self._still(f"{MAP}/road_users", rr.Points2D.from_fields(draw_order=2.5))
+            self._still("world/road_users", rr.Boxes3D.from_fields(fill_mode="solid"))
+        boxes = rr.Boxes3D.columns(
+            centers=shapes.centres,
+            half_sizes=shapes.half_sizes,
+            quaternions=shapes.quaternions,
+            colors=shapes.colours,
+        )
+        self._send("world/road_users", shapes.times_ns, boxes.partition(shapes.counts))
+        spots = rr.Points2D.columns(
+            positions=on_map(shapes.centres), colors=shapes.colours, radii=[-4.0] * len(shapes.centres)
+        )
+        self._send(f"{MAP}/road_users", shapes.times_ns, spots.partition(shapes.counts))
 
     def settle(self) -> None:
         """Wait until all added is in the file: what rerun has queued for a slow disk would grow in memory.

@@ -45,6 +45,10 @@ class LaneGraph:
         """Return the lanes of an edge that a car may use, from the right."""
         return [lane for lane in self.road_map.edges[edge].lanes if self._driven[lane]]
 
+    def out(self, lane: int) -> list[Connection]:
+        """Return the connections by which a car leaves a lane."""
+        return self._out[lane]
+
     def by_edges(self, edges: Sequence[int]) -> list[Leg] | None:
         """Return the quickest way over these edges, one after the other; None where a car cannot go so."""
         return self._search(

@@ -52,6 +52,8 @@ class Connection(NamedTuple):
     direction: str  # s, l, r, t (turn round), L and R (partly), as SUMO writes them
     signal: int = -1  # that controls it
     link: int = -1  # its place in that signal's states
+    foes: tuple[int, ...] = ()  # lanes inside the junction, crossings too, whose users may be in the way
+    yields_to: tuple[int, ...] = ()  # those of them whose users go first
 
 
 class Phase(NamedTuple):

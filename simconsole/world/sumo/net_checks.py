@@ -17,6 +17,7 @@ FUNCTIONS: Final = ("", INTERNAL, CROSSING, WALKING_AREA)
 
 _APART_M: Final = 1e-3
 _STATES: Final = frozenset("rRyYgGuosS")
+_BITS: Final = frozenset("01")
 
 
 class Unfit(Exception):
@@ -149,6 +150,17 @@ def _junction(element: Element) -> None:
     for key in ("incLanes", "intLanes"):
         if key not in element.attributes and not element.attributes["id"].startswith(":"):
             raise Unfit(f"{key}: value missing: names of lanes, or nothing")
+    inside = element.attributes["id"].startswith(":")
+    if inside and any(part.name == "request" for part in element.children):
+        raise Unfit("request: value of a junction inside a junction: none")
+
+
+def _request(element: Element) -> None:
+    whole(element, "index", MAX_LINKS)
+    for key in ("response", "foes"):
+        text = element.attributes.get(key, "")
+        if not 0 < len(text) <= MAX_LINKS or not _BITS.issuperset(text):
+            raise Unfit(f"{key}: value {shown(text)}: 1 to {MAX_LINKS} digits 0 or 1")
 
 
 def _connection(element: Element) -> None:
@@ -203,6 +215,7 @@ RULES: Final[dict[str, Callable[[Element], None]]] = {
     "edge": _edge,
     "lane": _lane,
     "junction": _junction,
+    "request": _request,
     "connection": _connection,
     "tlLogic": _program,
     "phase": _phase,

@@ -94,6 +94,7 @@ def _lane(lane: Any, edge: int, moved: Array) -> Lane:
 
 def _connections(net: Any, lanes: Mapping[str, int], signals: Mapping[str, int]) -> list[Connection]:
     found = []
+    foes, firsts = _rights_of_way(net, lanes, "_foes"), _rights_of_way(net, lanes, "_prohibits")
     for edge in net.getEdges(withInternal=False):
         for lane in edge.getLanes():
             for one in lane.getOutgoing():
@@ -107,8 +108,26 @@ def _connections(net: Any, lanes: Mapping[str, int], signals: Mapping[str, int])
                             direction=one.getDirection(),
                             signal=signals.get(one.getTLSID(), -1),
                             link=one.getTLLinkIndex(),
+                            foes=tuple(sorted({foe for lane in via for foe in foes.get(lane, ())})),
+                            yields_to=tuple(sorted({first for lane in via for first in firsts.get(lane, ())})),
                         )
                     )
+    return found
+
+
+def _rights_of_way(net: Any, lanes: Mapping[str, int], table: str) -> dict[int, tuple[int, ...]]:
+    """Return for the last lane of each link of each junction those of the links that its table names.
+
+    The links of a junction are counted as its lanes inside, and the digits of a table from the right.
+    """
+    found = {}
+    for node in net.getNodes():
+        inside = [lanes.get(name) for name in node.getInternal() or ()]
+        for index, digits in getattr(node, table).items():
+            lane = inside[index] if index < len(inside) else None
+            if lane is not None:
+                named = [other for other, digit in zip(inside, reversed(digits), strict=False) if digit == "1"]
+                found[lane] = tuple(other for other in named if other is not None)
     return found
 
 

@@ -17,9 +17,9 @@ MAX_TOLD: Final = 100
 """Elements that a report names one by one."""
 
 _UNDERSTOOD: Final = ("location", "edge", "junction", "connection", "tlLogic", "roundabout")
-_CHILDREN: Final = {"edge": ("lane",), "tlLogic": ("phase",)}
-_UNREAD: Final = ("type", "request", "param", "neigh", "stopOffset")
-"""Parts of a network that the console has no use for: rules of way are its own, and lanes say what may use them."""
+_CHILDREN: Final = {"edge": ("lane",), "tlLogic": ("phase",), "junction": ("request",)}
+_UNREAD: Final = ("type", "param", "neigh", "stopOffset")
+"""Parts of a network that the console has no use for: lanes say what may use them."""
 _LATER: Final = ("connection", "tlLogic", "roundabout")
 """Read last: they refer to edges, which may follow them in a file that other programs wrote."""
 

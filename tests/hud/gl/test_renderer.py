@@ -11,6 +11,7 @@ from simconsole.hud.driver_view.scene import Pieces, ViewScene, pieces, view_sce
 from simconsole.hud.driver_view.vehicle_body import Size
 from simconsole.hud.driver_view.views import Look
 from simconsole.hud.gl.renderer import Quality, Renderer
+from simconsole.world.traffic.road_users import RoadUser
 from tests.hud.gl.pictures import Pixels, context, pixels, target
 from tests.samples import Sample
 
@@ -149,3 +150,19 @@ def test_a_mirror_stands_in_a_dark_frame() -> None:
         assert rim.max() < 30
     assert picture[top:bottom, left:right].min(axis=(0, 1)).max() > 30
     assert picture[top:bottom, left - 8].max() > 30
+
+
+def test_other_vehicles_are_seen_where_they_are() -> None:
+    scene = view_scene(None, 0.0, SIZE)
+    camera, lens = Camera(np.array((0.0, 0.0, 1.6)), rotation(0.0)), Lens(0.9, WIDTH_PX / HEIGHT_PX)
+    look = Look(camera, lens, Viewport(), from_seat=False)
+    user = RoadUser(
+        id=1.0, kind=1.0, x_m=25.0, y_m=5.0, yaw_rad=0.3, speed_mps=0.0, length_m=4.4, width_m=1.8, height_m=1.5
+    )
+    alone = drawn(scene, look)
+    beside = drawn(scene, look, ShownVehicle(x_m=-500.0, others=(user,)))
+    far = drawn(scene, look, ShownVehicle(x_m=-500.0, others=(user._replace(x_m=1e5),)))
+    rows, columns = np.nonzero((alone != beside).any(axis=2))
+    wanted = to_pixels(np.array(((25.0, 5.0, 0.75),)), camera, lens, WIDTH_PX, HEIGHT_PX)[0]
+    assert np.array((columns.mean(), rows.mean())) == pytest.approx(wanted, abs=12.0)
+    assert np.array_equal(alone, far)

@@ -33,7 +33,7 @@ if sys.argv[3] == "die":
             os.kill(os.getpid(), signal.SIGKILL)
 states = iter(["nobody"] * 2 + ["1 client"] * 9 + ["lost"] * 999)
 link = (lambda: next(states)) if sys.argv[3] == "link" else lambda: None
-follow(Ports(new_ticks, stop, link), job._replace(profile=job.profile.__class__(chunk_s=0.05)), Path(sys.argv[2]))
+follow(Ports(new_ticks, stop, link=link), job._replace(profile=job.profile.__class__(chunk_s=0.05)), Path(sys.argv[2]))
 """
 
 

@@ -1,0 +1,39 @@
+"""The traffic of a session: how many vehicles, drawn by which seed, and a lead vehicle that drives by a script."""
+
+from typing import Annotated, Final
+
+from msgspec import Meta, Struct
+
+MOST_VEHICLES: Final = 60
+MOST_PARKED: Final = 30
+
+
+class TrafficSection(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Base of every part: unknown keys are errors."""
+
+
+class SpeedFrom(TrafficSection, frozen=True, kw_only=True):
+    """The speed that a lead vehicle tends to from a time on."""
+
+    from_s: Annotated[float, Meta(ge=0.0, le=86_400.0)] = 0.0
+    speed_kmh: Annotated[float, Meta(ge=0.0, le=200.0)]
+
+
+class LeadVehicle(TrafficSection, frozen=True, kw_only=True):
+    """A vehicle that drives on the world's route before the console's own, and looks at nobody."""
+
+    gap_m: Annotated[float, Meta(ge=8.0, le=1000.0)] = 40.0
+    """Of its middle from where the console's vehicle starts, along the route."""
+    speeds: Annotated[tuple[SpeedFrom, ...], Meta(min_length=1, max_length=200)]
+    acceleration_mps2: Annotated[float, Meta(gt=0.0, le=8.0)] = 2.0
+
+
+class TrafficProfile(TrafficSection, frozen=True, kw_only=True):
+    """Built-in traffic on a road map. Nothing of it is drawn by chance but from the seed."""
+
+    vehicles: Annotated[int, Meta(ge=0, le=MOST_VEHICLES)] = 30
+    parked: Annotated[int, Meta(ge=0, le=MOST_PARKED)] = 8
+    seed: Annotated[int, Meta(ge=0, le=2**53)] = 1
+    period_ms: Annotated[int, Meta(ge=10, le=200)] = 40
+    """From one step of traffic to the next: a whole number of ticks."""
+    lead: LeadVehicle | None = None
