@@ -41,7 +41,7 @@ from simconsole.values.errors import BridgeError, ProfileError
 from simconsole.values.latency import LatencyStatistics
 from simconsole.values.protocols import CommandSource, DeviceIdentity, NobodyCommands, Output
 from simconsole.values.state_vector import Snapshot
-from simconsole.world.kinds.worlds import route_points
+from simconsole.world.kinds.worlds import road_signals, route_points
 
 LOOKED_AT = 64
 """In a drive that is not paced, hops are timed in each 64th tick."""
@@ -301,6 +301,7 @@ def _open_lockstep(
         drive=drive,
         route=route_points(resolved.world),
         steering=steering_limit(session.features.control, console.platform.wheelbase_m),
+        signals=road_signals(resolved.world, console.tick_hz),
     )
     program = None
     if session.features.autopilot is not None:

@@ -187,6 +187,7 @@ def worker_specs(
             bundle=str(bundle.absolute()),
             route=route_points(resolved.world),
             steering=steering_limit(resolved.session.features.control, console.platform.wheelbase_m),
+            world=resolved.world,
         )
     if outputs.can is not None:
         from simconsole.canbus.messages import wheel_columns

@@ -20,6 +20,7 @@ from simconsole.processes.worker import Worker
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.can import CanProfile
 from simconsole.profiles.view import HudProfile
+from simconsole.profiles.world import WorldProfile
 from simconsole.values.host.files import write_atomically
 from simconsole.values.kernels import Row
 from simconsole.values.labels import LINK_DOWN
@@ -63,12 +64,15 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
     """What /route shows."""
     steering: SteeringLimit | None = None
     """Beyond it the arbiter refuses a command."""
+    world: WorldProfile | None = None
+    """Whose traffic lights it tells of."""
 
     def run(self, folder: Path, stop: Callable[[], bool]) -> None:
         """Serve until `stop`."""
         from simconsole.bridge.console.operator_acts import Act
         from simconsole.bridge.transport.server import serve
         from simconsole.bridge.transport.sockets import address_url
+        from simconsole.world.kinds.worlds import road_signals
 
         profile = self.profile
         receipts = Receipts(folder / f"{LATENCY}.bridge.json")
@@ -94,6 +98,7 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
             profile, snapshots, command_writer(folder / COMMAND), events.raise_events, stop,
             on_ready=ready, on_act=keep_act, on_counts=write_counts, on_link_state=write_link_state,
             folder=Path(self.bundle), drive=self.drive, route=self.route, steering=self.steering,
+            signals=road_signals(self.world, self.tick_hz),
         )  # fmt: skip
 
 

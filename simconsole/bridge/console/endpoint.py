@@ -7,7 +7,8 @@ from simconsole.bridge.console.counters import bridge_status, total_counts
 from simconsole.bridge.console.input_slots import BridgeInputs, OnCommand, OnEvents
 from simconsole.bridge.console.operator_acts import ACTS_MAX, OPERATE, OPERATE_TYPE, Act, OnAct, Operator
 from simconsole.bridge.console.output_schedule import OutputSchedule, topic_names
-from simconsole.bridge.console.topics import ROSOUT, ROSOUT_TYPE, Outputs, PublishedTick, Route
+from simconsole.bridge.console.published_tick import PublishedTick
+from simconsole.bridge.console.topics import ROSOUT, ROSOUT_TYPE, Outputs, Route
 from simconsole.bridge.messages import Registry, standard_registry
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.client_session import ClientSession
@@ -19,6 +20,7 @@ from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.labels import arbitration_label
 from simconsole.values.signals import Event
 from simconsole.values.state_vector import Snapshot
+from simconsole.world.rules.road_signals import RoadSignals
 
 
 class ConsoleBridge:
@@ -33,6 +35,7 @@ class ConsoleBridge:
         on_act: OnAct | None = None,
         route: Route = (),
         steering: SteeringLimit | None = None,
+        signals: RoadSignals | None = None,
     ) -> None:
         """Build the topics of `profile`.
 
@@ -43,6 +46,7 @@ class ConsoleBridge:
             on_events: sees each event at once.
             on_act: sees each act of an operator at once; without, they are kept until `take_acts`.
             route: what /route shows.
+            signals: the traffic lights of the world; without, it has none.
             steering: beyond it the arbiter refuses a command, and its sender is told so; without, nobody is.
 
         Raises:
@@ -63,7 +67,9 @@ class ConsoleBridge:
         self._command_decoder = CommandDecoder(self.inputs, profile)
         self.router.on_new_commander = self._command_decoder.forget_stamps
         self._now_ns = 0
-        self._out = Outputs(self.router.registry, profile, lambda: bridge_status(self.router, self._now_ns), route)
+        self._out = Outputs(
+            self.router.registry, profile, lambda: bridge_status(self.router, self._now_ns), route, signals
+        )
         outputs, commands = self._out.topics(), self._command_decoder.topics()
         self.names = topic_names(profile, [*(topic.name for topic in outputs), *(topic.name for topic in commands)])
         self._schedule = OutputSchedule(outputs, self.names, profile)

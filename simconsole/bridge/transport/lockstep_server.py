@@ -34,6 +34,7 @@ from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.signals import EventInput, RemoteCommand
 from simconsole.values.state_vector import Snapshot
+from simconsole.world.rules.road_signals import RoadSignals
 
 if TYPE_CHECKING:
     from simconsole.bridge.ros2.node import Ros2Link
@@ -58,6 +59,7 @@ class LockstepBridge:
         drive: str | None = None,
         route: Route = (),
         steering: SteeringLimit | None = None,
+        signals: RoadSignals | None = None,
     ) -> None:
         """Listen on the profile's host and port.
 
@@ -68,6 +70,7 @@ class LockstepBridge:
             drive: the nonce of the drive whose bridge it is.
             route: what /route shows.
             steering: as `ConsoleBridge`.
+            signals: likewise.
             odometry_hz: rate of /odom in place of the profile's: the control rate, so that every answer is waited for.
 
         Raises:
@@ -80,7 +83,7 @@ class LockstepBridge:
             rates_hz = {**profile.rates_hz, ODOMETRY: odometry_hz}
             profile = msgspec.structs.replace(profile, rates_hz=rates_hz, limits=limits)
         registry = load_registry(profile) if registry is None else registry
-        self.console = ConsoleBridge(profile, registry, route=route, steering=steering)
+        self.console = ConsoleBridge(profile, registry, route=route, steering=steering, signals=signals)
         self.console.router.access = load_access(profile)
         if profile.upstream is not None:
             raise ProfileError("outputs.bridge.upstream: a drive in lockstep waits for its own clients only")

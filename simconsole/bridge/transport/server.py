@@ -32,6 +32,7 @@ from simconsole.control.requests.refusals import SteeringLimit
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.state_vector import Snapshot
 from simconsole.values.units import NS_PER_S
+from simconsole.world.rules.road_signals import RoadSignals
 
 if TYPE_CHECKING:
     from simconsole.bridge.ros2.node import Ros2Link
@@ -60,6 +61,7 @@ class BridgeServer:
         drive: str | None = None,
         route: Route = (),
         steering: SteeringLimit | None = None,
+        signals: RoadSignals | None = None,
     ) -> None:
         """Build the bridge; `start` opens it.
 
@@ -67,7 +69,7 @@ class BridgeServer:
         the nonce of the drive whose bridge it is.
         """
         registry = load_registry(profile) if registry is None else registry
-        self.console = ConsoleBridge(profile, registry, on_command, on_events, on_act, route, steering)
+        self.console = ConsoleBridge(profile, registry, on_command, on_events, on_act, route, steering, signals)
         self._folder = folder
         self._drive = drive
         self._recorder: TopicRecorder | None = None
@@ -237,6 +239,7 @@ def serve(
     drive: str | None = None,
     route: Route = (),
     steering: SteeringLimit | None = None,
+    signals: RoadSignals | None = None,
 ) -> None:
     """Run a bridge server until `stop()` says so; for a process of its own.
 
@@ -255,6 +258,7 @@ def serve(
         drive: the nonce of the drive whose bridge it is.
         route: what /route shows.
         steering: as `ConsoleBridge`.
+        signals: likewise.
 
     Raises:
         BridgeError: the address cannot be listened on.
@@ -270,6 +274,7 @@ def serve(
         drive=drive,
         route=route,
         steering=steering,
+        signals=signals,
     )
     reporter = _StatusReporter(server, on_counts, on_link_state)
     asyncio.run(_run(server, read_snapshot, stop, on_ready, reporter))

@@ -19,9 +19,10 @@ from simconsole.recording.framing import Message
 from simconsole.recording.log_header import ACTS
 from simconsole.recording.reading import Recording
 from simconsole.values.kernels import Row
-from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE
+from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE, NO_SITUATION
 from simconsole.values.state_vector import INPUT_WIDTH, LAYOUT, PLATFORM_AT, Snapshot
 from simconsole.values.units import tick_time_ns
+from simconsole.world.rules.road_signals import RoadSignals
 
 OnTick = Callable[[int], None]
 """Told, now and then, the last tick that was written."""
@@ -48,10 +49,10 @@ class TopicMessage(NamedTuple):
 class DriveTopics:
     """Makes the messages of one drive, in the order of their times, by the code that the bridge has."""
 
-    def __init__(self, session: SessionProfile, route: Route = ()) -> None:
+    def __init__(self, session: SessionProfile, route: Route = (), signals: RoadSignals | None = None) -> None:
         """Take names and rates of the session's bridge, or of a bridge as shipped where it has none.
 
-        `route` is what /route shows.
+        `route` is what /route shows, `signals` are the world's traffic lights.
 
         Raises:
             ProfileError: the session's bridge renames or rates a topic that does not exist.
@@ -64,7 +65,7 @@ class DriveTopics:
             self._step_ticks = session.mode.control_period_ticks
             odometry_hz = session.mode.tick_hz / self._step_ticks
             profile = msgspec.structs.replace(profile, rates_hz={**profile.rates_hz, ODOMETRY: odometry_hz})
-        self._outputs = Outputs(self.registry, profile, route=route)
+        self._outputs = Outputs(self.registry, profile, route=route, signals=signals)
         outputs, commands = self._outputs.topics(), CommandDecoder(BridgeInputs(), profile).topics()
         self.names = topic_names(profile, [*(topic.name for topic in outputs), *(topic.name for topic in commands)])
         recorded = tuple(output for output in outputs if output.name not in UNRECORDED)
@@ -130,4 +131,5 @@ def empty_vector() -> Row:
     """Return the stages of a tick in which nothing has come from outside and nothing has happened."""
     vector = np.zeros(PLATFORM_AT)
     vector[:INPUT_WIDTH] = (*NO_SAMPLE, *NO_COMMAND, *NO_EVENTS, *NO_COMMAND)
+    vector[LAYOUT.situation.slice] = NO_SITUATION
     return vector

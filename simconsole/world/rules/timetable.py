@@ -61,7 +61,7 @@ class Signals:
     def phase(self, signal: int, tick: int) -> tuple[int, float]:
         """Return the phase of a signal in its program, and for how many ticks it lasts from `tick` on."""
         now = phase_now(self.timetable, float(signal), float(tick))
-        return int(now.phase - self.timetable.signals[signal, 0]), now.left_ticks
+        return int(now.phase - self.timetable.signals[signal, 0]), float(now.left_ticks)
 
     def letters(self, signal: int, tick: int) -> str:
         """Return what the links of a signal show, a letter of SUMO's each."""
