@@ -165,13 +165,13 @@ class Snapshot(NamedTuple):
         """
         if self.recording_failed:
             return float(Notice.RECORDING_FAILED)
-        notice = float(self.vector[_NOTICE_AT]) or self._broken_rule
+        notice = float(self.vector[_NOTICE_AT]) or self.broken_rule
         if not notice and float(self.vector[_MODE_AT]) == Mode.PARKED and self._is_commanded:
             return float(Notice.NOT_ENGAGED)
         return notice
 
     @property
-    def _broken_rule(self) -> float:
+    def broken_rule(self) -> float:
         """The worst rule that is broken, as a notice; 0: none."""
         broken = self.vector[_RULES_AT : _RULES_AT + len(_RULES)].tolist()
         return next((float(notice) for notice, is_broken in zip(_RULES, broken, strict=True) if is_broken), 0.0)

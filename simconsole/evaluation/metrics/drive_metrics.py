@@ -7,6 +7,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from simconsole.evaluation.metrics.fault_metrics import plain_spans
+from simconsole.evaluation.metrics.rule_metrics import plain_events
 from simconsole.evaluation.metrics.table import Drive
 from simconsole.evaluation.metrics.takeovers import takeovers
 from simconsole.evaluation.metrics.track import Track, track
@@ -124,6 +125,7 @@ def metrics(
             for change in (mode_changes(drive, way) if changes is None else changes)
         ],
         "faults": plain_spans(drive, faults),
+        "rules": plain_events(drive),
     }
 
 
