@@ -42,7 +42,7 @@ def obeyed(folder: Path) -> Obeyed:
     lane, speed = table.column("situation.lane"), table.column("vehicle.vx_mps")
     passed = np.flatnonzero((lane[1:] == lane[:-1]) & (left[:-1] > 0.0) & (left[1:] <= 0.0)) + 1
     stands = (speed < 0.02) & (left < 30.0) & (state == SignalState.STOP_AND_REMAIN)
-    ends = np.flatnonzero(np.diff(stands.astype(int), append=0) < 0)
+    ends = np.flatnonzero(np.diff(stands.astype(int)) < 0)  # not where the route ends
     return Obeyed(
         lines=len(stop_lines(world.roads.road_map, world.roads.legs, world.route)),
         passed=state[passed].astype(int).tolist(),
