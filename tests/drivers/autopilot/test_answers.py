@@ -72,7 +72,8 @@ def test_the_end_is_told_once_and_only_where_the_autopilot_has_stopped_there() -
 
 def test_lights_are_obeyed_before_anything_is_asked_for() -> None:
     lights = SignalStops([StopLine(60.0, 0, 0)], ["light"], 3.4)
-    asked = Answers(make_tracker("preview", straight(), HATCHBACK, 0.04), [].append, lights)
+    said: list[str] = []
+    asked = Answers(make_tracker("preview", straight(), HATCHBACK, 0.04), said.append, lights)
     asked.see({("light", 0): Light(SignalState.STOP_AND_REMAIN, SignalState.STOP_AND_REMAIN, -1.0, 0.0)})
     asked.answer(at(40.0, 0.0, 8.0), True, 0.0)
     command = asked.answer(at(40.16, 0.0, 8.0), True, 0.02)
