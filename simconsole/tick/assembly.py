@@ -18,6 +18,7 @@ from simconsole.values.units import RAD_PER_DEG
 from simconsole.vehicle.platforms import build
 from simconsole.vehicle.rim_stiffness import rim_stiffness
 from simconsole.world.kinds.worlds import open_world
+from simconsole.world.roads.road_world import roads_of
 from simconsole.world.rules.road_rules import RoadRules, road_rules
 
 
@@ -71,7 +72,7 @@ def rules_of(world: WorldProfile | None, platform: Platform, tick_hz: int) -> Ro
     Raises:
         ProfileError: a file of its map cannot be read.
     """
-    roads = None if world is None else open_world(world).roads
+    roads = None if world is None else roads_of(open_world(world))
     if roads is None:
         return None
     return road_rules(roads.road_map, roads.legs, tick_hz, platform.length_m - platform.rear_overhang_m)

@@ -11,6 +11,7 @@ from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.replay_bundle import replay_bundle
 from simconsole.values.signals import FAR, SignalState
 from simconsole.world.kinds.worlds import open_world
+from simconsole.world.roads.road_world import roads_of
 from simconsole.world.rules.approaches import stop_lines
 from tests.drives.random_courses import Tracked
 from tests.drives.test_road_maps import driven
@@ -31,7 +32,8 @@ class Obeyed(NamedTuple):
 
 def obeyed(folder: Path) -> Obeyed:
     world = open_world(load_world(str(folder / "world.yaml")))
-    assert world.roads is not None
+    roads = roads_of(world)
+    assert roads is not None
     table = open_bundle(folder / "bundle").log.table(
         (
             "situation.lane", "situation.signal_state", "situation.signal_distance_m", "rules.red_light",
@@ -44,7 +46,7 @@ def obeyed(folder: Path) -> Obeyed:
     stands = (speed < 0.02) & (left < 30.0) & (state == SignalState.STOP_AND_REMAIN)
     ends = np.flatnonzero(np.diff(stands.astype(int)) < 0)  # not where the route ends
     return Obeyed(
-        lines=len(stop_lines(world.roads.road_map, world.roads.legs, world.route)),
+        lines=len(stop_lines(roads.road_map, roads.legs, world.route)),
         passed=state[passed].astype(int).tolist(),
         red_lights=int((np.diff(table.column("rules.red_light"), prepend=0.0) > 0.0).sum()),
         broken=[name for name in ("wrong_way", "off_road", "speeding") if table.column(f"rules.{name}").any()],
@@ -92,4 +94,4 @@ def test_drive_through_lights_is_made_again_to_the_bit(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("world", ["urban_signals", "motorway", "country", "skid_pad"])
 def test_shipped_maps_have_rules(world: str) -> None:
-    assert open_world(load_world(world)).roads is not None
+    assert roads_of(open_world(load_world(world))) is not None

@@ -5,6 +5,7 @@ from typing import Any
 from simconsole.drivers.path_tracker.signal_stops import Light, SignalStops
 from simconsole.profiles.vehicle import CarProfile, VehicleProfile
 from simconsole.values.units import NS_PER_S
+from simconsole.world.roads.road_world import roads_of
 from simconsole.world.rules.approaches import stop_lines
 from simconsole.world.world import World
 
@@ -14,15 +15,16 @@ SIGNALS_TYPE = "simconsole_msgs/TrafficSignals"
 
 def signal_stops(world: World, vehicle: VehicleProfile) -> SignalStops | None:
     """Return the lights on the route of a world, None where there are none."""
-    if world.roads is None:
+    roads = roads_of(world)
+    if roads is None:
         return None
-    lines = stop_lines(world.roads.road_map, world.roads.legs, world.route)
+    lines = stop_lines(roads.road_map, roads.legs, world.route)
     if not lines:
         return None
     front_m = 0.0
     if isinstance(vehicle, CarProfile):
         front_m = vehicle.body.length_m - vehicle.body.rear_overhang_m
-    return SignalStops(lines, [signal.id for signal in world.roads.road_map.signals], front_m)
+    return SignalStops(lines, [signal.id for signal in roads.road_map.signals], front_m)
 
 
 def lights_of(message: Any) -> dict[tuple[str, int], Light]:

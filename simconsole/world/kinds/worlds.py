@@ -7,7 +7,7 @@ from simconsole.profiles.world import CourseProfile, RoadsProfile, WorldProfile
 from simconsole.world.course import Course
 from simconsole.world.drawing import draw
 from simconsole.world.roads.road_map import RoadMap
-from simconsole.world.roads.road_world import road_world
+from simconsole.world.roads.road_world import road_world, roads_of
 from simconsole.world.rules.road_signals import RoadSignals
 from simconsole.world.world import World
 
@@ -46,7 +46,7 @@ def road_signals(profile: WorldProfile | None, tick_hz: int) -> RoadSignals | No
     """Return the traffic lights of a world; None where it has no road map. Raises as open_world."""
     if not isinstance(profile, RoadsProfile):
         return None
-    roads = open_world(profile).roads
+    roads = roads_of(open_world(profile))
     return None if roads is None else RoadSignals(roads.road_map, tick_hz)
 
 

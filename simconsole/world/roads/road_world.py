@@ -11,7 +11,27 @@ from simconsole.world.roads.road_drawing import draw_roads
 from simconsole.world.roads.road_map import Connection, RoadMap
 from simconsole.world.roads.road_route import MAX_CURVATURE_1PM, route_over, too_tight
 from simconsole.world.route import Route
-from simconsole.world.world import Roads, World
+from simconsole.world.world import World
+
+
+class Roads(NamedTuple):
+    """A road map, and the way that the world's route takes over it."""
+
+    road_map: RoadMap
+    legs: tuple[Leg, ...]
+
+
+class RoadWorld(World):
+    """The world of a road map."""
+
+    def __init__(self, title: str, roads: Roads, route: Route) -> None:
+        super().__init__(title, route, partial(draw_roads, roads.road_map, route))
+        self.roads = roads
+
+
+def roads_of(world: World) -> Roads | None:
+    """Return the roads of a world; None: a course, whose rules nobody has written down."""
+    return world.roads if isinstance(world, RoadWorld) else None
 
 
 class Way(NamedTuple):
@@ -26,14 +46,14 @@ _TURNS: Final = 30
 """Turns that are too tight for a car are driven round: as many are looked for."""
 
 
-def road_world(profile: RoadsProfile, road_map: RoadMap) -> World:
+def road_world(profile: RoadsProfile, road_map: RoadMap) -> RoadWorld:
     """Return the world of a profile with its map.
 
     Raises:
         ProfileError: no route that a car can drive leads over the map as the profile says.
     """
     way = planned(profile, road_map)
-    return World(profile.title, way.route, partial(draw_roads, road_map, way.route), Roads(road_map, way.legs))
+    return RoadWorld(profile.title, Roads(road_map, way.legs), way.route)
 
 
 def planned(profile: RoadsProfile, road_map: RoadMap) -> Way:

@@ -97,6 +97,15 @@ def _table(rows: Sequence[tuple[float, ...]], kind: type[tuple[float, ...]]) -> 
     return np.array(rows, dtype=np.float64).reshape(-1, len(kind._fields))  # type: ignore[attr-defined]
 
 
-_NO_MAP: Final = RoadMap((), (), (), (), (), (), GeoReference(0.0, 0.0, "!"), MapReport((), ()))
+_NO_MAP: Final = RoadMap(
+    lanes=(),
+    edges=(),
+    connections=(),
+    signals=(),
+    junctions=(),
+    roundabouts=(),
+    geo=GeoReference(0.0, 0.0, "!"),
+    report=MapReport((), ()),
+)
 NO_ROADS: Final = road_rules(_NO_MAP, (), 1, 0.0)
 """The rules of a world that has none."""

@@ -9,6 +9,7 @@ from simconsole.profiles.files.vehicle_files import load_vehicle
 from simconsole.profiles.files.world_files import load_world
 from simconsole.values.signals import SignalState
 from simconsole.world.kinds.worlds import open_world
+from simconsole.world.roads.road_world import roads_of
 from simconsole.world.rules.approaches import stop_lines
 
 
@@ -31,9 +32,10 @@ def test_the_car_s_front_is_held_before_the_line() -> None:
     world, car = open_world(load_world("urban_signals")), load_vehicle("hatchback")
     found = signal_stops(world, car)
     assert found is not None
-    assert world.roads is not None
-    (line,) = stop_lines(world.roads.road_map, world.roads.legs, world.route)
-    name = world.roads.road_map.signals[line.signal].id
+    roads = roads_of(world)
+    assert roads is not None
+    (line,) = stop_lines(roads.road_map, roads.legs, world.route)
+    name = roads.road_map.signals[line.signal].id
     found.see({(name, line.link): Light(SignalState.STOP_AND_REMAIN, 6, 30.0, 0.0)})
     stop = found.stop(line.s_m - 60.0, 10.0, plan_speed(world.route, COMFORT), 0.0)
     assert stop is not None

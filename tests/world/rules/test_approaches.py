@@ -4,6 +4,7 @@ from simconsole.profiles.files.world_files import load_world
 from simconsole.world.kinds.worlds import open_world
 from simconsole.world.roads.lane_graph import LaneGraph
 from simconsole.world.roads.road_route import route_over
+from simconsole.world.roads.road_world import roads_of
 from simconsole.world.rules.approaches import AHEAD_M, ahead_of_lanes, stop_lines
 from tests.world.nets import CITY, generated_map, straight_map
 
@@ -60,7 +61,7 @@ def test_stop_lines_stand_at_the_ends_of_the_route_s_lanes() -> None:
 
 def test_map_without_signals_has_none_and_a_far_one_is_not_looked_for() -> None:
     assert ahead_of_lanes(straight_map(), ()) == [None] * len(straight_map().lanes)
-    roads = open_world(load_world("urban_signals")).roads
+    roads = roads_of(open_world(load_world("urban_signals")))
     assert roads is not None
     found = [one for one in ahead_of_lanes(roads.road_map, roads.legs) if one is not None]
     assert 0 < len(found) < len(roads.road_map.lanes)
