@@ -10,7 +10,7 @@ from simconsole.values import signals
 from tests.paths import ROOT
 from tests.sources import modules, python_files
 
-UNITS = ("_rad", "_radps", "_m", "_mps", "_mps2", "_nm", "_ticks")
+UNITS = ("_rad", "_radps", "_m", "_mps", "_mps2", "_nm", "_s", "_ticks")
 UNITLESS = {
     # pedals, authority and other shares 0..1; raw axes -1..1
     *("throttle", "brake", "clutch", "handbrake", "remote_lateral", "remote_longitudinal", "shared_trade"),
@@ -25,7 +25,11 @@ UNITLESS = {
     "implausible",
     *("anti_lock_off", "traction_off", "stability_off", "gear_fault"),
     *("turn_indicators", "hazard_lights", "stalk", "hazard_switch"),
+    *("red_light", "wrong_way", "off_road", "speeding"),
+    # places in a map's tuples, and a time in ticks since the start
+    *("lane", "edge", "tick"),
     # members of an enumeration
+    "signal_state",
     *("kind", "mode", "reason", "refusal", "notice", "gear", "direction", "takeover_stage", "commander", "state"),
     *("restarted", "stop_steered"),
     *("wheel_validity", "throttle_validity", "brake_validity", "clutch_validity", "shifter_validity"),

@@ -188,7 +188,7 @@ def view(
         reason_label=reason_label(arbitration.reason if stop_reason is None else stop_reason),
         todo_label=next_step(snapshot, settings.standstill_mps, settings.manual_button, settings.reset_button),
         refusal_label=reason_label(arbitration.refusal) if arbitration.refusal else "",
-        notice_label=notice_label(arbitration.notice),
+        notice_label=notice_label(arbitration.notice or snapshot.broken_rule),
         recording_failed=snapshot.recording_failed,
         takeover_stage=int(arbitration.takeover_stage),
         remaining_s=_remaining_s(snapshot, settings),

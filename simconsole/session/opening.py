@@ -43,7 +43,7 @@ from simconsole.values.errors import BridgeError, ProfileError
 from simconsole.values.latency import LatencyStatistics
 from simconsole.values.protocols import CommandSource, DeviceIdentity, NobodyCommands, Output
 from simconsole.values.state_vector import Snapshot
-from simconsole.world.kinds.worlds import route_points
+from simconsole.world.kinds.worlds import road_signals, route_points
 
 LOOKED_AT = 64
 """In a drive that is not paced, hops are timed in each 64th tick."""
@@ -328,6 +328,7 @@ def _open_lockstep(
         steering=steering_limit(session.features.control, console.platform.wheelbase_m),
         view=view,
         road_users=None if traffic is None else traffic.newest,
+        signals=road_signals(resolved.world, console.tick_hz),
     )
     program = None
     if session.features.autopilot is not None:

@@ -203,6 +203,7 @@ def worker_specs(
             steering=steering_limit(resolved.session.features.control, console.platform.wheelbase_m),
             display=display_settings(resolved) if outputs.bridge.external_view else None,
             has_traffic=has_traffic,
+            world=resolved.world,
         )
     if outputs.can is not None:
         from simconsole.canbus.messages import wheel_columns

@@ -20,6 +20,7 @@ from simconsole.processes.worker import Worker
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.can import CanProfile
 from simconsole.profiles.view import HudProfile
+from simconsole.profiles.world import WorldProfile
 from simconsole.values.host.files import write_atomically
 from simconsole.values.kernels import Row
 from simconsole.values.labels import LINK_DOWN
@@ -70,6 +71,8 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
     """What a display of another program must know of the drive; what there is to see lies in the run folder. None:
     there is no such display."""
     has_traffic: bool = False
+    world: WorldProfile | None = None
+    """Whose traffic lights it tells of."""
 
     def run(self, folder: Path, stop: Callable[[], bool]) -> None:
         """Serve until `stop`."""
@@ -79,6 +82,7 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
         from simconsole.bridge.transport.sockets import address_url
         from simconsole.session.external_view import external_view
         from simconsole.session.view_job import load_view_job
+        from simconsole.world.kinds.worlds import road_signals
 
         profile = self.profile
         receipts = Receipts(folder / f"{LATENCY}.bridge.json")
@@ -108,6 +112,7 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
             folder=Path(self.bundle), drive=self.drive, route=self.route, steering=self.steering,
             view=view,
             road_users=RoadUsersRing(folder).newest if self.has_traffic else None,
+            signals=road_signals(self.world, self.tick_hz),
         )  # fmt: skip
 
 

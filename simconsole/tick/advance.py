@@ -21,8 +21,10 @@ from simconsole.values.kernels import Row, kernel, put
 from simconsole.values.latency import Hop, Mark, unheard
 from simconsole.values.layout import Part, lay_out, read, write
 from simconsole.values.platform import Platform
-from simconsole.values.signals import NO_COMMAND, NO_SAMPLE, Commander
+from simconsole.values.signals import NO_COMMAND, NO_RULES_BROKEN, NO_SAMPLE, NO_SITUATION, Commander
 from simconsole.values.state_vector import INPUT_WIDTH, LAYOUT, PLATFORM_AT, Snapshot, TickInputs, columns
+from simconsole.world.rules.road_rules import NO_ROADS, RoadRules
+from simconsole.world.rules.situation import look_around
 
 Execution = Callable[[Callable[..., Any]], Callable[..., Any]]
 """How kernels run: `jit.compiled` or `jit.plain`."""
@@ -40,6 +42,8 @@ SETTINGS: Final = lay_out(SettingsLayout)
 Stage = Callable[..., None]
 _DECIDE, _STEP, _FORCE_FEEDBACK = Hop.DECIDE, Hop.STEP, Hop.FORCE_FEEDBACK
 _TORQUE_AT: Final = LAYOUT.torque.start
+_TORQUE_STOP: Final = LAYOUT.pipe.stop
+_TICK_AT: Final = LAYOUT.situation.at("tick")
 _ROS_AGE_AT: Final = LAYOUT.ros.at("age_ticks")
 _ECU_AGE_AT: Final = LAYOUT.ecu.at("age_ticks")
 _RESTARTED_AT: Final = LAYOUT.arbitration.at("restarted")
@@ -60,7 +64,9 @@ class Console(NamedTuple):
     decide: Callable[[Row, Row, Row, float], None]
     step: Callable[[Row, Row, Row, int], None]
     force_feedback: Callable[[Row, Row, Row, float], None] | None  # None: the wheel has no motor
-    block: Callable[[Row, Row, Row, Row, Row, float, int], None]  # see `advance_block`
+    roads: RoadRules  # NO_ROADS: the world has no rules
+    look_around: Callable[[Row, Row, RoadRules, float], None] | None  # None: likewise
+    block: Callable[[Row, Row, Row, Row, Row, RoadRules, float, int], None]  # see `advance_block`
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -82,8 +88,11 @@ def build_console(
     tick_hz: int,
     execution: Execution,
     force: ForceSettings = NO_FORCE,
+    roads: RoadRules | None = None,
 ) -> Console:
     """Put a console together. `execution` is `jit.compiled` or `jit.plain`; both give equal bits.
+
+    `roads` are the rules of the world, None where it has none.
 
     Raises:
         ValueError: `tick_hz` does not divide 1000.
@@ -91,6 +100,7 @@ def build_console(
     if PHYSICS_HZ % tick_hz:
         raise ValueError(f"tick_hz {tick_hz} does not divide {PHYSICS_HZ}")
     feel = force_feedback if force.max_torque_nm > 0.0 else None
+    look = None if roads is None else look_around
     return Console(
         tick_hz=tick_hz,
         tick_s=1.0 / tick_hz,
@@ -102,7 +112,9 @@ def build_console(
         decide=execution(decide),
         step=execution(platform.step),
         force_feedback=None if feel is None else execution(feel),
-        block=execution(_block_of(in_order(decide, platform.step, feel, None))),
+        roads=NO_ROADS if roads is None else roads,
+        look_around=None if look is None else execution(look),
+        block=execution(_block_of(in_order(decide, platform.step, look, feel, None))),
     )
 
 
@@ -112,6 +124,7 @@ def _initial(platform: Platform) -> Row:
     write(row, LAYOUT.ros, NO_COMMAND)
     write(row, LAYOUT.ecu, NO_COMMAND)
     write(row, LAYOUT.vehicle, platform.initial_vehicle)
+    write(row, LAYOUT.situation, NO_SITUATION)
     put(row, PLATFORM_AT, platform.initial_state)
     return row
 
@@ -134,10 +147,8 @@ def advance_vector(previous: Row, inputs: Row | tuple[float, ...], console: Cons
     """Return the state vector after `previous` for the INPUT_WIDTH values `inputs`, as a replay needs it."""
     row = np.empty(console.width)
     row[:INPUT_WIDTH] = inputs
-    tick = in_order(console.decide, console.step, console.force_feedback, mark)
-    tick(
-        previous, row, console.settings, console.platform.parameters, console.initial, console.tick_s, console.substeps
-    )
+    tick = in_order(console.decide, console.step, console.look_around, console.force_feedback, mark)
+    tick(previous, row, *_constants(console))
     return row
 
 
@@ -149,11 +160,18 @@ def advance_block(previous: Row, rows: Row, console: Console) -> None:
         rows: float64 [ticks, columns], the inputs in the first INPUT_WIDTH columns; the others are written.
         console: which console.
     """
+    console.block(previous, rows, *_constants(console))
+
+
+def _constants(console: Console) -> tuple[Row, Row, Row, RoadRules, float, int]:
+    """Return what a tick takes beside the state vectors."""
     parameters = console.platform.parameters
-    console.block(previous, rows, console.settings, parameters, console.initial, console.tick_s, console.substeps)
+    return console.settings, parameters, console.initial, console.roads, console.tick_s, console.substeps
 
 
-def in_order(decide: Stage, step: Stage, force_feedback: Stage | None, mark: Mark | None) -> Stage:
+def in_order(
+    decide: Stage, step: Stage, look_around: Stage | None, force_feedback: Stage | None, mark: Mark | None
+) -> Stage:
     """Return one tick: its stages in their order. Nowhere else do they stand.
 
     One text, two executions: of compiled stages, called one by one, with a `mark` that hears the end of each; and of
@@ -162,7 +180,14 @@ def in_order(decide: Stage, step: Stage, force_feedback: Stage | None, mark: Mar
 
     @kernel
     def tick(
-        previous: Row, row: Row, settings: Row, parameters: Row, initial: Row, tick_s: float, substeps: int
+        previous: Row,
+        row: Row,
+        settings: Row,
+        parameters: Row,
+        initial: Row,
+        roads: RoadRules,
+        tick_s: float,
+        substeps: int,
     ) -> None:
         """Write the state vector after `previous` into `row`, whose first columns hold the inputs."""
         decide(previous, row, settings, tick_s)
@@ -173,10 +198,15 @@ def in_order(decide: Stage, step: Stage, force_feedback: Stage | None, mark: Mar
         if mark is not None:
             mark(_DECIDE)
         step(previous, row, parameters, substeps)
+        if look_around is None:
+            write(row, LAYOUT.situation, NO_SITUATION)
+            write(row, LAYOUT.rules, NO_RULES_BROKEN)
+        else:
+            look_around(previous, row, roads, tick_s)
         if mark is not None:
             mark(_STEP)
         if force_feedback is None:
-            row[_TORQUE_AT:PLATFORM_AT] = 0.0
+            row[_TORQUE_AT:_TORQUE_STOP] = 0.0
         else:
             force_feedback(previous, row, settings, tick_s)
             if mark is not None:
@@ -190,11 +220,18 @@ def _block_of(tick: Stage) -> Stage:
 
     @kernel
     def block(
-        previous: Row, rows: Row, settings: Row, parameters: Row, initial: Row, tick_s: float, substeps: int
+        previous: Row,
+        rows: Row,
+        settings: Row,
+        parameters: Row,
+        initial: Row,
+        roads: RoadRules,
+        tick_s: float,
+        substeps: int,
     ) -> None:
         for index in range(len(rows)):
             row = rows[index]
-            tick(previous, row, settings, parameters, initial, tick_s, substeps)
+            tick(previous, row, settings, parameters, initial, roads, tick_s, substeps)
             previous = row
 
     return block
@@ -202,8 +239,9 @@ def _block_of(tick: Stage) -> Stage:
 
 @kernel
 def start_again(previous: Row, initial: Row) -> Row:
-    """Return the state vector before the first tick, with the devices as they are."""
+    """Return the state vector before the first tick, with the devices as they are, and the same simulated time."""
     row = initial.copy()
+    row[_TICK_AT] = previous[_TICK_AT]
     write(row, LAYOUT.sample, read(previous, LAYOUT.sample))
     write(row, LAYOUT.driver, read(previous, LAYOUT.driver))
     return row

@@ -12,11 +12,14 @@ from simconsole.profiles.session import Aids, Environment, SessionProfile, Start
 from simconsole.profiles.vehicle import CarProfile, VehicleProfile
 from simconsole.profiles.world import WorldProfile
 from simconsole.tick.advance import Console, ConsoleState, Execution, build_console, initial_state
-from simconsole.values.platform import Ground, Patch, Pose
+from simconsole.values.platform import Ground, Patch, Platform, Pose
 from simconsole.values.signals import Commander
 from simconsole.values.units import RAD_PER_DEG
 from simconsole.vehicle.platforms import build
 from simconsole.vehicle.rim_stiffness import rim_stiffness
+from simconsole.world.kinds.worlds import open_world
+from simconsole.world.roads.road_world import roads_of
+from simconsole.world.rules.road_rules import RoadRules, road_rules
 
 
 class ResolvedSession(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -58,8 +61,21 @@ def assemble(resolved: ResolvedSession, execution: Execution) -> tuple[Console, 
             tick_hz,
             rim_stiffness(resolved.vehicle),
         ),
+        rules_of(resolved.world, platform, tick_hz),
     )
     return console, initial_state(console)
+
+
+def rules_of(world: WorldProfile | None, platform: Platform, tick_hz: int) -> RoadRules | None:
+    """Return the rules of a world for a vehicle, None where it has none.
+
+    Raises:
+        ProfileError: a file of its map cannot be read.
+    """
+    roads = None if world is None else roads_of(open_world(world))
+    if roads is None:
+        return None
+    return road_rules(roads.road_map, roads.legs, tick_hz, platform.length_m - platform.rear_overhang_m)
 
 
 def ground_of(environment: Environment) -> Ground:

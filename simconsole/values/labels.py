@@ -65,6 +65,10 @@ _NOTICES: Final[dict[float, str]] = {
     Notice.RELEASE_PEDALS: "release the pedals to start again",
     Notice.RECORDING_FAILED: "recording failed: the drive is not kept",
     Notice.NOT_ENGAGED: "parked: nobody has asked for autonomy",
+    Notice.RED_LIGHT: "passed a red light",
+    Notice.WRONG_WAY: "wrong way: traffic comes towards you",
+    Notice.OFF_ROAD: "off the road",
+    Notice.SPEEDING: "faster than the speed limit",
 }
 
 LINK_NOBODY: Final = "nobody"

@@ -25,6 +25,8 @@ from simconsole.values.signals import (
     MotorPipe,
     Notice,
     RemoteCommand,
+    Rules,
+    Situation,
     VehicleCommand,
     VehicleState,
     WheelMemory,
@@ -50,17 +52,22 @@ class Layout(NamedTuple):
     torque: Part[WheelTorque]
     motor: Part[WheelMemory]
     pipe: Part[MotorPipe]
+    situation: Part[Situation]
+    rules: Part[Rules]
 
 
 LAYOUT: Final = lay_out(Layout)
 INPUT_WIDTH: Final = LAYOUT.ecu.stop
 """The first columns: what comes from outside."""
-PLATFORM_AT: Final = LAYOUT.pipe.stop
+PLATFORM_AT: Final = LAYOUT.rules.stop
 """Where the platform's own state begins."""
 
 _RECORDING_FAILED: Final = int(Event.RECORDING_FAILED)
 _NOTICE_AT: Final = LAYOUT.arbitration.at("notice")
 _MODE_AT: Final = LAYOUT.arbitration.at("mode")
+_RULES_AT: Final = LAYOUT.rules.start
+_RULES: Final = (Notice.RED_LIGHT, Notice.WRONG_WAY, Notice.OFF_ROAD, Notice.SPEEDING)
+"""The notices of the first columns of `Rules`, in their order."""
 
 
 class TickInputs(NamedTuple):
@@ -152,13 +159,22 @@ class Snapshot(NamedTuple):
 
     @property
     def notice(self) -> float:
-        """What people are told (`Notice`): a failed recording first, then the arbiter's, then a missing engagement."""
+        """What people are told (`Notice`).
+
+        A failed recording first, then the arbiter's, a broken rule of the road, and a missing engagement.
+        """
         if self.recording_failed:
             return float(Notice.RECORDING_FAILED)
-        notice = float(self.vector[_NOTICE_AT])
+        notice = float(self.vector[_NOTICE_AT]) or self.broken_rule
         if not notice and float(self.vector[_MODE_AT]) == Mode.PARKED and self._is_commanded:
             return float(Notice.NOT_ENGAGED)
         return notice
+
+    @property
+    def broken_rule(self) -> float:
+        """The worst rule that is broken, as a notice; 0: none."""
+        broken = self.vector[_RULES_AT : _RULES_AT + len(_RULES)].tolist()
+        return next((float(notice) for notice, is_broken in zip(_RULES, broken, strict=True) if is_broken), 0.0)
 
     @property
     def _is_commanded(self) -> bool:
@@ -179,3 +195,13 @@ class Snapshot(NamedTuple):
     def torque(self) -> WheelTorque:
         """What the wheel's motor is asked for."""
         return read(self.vector, LAYOUT.torque)
+
+    @property
+    def situation(self) -> Situation:
+        """The road around the vehicle."""
+        return read(self.vector, LAYOUT.situation)
+
+    @property
+    def rules(self) -> Rules:
+        """Which rules of the road it breaks."""
+        return read(self.vector, LAYOUT.rules)

@@ -10,7 +10,8 @@ from typing import Any
 from simconsole.bridge.console.command_decoder import REQUESTS, CommandDecoder
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.input_slots import BridgeInputs
-from simconsole.bridge.console.topics import ONCE, Outputs
+from simconsole.bridge.console.published_tick import ONCE
+from simconsole.bridge.console.topics import Outputs
 from simconsole.bridge.messages import standard_registry
 from simconsole.bridge.protocol.operations import OPERATIONS
 from simconsole.profiles.bridge import BridgeProfile

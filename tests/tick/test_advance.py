@@ -106,10 +106,10 @@ def test_a_restart_puts_the_vehicle_back_in_the_very_tick_and_leaves_the_devices
 def test_each_stage_is_marked_once_in_order_and_a_wheel_without_a_motor_is_none() -> None:
     console, marks = ball(), list[Hop]()
     state = initial_state(console)
-    state.vector[LAYOUT.torque.start : PLATFORM_AT] = 7.0
+    state.vector[LAYOUT.torque.start : LAYOUT.situation.start] = 7.0
     _, snapshot = advance(state, inputs(1), console, marks.append)
     assert marks == [Hop.DECIDE, Hop.STEP]
-    assert not snapshot.vector[LAYOUT.torque.start : PLATFORM_AT].any()
+    assert not snapshot.vector[LAYOUT.torque.start : LAYOUT.situation.start].any()
 
 
 @pytest.mark.parametrize("tick_hz", [50, 1000])

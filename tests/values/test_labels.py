@@ -39,7 +39,7 @@ def test_an_unknown_number_names_itself() -> None:
     assert mode_label(99.0) == "MODE 99"
     assert reason_label(2.5) == "reason 2.5"
     assert validity_label(-1.0) == "validity -1"
-    assert notice_label(9.0) == "notice 9"
+    assert notice_label(99.0) == "notice 99"
 
 
 def test_the_lever_reads_as_its_knob() -> None:

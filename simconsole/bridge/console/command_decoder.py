@@ -7,7 +7,8 @@ is not newer than the last one's. A stamp of 0 is no stamp: such messages are ta
 from typing import Any, Final, NamedTuple
 
 from simconsole.bridge.console.input_slots import BridgeInputs
-from simconsole.bridge.console.topics import BASE_FRAME, MAP_FRAME
+from simconsole.bridge.console.published_tick import MAP_FRAME
+from simconsole.bridge.console.topics import BASE_FRAME
 from simconsole.bridge.protocol.topic_registry import Accept
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import RemoteProtocolError

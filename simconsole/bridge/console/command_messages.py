@@ -22,7 +22,8 @@ from simconsole.bridge.console.command_decoder import (
     TURN_INDICATORS,
     TWIST,
 )
-from simconsole.bridge.console.topics import BASE_FRAME, MAP_FRAME, quaternion
+from simconsole.bridge.console.published_tick import MAP_FRAME, quaternion
+from simconsole.bridge.console.topics import BASE_FRAME
 from simconsole.bridge.messages import Registry
 from simconsole.values.signals import NO_COMMAND, RemoteCommand, RemoteKind
 from simconsole.values.single_precision import toward_zero

@@ -7,8 +7,9 @@ from simconsole.bridge.console.counters import bridge_status, total_counts
 from simconsole.bridge.console.input_slots import BridgeInputs, OnCommand, OnEvents
 from simconsole.bridge.console.operator_acts import ACTS_MAX, OPERATE, OPERATE_TYPE, Act, OnAct, Operator
 from simconsole.bridge.console.output_schedule import OutputSchedule, topic_names
+from simconsole.bridge.console.published_tick import PublishedTick
 from simconsole.bridge.console.road_user_topics import ReadRoadUsers, RoadUserTopics
-from simconsole.bridge.console.topics import ROSOUT, ROSOUT_TYPE, Outputs, PublishedTick, Route
+from simconsole.bridge.console.topics import ROSOUT, ROSOUT_TYPE, Outputs, Route
 from simconsole.bridge.console.view_topics import NO_VIEW, ExternalView, view_topics
 from simconsole.bridge.messages import Registry, standard_registry
 from simconsole.bridge.protocol.access import Role
@@ -21,6 +22,7 @@ from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.labels import arbitration_label
 from simconsole.values.signals import Event
 from simconsole.values.state_vector import Snapshot
+from simconsole.world.rules.road_signals import RoadSignals
 
 
 class ConsoleBridge:
@@ -37,6 +39,7 @@ class ConsoleBridge:
         steering: SteeringLimit | None = None,
         view: ExternalView = NO_VIEW,
         road_users: ReadRoadUsers | None = None,
+        signals: RoadSignals | None = None,
     ) -> None:
         """Build the topics of `profile`.
 
@@ -47,6 +50,7 @@ class ConsoleBridge:
             on_events: sees each event at once.
             on_act: sees each act of an operator at once; without, they are kept until `take_acts`.
             route: what /route shows.
+            signals: the traffic lights of the world; without, it has none.
             steering: beyond it the arbiter refuses a command, and its sender is told so; without, nobody is.
             view: what the topics of `external_view` show.
             road_users: returns the newest; without, they have no topics.
@@ -69,7 +73,9 @@ class ConsoleBridge:
         self._command_decoder = CommandDecoder(self.inputs, profile)
         self.router.on_new_commander = self._command_decoder.forget_stamps
         self._now_ns = 0
-        self._out = Outputs(self.router.registry, profile, lambda: bridge_status(self.router, self._now_ns), route)
+        self._out = Outputs(
+            self.router.registry, profile, lambda: bridge_status(self.router, self._now_ns), route, signals
+        )
         outputs = (*view_topics(self.router.registry, profile, view), *self._out.topics())
         commands = self._command_decoder.topics()
         if road_users is not None:

@@ -3,7 +3,8 @@
 from collections.abc import Callable
 from typing import Any
 
-from simconsole.bridge.console.topics import GLOBAL_TOPICS, ODOMETRY, ONCE, OutputTopic, PublishedTick, is_due
+from simconsole.bridge.console.published_tick import ONCE, OutputTopic, PublishedTick
+from simconsole.bridge.console.topics import GLOBAL_TOPICS, ODOMETRY, is_due
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.state_vector import Snapshot

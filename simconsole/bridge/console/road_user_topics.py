@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable, Iterator
 from typing import Any, Final
 
-from simconsole.bridge.console.topics import MAP_FRAME, OutputTopic, PublishedTick, quaternion
+from simconsole.bridge.console.published_tick import MAP_FRAME, OutputTopic, PublishedTick, quaternion
 from simconsole.bridge.messages import Registry
 from simconsole.values.units import NS_PER_S
 from simconsole.world.traffic.road_users import RoadUser, RoadUserKind, RoadUsersAt, users

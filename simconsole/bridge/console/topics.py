@@ -5,16 +5,17 @@ not drift, so map and odom coincide.
 """
 
 from collections.abc import Callable, Sequence
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
+from simconsole.bridge.console.published_tick import MAP_FRAME, ONCE, OutputTopic, PublishedTick, quaternion
+from simconsole.bridge.console.signal_topics import SignalTopics
 from simconsole.bridge.link.localisation import Localisation, covariances
 from simconsole.bridge.messages import Registry
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.labels import commander_label, link_label, mode_label, notice_label, reason_label
 from simconsole.values.signals import NEVER_TICKS, Link, Mode, RemoteCommand, VehicleState
 from simconsole.values.state_vector import Snapshot
-from simconsole.values.trigonometry import direction
-from simconsole.values.units import NS_PER_S
+from simconsole.world.rules.road_signals import RoadSignals
 
 CLOCK: Final = "/clock"
 TF: Final = "/tf"
@@ -47,8 +48,6 @@ Route = Sequence[tuple[float, float, float]]
 GLOBAL_TOPICS: Final = frozenset({CLOCK, TF, TF_STATIC})
 """Never put under a namespace: ROS programs expect exactly these names."""
 
-ONCE: Final = -1.0
-MAP_FRAME: Final = "map"
 BASE_FRAME: Final = "base_link"
 WHEEL_BUTTONS: Final = 13
 SHIFTER_BUTTONS: Final = 10
@@ -84,50 +83,6 @@ _DISABLE, _ENABLE_LEFT, _ENABLE_RIGHT = 1, 2, 3
 _ENABLE = 2
 
 
-class OutputTopic(NamedTuple):
-    """One row of the table of output topics; a rate of 0 is never, ONCE is a latched message at the start."""
-
-    name: str
-    type: str
-    rate_hz: float
-    build: Callable[["PublishedTick"], Any]
-
-
-class PublishedTick:
-    """A tick as published: its snapshot, and the stamp, headers and orientation that its messages share."""
-
-    def __init__(self, snapshot: Snapshot, localisation: Localisation, time: Any, header: Any, quaternion: Any) -> None:
-        """Take the generated classes Time, Header and Quaternion."""
-        self.snapshot = snapshot
-        self.vehicle = snapshot.vehicle
-        self._localisation = localisation
-        self._measured: VehicleState | None = None
-        self.stamp = time(*divmod(snapshot.t_ns, NS_PER_S))
-        self._header = header
-        self._quaternion = quaternion
-        self._orientation: Any = None
-
-    def header(self, frame: str) -> Any:
-        """Return a header in `frame`."""
-        return self._header(self.stamp, frame)
-
-    @property
-    def measured(self) -> VehicleState:
-        """The vehicle as its localisation measures it: what a controller is told."""
-        if self._measured is None:
-            snapshot = self.snapshot
-            self._measured = self._localisation.measure(self.vehicle, snapshot.tick, snapshot.tick_hz)
-        return self._measured
-
-    def orientation(self, vehicle: VehicleState) -> Any:
-        """Return the attitude (z-y-x angles yaw, pitch, roll) of one of the two vehicles as a quaternion."""
-        if vehicle is not self.measured:
-            return self._quaternion(*quaternion(vehicle.roll_rad, vehicle.pitch_rad, vehicle.yaw_rad))
-        if self._orientation is None:
-            self._orientation = self._quaternion(*quaternion(vehicle.roll_rad, vehicle.pitch_rad, vehicle.yaw_rad))
-        return self._orientation
-
-
 class Outputs:
     """Builds the messages of the output topics."""
 
@@ -137,12 +92,14 @@ class Outputs:
         profile: BridgeProfile,
         counts: Callable[[], dict[str, Any]] = dict,
         route: Route = (),
+        signals: RoadSignals | None = None,
     ) -> None:
         """Generate the classes of all output topics.
 
-        `counts` fills /console/bridge (`counters.bridge_status`), `route` /route.
+        `counts` fills /console/bridge (`counters.bridge_status`), `route` /route, `signals` those of traffic lights.
         """
         self._route_points = route
+        self._signals = SignalTopics(registry, signals)
         self._counts = counts
         self._odometry_frame = profile.odometry_frame
         self._localisation = Localisation(profile.link)
@@ -163,6 +120,7 @@ class Outputs:
             OutputTopic(CLOCK, "rosgraph_msgs/Clock", 100.0, self._clock),
             OutputTopic(TF_STATIC, "tf2_msgs/TFMessage", ONCE, self._tf_static),
             OutputTopic(ROUTE, "nav_msgs/Path", ONCE, self._route),
+            *self._signals.topics(),
             OutputTopic(TF, "tf2_msgs/TFMessage", 50.0, self._tf),
             OutputTopic(JOY, "sensor_msgs/Joy", 100.0, self._joy),
             OutputTopic(VELOCITY, "autoware_vehicle_msgs/VelocityReport", 30.0, self._velocity),
@@ -370,19 +328,6 @@ def is_due(tick: int, last_tick: int | None, tick_hz: int, rate_hz: float) -> bo
     if last_tick is None or tick < last_tick:  # at the start, or after it has begun anew
         last_tick = 0
     return int(tick * rate_hz / tick_hz) > int(last_tick * rate_hz / tick_hz)
-
-
-def quaternion(roll_rad: float, pitch_rad: float, yaw_rad: float) -> tuple[float, float, float, float]:
-    """Return x, y, z, w of the rotation by yaw about z, then pitch about the new y, then roll about the new x."""
-    cr, sr = direction(0.5 * roll_rad)
-    cp, sp = direction(0.5 * pitch_rad)
-    cy, sy = direction(0.5 * yaw_rad)
-    return (
-        sr * cp * cy - cr * sp * sy,
-        cr * sp * cy + sr * cp * sy,
-        cr * cp * sy - sr * sp * cy,
-        cr * cp * cy + sr * sp * sy,
-    )
 
 
 def _shared_mode(steers: bool, drives: bool) -> int:

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import Any, Final, NamedTuple
 
-from simconsole.bridge.console.topics import MAP_FRAME, ONCE, OutputTopic, PublishedTick, quaternion
+from simconsole.bridge.console.published_tick import MAP_FRAME, ONCE, OutputTopic, PublishedTick, quaternion
 from simconsole.bridge.messages import Registry
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.state_vector import Snapshot

@@ -36,6 +36,7 @@ from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.signals import EventInput, RemoteCommand
 from simconsole.values.state_vector import Snapshot
+from simconsole.world.rules.road_signals import RoadSignals
 
 if TYPE_CHECKING:
     from simconsole.bridge.ros2.node import Ros2Link
@@ -62,6 +63,7 @@ class LockstepBridge:
         steering: SteeringLimit | None = None,
         view: ExternalView = NO_VIEW,
         road_users: ReadRoadUsers | None = None,
+        signals: RoadSignals | None = None,
     ) -> None:
         """Listen on the profile's host and port.
 
@@ -74,6 +76,7 @@ class LockstepBridge:
             steering: as `ConsoleBridge`.
             view: as `ConsoleBridge`.
             road_users: as `ConsoleBridge`.
+            signals: likewise.
             odometry_hz: rate of /odom in place of the profile's: the control rate, so that every answer is waited for.
 
         Raises:
@@ -87,7 +90,13 @@ class LockstepBridge:
             profile = msgspec.structs.replace(profile, rates_hz=rates_hz, limits=limits)
         registry = load_registry(profile) if registry is None else registry
         self.console = ConsoleBridge(
-            profile, registry, route=route, steering=steering, view=view, road_users=road_users
+            profile,
+            registry,
+            route=route,
+            steering=steering,
+            view=view,
+            road_users=road_users,
+            signals=signals,
         )
         self.console.router.access = load_access(profile)
         if profile.upstream is not None:

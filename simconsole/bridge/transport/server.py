@@ -34,6 +34,7 @@ from simconsole.control.requests.refusals import SteeringLimit
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.state_vector import Snapshot
 from simconsole.values.units import NS_PER_S
+from simconsole.world.rules.road_signals import RoadSignals
 
 if TYPE_CHECKING:
     from simconsole.bridge.ros2.node import Ros2Link
@@ -64,6 +65,7 @@ class BridgeServer:
         steering: SteeringLimit | None = None,
         view: ExternalView = NO_VIEW,
         road_users: ReadRoadUsers | None = None,
+        signals: RoadSignals | None = None,
     ) -> None:
         """Build the bridge; `start` opens it.
 
@@ -81,6 +83,7 @@ class BridgeServer:
             steering=steering,
             view=view,
             road_users=road_users,
+            signals=signals,
         )
         self._folder = folder
         self._drive = drive
@@ -253,6 +256,7 @@ def serve(
     steering: SteeringLimit | None = None,
     view: ExternalView = NO_VIEW,
     road_users: ReadRoadUsers | None = None,
+    signals: RoadSignals | None = None,
 ) -> None:
     """Run a bridge server until `stop()` says so; for a process of its own.
 
@@ -273,6 +277,7 @@ def serve(
         steering: as `ConsoleBridge`.
         view: as `ConsoleBridge`.
         road_users: as `ConsoleBridge`.
+        signals: likewise.
 
     Raises:
         BridgeError: the address cannot be listened on.
@@ -290,6 +295,7 @@ def serve(
         steering=steering,
         view=view,
         road_users=road_users,
+        signals=signals,
     )
     reporter = _StatusReporter(server, on_counts, on_link_state)
     asyncio.run(_run(server, read_snapshot, stop, on_ready, reporter))

@@ -1,10 +1,11 @@
 """What the autopilot answers to an odometry: a command, or nothing, and then why. Pure."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Final
 
 from simconsole.drivers.path_tracker.approach import why_not
 from simconsole.drivers.path_tracker.geometric import GeometricTracker, pure_pursuit, stanley
+from simconsole.drivers.path_tracker.signal_stops import Light, SignalStops
 from simconsole.drivers.path_tracker.state_estimator import VehicleMotion
 from simconsole.drivers.path_tracker.tracker import Tracker, TrackerCommand
 from simconsole.drivers.path_tracker.tracker_settings import TIMING, CarModel
@@ -26,15 +27,19 @@ def make_tracker(name: str, course: Route, car: CarModel, delay_s: float) -> Tra
 class Answers:
     """Answers one odometry after the other; what people must know is said once, when it begins."""
 
-    def __init__(self, tracker: Tracker | GeometricTracker, say: Callable[[str], None]) -> None:
-        """Ask `tracker`, tell people by `say`."""
-        self._tracker, self._say = tracker, say
+    def __init__(
+        self, tracker: Tracker | GeometricTracker, say: Callable[[str], None], lights: SignalStops | None = None
+    ) -> None:
+        """Ask `tracker`, tell people by `say`, and obey `lights`."""
+        self._tracker, self._say, self._lights = tracker, say, lights
         self.statistics = TrackingStatistics()
         self._withholds = False
 
     def answer(self, seen: VehicleMotion, engaged: bool, stamp_s: float) -> TrackerCommand | None:
         """Return the command that answers what was seen at `stamp_s`; None: none is given."""
         tracker, statistics = self._tracker, self.statistics
+        if self._lights is not None and tracker.s_m is not None:
+            tracker.along.stop = self._lights.stop(tracker.s_m, seen.vx_mps, tracker.along.profile, stamp_s)
         command = tracker.step(seen, engaged, stamp_s)
         reason = why_not(tracker.lateral_m, tracker.heading_error_rad, seen.vx_mps, engaged)
         if reason:
@@ -50,6 +55,11 @@ class Answers:
         statistics.add(engaged, s_m, tracker.lateral_m, seen.vx_mps)
         self._look_for_the_end(s_m, engaged and abs(seen.vx_mps) < _STANDING_MPS)
         return command
+
+    def see(self, lights: Mapping[tuple[str, int], Light]) -> None:
+        """Take what traffic lights show (`lights.lights_of`)."""
+        if self._lights is not None:
+            self._lights.see(lights)
 
     def _look_for_the_end(self, s_m: float, stands: bool) -> None:
         course = self._tracker.course

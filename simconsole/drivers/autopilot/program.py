@@ -9,10 +9,11 @@ import logging
 import math
 import time
 from collections.abc import Callable, Mapping
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from simconsole.bridge.client.bridge_client import BridgeClient
 from simconsole.drivers.autopilot.answers import Answers, make_tracker
+from simconsole.drivers.autopilot.lights import SIGNALS, SIGNALS_TYPE, lights_of, signal_stops
 from simconsole.drivers.autopilot.remarks import Remarks
 from simconsole.drivers.path_tracker.car_model import car_model
 from simconsole.drivers.path_tracker.state_estimator import VehicleMotion
@@ -35,6 +36,14 @@ _PATIENCE_S: Final = 10.0  # for the console to open its port
 _WAIT_S: Final = 0.25  # how often `stop` is checked while no message comes
 
 _logger = logging.getLogger("simconsole.drivers.autopilot.program")
+
+
+class Topics(NamedTuple):
+    """Names of topics on the server."""
+
+    odometry: str
+    command: str
+    signals: str
 
 
 def run(
@@ -73,18 +82,22 @@ def run(
         BridgeError: no server answers at `url`.
         OtherDriveError: the server there belongs to another drive.
     """
-    course = open_world(load_world(course_name)).route
-    answers = Answers(make_tracker(tracker, course, car_model(load_vehicle(vehicle)), delay_s), _say)
+    world, car = open_world(load_world(course_name)), load_vehicle(vehicle)
+    lights = signal_stops(world, car)
+    answers = Answers(make_tracker(tracker, world.route, car_model(car), delay_s), _say, lights)
     with BridgeClient(url, token=token, certificate=certificate, drive=drive, until_good_bye=True) as client:
-        odometry, arbitration, command = (
-            (rename or {}).get(topic, namespace + topic) for topic in (ODOMETRY, ARBITRATION, COMMAND)
+        odometry, arbitration, command, signals = (
+            (rename or {}).get(topic, namespace + topic) for topic in (ODOMETRY, ARBITRATION, COMMAND, SIGNALS)
         )
         client.advertise(command, CONTROL)
         client.subscribe(odometry, "nav_msgs/Odometry")
         client.subscribe(arbitration, "simconsole_msgs/Arbitration")
+        if lights is not None:
+            client.subscribe(signals, SIGNALS_TYPE)
         client.connect(patience_s)
         try:
-            ended = _answer(client, answers, (odometry, command), stop or _never, patience_s)
+            topics = Topics(odometry, command, signals)
+            ended = _answer(client, answers, topics, stop or _never, patience_s)
         except OtherDriveError:
             raise
         except BridgeError as error:
@@ -96,11 +109,11 @@ def run(
 def _answer(
     client: BridgeClient,
     answers: Answers,
-    topics: tuple[str, str],
+    topics: Topics,
     stop: Callable[[], bool],
     patience_s: float,
 ) -> str:
-    """Answer odometry with commands (`topics`) until `stop` or until the server is gone; return which of both.
+    """Answer odometry with commands until `stop` or until the server is gone; return which of both.
 
     A lost connection is opened again.
 
@@ -109,7 +122,6 @@ def _answer(
     """
     command = client.registry.struct(CONTROL)()
     remarks = Remarks(_say)
-    odometry_topic, command_topic = topics
     # A console publishes who drives; with a server that does not, this program drives from the start.
     engaged = True
     heard_s = time.monotonic()
@@ -123,7 +135,10 @@ def _answer(
         if received is None:
             continue
         topic, message = received
-        if topic != odometry_topic:
+        if topic == topics.signals:
+            answers.see(lights_of(message))
+            continue
+        if topic != topics.odometry:
             engaged = message.mode in _DRIVING
             continue
         seen = motion_of(message)
@@ -134,7 +149,7 @@ def _answer(
         answer = answers.answer(seen, engaged, stamp.sec + stamp.nanosec * 1e-9)
         if answer is not None:
             fill_command(command, stamp, answer)
-            client.publish(command_topic, command)
+            client.publish(topics.command, command)
     return "stopped"
 
 

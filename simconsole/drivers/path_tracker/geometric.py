@@ -56,7 +56,7 @@ class GeometricTracker:
         self.lateral_m = 0.0
         self.heading_error_rad = 0.0
         self._law, self._car = law, car
-        self._along = SpeedControl(course, COMFORT, TIMING.period_s)
+        self.along = SpeedControl(course, COMFORT, TIMING.period_s)
         self._before_rad = 0.0
 
     def step(self, seen: VehicleMotion, engaged: bool = True, time_s: float | None = None) -> TrackerCommand:
@@ -64,8 +64,8 @@ class GeometricTracker:
         place = self.course.project(seen.x_m, seen.y_m, self.s_m, seen.yaw_rad)
         self.s_m, self.lateral_m, self.heading_error_rad = place
         if not engaged:
-            self._along.accel_mps2 = 0.0
+            self.along.accel_mps2 = 0.0
         most_rad = self._car.max_road_wheel_rad
         road_wheel_rad = clip(self._law(self.course, place, seen, self._car.wheelbase_m), -most_rad, most_rad)
         turned_radps, self._before_rad = (road_wheel_rad - self._before_rad) / TIMING.period_s, road_wheel_rad
-        return TrackerCommand(road_wheel_rad, turned_radps, *self._along.step(place.s_m, seen.vx_mps))
+        return TrackerCommand(road_wheel_rad, turned_radps, *self.along.step(place.s_m, seen.vx_mps))

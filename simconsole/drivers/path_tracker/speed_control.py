@@ -2,7 +2,7 @@
 
 from typing import Final, NamedTuple
 
-from simconsole.drivers.path_tracker.speed_profile import plan_speed
+from simconsole.drivers.path_tracker.speed_profile import Stop, plan_speed, stopping
 from simconsole.drivers.path_tracker.tracker_settings import Comfort
 from simconsole.values.kernels import approach, clip
 from simconsole.world.route import Route
@@ -10,6 +10,7 @@ from simconsole.world.route import Route
 _GAIN_1PS: Final = 1.2
 _LEAD_S: Final = 0.15
 _JERK_MPS3: Final = 2.8
+_CORRECTION_MPS2: Final = 0.4  # more than a stop on the way plans with
 
 
 class Longitudinal(NamedTuple):
@@ -28,13 +29,24 @@ class SpeedControl:
         self.profile = plan_speed(course, comfort)
         self.accel_mps2 = 0.0
         """What was asked for last."""
+        self.stop: Stop | None = None
+        """Where to stop before the course's end, for as long as it is so."""
         self._comfort, self._period_s = comfort, period_s
 
     def step(self, s_m: float, speed_mps: float) -> Longitudinal:
         """Return what to ask for in the coming period, from place and speed."""
-        target, _ = self.profile.at(s_m)
-        _, planned = self.profile.at(s_m + speed_mps * _LEAD_S)
+        lead_m = speed_mps * _LEAD_S
+        now, ahead = self.profile.at(s_m), self.profile.at(s_m + lead_m)
+        if self.stop is not None:
+            brake = self.stop.brake_mps2
+            rising_s = 0.5 * max(self.accel_mps2 + brake, 0.0) / _JERK_MPS3  # so much later the brake is there
+            left_m = self.stop.s_m - s_m - speed_mps * rising_s
+            now, ahead = min(now, stopping(left_m, brake)), min(ahead, stopping(left_m - lead_m, brake))
+        target, planned = now[0], ahead[1]
         wanted = planned + _GAIN_1PS * (target - speed_mps)
-        wanted = clip(wanted, -self._comfort.brake_most_mps2, self._comfort.accelerate_mps2)
+        most = self._comfort.brake_most_mps2
+        if self.stop is not None:
+            most = max(most, self.stop.brake_mps2 + _CORRECTION_MPS2)
+        wanted = clip(wanted, -most, self._comfort.accelerate_mps2)
         before, self.accel_mps2 = self.accel_mps2, approach(self.accel_mps2, wanted, _JERK_MPS3 * self._period_s)
         return Longitudinal(target, self.accel_mps2, (self.accel_mps2 - before) / self._period_s)

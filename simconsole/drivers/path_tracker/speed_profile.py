@@ -52,17 +52,24 @@ class SpeedProfile(NamedTuple):
         return float(np.sum(self.step_m / self.speed_mps))
 
 
-def stopping(left_m: float) -> tuple[float, float]:
+class Stop(NamedTuple):
+    """A place on the course to stop at, and the deceleration on the way there."""
+
+    s_m: float
+    brake_mps2: float
+
+
+def stopping(left_m: float, brake_mps2: float = _STOP_MPS2) -> tuple[float, float]:
     """Return (speed in m/s, acceleration in m/s2) with `left_m` to go to a stop.
 
-    A deceleration of _STOP_MPS2 that fades out with _STOP_JERK_MPS3 in the last part: s = j t^3 / 6 before the end.
+    A deceleration of `brake_mps2` that fades out with _STOP_JERK_MPS3 in the last part: s = j t^3 / 6 before the end.
     """
     if left_m <= 0.0:
         return 0.0, -_STOP_JERK_MPS3 * _STOPPED_S
-    fade_s = _STOP_MPS2 / _STOP_JERK_MPS3
-    fade_m, fade_mps = _STOP_JERK_MPS3 * fade_s**3 / 6.0, 0.5 * _STOP_MPS2 * fade_s
+    fade_s = brake_mps2 / _STOP_JERK_MPS3
+    fade_m, fade_mps = _STOP_JERK_MPS3 * fade_s**3 / 6.0, 0.5 * brake_mps2 * fade_s
     if left_m >= fade_m:
-        return math.sqrt(fade_mps**2 + 2.0 * _STOP_MPS2 * (left_m - fade_m)), -_STOP_MPS2
+        return math.sqrt(fade_mps**2 + 2.0 * brake_mps2 * (left_m - fade_m)), -brake_mps2
     left_s = math.cbrt(6.0 * left_m / _STOP_JERK_MPS3)
     return 0.5 * _STOP_JERK_MPS3 * left_s**2, -_STOP_JERK_MPS3 * max(left_s, _STOPPED_S)
 

@@ -72,7 +72,7 @@ class Tracker:
         self.lateral_m = 0.0
         self.heading_error_rad = 0.0
         self._car, self._timing = car, timing
-        self._along = SpeedControl(course, comfort, timing.period_s)
+        self.along = SpeedControl(course, comfort, timing.period_s)
         designs = [_design(car, timing, weights, speed) for speed in _SPEEDS_MPS]
         self._gains = np.array([[*gains.feedback, *gains.preview] for gains in designs])
         self._more = np.diff(self._gains, axis=0)  # from one speed's gains to the next one's
@@ -89,13 +89,13 @@ class Tracker:
         """Return a tracker that goes on from here by itself; course, plan and gains are shared, they never change."""
         other = Tracker.__new__(Tracker)
         other.__dict__.update(self.__dict__)
-        other._estimator, other._along = copy(self._estimator), copy(self._along)
+        other._estimator, other.along = copy(self._estimator), copy(self.along)
         return other
 
     @property
     def profile(self) -> SpeedProfile:
         """The planned speed."""
-        return self._along.profile
+        return self.along.profile
 
     def step(self, seen: VehicleMotion, engaged: bool = True, time_s: float | None = None) -> TrackerCommand:
         """Return the command for the coming period.
@@ -107,7 +107,7 @@ class Tracker:
         found = self.s_m is not None
         if not (engaged and found):  # at its first sight of the car, too: somebody has steered it so far
             self._follow(seen, max(seen.vx_mps, 0.0))
-        now, self._wheel = self._estimator.observe(seen, time_s, self._along.accel_mps2 if engaged else 0.0)
+        now, self._wheel = self._estimator.observe(seen, time_s, self.along.accel_mps2 if engaged else 0.0)
         place = self.course.project(now.x_m, now.y_m, self.s_m, now.yaw_rad)
         self.s_m, self.lateral_m, self.heading_error_rad = place
         speed = now.vx_mps
@@ -123,14 +123,14 @@ class Tracker:
         self._command = self._limited(change, speed, engaged)
         self._estimator.sent(self._command)
         turned = (math.atan(self._command) - math.atan(before)) / self._timing.period_s
-        return TrackerCommand(math.atan(self._command), turned, *self._along.step(place.s_m, speed))
+        return TrackerCommand(math.atan(self._command), turned, *self.along.step(place.s_m, speed))
 
     def _change(self, seen: VehicleMotion, s_m: float, lateral_m: float, heading_rad: float) -> float:
         """Return by how much the command's tangent should change in the coming period."""
         speed = seen.vx_mps
         index, share = _between(speed)
         gains = self._gains[index] + share * self._more[index]
-        way = s_m + speed * self._ahead_s + self._along.accel_mps2 * self._half_square_s2
+        way = s_m + speed * self._ahead_s + self.along.accel_mps2 * self._half_square_s2
         ahead = self._curvature.take((way / self._curvature_step_m).astype(np.int64), mode=self._beyond)
         if not self._line.is_over(s_m):
             ahead += self._line.curvature(way)
@@ -162,7 +162,7 @@ class Tracker:
         else:
             self._wheel = self._command = 0.0
         self._estimator.reset(self._command)
-        self._along.accel_mps2 = 0.0
+        self.along.accel_mps2 = 0.0
 
 
 def _curvatures(course: Route) -> tuple[float, Array]:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simconsole.evaluation.metrics.fault_metrics import plain_spans
+from simconsole.evaluation.metrics.rule_metrics import plain_events
 from simconsole.evaluation.metrics.table import Drive
 from simconsole.evaluation.metrics.takeovers import takeovers
 from simconsole.evaluation.metrics.track import Track, track
@@ -133,6 +134,7 @@ def metrics(
             for change in (mode_changes(drive, way) if changes is None else changes)
         ],
         "faults": plain_spans(drive, faults),
+        "rules": plain_events(drive),
     }
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from simconsole.evaluation.metrics.drive_metrics import metrics, mode_changes
+from simconsole.evaluation.metrics.rule_metrics import RULES
 from simconsole.evaluation.metrics.table import Drive
 from simconsole.evaluation.metrics.track import track
 from simconsole.evaluation.report.figures import map_svg, traces_svg
@@ -114,6 +115,7 @@ def page(
         "<h2>Mode changes</h2>",
         _changes_table(found),
         *(("<h2>Take-overs</h2>", _takeovers_table(found)) if found["takeovers"] else ()),
+        *(("<h2>Rules of the road</h2>", _rules_table(found)) if found["rules"] else ()),
         *(("<h2>Faults</h2>", _faults_table(found)) if found["faults"] else ()),
         *(("<h2>Latency</h2>", _latency_table(latency_us)) if latency_us else ()),
         *(("<h2>Drive</h2>", _extra_table(extra)) if extra else ()),
@@ -169,6 +171,23 @@ def _changes_table(found: Mapping[str, Any]) -> str:
             f"<td class=n>{change['distance_m']:.1f} m</td><td>{escape(mode)}</td>"
             f"<td>{escape(change['reason'])}</td></tr>"
         )
+    return "\n".join((*lines, "</table>"))
+
+
+def _rules_table(found: Mapping[str, Any]) -> str:
+    heads = "".join(f"<th class=n>{name}</th>" for name in ("from", "to", "driven", "highest speed", "limit"))
+    lines = [f"<table><tr><th>broken rule</th>{heads}</tr>"]
+    for event in found["rules"]:
+        limit = "-" if event["limit_kmh"] is None else f"{event['limit_kmh']:.0f} km/h"
+        cells = (
+            f"{event['first_s']:.2f} s",
+            f"{event['last_s']:.2f} s",
+            f"{event['distance_m']:.1f} m",
+            f"{event['top_speed_kmh']:.1f} km/h",
+            limit,
+        )
+        values = "".join(f"<td class=n>{cell}</td>" for cell in cells)
+        lines.append(f"<tr><td>{escape(RULES[event['rule']])}</td>{values}</tr>")
     return "\n".join((*lines, "</table>"))
 
 

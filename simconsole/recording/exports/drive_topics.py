@@ -22,9 +22,10 @@ from simconsole.recording.log_header import ACTS
 from simconsole.recording.reading import Recording
 from simconsole.recording.recorded_road_users import recorded_road_users
 from simconsole.values.kernels import Row
-from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE
+from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE, NO_SITUATION
 from simconsole.values.state_vector import INPUT_WIDTH, LAYOUT, PLATFORM_AT, Snapshot
 from simconsole.values.units import tick_time_ns
+from simconsole.world.rules.road_signals import RoadSignals
 from simconsole.world.traffic.road_users import NOBODY, RoadUsersAt
 
 OnTick = Callable[[int], None]
@@ -52,10 +53,10 @@ class TopicMessage(NamedTuple):
 class DriveTopics:
     """Makes the messages of one drive, in the order of their times, by the code that the bridge has."""
 
-    def __init__(self, session: SessionProfile, route: Route = ()) -> None:
+    def __init__(self, session: SessionProfile, route: Route = (), signals: RoadSignals | None = None) -> None:
         """Take names and rates of the session's bridge, or of a bridge as shipped where it has none.
 
-        `route` is what /route shows.
+        `route` is what /route shows, `signals` are the world's traffic lights.
 
         Raises:
             ProfileError: the session's bridge renames or rates a topic that does not exist.
@@ -68,7 +69,7 @@ class DriveTopics:
             self._step_ticks = session.mode.control_period_ticks
             odometry_hz = session.mode.tick_hz / self._step_ticks
             profile = msgspec.structs.replace(profile, rates_hz={**profile.rates_hz, ODOMETRY: odometry_hz})
-        self._outputs = Outputs(self.registry, profile, route=route)
+        self._outputs = Outputs(self.registry, profile, route=route, signals=signals)
         outputs = (*view_topics(self.registry, profile), *self._outputs.topics())
         commands = CommandDecoder(BridgeInputs(), profile).topics()
         self._road_users = RoadUsersAt(0, NOBODY)
@@ -142,4 +143,5 @@ def empty_vector() -> Row:
     """Return the stages of a tick in which nothing has come from outside and nothing has happened."""
     vector = np.zeros(PLATFORM_AT)
     vector[:INPUT_WIDTH] = (*NO_SAMPLE, *NO_COMMAND, *NO_EVENTS, *NO_COMMAND)
+    vector[LAYOUT.situation.slice] = NO_SITUATION
     return vector

@@ -16,7 +16,7 @@ from simconsole.recording.exports.drive_topics import DriveTopics, OnTick
 from simconsole.recording.exports.foxglove import foxglove_layout
 from simconsole.recording.reading import Recording
 from simconsole.values.errors import RecordingError
-from simconsole.world.kinds.worlds import route_points
+from simconsole.world.kinds.worlds import road_signals, route_points
 
 TOPIC_FORMATS: Final = {"mcap": "mcap_file", "rosbag2": "rosbag2_folder"}
 TABLE_FORMATS: Final = {"csv": "csv_file", "parquet": "parquet_file"}
@@ -53,7 +53,7 @@ def export_drive(
         choice: what of it, for a table; None for all columns in every tick.
         layout: write a layout of Foxglove beside the topics.
         on_tick: told now and then how far it is.
-        world: where it was driven: the route.
+        world: where it was driven: the route and the traffic lights.
 
     Raises:
         RecordingError: `path` exists or cannot be written, or the choice does not fit the format or the recording.
@@ -69,7 +69,9 @@ def export_drive(
         if taken.exists():
             raise RecordingError(f"{taken}: cannot be exported to: it exists already")
     module = import_module(f"simconsole.recording.exports.{FORMATS[format_name]}")
-    topics = DriveTopics(session, route_points(world)) if of_topics else None
+    topics = None
+    if of_topics:
+        topics = DriveTopics(session, route_points(world), road_signals(world, session.mode.tick_hz))
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         # A folder of its own to write in, because rosbag2 names its files after its folder.

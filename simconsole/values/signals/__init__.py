@@ -16,6 +16,7 @@ from simconsole.values.signals.codes import (
     Notice,
     Reason,
     RemoteKind,
+    SignalState,
     Validity,
 )
 from simconsole.values.signals.inputs import (
@@ -41,13 +42,17 @@ from simconsole.values.signals.stages import (
     WheelMemory,
     WheelTorque,
 )
+from simconsole.values.signals.surroundings import FAR, NO_RULES_BROKEN, NO_SITUATION, Rules, Situation
 
 __all__ = [
+    "FAR",
     "MOTOR_UNKNOWN",
     "NEVER_TICKS",
     "NO_COMMAND",
     "NO_EVENTS",
+    "NO_RULES_BROKEN",
     "NO_SAMPLE",
+    "NO_SITUATION",
     "NO_TORQUE",
     "ArbiterMemory",
     "Arbitration",
@@ -68,6 +73,9 @@ __all__ = [
     "RemoteCommand",
     "RemoteKind",
     "Request",
+    "Rules",
+    "SignalState",
+    "Situation",
     "Validity",
     "VehicleCommand",
     "VehicleState",

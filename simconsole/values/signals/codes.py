@@ -75,8 +75,27 @@ class Notice(IntEnum):
     CENTRING_WHEEL = 2  # by its motor, before a restart
     CENTRE_WHEEL = 3  # the same, where it has no motor
     RELEASE_PEDALS = 4
-    RECORDING_FAILED = 5  # this and the next are said by the console itself (Snapshot.notice), not by the arbiter
+    RECORDING_FAILED = 5  # this and those below are said by the console itself (Snapshot.notice), not by the arbiter
     NOT_ENGAGED = 6  # a controller commands a parked car, and nobody has asked for autonomy
+    RED_LIGHT = 7  # this and the next: a rule of the road is broken
+    WRONG_WAY = 8
+    OFF_ROAD = 9
+    SPEEDING = 10
+
+
+class SignalState(IntEnum):
+    """What a signal shows to a movement: MovementPhaseState of SAE J2735 and ETSI TS 103 301, names and numbers."""
+
+    UNAVAILABLE = 0  # no signal
+    DARK = 1
+    STOP_THEN_PROCEED = 2  # as a stop sign
+    STOP_AND_REMAIN = 3  # red
+    PRE_MOVEMENT = 4  # red and yellow
+    PERMISSIVE_MOVEMENT_ALLOWED = 5  # green, but others have the right of way
+    PROTECTED_MOVEMENT_ALLOWED = 6  # green
+    PERMISSIVE_CLEARANCE = 7  # yellow
+    PROTECTED_CLEARANCE = 8  # yellow, nobody else may come
+    CAUTION_CONFLICTING_TRAFFIC = 9  # flashing yellow
 
 
 class Commander(IntEnum):

@@ -7,7 +7,8 @@ from simconsole.profiles.world import CourseProfile, RoadsProfile, WorldProfile
 from simconsole.world.course import Course
 from simconsole.world.drawing import draw
 from simconsole.world.roads.road_map import RoadMap
-from simconsole.world.roads.road_world import road_world
+from simconsole.world.roads.road_world import road_world, roads_of
+from simconsole.world.rules.road_signals import RoadSignals
 from simconsole.world.world import World
 
 
@@ -39,6 +40,14 @@ def open_map(profile: RoadsProfile) -> RoadMap:
     outlines, skipped = read_polygons(read_map(profile.polygons), profile.polygons.name)
     report = found.report._replace(skipped=found.report.skipped + skipped)
     return found._replace(obstacles=tuple(outline - found.moved_m for outline in outlines), report=report)
+
+
+def road_signals(profile: WorldProfile | None, tick_hz: int) -> RoadSignals | None:
+    """Return the traffic lights of a world; None where it has no road map. Raises as open_world."""
+    if not isinstance(profile, RoadsProfile):
+        return None
+    roads = roads_of(open_world(profile))
+    return None if roads is None else RoadSignals(roads.road_map, tick_hz)
 
 
 def route_points(profile: WorldProfile | None) -> tuple[tuple[float, float, float], ...]:

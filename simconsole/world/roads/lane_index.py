@@ -35,6 +35,16 @@ class Found(NamedTuple):
     lateral_m: float
 
 
+class LaneArrays(NamedTuple):
+    """What `nearest_segment` searches, for kernels that call it."""
+
+    rows: Row  # float64 [N, 6], those of `_segments`
+    owners: Row  # float64 [N], the place of each segment's lane
+    starts: Row  # int64 [cells + 1], where each cell's items begin
+    items: Row  # int64, segments cell by cell
+    grid: Row  # place (x, y), columns, rows
+
+
 class LaneIndex:
     """The segments of some lanes of a map, ready for queries."""
 
@@ -52,6 +62,12 @@ class LaneIndex:
         self._starts_m = self.segments[:, 5].tolist()
         self._grid, self._starts, self._items = _grid(self.segments)
         self._search = search
+
+    @property
+    def arrays(self) -> LaneArrays:
+        """What the search works on."""
+        owners = np.array(self._owners, dtype=np.float64)
+        return LaneArrays(self.segments, owners, self._starts, self._items, self._grid)
 
     def locate(self, x_m: float, y_m: float, yaw_rad: float, heading_m: float = HEADING_M) -> LanePosition:
         """Return where a pose lies: on the lane whose distance, plus `heading_m` (1 - cos(heading error)), is least."""

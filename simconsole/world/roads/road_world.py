@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from functools import partial
-from typing import Final
+from typing import Final, NamedTuple
 
 from simconsole.profiles.world import RandomRoute, RoadsProfile, RouteByEdges
 from simconsole.values.errors import ProfileError
@@ -13,23 +13,51 @@ from simconsole.world.roads.road_route import MAX_CURVATURE_1PM, route_over, too
 from simconsole.world.route import Route
 from simconsole.world.world import World
 
+
+class Roads(NamedTuple):
+    """A road map, and the way that the world's route takes over it."""
+
+    road_map: RoadMap
+    legs: tuple[Leg, ...]
+
+
+class RoadWorld(World):
+    """The world of a road map."""
+
+    def __init__(self, title: str, roads: Roads, route: Route) -> None:
+        super().__init__(title, route, partial(draw_roads, roads.road_map, route))
+        self.roads = roads
+
+
+def roads_of(world: World) -> Roads | None:
+    """Return the roads of a world; None: a course, whose rules nobody has written down."""
+    return world.roads if isinstance(world, RoadWorld) else None
+
+
+class Way(NamedTuple):
+    """A way over the lanes of a map, and the route that follows it."""
+
+    legs: tuple[Leg, ...]
+    route: Route
+
+
 SHORTEST_M: Final = 20.0
 _TURNS: Final = 30
 """Turns that are too tight for a car are driven round: as many are looked for."""
 
 
-def road_world(profile: RoadsProfile, road_map: RoadMap) -> World:
+def road_world(profile: RoadsProfile, road_map: RoadMap) -> RoadWorld:
     """Return the world of a profile with its map.
 
     Raises:
         ProfileError: no route that a car can drive leads over the map as the profile says.
     """
-    route = planned(profile, road_map)
-    return World(profile.title, route, partial(draw_roads, road_map, route))
+    way = planned(profile, road_map)
+    return RoadWorld(profile.title, Roads(road_map, way.legs), way.route)
 
 
-def planned(profile: RoadsProfile, road_map: RoadMap) -> Route:
-    """Return the route of a profile.
+def planned(profile: RoadsProfile, road_map: RoadMap) -> Way:
+    """Return the way of a profile.
 
     Raises:
         ProfileError: none that a car can drive leads over the map as the profile says.
@@ -45,9 +73,7 @@ def planned(profile: RoadsProfile, road_map: RoadMap) -> Route:
     return _drivable(profile, road_map, lambda graph: graph.between(start, goal), "route.goal")
 
 
-def _drivable(
-    profile: RoadsProfile, road_map: RoadMap, find: Callable[[LaneGraph], list[Leg] | None], key: str
-) -> Route:
+def _drivable(profile: RoadsProfile, road_map: RoadMap, find: Callable[[LaneGraph], list[Leg] | None], key: str) -> Way:
     closed: list[Connection] = []
     problem = "no way for a car leads there"
     for _ in range(_TURNS):
@@ -60,7 +86,7 @@ def _drivable(
         route = route_over(road_map, legs)
         turn = too_tight(road_map, legs, route)
         if turn is None:
-            return route
+            return Way(tuple(legs), route)
         closed.append(turn)
         edges = [road_map.edges[road_map.lanes[lane].edge].id for lane in (turn.from_lane, turn.to_lane)]
         radius_m = 1.0 / MAX_CURVATURE_1PM

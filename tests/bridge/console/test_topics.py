@@ -5,7 +5,8 @@ from typing import Any
 import pytest
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
-from simconsole.bridge.console.topics import ONCE, is_due, quaternion
+from simconsole.bridge.console.published_tick import ONCE, quaternion
+from simconsole.bridge.console.topics import is_due
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.link import LinkProfile, LocalisationProfile
 from simconsole.values.signals import NEVER_TICKS, Event, Mode, Reason

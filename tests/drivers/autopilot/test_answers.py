@@ -4,12 +4,15 @@ import pytest
 
 from simconsole.drivers.autopilot.answers import Answers, make_tracker
 from simconsole.drivers.path_tracker.geometric import GeometricTracker
+from simconsole.drivers.path_tracker.signal_stops import Light, SignalStops
 from simconsole.drivers.path_tracker.state_estimator import VehicleMotion
 from simconsole.drivers.path_tracker.tracker import Tracker
 from simconsole.drivers.path_tracker.tracker_settings import HATCHBACK, TRACKERS
 from simconsole.profiles.course_plan import CoursePlan, Straight
+from simconsole.values.signals import SignalState
 from simconsole.world.course import Course
 from simconsole.world.planning import solve
+from simconsole.world.rules.approaches import StopLine
 
 
 def straight() -> Course:
@@ -65,3 +68,15 @@ def test_the_end_is_told_once_and_only_where_the_autopilot_has_stopped_there() -
         assert command is not None
     assert asked.statistics.at_end
     assert said == ["stands at the end of the course"]
+
+
+def test_lights_are_obeyed_before_anything_is_asked_for() -> None:
+    lights = SignalStops([StopLine(60.0, 0, 0)], ["light"], 3.4)
+    said: list[str] = []
+    asked = Answers(make_tracker("preview", straight(), HATCHBACK, 0.04), said.append, lights)
+    asked.see({("light", 0): Light(SignalState.STOP_AND_REMAIN, SignalState.STOP_AND_REMAIN, -1.0, 0.0)})
+    asked.answer(at(40.0, 0.0, 8.0), True, 0.0)
+    command = asked.answer(at(40.16, 0.0, 8.0), True, 0.02)
+    assert command is not None
+    assert command.jerk_mps3 < 0.0
+    assert command.speed_mps < 8.0

@@ -37,6 +37,6 @@ def test_route_that_nobody_can_drive_is_refused(route: RouteByEdges | RouteByPla
 
 @pytest.mark.parametrize("seed", range(4))
 def test_turns_too_tight_for_a_car_are_driven_round(seed: int) -> None:
-    route = planned(profile(RandomRoute(seed=seed, length_m=700.0)), generated_map(*TOWN))
+    route = planned(profile(RandomRoute(seed=seed, length_m=700.0)), generated_map(*TOWN)).route
     assert float(abs(route.curvature).max()) <= 0.21
     assert route.length_m >= 650.0

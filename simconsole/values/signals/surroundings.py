@@ -1,0 +1,60 @@
+"""What surrounds the vehicle, short and of fixed width, and which rules of the road it breaks."""
+
+from typing import Final, NamedTuple
+
+FAR: Final = 1e9
+"""Distance in m, time in s or speed limit in m/s where there is nobody, no signal and no limit."""
+
+
+class Situation(NamedTuple):
+    """The road around the vehicle; everything else of a world is drawn from the map, the tick and other streams."""
+
+    tick: float  # simulated time, in ticks since the start of the drive; 0 where the world has no rules
+    lane: float  # place in the map's lanes; -1: off the map, or no map
+    edge: float  # place in the map's edges; -1 likewise
+    lane_s_m: float  # of base_link, along the lane from its beginning
+    lateral_m: float  # of base_link, left of the lane's centre line
+    speed_limit_mps: float  # of this lane; FAR: none
+    signal_state: float  # `SignalState` of the next signal ahead
+    signal_distance_m: float  # from the vehicle's front to its stop line, negative beyond it; FAR: none
+    signal_change_s: float  # until its state changes; FAR: never
+    lead_gap_m: float  # to the road user ahead in the lane; FAR: nobody
+    lead_speed_mps: float
+    time_to_collision_s: float  # FAR: never
+
+
+NO_SITUATION: Final = Situation(
+    tick=0.0,
+    lane=-1.0,
+    edge=-1.0,
+    lane_s_m=0.0,
+    lateral_m=0.0,
+    speed_limit_mps=FAR,
+    signal_state=0.0,
+    signal_distance_m=FAR,
+    signal_change_s=FAR,
+    lead_gap_m=FAR,
+    lead_speed_mps=0.0,
+    time_to_collision_s=FAR,
+)
+"""A world without rules."""
+
+
+class Rules(NamedTuple):
+    """Which rules of the road the vehicle breaks, 1 while it does: each rise is an event.
+
+    A breach begins and ends only after it has been seen, or not seen, for a while: the times count that.
+    """
+
+    red_light: float  # its front has passed a stop line at red; shown for a while
+    wrong_way: float
+    off_road: float
+    speeding: float
+    red_light_s: float  # since it was passed
+    wrong_way_s: float
+    off_road_s: float
+    speeding_s: float
+
+
+NO_RULES_BROKEN: Final = Rules(*(0.0,) * len(Rules._fields))
+"""A vehicle that obeys, or a world without rules."""
