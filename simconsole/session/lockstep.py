@@ -66,6 +66,7 @@ class LockstepLink:
     ) -> None:
         self._bridge = bridge
         self._period_ticks = period_ticks
+        self._later = np.arange(float(period_ticks))  # by how many ticks a command is older in the ticks of a period
         self._timeout_s = timeout_s
         self._stop = stop
         self._silent_at: float | None = None  # the command's sequence number when the controller went silent
@@ -119,7 +120,7 @@ class LockstepLink:
         count = min(len(commands), self.unseen(tick) + 1)
         commands[:count] = remote
         if remote.age_ticks < NEVER_TICKS:
-            commands[:count, _AGE_AT] += np.arange(count)
+            commands[:count, _AGE_AT] += self._later[:count]
         return count
 
     def _look(self, tick: int) -> RemoteCommand:

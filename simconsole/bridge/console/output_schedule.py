@@ -17,7 +17,8 @@ class ScheduledOutput:
         self.standard = output.name
         self.name = name
         self.type = output.type
-        self.latched = output.rate_hz == ONCE
+        self.watched = output.watched
+        self.latched = output.rate_hz == ONCE or output.watched is not None
         self.rate_hz = rate_hz
         self.build: Callable[[PublishedTick], Any] = output.build
 
@@ -35,24 +36,35 @@ class OutputSchedule:
         rated = [(output, profile.rates_hz.get(output.name, output.rate_hz)) for output in outputs]
         self.outputs = tuple(ScheduledOutput(output, names[output.name], rate) for output, rate in rated if rate)
         self._rates_hz = tuple({output.rate_hz for output in self.outputs})
+        self._watched = tuple({output.watched for output in self.outputs if output.watched is not None})
+        self._seen: list[float | None] = [None] * len(self._watched)
         self._together: dict[tuple[bool, ...], tuple[ScheduledOutput, ...]] = {}
-        """The topics that are due when these rates are, found once: a drive has a handful of such sets."""
+        """The topics that are due by these rates and changes, found once: a drive has a handful of such sets."""
         self._last_tick: int | None = None  # that was asked about
 
     def due(self, snapshot: Snapshot, *, odometry: bool = False) -> tuple[ScheduledOutput, ...]:
         """Return the topics that are due in this tick, in the table's order; with `odometry`, that in any case."""
         tick, last, tick_hz = snapshot.tick, self._last_tick, snapshot.tick_hz
         self._last_tick = tick
-        which = (odometry, *[is_due(tick, last, tick_hz, rate_hz) for rate_hz in self._rates_hz])
+        rates = [is_due(tick, last, tick_hz, rate_hz) for rate_hz in self._rates_hz]
+        values: list[float | None] = [float(snapshot.vector[column]) for column in self._watched]
+        changes = [now != before for now, before in zip(values, self._seen, strict=True)]
+        self._seen = values
+        which = (odometry, *rates, *changes)
         found = self._together.get(which)
         if found is None:
-            rates = {rate_hz for rate_hz, due in zip(self._rates_hz, which[1:], strict=True) if due}
-            found = self._together[which] = tuple(
-                output
-                for output in self.outputs
-                if output.rate_hz in rates or (odometry and output.standard == ODOMETRY)
-            )
+            found = self._together[which] = self._due_by(odometry, rates, changes)
         return found
+
+    def _due_by(self, odometry: bool, rates: list[bool], changes: list[bool]) -> tuple[ScheduledOutput, ...]:
+        """Return the topics that are due if these of the rates are, and these of the watched columns have changed."""
+        rates_hz = {rate_hz for rate_hz, due in zip(self._rates_hz, rates, strict=True) if due}
+        changed = {column for column, due in zip(self._watched, changes, strict=True) if due}
+        return tuple(
+            output
+            for output in self.outputs
+            if output.rate_hz in rates_hz or output.watched in changed or (odometry and output.standard == ODOMETRY)
+        )
 
 
 def topic_names(profile: BridgeProfile, standard: list[str]) -> dict[str, str]:

@@ -20,6 +20,8 @@ class OutputTopic(NamedTuple):
     type: str
     rate_hz: float
     build: Callable[["PublishedTick"], Any]
+    watched: int | None = None
+    """A column of the state vector: the topic is latched, and due with each change of it, too."""
 
 
 class PublishedTick:

@@ -14,7 +14,7 @@ from simconsole.bridge.messages import Registry
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.labels import commander_label, link_label, mode_label, notice_label, reason_label
 from simconsole.values.signals import NEVER_TICKS, Link, Mode, RemoteCommand, VehicleState
-from simconsole.values.state_vector import Snapshot
+from simconsole.values.state_vector import LAYOUT, Snapshot
 from simconsole.world.rules.road_signals import RoadSignals
 
 CLOCK: Final = "/clock"
@@ -63,6 +63,7 @@ autoware_vehicle_msgs/GearReport autoware_vehicle_msgs/TurnIndicatorsReport auto
 autoware_vehicle_msgs/ControlModeReport simconsole_msgs/Arbitration simconsole_msgs/Controller simconsole_msgs/Bridge
 simconsole_msgs/BridgeClient rcl_interfaces/Log nav_msgs/Path geometry_msgs/PoseStamped
 """
+_MODE_AT: Final = LAYOUT.arbitration.at("mode")
 _NO_COVARIANCE: Final = [0.0] * 36
 _NO_IMU_COVARIANCE: Final = [0.0] * 9
 # Numbers of autoware_vehicle_msgs/ControlModeReport.
@@ -132,7 +133,7 @@ class Outputs:
             OutputTopic(HAZARD_LIGHTS_STATUS, "autoware_vehicle_msgs/HazardLightsReport", 30.0, self._hazard_lights),
             OutputTopic(CONTROL_MODE, "autoware_vehicle_msgs/ControlModeReport", 30.0, self._control_mode),
             OutputTopic(ARBITRATION, "simconsole_msgs/Arbitration", 50.0, self._arbitration),
-            OutputTopic(MODE, "std_msgs/String", 10.0, self._mode),
+            OutputTopic(MODE, "std_msgs/String", 10.0, self._mode, _MODE_AT),
             OutputTopic(LATERAL_AUTHORITY, "std_msgs/Float64", 10.0, self._lateral_authority),
             OutputTopic(LONGITUDINAL_AUTHORITY, "std_msgs/Float64", 10.0, self._longitudinal_authority),
             OutputTopic(BRIDGE, "simconsole_msgs/Bridge", 1.0, self._bridge),

@@ -63,6 +63,8 @@ class LockstepConnection:
         self.peer = peer
         self.session: ClientSession | None = None
         self.closed = False
+        self.selected = 0
+        """For which of the selector's events its owner waits."""
         self._owner = owner
         self._profile = profile
         self._web = ServerProtocol(max_size=message_limit(Role.NONE, profile.limits), logger=_logger)
@@ -123,10 +125,9 @@ class LockstepConnection:
         if self.closed:
             return
         session = self.session
-        if session is not None and self._web.state is State.OPEN:
-            self._collect()
-            self._unsent += self._writer.batch(partial(session.next_text, now_ns), UNSENT_BYTES - len(self._unsent))
         self._collect()
+        if session is not None and self._web.state is State.OPEN:
+            self._unsent += self._writer.batch(partial(session.next_text, now_ns), UNSENT_BYTES - len(self._unsent))
         self._send()
 
     def check(self) -> None:

@@ -321,7 +321,8 @@ class LockstepBridge:
             return
         connection = LockstepConnection(self, sock, f"{address[0]}:{address[1]}", self._profile)
         self._connections[connection] = now_s
-        self._selector.register(sock, selectors.EVENT_READ, connection)
+        connection.selected = selectors.EVENT_READ
+        self._selector.register(sock, connection.selected, connection)
 
     def _close_stale(self, now_s: float) -> None:
         """Close connections that have not become, or no longer are, WebSockets after a while (N12)."""
@@ -358,5 +359,6 @@ class LockstepBridge:
             self._remove(connection)
             return
         wanted = selectors.EVENT_READ | (selectors.EVENT_WRITE if connection.waits_to_write else 0)
-        if self._selector.get_key(connection.socket).events != wanted:
+        if connection.selected != wanted:
+            connection.selected = wanted
             self._selector.modify(connection.socket, wanted, connection)

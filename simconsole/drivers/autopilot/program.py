@@ -22,15 +22,16 @@ from simconsole.drivers.path_tracker.tracker_settings import TIMING, TRACKERS
 from simconsole.profiles.files.vehicle_files import load_vehicle
 from simconsole.profiles.files.world_files import load_world
 from simconsole.values.errors import BridgeError, OtherDriveError
+from simconsole.values.labels import mode_label
 from simconsole.values.signals import Mode
 from simconsole.world.kinds.worlds import open_world
 
 ODOMETRY: Final = "/odom"
-ARBITRATION: Final = "/console/arbitration"
+MODE: Final = "/console/mode"
 COMMAND: Final = "/control/command/control_cmd"
 CONTROL: Final = "autoware_control_msgs/Control"
 
-_DRIVING: Final = (Mode.AUTONOMOUS, Mode.SHARED, Mode.TAKEOVER_REQUESTED)
+_DRIVING: Final = frozenset(map(mode_label, (Mode.AUTONOMOUS, Mode.SHARED, Mode.TAKEOVER_REQUESTED)))
 """In the other modes the remote share belongs to the console itself: a parking hold or a stop."""
 _PATIENCE_S: Final = 10.0  # for the console to open its port
 _WAIT_S: Final = 0.25  # how often `stop` is checked while no message comes
@@ -86,12 +87,12 @@ def run(
     lights = signal_stops(world, car)
     answers = Answers(make_tracker(tracker, world.route, car_model(car), delay_s), _say, lights)
     with BridgeClient(url, token=token, certificate=certificate, drive=drive, until_good_bye=True) as client:
-        odometry, arbitration, command, signals = (
-            (rename or {}).get(topic, namespace + topic) for topic in (ODOMETRY, ARBITRATION, COMMAND, SIGNALS)
+        odometry, mode, command, signals = (
+            (rename or {}).get(topic, namespace + topic) for topic in (ODOMETRY, MODE, COMMAND, SIGNALS)
         )
         client.advertise(command, CONTROL)
         client.subscribe(odometry, "nav_msgs/Odometry")
-        client.subscribe(arbitration, "simconsole_msgs/Arbitration")
+        client.subscribe(mode, "std_msgs/String")
         if lights is not None:
             client.subscribe(signals, SIGNALS_TYPE)
         client.connect(patience_s)
@@ -139,7 +140,7 @@ def _answer(
             answers.see(lights_of(message))
             continue
         if topic != topics.odometry:
-            engaged = message.mode in _DRIVING
+            engaged = message.data in _DRIVING
             continue
         seen = motion_of(message)
         if seen is None:

@@ -133,7 +133,10 @@ def stability(car: Car, p: CarParameters, handbrake: float, step_s: float) -> fl
         error = clip(model, -most, most) - body.yaw_rate_radps
         beyond = error - clip(error, -DEAD_RADPS, DEAD_RADPS)
         wanted = clip(p.aids.stability_nms * beyond, -p.aids.stability_most_nm, p.aids.stability_most_nm)
-    torque = car.aids.stability_nm + (wanted - car.aids.stability_nm) * (step_s / (STABILITY_LAG_S + step_s))
+    before = car.aids.stability_nm
+    if wanted == 0.0 and before == 0.0:
+        return 0.0
+    torque = before + (wanted - before) * (step_s / (STABILITY_LAG_S + step_s))
     return torque if abs(torque) > 1e-6 else 0.0
 
 

@@ -40,8 +40,9 @@ def make_step(tyre: TyreModel, rim_moment: KingpinMoment) -> Callable[[Row, Row,
         car = read(previous, CAR)
         grips = friction_shares(car, load_parameters(parameters))
         request = request_of(command, car)
+        aids = aids_left_on(load_parameters(parameters).aids, command)
         for _ in range(substeps):
-            car = substep(car, parameters, grips, request, command, tyre, rim_moment)
+            car = substep(car, parameters, grips, request, aids, tyre, rim_moment)
         write(row, CAR, car)
         write(row, LAYOUT.vehicle, vehicle_state(car, load_parameters(parameters), command.automatic))
 
@@ -79,10 +80,9 @@ def lever(gear: float) -> float:
 
 
 @kernel
-def with_aids(p: CarParameters, command: VehicleCommand) -> CarParameters:
-    """Return the parameters with the driver aids off that somebody has switched off."""
-    aids = p.aids
-    switched = AidParameters(
+def aids_left_on(aids: AidParameters, command: VehicleCommand) -> AidParameters:
+    """Return the driver aids with those off that somebody has switched off."""
+    return AidParameters(
         anti_lock=0.0 if command.anti_lock_off > 0.0 else aids.anti_lock,
         traction=0.0 if command.traction_off > 0.0 else aids.traction,
         stability=0.0 if command.stability_off > 0.0 else aids.stability,
@@ -92,12 +92,17 @@ def with_aids(p: CarParameters, command: VehicleCommand) -> CarParameters:
         stability_nms=aids.stability_nms,
         stability_most_nm=aids.stability_most_nm,
     )
+
+
+@kernel
+def with_aids(p: CarParameters, aids: AidParameters) -> CarParameters:
+    """Return the parameters with these driver aids."""
     return CarParameters(
         body=p.body,
         steering=p.steering,
         engine=p.engine,
         gears=p.gears,
-        aids=switched,
+        aids=aids,
         front=p.front,
         rear=p.rear,
         patch_1=p.patch_1,
@@ -113,7 +118,7 @@ def substep(
     parameters: Row,
     grips: FrictionShares,
     request: Request,
-    command: VehicleCommand,
+    aids: AidParameters,
     tyre: TyreModel,
     rim_moment: KingpinMoment,
 ) -> Car:
@@ -134,7 +139,7 @@ def substep(
     )
     rate = rack_rate(p.steering, moved, request.road_wheel_rad, axles.aligning_nm)
     torque = hand_wheel_torque(p.steering, axles.aligning_nm, rate, car.body.vx_mps, moved.rim_friction_share)
-    line = driveline_step(car, with_aids(load_parameters(parameters), command), request, axles, STEP_S)
+    line = driveline_step(car, with_aids(load_parameters(parameters), aids), request, axles, STEP_S)
     motion = body_step(car, load_parameters(parameters), axles, STEP_S)
     front = motion.front
     rear = motion.rear

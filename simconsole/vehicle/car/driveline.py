@@ -6,9 +6,9 @@ from simconsole.values.kernels import clip, kernel
 from simconsole.values.signals import Request
 from simconsole.vehicle.car.aids import Brakes, brake_torques, hill_hold, stability, traction
 from simconsole.vehicle.car.axles import Axles, Contact
-from simconsole.vehicle.car.engine import EngineDrive, engine_drive, net_torque
+from simconsole.vehicle.car.engine import EngineDrive, engine_drive, net_torque, torques_at
 from simconsole.vehicle.car.gearbox import COOLED, Turning, bite, gear_ratio, gearbox_step, matched_throttle
-from simconsole.vehicle.car.parameters import AxleParameters, CarParameters
+from simconsole.vehicle.car.parameters import AxleParameters, CarParameters, GearParameters
 from simconsole.vehicle.car.powertrain import Capacity, Inertia, Shafts, braked, solve_shafts
 from simconsole.vehicle.car.state import AidState, Car, Gearbox, ShaftState, Wheel
 
@@ -68,9 +68,10 @@ def driveline_step(car: Car, p: CarParameters, request: Request, axles: Axles, s
     right = axles.rr if at_rear else axles.fr
     grip = traction(p.aids, driven_axle, car.aids.throttle_share, left, right, mean * driven_axle.radius_m, step_s)
     asked = request.throttle * grip.share
+    can = torques_at(p.engine, before.engine_radps)
     automatic_nm = 0.0
     if request.automatic != 0.0 or car.box.lever_adopted == 0.0:
-        automatic_nm = net_torque(p.engine, before.engine_radps, before.engine_running, asked)
+        automatic_nm = net_torque(can, before.engine_running, asked)
     turning = Turning(
         engine_radps=before.engine_radps,
         wheel_radps=mean,
@@ -85,7 +86,7 @@ def driveline_step(car: Car, p: CarParameters, request: Request, axles: Axles, s
     aids = AidState(grip.kept_share, stability(car, p, request.handbrake, step_s), held.hold_left_s, held.hold_brake)
     brakes = brake_torques(car, p, request, axles, aids, step_s)
     throttle = matched_throttle(p.gears, box, asked, before.engine_radps, mean)
-    drive = engine_drive(p.engine, before.engine_radps, before.engine_running, throttle, clutch_nm == 0.0)
+    drive = engine_drive(p.engine, can, before.engine_radps, before.engine_running, throttle, clutch_nm == 0.0)
     fl = spun(p.front, car.fl, axles.fl, step_s)
     fr = spun(p.front, car.fr, axles.fr, step_s)
     rl = spun(p.rear, car.rl, axles.rl, step_s)
@@ -115,13 +116,22 @@ def driveline_step(car: Car, p: CarParameters, request: Request, axles: Axles, s
         fr = shafts.right_radps
         rl = braked(rl, p.rear.per_wheel_inertia_kgm2, rl_nms)
         rr = braked(rr, p.rear.per_wheel_inertia_kgm2, rr_nms)
+    kept = shaft_state(before, p.gears, shafts, ratio, drive.running, step_s)
+    return Driveline(box=box, shafts=kept, brakes=brakes, aids=aids, fl_radps=fl, fr_radps=fr, rl_radps=rl, rr_radps=rr)
+
+
+@kernel
+def shaft_state(
+    before: ShaftState, p: GearParameters, shafts: Shafts, ratio: float, running: float, step_s: float
+) -> ShaftState:
+    """Return what stays of the shafts for the next step, with the heat that the slipping clutch has got."""
     slip = shafts.engine_radps - 0.5 * ratio * (shafts.left_radps + shafts.right_radps)
     worn_j = abs(shafts.clutch_impulse_nms * slip)
-    cooled = before.clutch_heat * (1.0 - step_s * p.gears.cooling_per_s)
-    heat = clip(cooled + p.gears.heat_per_j * worn_j, 0.0, BURNT)
-    kept = ShaftState(
+    cooled = before.clutch_heat * (1.0 - step_s * p.cooling_per_s)
+    heat = clip(cooled + p.heat_per_j * worn_j, 0.0, BURNT)
+    return ShaftState(
         engine_radps=shafts.engine_radps,
-        engine_running=drive.running,
+        engine_running=running,
         engine_impulse_nms=shafts.engine_impulse_nms,
         clutch_impulse_nms=shafts.clutch_impulse_nms,
         left_impulse_nms=shafts.left_impulse_nms,
@@ -130,7 +140,6 @@ def driveline_step(car: Car, p: CarParameters, request: Request, axles: Axles, s
         clutch_heat=heat,
         clutch_hot=1.0 if heat >= 1.0 or (before.clutch_hot != 0.0 and heat > COOLED) else 0.0,
     )
-    return Driveline(box=box, shafts=kept, brakes=brakes, aids=aids, fl_radps=fl, fr_radps=fr, rl_radps=rl, rr_radps=rr)
 
 
 @kernel

@@ -6,6 +6,14 @@ from simconsole.values.kernels import clip, kernel
 from simconsole.vehicle.car.parameters import EngineParameters
 
 
+class EngineTorques(NamedTuple):
+    """What the engine can give at one speed, in N m."""
+
+    friction_nm: float
+    closed_nm: float  # of combustion, at closed throttle
+    full_nm: float  # at the flywheel, at full throttle
+
+
 class EngineDrive(NamedTuple):
     """Combustion torque of this step. Friction is separate: it acts even without combustion."""
 
@@ -60,27 +68,39 @@ def idle_torque(p: EngineParameters, speed_radps: float, friction_nm: float) -> 
 
 
 @kernel
-def net_torque(p: EngineParameters, speed_radps: float, running: float, throttle: float) -> float:
-    """Return what the engine gives at its flywheel at this speed and throttle, friction taken off; 0 if it is off."""
-    if running == 0.0:
-        return 0.0
+def torques_at(p: EngineParameters, speed_radps: float) -> EngineTorques:
+    """Return what the engine can give at a speed."""
     friction = engine_friction(p, speed_radps)
-    closed = idle_torque(p, speed_radps, friction)
-    return closed + throttle * (full_torque(p, speed_radps) + friction - closed) - friction
+    return EngineTorques(friction, idle_torque(p, speed_radps, friction), full_torque(p, speed_radps))
+
+
+@kernel
+def combustion_torque(can: EngineTorques, throttle: float) -> float:
+    """Return the torque of combustion at a throttle, in N m."""
+    return can.closed_nm + throttle * (can.full_nm + can.friction_nm - can.closed_nm)
+
+
+@kernel
+def net_torque(can: EngineTorques, running: float, throttle: float) -> float:
+    """Return what the engine gives at its flywheel at a throttle, friction taken off; 0 if it is off."""
+    return combustion_torque(can, throttle) - can.friction_nm if running != 0.0 else 0.0
 
 
 @kernel
 def engine_drive(
-    p: EngineParameters, speed_radps: float, running: float, throttle: float, driveline_open: bool
+    p: EngineParameters,
+    can: EngineTorques,
+    speed_radps: float,
+    running: float,
+    throttle: float,
+    driveline_open: bool,
 ) -> EngineDrive:
-    """Return the torque of one step.
+    """Return the torque of one step; `can` is what the engine can give at this speed.
 
     Below `stall_radps` a running engine dies; then its compression adds to its friction. A dead engine is cranked by
     the starter as long as the driveline is open (clutch pressed, or no gear engaged), and burns again from
     `fire_radps`, also when the wheels turn it: there is no ignition key.
     """
-    friction = engine_friction(p, speed_radps)
     if speed_radps < (p.stall_radps if running != 0.0 else p.fire_radps):
-        return EngineDrive(p.starter_nm if driveline_open else 0.0, friction + p.hold_nm, 0.0)
-    closed = idle_torque(p, speed_radps, friction)
-    return EngineDrive(closed + throttle * (full_torque(p, speed_radps) + friction - closed), friction, 1.0)
+        return EngineDrive(p.starter_nm if driveline_open else 0.0, can.friction_nm + p.hold_nm, 0.0)
+    return EngineDrive(combustion_torque(can, throttle), can.friction_nm, 1.0)

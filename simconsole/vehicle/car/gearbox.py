@@ -203,9 +203,9 @@ def automatic_torque(p: GearParameters, box: Gearbox, request: Request, turning:
 def automatic_clutch(p: GearParameters, box: Gearbox, request: Request, turning: Turning, step_s: float) -> float:
     """Return the pedal position of the automatic clutch, one step further to where it transmits the wanted torque."""
     share = clip(automatic_torque(p, box, request, turning) * p.per_clutch_nm, 0.0, 1.0)
-    target = p.bite_open - sqrt(share) * (p.bite_open - p.bite_closed)
-    if share == 1.0:
-        target = 0.0  # fully closed, as with the pedal released
+    target = 0.0  # fully closed, as with the pedal released
+    if share < 1.0:
+        target = p.bite_open - sqrt(share) * (p.bite_open - p.bite_closed)
     rate = p.clutch_opening_per_s if target > box.clutch else p.clutch_closing_per_s
     return approach(box.clutch, target, rate * step_s)
 

@@ -24,7 +24,7 @@ from simconsole.vehicle.car.pac2002 import (
 )
 from simconsole.vehicle.car.parameters import AxleParameters, SteeringParameters
 from simconsole.vehicle.car.steering import ROLLING_MPS
-from simconsole.vehicle.car.tyre import PEAK_DEMAND
+from simconsole.vehicle.car.tyre import carcass_damping
 
 MOST_NOMINAL: Final = 2.0
 """Nominal loads above which a tyre slides at the same deflection as there."""
@@ -39,6 +39,14 @@ class TirForce(NamedTuple):
     deflection_y_m: float
     demand: float
     moment_nm: float  # as it rolls ahead
+
+
+@kernel
+def demand_of(p: Pac2002, s: Slip) -> float:
+    """Return the demand of grip: the force that the stiffness at small slip would give, over the most there is."""
+    share_x = stiffness_x(p, s.load_n) * s.along / peak_x(p, s)
+    share_y = stiffness_y(p, s.load_n, s.camber_rad) * s.across / peak_y(p, s)
+    return sqrt(share_x * share_x + share_y * share_y)
 
 
 def make_tyre(p: Pac2002) -> TyreModel:
@@ -71,16 +79,9 @@ def make_tyre(p: Pac2002) -> TyreModel:
         x = (deflection_x_m - step_s * slip_x_mps) / (1.0 + way * axle.decay_x_per_m)
         y = (deflection_y_m - step_s * slip_y_mps) / (1.0 + way * axle.decay_y_per_m)
         load = load_n if load_n > LEAST_LOAD_N else LEAST_LOAD_N
-        along = x * axle.decay_x_per_m
-        across = -y * axle.decay_y_per_m
         # Stiffness over load falls without bound: under an impact the patch would slide only at an absurd deflection.
         usual = clip(load, LEAST_LOAD_N, MOST_NOMINAL * p.fnomin)
-        firm_x = stiffness_x(p, usual) * along
-        firm_y = stiffness_y(p, usual, camber_rad) * across
-        s = Slip(along, across, usual, camber_rad, friction)
-        share_x = firm_x / peak_x(p, s)
-        share_y = firm_y / peak_y(p, s)
-        demand = sqrt(share_x * share_x + share_y * share_y)
+        demand = demand_of(p, Slip(x * axle.decay_x_per_m, -y * axle.decay_y_per_m, usual, camber_rad, friction))
         if demand > axle.slide_demand:
             share = axle.slide_demand / demand
             x = x * share
@@ -89,23 +90,17 @@ def make_tyre(p: Pac2002) -> TyreModel:
         turned = side * p.tyreside
         across = -turned * y * axle.decay_y_per_m
         given = force_of(p, Slip(x * axle.decay_x_per_m, across, load, turned * camber_rad, friction))
-        damping = axle.locked_damping_nspm
-        if wheel_radps != 0.0:
-            held = clip(1.0 - demand / PEAK_DEMAND, 0.0, 1.0)
-            damping = axle.damping_nspm * held * held
         touching = clip(load_n * (1.0 / LEAST_LOAD_N), 0.0, 1.0)
+        damping = carcass_damping(axle, wheel_radps, demand)
         rate = damping * clip(load_n * axle.per_static_n, 0.0, 4.0) * (1.0 / step_s)
         force_x = given.x_n * touching + rate * (x - deflection_x_m)
         force_y = turned * given.y_n * touching + rate * (y - deflection_y_m)
         force = sqrt(force_x * force_x + force_y * force_y)
         limit = touching * (given.peak_x_n if given.peak_x_n > given.peak_y_n else given.peak_y_n)
-        if force > limit:
-            share = limit / force
-            force_x = force_x * share
-            force_y = force_y * share
+        share = limit / force if force > limit else 1.0
         return TirForce(
-            force_x_n=force_x,
-            force_y_n=force_y,
+            force_x_n=force_x * share,
+            force_y_n=force_y * share,
             deflection_x_m=x,
             deflection_y_m=y,
             demand=demand,

@@ -36,6 +36,31 @@ def falling(fall: float, over: float) -> float:
 
 
 @kernel
+def camber_slip(axle: AxleParameters, camber_rad: float) -> float:
+    """Return the slip that does as much as a wheel's lean."""
+    lean = axle.camber_slip * camber_rad
+    if camber_rad > 0.0:
+        lean += axle.camber_offset
+    if camber_rad < 0.0:
+        lean -= axle.camber_offset
+    return lean
+
+
+@kernel
+def carcass_damping(axle: AxleParameters, wheel_radps: float, demand: float) -> float:
+    """Return the damping of the carcass in N s/m, at static load.
+
+    That of a rolling tyre fades with grip: sliding rubber stores no energy. A wheel that the brake holds moves with
+    the whole car instead of its own small inertia, so it can and must be damped more, at any grip: where it slides, its
+    deflection stays the same and there is nothing to damp.
+    """
+    if wheel_radps == 0.0:
+        return axle.locked_damping_nspm
+    held = clip(1.0 - demand / PEAK_DEMAND, 0.0, 1.0)
+    return axle.damping_nspm * held * held
+
+
+@kernel
 def tyre(
     axle: AxleParameters,
     friction: float,
@@ -66,11 +91,7 @@ def tyre(
         step_s: length of the step.
     """
     rolled = step_s * abs(wheel_radps) * axle.radius_m
-    lean = axle.camber_slip * camber_rad
-    if camber_rad > 0.0:
-        lean += axle.camber_offset
-    if camber_rad < 0.0:
-        lean -= axle.camber_offset
+    lean = camber_slip(axle, camber_rad)
     fade_x = 1.0 + rolled * axle.decay_x_per_m
     fade_y = 1.0 + rolled * axle.decay_y_per_m
     per_fade = 1.0 / (fade_x * fade_y)  # one division for both
@@ -88,14 +109,7 @@ def tyre(
         y = y * share
         demand = axle.slide_demand
     elastic = load_n / (1.0 + 0.25 * demand * demand)
-    # The damping of a rolling tyre's carcass fades with grip: sliding rubber stores no energy. A wheel that the brake
-    # holds moves with the whole car instead of its own small inertia, so it can and must be damped more, at any grip:
-    # where it slides, its deflection stays the same and there is nothing to damp.
-    damping = axle.locked_damping_nspm
-    if wheel_radps != 0.0:
-        held = clip(1.0 - demand / PEAK_DEMAND, 0.0, 1.0)
-        damping = axle.damping_nspm * held * held
-    rate = damping * (1.0 + over) * (1.0 / step_s)
+    rate = carcass_damping(axle, wheel_radps, demand) * (1.0 + over) * (1.0 / step_s)
     force_x = stiffness_x * x * elastic + rate * (x - deflection_x_m)
     force_y = stiffness_y * y * elastic + rate * (y - deflection_y_m)
     square = force_x * force_x + force_y * force_y

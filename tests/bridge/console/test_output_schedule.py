@@ -4,10 +4,11 @@ from typing import Any
 import pytest
 
 from simconsole.bridge.console.output_schedule import OutputSchedule, topic_names
-from simconsole.bridge.console.topics import CLOCK, ODOMETRY, TF_STATIC, Outputs
+from simconsole.bridge.console.topics import CLOCK, MODE, ODOMETRY, TF_STATIC, Outputs
 from simconsole.bridge.messages import standard_registry
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import ProfileError
+from simconsole.values.signals import Mode
 
 
 def schedule(**profile: Any) -> OutputSchedule:
@@ -39,6 +40,15 @@ def test_odometry_comes_where_it_is_asked_for(snapshot: Any) -> None:
     planned = schedule()
     assert ODOMETRY not in [output.name for output in planned.due(snapshot(1))]
     assert [output.name for output in planned.due(snapshot(2), odometry=True)][-1] == ODOMETRY
+
+
+def test_the_mode_is_due_at_first_with_each_change_and_at_its_rate(snapshot: Any) -> None:
+    planned = schedule()
+    (mode,) = (output for output in planned.outputs if output.name == MODE)
+    assert mode.latched
+    modes = {tick: Mode.MANUAL if 31 <= tick < 60 else Mode.PARKED for tick in range(1, 101)}
+    due = [tick for tick in modes if mode in planned.due(snapshot(tick, mode=modes[tick]))]
+    assert due == [1, 25, 31, 50, 60, 75, 100]
 
 
 def test_names_and_rates_are_the_profile_s() -> None:

@@ -12,6 +12,7 @@ from websockets.sync.server import ServerConnection, serve
 
 from simconsole.drivers.autopilot.program import run
 from simconsole.values.errors import BridgeError, ProfileError
+from simconsole.values.labels import mode_label
 from simconsole.values.signals import Mode
 
 WHEELBASE_M = 2.6
@@ -33,10 +34,8 @@ def odometry(step: int, x: float, y: float, yaw: float, speed: float | None, yaw
     return json.dumps({"op": "publish", "topic": "/odom", "msg": message})
 
 
-def arbitration(mode: Mode) -> str:
-    """The share is 1 while parked too: then it is the console's own parking hold."""
-    message = {"mode": int(mode), "remote_lateral": 1.0}
-    return json.dumps({"op": "publish", "topic": "/console/arbitration", "msg": message})
+def driving(mode: Mode) -> str:
+    return json.dumps({"op": "publish", "topic": "/console/mode", "msg": {"data": mode_label(mode)}})
 
 
 class Server:
@@ -61,7 +60,7 @@ class Server:
         x, y, yaw, speed, wheel = 100.0, 0.3, 0.0, 8.0, 0.0
         for step in range(self.steps):
             engaged = step >= self.engage_at
-            socket.send(arbitration(Mode.AUTONOMOUS if engaged else Mode.PARKED))
+            socket.send(driving(Mode.AUTONOMOUS if engaged else Mode.PARKED))
             socket.send(odometry(step, x, y, yaw, speed, speed * math.tan(wheel) / WHEELBASE_M))
             command = json.loads(socket.recv())["msg"]
             self.stamps.append(command["stamp"] == {"sec": step // 50, "nanosec": step % 50 * 20_000_000})
@@ -103,7 +102,7 @@ def test_every_odometry_gets_one_command_with_its_stamp() -> None:
     operations = sorted((wish["op"], wish["topic"], wish["type"].replace("/msg/", "/")) for wish in server.wishes)
     assert operations == [
         ("advertise", "/control/command/control_cmd", "autoware_control_msgs/Control"),
-        ("subscribe", "/console/arbitration", "simconsole_msgs/Arbitration"),
+        ("subscribe", "/console/mode", "std_msgs/String"),
         ("subscribe", "/odom", "nav_msgs/Odometry"),
     ]
 
