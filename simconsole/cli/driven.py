@@ -98,5 +98,9 @@ def _rows(result: DriveResult, metrics: dict[str, Any], link: str) -> list[tuple
             ("lateral error", f"RMS {rms:.2f} cm, max {largest:.2f} cm (base_link against the theoretical path)")
         )
         rows.append(("autopilot's link", link))
+    wheel = metrics["force_feedback"]
+    if wheel and wheel["eased_from_s"] is not None:
+        least = f"{100.0 * wheel['least_share']:.0f} % of the car's torque at {wheel['least_at_kmh']:.0f} km/h"
+        rows.append(("force feedback", f"eased to {least}, {wheel['eased_s']:.1f} s in all"))
     rows += [(f"mode at {c['t_s']:7.2f} s", f"{c['mode']} ({c['reason']})") for c in metrics["mode_changes"]]
     return rows + _driven_rows(result)

@@ -9,7 +9,7 @@ from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.vehicle import CarProfile, VehicleProfile
 from simconsole.profiles.view import HudProfile
 from simconsole.values.key_codes import Key
-from simconsole.values.labels import commander_label, gear_label, mode_label, notice_label, reason_label
+from simconsole.values.labels import commander_label, gear_label, is_eased, mode_label, notice_label, reason_label
 from simconsole.values.layout import read
 from simconsole.values.signals import NEVER_TICKS, Event, GateLimit, Mode
 from simconsole.values.state_vector import LAYOUT, Snapshot
@@ -39,10 +39,6 @@ class HudSettings(NamedTuple):
     top_gear: int = 6
     manual_button: str = ""  # label of the button that asks for manual control; empty: there is none
     reset_button: str = ""
-
-
-EASED_SHARE: Final = 0.95
-"""Share of the car's torque below which a driver is told that this wheel cannot bear all of it."""
 
 
 class HudMemory(NamedTuple):
@@ -146,7 +142,7 @@ def force_label(snapshot: Snapshot, memory: HudMemory) -> tuple[str, bool, float
         return ("lost" if memory.motor_seen else "none"), memory.motor_seen, clipped_s
     if 0.0 <= snapshot.t_s - clipped_s < CLIP_SHOWN_S:
         return "limit", True, clipped_s
-    eased = snapshot.torque.enabled > 0.0 and 0.0 < snapshot.torque.car_share < EASED_SHARE
+    eased = is_eased(snapshot.torque.enabled, snapshot.torque.car_share)
     return ("eased" if eased else "on"), True, clipped_s
 
 

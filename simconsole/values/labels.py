@@ -67,6 +67,9 @@ _NOTICES: Final[dict[float, str]] = {
     Notice.NOT_ENGAGED: "parked: nobody has asked for autonomy",
 }
 
+EASED_BELOW: Final = 0.995
+"""A wheel that bears less of the car's torque than this, 100 % to the nearest percent, is said to be eased."""
+
 LINK_NOBODY: Final = "nobody"
 LINK_LOST: Final = "lost"
 LINK_CONNECTING: Final = "connecting"
@@ -121,6 +124,16 @@ def arbitration_label(mode: float, reason: float, refusal: float, notice: float,
     if notice:
         parts.append(notice_label(notice))
     return "; ".join(parts)
+
+
+def is_eased(enabled: float, car_share: float) -> bool:
+    """Return whether the wheel gives less of the car's torque than the car has; a servo (share 0) gives none."""
+    return enabled > 0.0 and 0.0 < car_share < EASED_BELOW
+
+
+def eased_label(car_share: float) -> str:
+    """Return what is told when a wheel bears a share of the car's torque only."""
+    return f"force feedback eased to {100.0 * car_share:.0f} %"
 
 
 def commander_label(commander: float) -> str:

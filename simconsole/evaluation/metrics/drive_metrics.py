@@ -10,6 +10,7 @@ from simconsole.evaluation.metrics.fault_metrics import plain_spans
 from simconsole.evaluation.metrics.table import Drive
 from simconsole.evaluation.metrics.takeovers import takeovers
 from simconsole.evaluation.metrics.track import Track, track
+from simconsole.evaluation.metrics.wheel_metrics import force_feedback
 from simconsole.values.labels import mode_label, reason_label
 from simconsole.values.units import KMH_PER_MPS
 from simconsole.world.route import Route
@@ -124,6 +125,7 @@ def metrics(
             for change in (mode_changes(drive, way) if changes is None else changes)
         ],
         "faults": plain_spans(drive, faults),
+        "force_feedback": force_feedback(drive),
     }
 
 

@@ -14,7 +14,6 @@ from tests.devices.benched_wheel import LAG_S, TICK_HZ, BenchedWheel
 from tests.devices.hands_off import ENDS, Draw, draws, true_force
 from tests.samples import Sample
 
-
 SLOW = Draw(inertia=2.0, torque=0.5, friction_nm=0.3, delay_ms=32)
 """A first look at it is short: a motor that pulls back and friction that pushes would explain it, too."""
 
