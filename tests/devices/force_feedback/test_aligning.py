@@ -13,7 +13,7 @@ from simconsole.devices.force_feedback.aligning import (
 from simconsole.devices.force_feedback.force_settings import ForceSettings, force_settings
 from simconsole.devices.force_feedback.guidance import GuidanceReference
 from simconsole.devices.force_feedback.rim import Rim
-from simconsole.devices.force_feedback.torque import torque_parts
+from simconsole.devices.force_feedback.torque_parts import torque_parts
 from simconsole.profiles.device import CockpitProfile
 from simconsole.values.platform import RimStiffness
 from simconsole.values.signals import VehicleState
