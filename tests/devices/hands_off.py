@@ -177,8 +177,10 @@ def let_go(vehicle: str, start: Bend, true: ForceFeedback, found: ForceFeedback,
             torques.append(snapshot.torque.torque_nm)
     share = snapshot.torque.car_share
     dry_nm = found.motor.friction_nm + found.friction_nm
+    assert isinstance(session.vehicle, CarProfile)
+    trail_m = session.vehicle.steering.caster_trail_m + session.vehicle.steering.pneumatic_trail_m
     stiff = rim_stiffness(session.vehicle).at_12mps * found.car_share * share
-    band = math.degrees(dry_nm / stiff) if stiff else math.inf
+    band = math.degrees(dry_nm / stiff) if trail_m and stiff else math.inf  # tyres without trail pull it nowhere
     return Released(np.array(rads), np.array(torques), share, swings(np.degrees(rads)), band)
 
 

@@ -25,7 +25,7 @@ from tests.devices.hands_off import (
 )
 from tests.samples import Sample
 
-CARS = ("hatchback", "light_van")
+CARS = ("hatchback", "light_van", "commonroad_bmw320i")
 SWING_DEG = 1.5
 """Smaller ways are within the friction of the wheel."""
 PUSH = Arm(1000.0, 0.0, 0.0, 3.0, 0.0)

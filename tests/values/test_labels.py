@@ -26,6 +26,11 @@ def test_every_mode_reason_and_validity_has_words_of_its_own() -> None:
         assert not any(character.isdigit() for text in texts for character in text), texts
 
 
+def test_no_mode_is_named_in_words_that_only_a_standard_knows() -> None:
+    assert mode_label(Mode.MINIMAL_RISK) == "SAFE STOP"
+    assert not [mode for mode in Mode if "RISK" in mode_label(mode) or "_" in mode_label(mode)]
+
+
 def test_words_are_short_and_printable() -> None:
     for text in (*map(reason_label, Reason), *map(notice_label, Notice)):
         assert len(text.split()) <= 7
