@@ -6,9 +6,8 @@ from contextlib import ExitStack
 
 import pytest
 
-from simconsole.devices.force_feedback.gentle_push import Gentle, Turn, gentle
+from simconsole.devices.force_feedback.gentle_push import Gentle, Turn, gentle, move
 from simconsole.devices.force_feedback.motor import SimulatedWheelPort
-from simconsole.devices.setup import wheel_bench
 from simconsole.devices.setup.device_commands import unpaced
 from simconsole.devices.setup.wheel_bench import WheelBench
 from simconsole.profiles.device import CockpitProfile
@@ -41,10 +40,10 @@ def test_key_ends_a_force_that_is_left_to_end_by_itself(t500: CockpitProfile, mo
     left: list[int] = []
     levels: list[float] = []
     ticks: list[int] = []
-    write, moved = SimulatedWheelPort.write, wheel_bench.move
+    write = SimulatedWheelPort.write
 
-    def move(turn: Turn, rules: Gentle, target_rad: float, sense: float, *, moving: bool = False) -> float:
-        at = moved(turn, rules, target_rad, sense, moving=moving)
+    def moved(turn: Turn, rules: Gentle, target_rad: float, sense: float, *, moving: bool = False) -> float:
+        at = move(turn, rules, target_rad, sense, moving=moving)
         if moving:
             left.append(len(ticks))
         return at
@@ -56,7 +55,7 @@ def test_key_ends_a_force_that_is_left_to_end_by_itself(t500: CockpitProfile, mo
     def pace(tick_hz: int) -> Callable[[int], None]:
         return ticks.append
 
-    monkeypatch.setattr(wheel_bench, "move", move)
+    monkeypatch.setattr("simconsole.devices.setup.wheel_bench.move", moved)
     monkeypatch.setattr(SimulatedWheelPort, "write", noted)
     force = t500.force_feedback
     assert force is not None
