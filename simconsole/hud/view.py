@@ -49,6 +49,7 @@ class HudMemory(NamedTuple):
     motor_seen: bool = False  # the wheel has had a motor in this drive
     clipped_s: float = -1e9  # when force was last cut off
     stop_reason: float | None = None  # why the car has come to its stop: STOPPED itself only says that it stands
+    eased: bool = False  # the last picture showed that the wheel gives a share of the car's torque only
 
 
 class HudView(NamedTuple):
@@ -142,7 +143,10 @@ def force_label(snapshot: Snapshot, memory: HudMemory) -> tuple[str, bool, float
         return ("lost" if memory.motor_seen else "none"), memory.motor_seen, clipped_s
     if 0.0 <= snapshot.t_s - clipped_s < CLIP_SHOWN_S:
         return "limit", True, clipped_s
-    eased = is_eased(snapshot.torque.enabled, snapshot.torque.car_share)
+    torque = snapshot.torque
+    eased = is_eased(torque.enabled, torque.car_share)
+    if memory.eased and torque.enabled > 0.0:
+        eased = 0.0 < torque.car_share < 1.0  # until it gives all of it again: a steady speed is no flicker
     return ("eased" if eased else "on"), True, clipped_s
 
 
@@ -213,7 +217,7 @@ def view(
         can_up=can_up,
         link=link,
     )
-    return shown, HudMemory(kmh, shown_s, motor_seen, clipped_s, stop_reason)
+    return shown, HudMemory(kmh, shown_s, motor_seen, clipped_s, stop_reason, force == "eased")
 
 
 def _stop_reason(mode: float, reason: float, memory: HudMemory) -> float | None:

@@ -182,6 +182,15 @@ def test_sign_of_the_motor_tells_of_a_wheel_that_bears_a_share_only() -> None:
     ]
 
 
+def test_sign_of_an_eased_motor_does_not_flicker_where_the_share_is_nearly_all() -> None:
+    memory, shown = HudMemory(), []
+    for tick, share in enumerate((0.996, 0.994, 0.996, 0.994, 1.0, 0.996)):
+        row = snapshot(tick, sample__wheel_motor=1.0, torque__car_share=share, torque__enabled=1.0)
+        content, memory = view(row, 0.0, memory, HudSettings())
+        shown.append(content.force)
+    assert shown == ["on", "eased", "eased", "eased", "on", "on"]
+
+
 def test_can_is_shown_only_where_there_is_a_bus() -> None:
     assert view(snapshot(), 0.0, HudMemory(), HudSettings())[0].can_up is None
     assert view(snapshot(), 0.0, HudMemory(), HudSettings(), can_up=False)[0].can_up is False
