@@ -3,6 +3,7 @@
 Labels are short enough for a glance (at most seven words per alert) and never depend on colour.
 """
 
+from collections.abc import Sequence
 from typing import Final
 
 from simconsole.values.signals import Commander, LinkState, Mode, Notice, Reason, Validity
@@ -134,6 +135,12 @@ def is_eased(enabled: float, car_share: float) -> bool:
 def eased_label(car_share: float) -> str:
     """Return what is told when a wheel bears a share of the car's torque only."""
     return f"force feedback eased to {100.0 * car_share:.0f} %"
+
+
+def borne_label(shares: Sequence[tuple[float, float]]) -> str:
+    """Return how much of a car's torque a wheel bears: speeds in km/h, and the share at each of them."""
+    eased = [f"{100.0 * share:.0f} % at {kmh:g} km/h" for kmh, share in shares if share < EASED_BELOW]
+    return ", ".join(eased) or f"all up to {shares[-1][0]:g} km/h"
 
 
 def commander_label(commander: float) -> str:

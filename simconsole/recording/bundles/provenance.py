@@ -9,7 +9,7 @@ from typing import Final
 import msgspec
 
 from simconsole.values.errors import RecordingError
-from simconsole.values.labels import EASED_BELOW
+from simconsole.values.labels import borne_label
 
 NOTE_CHARS: Final = 500
 ID_CHARS: Final = 64
@@ -114,11 +114,8 @@ def facts(provenance: Provenance) -> dict[str, str]:
 
 def _torque_words(shares: tuple[TorqueShare, ...]) -> str:
     """Return how much of the car's torque the wheel bears: all up to a speed, then less; nothing without a motor."""
-    if not shares:
-        return ""
-    eased = [f"{100.0 * at.share:.0f} % at {at.speed_kmh:g} km/h" for at in shares if at.share < EASED_BELOW]
-    borne = ", ".join(eased) or f"all up to {shares[-1].speed_kmh:g} km/h"
-    return f"of the car's torque: {borne}"
+    borne = [(at.speed_kmh, at.share) for at in shares]
+    return f"of the car's torque: {borne_label(borne)}" if borne else ""
 
 
 def utc_now() -> str:
