@@ -217,7 +217,14 @@ def view(
         can_up=can_up,
         link=link,
     )
-    return shown, HudMemory(kmh, shown_s, motor_seen, clipped_s, stop_reason, force == "eased")
+    return shown, HudMemory(
+        shown_kmh=kmh,
+        shown_s=shown_s,
+        motor_seen=motor_seen,
+        clipped_s=clipped_s,
+        stop_reason=stop_reason,
+        eased=force == "eased",
+    )
 
 
 def _stop_reason(mode: float, reason: float, memory: HudMemory) -> float | None:
