@@ -103,5 +103,9 @@ def _rows(result: DriveResult, metrics: dict[str, Any], link: str) -> list[tuple
         spread, largest = manual["lateral_deviation_m"] * 100.0, manual["lateral_max_m"] * 100.0
         shown = f"{manual['distance_m']:.1f} m, lateral position: SD {spread:.1f} cm, max {largest:.1f} cm"
         rows.append(("by the person", shown))
+    wheel = metrics["force_feedback"]
+    if wheel and wheel["eased_from_s"] is not None:
+        least = f"{100.0 * wheel['least_share']:.0f} % of the car's torque at {wheel['least_at_kmh']:.0f} km/h"
+        rows.append(("force feedback", f"eased to {least}, {wheel['eased_s']:.1f} s in all"))
     rows += [(f"mode at {c['t_s']:7.2f} s", f"{c['mode']} ({c['reason']})") for c in metrics["mode_changes"]]
     return rows + _driven_rows(result)

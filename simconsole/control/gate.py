@@ -136,8 +136,7 @@ def gate(
     wheel = _road_wheel(
         request.road_wheel_rad, finite_or(before.road_wheel_rad, 0.0), vehicle, limits, settings, tick_s
     )
-    brake_step = limits.brake_slew_per_s * tick_s
-    brake = _pedal(request.brake, _SAFE_BRAKE, before.brake, brake_step, brake_step)
+    brake = _brake(request.brake, arbitration.person_brake, before.brake, limits, settings, tick_s)
     braked = _at_least(request.brake, brake.value, settings.brake_override)
     cut = mode == Mode.PARKED or mode >= Mode.MINIMAL_RISK or braked
     throttle = _throttle(request.throttle, before.throttle, cut, limits, settings, tick_s)
@@ -235,6 +234,17 @@ def _pedal(wanted: float, safe: float, before: float, up: float, down: float) ->
     if moved != ranged:
         active |= GateLimit.RATE
     return Passed(moved, active)
+
+
+@kernel
+def _brake(
+    wanted: float, foot: float, before: float, limits: Limits, settings: ControlSettings, tick_s: float
+) -> Passed:
+    """Return the brake; where the person's foot asks for more of it, no mode's rate holds the foot back."""
+    up, down = limits.brake_slew_per_s, limits.brake_slew_per_s
+    if foot >= wanted and foot > before:
+        up = max(up, settings.manual_pedal_slew_per_s)
+    return _pedal(wanted, _SAFE_BRAKE, before, up * tick_s, down * tick_s)
 
 
 @kernel

@@ -9,7 +9,7 @@ from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.vehicle import CarProfile, VehicleProfile
 from simconsole.profiles.view import HudProfile
 from simconsole.values.key_codes import Key
-from simconsole.values.labels import commander_label, gear_label, mode_label, notice_label, reason_label
+from simconsole.values.labels import commander_label, gear_label, is_eased, mode_label, notice_label, reason_label
 from simconsole.values.layout import read
 from simconsole.values.signals import NEVER_TICKS, Event, GateLimit, Mode
 from simconsole.values.state_vector import LAYOUT, Snapshot
@@ -41,10 +41,6 @@ class HudSettings(NamedTuple):
     reset_button: str = ""
 
 
-EASED_SHARE: Final = 0.95
-"""Share of the car's torque below which a driver is told that this wheel cannot bear all of it."""
-
-
 class HudMemory(NamedTuple):
     """What the display remembers from one picture to the next."""
 
@@ -53,6 +49,7 @@ class HudMemory(NamedTuple):
     motor_seen: bool = False  # the wheel has had a motor in this drive
     clipped_s: float = -1e9  # when force was last cut off
     stop_reason: float | None = None  # why the car has come to its stop: STOPPED itself only says that it stands
+    eased: bool = False  # the last picture showed that the wheel gives a share of the car's torque only
 
 
 class HudView(NamedTuple):
@@ -146,7 +143,10 @@ def force_label(snapshot: Snapshot, memory: HudMemory) -> tuple[str, bool, float
         return ("lost" if memory.motor_seen else "none"), memory.motor_seen, clipped_s
     if 0.0 <= snapshot.t_s - clipped_s < CLIP_SHOWN_S:
         return "limit", True, clipped_s
-    eased = snapshot.torque.enabled > 0.0 and 0.0 < snapshot.torque.car_share < EASED_SHARE
+    torque = snapshot.torque
+    eased = is_eased(torque.enabled, torque.car_share)
+    if memory.eased and torque.enabled > 0.0:
+        eased = 0.0 < torque.car_share < 1.0  # until it gives all of it again: a steady speed is no flicker
     return ("eased" if eased else "on"), True, clipped_s
 
 
@@ -217,7 +217,14 @@ def view(
         can_up=can_up,
         link=link,
     )
-    return shown, HudMemory(kmh, shown_s, motor_seen, clipped_s, stop_reason)
+    return shown, HudMemory(
+        shown_kmh=kmh,
+        shown_s=shown_s,
+        motor_seen=motor_seen,
+        clipped_s=clipped_s,
+        stop_reason=stop_reason,
+        eased=force == "eased",
+    )
 
 
 def _stop_reason(mode: float, reason: float, memory: HudMemory) -> float | None:

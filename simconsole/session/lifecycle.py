@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import msgspec
 
 from simconsole import __version__
+from simconsole.devices.force_feedback.aligning import shares_by_speed
 from simconsole.processes.lifetimes import Interrupt, remove_half_made, undone
 from simconsole.processes.shared_memory import sweep
 from simconsole.profiles.files.loader import to_text
@@ -22,11 +23,12 @@ from simconsole.recording.log_header import ACTS, ROAD_USERS, LogHeader, message
 from simconsole.session.opening import Opened, open_headless, open_realtime
 from simconsole.session.provenance import package_versions, provenance_at_start, with_devices
 from simconsole.session.seat import look_for_devices
-from simconsole.tick.advance import Console, ConsoleState, advance
+from simconsole.tick.advance import SETTINGS, Console, ConsoleState, advance
 from simconsole.tick.assembly import ResolvedSession, assemble
 from simconsole.tick.loop import come_to_rest, run
 from simconsole.values.errors import RecordingError
 from simconsole.values.host.jit import compiled
+from simconsole.values.layout import read
 from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE
 from simconsole.values.state_vector import INPUT_WIDTH, Snapshot, TickInputs
 from simconsole.world.traffic.road_users import ENCODING as ROAD_USERS_ENCODING
@@ -152,5 +154,7 @@ def _bundle(resolved: ResolvedSession, console: Console, folder: Path, given: Gi
         source_sha256=sources_sha256(console),
         session_sha256=hashlib.sha256(text.encode()).hexdigest(),
     )
-    provenance = provenance_at_start(resolved.session.title, given)
+    has_motor = console.force_feedback is not None
+    shares = shares_by_speed(read(console.settings, SETTINGS.force)) if has_motor else ()
+    provenance = provenance_at_start(resolved.session.title, given, shares)
     return BundleWriter(folder, header, {SESSION_FILE: text, **maps}, package_versions(), provenance)

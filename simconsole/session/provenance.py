@@ -13,7 +13,15 @@ from typing import Final
 import msgspec
 
 from simconsole import __version__
-from simconsole.recording.bundles.provenance import Device, Given, Machine, Provenance, Source, utc_now
+from simconsole.recording.bundles.provenance import (
+    Device,
+    Given,
+    Machine,
+    Provenance,
+    Source,
+    TorqueShare,
+    utc_now,
+)
 from simconsole.values.protocols import DeviceIdentity
 
 PACKAGES: Final = (
@@ -36,12 +44,13 @@ GIT_S: Final = 5.0
 _PACKAGE: Final = Path(__file__).resolve().parents[1]
 
 
-def provenance_at_start(title: str, given: Given) -> Provenance:
+def provenance_at_start(title: str, given: Given, shares: Sequence[tuple[float, float]] = ()) -> Provenance:
     """Return all that is known before any device is open.
 
     Args:
         title: of the session.
         given: what whoever starts the drive says of it.
+        shares: speeds in km/h, and the share of the car's torque that the wheel bears there.
 
     Raises:
         RecordingError: a text of `given` is too long.
@@ -55,6 +64,7 @@ def provenance_at_start(title: str, given: Given) -> Provenance:
         notes=given.notes,
         machine=_machine(),
         source=_source(_PACKAGE),
+        torque_shares=tuple(TorqueShare(speed_kmh=speed_kmh, share=share) for speed_kmh, share in shares),
     )
 
 

@@ -3,6 +3,7 @@
 Labels are short enough for a glance (at most seven words per alert) and never depend on colour.
 """
 
+from collections.abc import Sequence
 from typing import Final
 
 from simconsole.values.signals import Commander, LinkState, Mode, Notice, Reason, Validity
@@ -71,6 +72,9 @@ _NOTICES: Final[dict[float, str]] = {
     Notice.SPEEDING: "faster than the speed limit",
 }
 
+EASED_BELOW: Final = 0.995
+"""A wheel that bears less of the car's torque than this, 100 % to the nearest percent, is said to be eased."""
+
 LINK_NOBODY: Final = "nobody"
 LINK_LOST: Final = "lost"
 LINK_CONNECTING: Final = "connecting"
@@ -125,6 +129,22 @@ def arbitration_label(mode: float, reason: float, refusal: float, notice: float,
     if notice:
         parts.append(notice_label(notice))
     return "; ".join(parts)
+
+
+def is_eased(enabled: float, car_share: float) -> bool:
+    """Return whether the wheel gives less of the car's torque than the car has; a servo (share 0) gives none."""
+    return enabled > 0.0 and 0.0 < car_share < EASED_BELOW
+
+
+def eased_label(car_share: float) -> str:
+    """Return what is told when a wheel bears a share of the car's torque only."""
+    return f"force feedback eased to {100.0 * car_share:.0f} %"
+
+
+def borne_label(shares: Sequence[tuple[float, float]]) -> str:
+    """Return how much of a car's torque a wheel bears: speeds in km/h, and the share at each of them."""
+    eased = [f"{100.0 * share:.0f} % at {kmh:g} km/h" for kmh, share in shares if share < EASED_BELOW]
+    return ", ".join(eased) or f"all up to {shares[-1][0]:g} km/h"
 
 
 def commander_label(commander: float) -> str:

@@ -1,4 +1,7 @@
-"""How stiff a car holds its hand wheel about the middle: from its tyres, trails and steering assistance. Pure."""
+"""How stiff a car holds its hand wheel about the middle: from its tyres, trails and steering assistance. Pure.
+
+For a way as short as a swing's the steering's own friction is a spring, too; of a car without trail it is all there is.
+"""
 
 from typing import Final
 
@@ -12,7 +15,10 @@ SMALL_RAD: Final = 0.1 * RAD_PER_DEG
 
 
 def rim_stiffness(profile: VehicleProfile) -> RimStiffness:
-    """Return the stiffness of a vehicle's steering on level, dry ground; `NO_STIFFNESS` where it feels nothing."""
+    """Return the stiffness of a vehicle's steering on level, dry ground, of tyres or friction, whichever is stiffer.
+
+    It is `NO_STIFFNESS` where the hand wheel feels nothing.
+    """
     if isinstance(profile, BallProfile):
         return NO_STIFFNESS
     from simconsole.vehicle.car.car_platform import car_parameters
@@ -23,10 +29,11 @@ def rim_stiffness(profile: VehicleProfile) -> RimStiffness:
     stiff_n_per_rad = 2.0 * front.stiffness_y_per_m / front.decay_y_per_m * front.static_n
     moment_nm = stiff_n_per_rad * (steering.caster_trail_m + steering.pneumatic_trail_m) * SMALL_RAD
     across_rad = 2.0 * SMALL_RAD * profile.steering.ratio
+    friction_nm_per_rad = steering.hand_friction_nm * steering.per_friction_rad / profile.steering.ratio
 
     def slope(speed_mps: float) -> float:
         left_nm, right_nm = (hand_wheel_torque(steering, side * moment_nm, 0.0, speed_mps, 0.0) for side in (1.0, -1.0))
-        return (left_nm - right_nm) / across_rad
+        return max((left_nm - right_nm) / across_rad, friction_nm_per_rad)
 
     return RimStiffness(
         at_0mps=slope(0.0),

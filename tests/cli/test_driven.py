@@ -19,6 +19,7 @@ METRICS = {
     "duration_s": 12.0,
     "autonomous": PART,
     "manual": {"distance_m": 10.0, "lateral_deviation_m": 0.0234, "lateral_max_m": 0.1},
+    "force_feedback": {"least_share": 0.82, "least_at_kmh": 131.0, "eased_s": 4.5, "eased_from_s": 2.0},
     "mode_changes": [{"t_s": 1.5, "mode": "MANUAL", "reason": "controls ready"}],
 }
 
@@ -52,6 +53,7 @@ def test_a_good_drive_is_told_in_a_table(wanted: list[tuple[bool, bool]]) -> Non
     assert "RMS 1.23 cm, max 20.00 cm" in outcome.text
     assert "10.0 m, lateral position: SD 2.3 cm, max 10.0 cm" in outcome.text
     assert "mode at    1.50 s" in outcome.text
+    assert "eased to 82 % of the car's torque at 131 km/h, 4.5 s in all" in outcome.text
     assert "out/it/report.html" in outcome.text
     assert "scene.rrd" not in outcome.text
     assert ["packed", "17.4 MB, of a log of 122.4 MB"] in lines

@@ -76,6 +76,21 @@ def test_a_command_before_that_is_no_number_counts_as_the_middle_in_neutral(cont
     assert active(lost) == GateLimit.NON_FINITE
 
 
+@pytest.mark.parametrize("mode", Mode)
+def test_no_mode_holds_back_a_foot_that_brakes_harder(mode: Mode, control: ControlSettings) -> None:
+    step = max(control.manual_pedal_slew_per_s, limits_of(float(mode), control).brake_slew_per_s) * TICK_S
+
+    def braked(foot: float, asked: float, before: float) -> float:
+        arbitration = zeros(Arbitration)._replace(mode=float(mode), person_brake=foot)
+        request, command = zeros(Request)._replace(brake=asked), BEFORE._replace(brake=before)
+        return gate(request, REMOTE, arbitration, command, zeros(VehicleState), control, TICK_S, 0.0).brake
+
+    own = min(1.0, limits_of(float(mode), control).brake_slew_per_s * TICK_S)
+    assert braked(foot=1.0, asked=1.0, before=0.0) == pytest.approx(min(1.0, step))
+    assert braked(foot=0.4, asked=1.0, before=0.0) == pytest.approx(own), "the controller, or the stop, asks for more"
+    assert braked(foot=0.0, asked=0.0, before=1.0) == pytest.approx(1.0 - own), "nobody's foot: released as ever"
+
+
 @pytest.mark.parametrize("name", ["clutch", "handbrake"])
 def test_what_only_hands_and_feet_move_has_their_rate_in_every_mode(name: str, control: ControlSettings) -> None:
     step = control.manual_pedal_slew_per_s * TICK_S

@@ -38,8 +38,18 @@ class Draw(NamedTuple):
     delay_ms: int = 12
 
 
+ENDS = [
+    Draw(inertia, torque, friction_nm, delay_ms)
+    for inertia in (0.5, 2.0)
+    for torque in (0.5, 2.0)
+    for friction_nm in (0.03, 0.3)
+    for delay_ms in (5, 32)
+]
+"""The corners of the range that wheels of this class have."""
+
+
 def draws(rng: np.random.Generator, count: int) -> list[Draw]:
-    """Return a Latin hypercube over the range that wheels of this class have."""
+    """Return a Latin hypercube over that range."""
     shuffled = [(rng.permutation(count) + rng.random(count)) / count for _ in range(4)]
     return [
         Draw(2.0 ** (2.0 * a - 1.0), 2.0 ** (2.0 * b - 1.0), 0.03 + 0.27 * c, 5 + int(27.999 * d))
@@ -167,8 +177,10 @@ def let_go(vehicle: str, start: Bend, true: ForceFeedback, found: ForceFeedback,
             torques.append(snapshot.torque.torque_nm)
     share = snapshot.torque.car_share
     dry_nm = found.motor.friction_nm + found.friction_nm
+    assert isinstance(session.vehicle, CarProfile)
+    trail_m = session.vehicle.steering.caster_trail_m + session.vehicle.steering.pneumatic_trail_m
     stiff = rim_stiffness(session.vehicle).at_12mps * found.car_share * share
-    band = math.degrees(dry_nm / stiff) if stiff else math.inf
+    band = math.degrees(dry_nm / stiff) if trail_m and stiff else math.inf  # tyres without trail pull it nowhere
     return Released(np.array(rads), np.array(torques), share, swings(np.degrees(rads)), band)
 
 

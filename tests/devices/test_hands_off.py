@@ -12,6 +12,7 @@ from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.values.signals import Mode, Reason
 from tests.devices.closed_loop import Loop
 from tests.devices.hands_off import (
+    ENDS,
     TICK_HZ,
     Draw,
     Released,
@@ -24,18 +25,11 @@ from tests.devices.hands_off import (
 )
 from tests.samples import Sample
 
-CARS = ("hatchback", "light_van")
+CARS = ("hatchback", "light_van", "commonroad_bmw320i")
 SWING_DEG = 1.5
 """Smaller ways are within the friction of the wheel."""
 PUSH = Arm(1000.0, 0.0, 0.0, 3.0, 0.0)
 """A push of 3 N m, wherever the wheel goes."""
-ENDS = [
-    Draw(inertia, torque, friction_nm, delay_ms)
-    for inertia in (0.5, 2.0)
-    for torque in (0.5, 2.0)
-    for friction_nm in (0.03, 0.3)
-    for delay_ms in (5, 32)
-]
 
 
 @pytest.fixture(scope="module")

@@ -175,9 +175,20 @@ def test_sign_of_the_motor_says_on_limit_lost_or_none() -> None:
 
 
 def test_sign_of_the_motor_tells_of_a_wheel_that_bears_a_share_only() -> None:
-    shares = [(0.5, 1.0), (0.97, 1.0), (0.5, 0.0), (0.0, 1.0)]
+    shares = [(0.5, 1.0), (0.98, 1.0), (0.997, 1.0), (0.5, 0.0), (0.0, 1.0)]
     rows = [snapshot(sample__wheel_motor=1.0, torque__car_share=at, torque__enabled=on) for at, on in shares]
-    assert [view(row, 0.0, HudMemory(), HudSettings())[0].force for row in rows] == ["eased", "on", "on", "on"]
+    assert [view(row, 0.0, HudMemory(), HudSettings())[0].force for row in rows] == [
+        *("eased", "eased", "on", "on", "on")
+    ]
+
+
+def test_sign_of_an_eased_motor_does_not_flicker_where_the_share_is_nearly_all() -> None:
+    memory, shown = HudMemory(), []
+    for tick, share in enumerate((0.996, 0.994, 0.996, 0.994, 1.0, 0.996)):
+        row = snapshot(tick, sample__wheel_motor=1.0, torque__car_share=share, torque__enabled=1.0)
+        content, memory = view(row, 0.0, memory, HudSettings())
+        shown.append(content.force)
+    assert shown == ["on", "eased", "eased", "eased", "on", "on"]
 
 
 def test_can_is_shown_only_where_there_is_a_bus() -> None:

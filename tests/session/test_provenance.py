@@ -8,6 +8,7 @@ import sys
 from hashlib import sha256
 from pathlib import Path
 
+import msgspec
 import numba
 import numpy as np
 import pytest
@@ -68,6 +69,26 @@ def test_nothing_of_it_is_in_the_log(script: Path, tmp_path: Path) -> None:
     logs = [(tmp_path / name / "drive.log").read_bytes() for name in ("P01", "P02")]
     assert logs[0] == logs[1]
     assert open_bundle(tmp_path / "P02").manifest.provenance.participant == "P02", "kept at the end too"
+
+
+def test_manifest_says_how_much_of_the_cars_torque_the_wheel_bears(script: Path, tmp_path: Path) -> None:
+    """A motor of half the inertia that is late: it bears less, and less the faster the car."""
+    plain = session(script, 0.2)
+    force = plain.cockpit.force_feedback
+    assert force is not None
+    motor = msgspec.structs.replace(force.motor, inertia_kgm2=0.5 * force.motor.inertia_kgm2, delay_s=0.032)
+    weak = msgspec.structs.replace(plain.cockpit, force_feedback=msgspec.structs.replace(force, motor=motor))
+    without = msgspec.structs.replace(plain.cockpit, force_feedback=None)
+    shares = []
+    for name, cockpit in (("shipped", plain.cockpit), ("weak", weak), ("without", without)):
+        drive(msgspec.structs.replace(plain, cockpit=cockpit), tmp_path / name)
+        shares.append(open_bundle(tmp_path / name).manifest.provenance.torque_shares)
+    shipped, weaker, none = shares
+    assert [at.share for at in shipped if at.speed_kmh <= 90.0] == [1.0, 1.0, 1.0]
+    falling = [at.share for at in weaker]
+    assert falling == sorted(falling, reverse=True)
+    assert falling[-1] < 0.5
+    assert none == ()
 
 
 def test_a_drive_with_too_long_a_note_does_not_begin(script: Path, tmp_path: Path) -> None:

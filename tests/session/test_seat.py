@@ -1,16 +1,22 @@
 """The cockpit of a session: a wheel without a motor drives on and says so; a simulated one has its motor on it."""
 
+import resource
 from contextlib import ExitStack
+from pathlib import Path
 
 import msgspec
 import pytest
 
 from simconsole.devices.force_feedback.motor import MotorisedSource, WheelMotor
+from simconsole.devices.setup import device_commands
+from simconsole.devices.sources import kernel_limits
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.session.resolution import load_session, resolve
-from simconsole.session.seat import open_seating
+from simconsole.session.seat import look_for_devices, open_seating
 from simconsole.tick.assembly import ResolvedSession, assemble
+from simconsole.values.errors import DeviceError
 from simconsole.values.host.jit import plain
+from tests.drives.console import complaint, simconsole
 
 
 def session(driver: str) -> ResolvedSession:
@@ -56,3 +62,36 @@ def test_simulated_person_sits_at_a_wheel_with_a_motor() -> None:
         assert isinstance(seating.devices, MotorisedSource)
         assert seating.devices.poll(1).wheel_motor == 1.0
     assert not motor.obeys, "closed with the session"
+
+
+@pytest.mark.parametrize(("range_deg", "wrong"), [(1080.0, False), (900.0, True)])
+def test_check_and_drive_call_the_same_an_error(range_deg: float, wrong: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A wheel whose driver is set to another range steers the car wrong: neither lets it pass, in the same words."""
+    limits = kernel_limits.KernelLimits((), range_deg)
+    for module in (kernel_limits, device_commands):
+        monkeypatch.setattr(module, "wheel_limits", lambda cockpit: limits)
+    resolved = session("sdl")
+    line = "wheel.lock_to_lock_deg: value 1080: 900, what the wheel's driver is set to"
+    with ExitStack() as stack:
+        stack.callback(VirtualCockpit(resolved.cockpit).close)
+        checked = device_commands.check_devices(
+            resolved.cockpit, say=lambda said: None, duration_s=0.2, pace=lambda tick: None
+        )
+        assert (line in checked["problems"]) is wrong
+        if wrong:
+            with pytest.raises(DeviceError) as caught:
+                look_for_devices(resolved)
+            assert str(caught.value) == f"{resolved.cockpit.title}: {line}"
+        else:
+            look_for_devices(resolved)
+
+
+def test_drive_without_a_wheel_answers_before_it_compiles_anything(tmp_path: Path) -> None:
+    """An empty home holds no compiled kernels: to compile them takes a minute. The bound is of CPU time."""
+    homes = {"HOME": str(tmp_path), "XDG_CACHE_HOME": str(tmp_path)}
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = simconsole("drive", "--driver", "sdl", "--out", tmp_path / "out", **homes)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    assert "role wheel: value 044f:b65e" in complaint(done)
+    assert not (tmp_path / "out").exists()
+    assert after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime < 3.0

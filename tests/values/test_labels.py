@@ -1,7 +1,10 @@
 from simconsole.values.labels import (
+    EASED_BELOW,
     arbitration_label,
+    eased_label,
     gear_label,
     indicator_label,
+    is_eased,
     mode_label,
     notice_label,
     reason_label,
@@ -21,6 +24,11 @@ def test_every_mode_reason_and_validity_has_words_of_its_own() -> None:
         assert len(set(texts)) == len(members), texts
         # An unknown number names itself; a known one must not.
         assert not any(character.isdigit() for text in texts for character in text), texts
+
+
+def test_no_mode_is_named_in_words_that_only_a_standard_knows() -> None:
+    assert mode_label(Mode.MINIMAL_RISK) == "SAFE STOP"
+    assert not [mode for mode in Mode if "RISK" in mode_label(mode) or "_" in mode_label(mode)]
 
 
 def test_words_are_short_and_printable() -> None:
@@ -58,3 +66,9 @@ def test_one_line_tells_what_was_decided_refused_and_noticed() -> None:
         "AUTONOMOUS: driver asked; refused: too much lateral acceleration (12 m/s2); "
         "throttle is held: autopilot only steers"
     )
+
+
+def test_wheel_is_eased_only_while_it_gives_some_and_less_than_all() -> None:
+    assert [is_eased(1.0, share) for share in (0.0, 0.5, EASED_BELOW, 1.0)] == [False, True, False, False]
+    assert not is_eased(0.0, 0.5)
+    assert eased_label(0.994) == "force feedback eased to 99 %", "never 100"

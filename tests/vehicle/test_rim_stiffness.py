@@ -7,9 +7,14 @@ from simconsole.values.platform import NO_STIFFNESS
 from simconsole.vehicle.rim_stiffness import rim_stiffness
 
 
-def test_ball_and_car_without_trail_feel_nothing() -> None:
+def test_ball_feels_nothing() -> None:
     assert rim_stiffness(load_vehicle("ball")) == NO_STIFFNESS
-    assert rim_stiffness(load_vehicle("commonroad_bmw320i"))[:5] == (0.0,) * 5
+
+
+def test_car_without_trail_feels_its_own_friction() -> None:
+    """0.25 N m of it, over a short way: Dahl's spring."""
+    found = rim_stiffness(load_vehicle("commonroad_bmw320i"))
+    assert found[:5] == pytest.approx((0.25 * 296.03 / 15.5,) * 5, rel=1e-3)
 
 
 @pytest.mark.parametrize("name", ["hatchback", "light_van"])

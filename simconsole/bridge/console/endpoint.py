@@ -19,7 +19,7 @@ from simconsole.bridge.protocol.server_protocol import Outcome, Router
 from simconsole.bridge.protocol.topic_registry import Origin
 from simconsole.control.requests.refusals import SteeringLimit, broken_limit
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.values.labels import arbitration_label
+from simconsole.values.labels import arbitration_label, eased_label, is_eased
 from simconsole.values.signals import Event
 from simconsole.values.state_vector import Snapshot
 from simconsole.world.rules.road_signals import RoadSignals
@@ -87,6 +87,7 @@ class ConsoleBridge:
             for output in self._schedule.outputs
         }
         self.router.add_shared(ROSOUT, ROSOUT_TYPE)
+        self._eased = False  # it has been told
         self._happened: tuple[float, float, float, float] | None = None
         self._steering = steering
         self._implausible = 0.0  # as many commands have been refused by the arbiter so far
@@ -137,13 +138,20 @@ class ConsoleBridge:
         """Tell on /rosout what has changed; return the tick as published if anything has, and somebody listens."""
         if not self.router.has_subscribers(ROSOUT):
             return None
+        torque = snapshot.torque
+        if not self._eased and is_eased(torque.enabled, torque.car_share):
+            self._eased = True
+            tick = self._out.published_tick(snapshot)
+            text = eased_label(torque.car_share)
+            self.router.publish(ROSOUT, self._out.happening(tick, text, warns=True), now_ns)
         decided = snapshot.arbitration
         happened = (decided.mode, decided.reason, decided.refusal, snapshot.notice)
         if happened == self._happened:
             return None
         self._happened = happened
         tick = self._out.published_tick(snapshot)
-        self.router.publish(ROSOUT, self._out.happening(tick, arbitration_label(*happened, broken)), now_ns)
+        text, warns = arbitration_label(*happened, broken), bool(decided.refusal or snapshot.notice)
+        self.router.publish(ROSOUT, self._out.happening(tick, text, warns=warns), now_ns)
         return tick
 
     def counts(self) -> dict[str, int]:

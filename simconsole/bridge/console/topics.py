@@ -149,9 +149,9 @@ class Outputs:
             ),
         )
 
-    def happening(self, tick: PublishedTick, text: str) -> Any:
-        """Return `text`, what a tick decided, as a message of /rosout; a warning where it refuses or notices."""
-        log, warns = self._types["Log"], tick.snapshot.notice or tick.snapshot.arbitration.refusal
+    def happening(self, tick: PublishedTick, text: str, *, warns: bool) -> Any:
+        """Return `text`, what a tick decided, as a message of /rosout."""
+        log = self._types["Log"]
         return log(stamp=tick.stamp, level=log.WARN if warns else log.INFO, name="simconsole", msg=text)
 
     def published_tick(self, snapshot: Snapshot) -> PublishedTick:

@@ -71,9 +71,9 @@ invalid controller nor an implausible command renews the lease.
 A controller steers a safe stop that is not its fault: if it drove; or if a person did and their wheel is lost, and it
 is steady and differs from what they steered by at most 2 m/s2 of lateral acceleration.
 
-The person's brake counts in full in every mode, and the brake always beats the throttle. Authority moves from one side
-to the other over 0.6 s, starting from the command in force. Every figure is a setting of
-`simconsole/profiles/control.py`, with its source.
+The person's brake counts in full and at once in every mode, as fast as the foot is, and the brake always beats the
+throttle. Authority moves from one side to the other over 0.6 s, starting from the command in force. Every figure is a
+setting of `simconsole/profiles/control.py`, with its source.
 
 ## Turn indicators and hazard lights
 

@@ -12,11 +12,14 @@ from typing import Final
 
 from simconsole.devices.force_feedback.force_settings import ForceSettings
 from simconsole.values.kernels import clip, kernel
+from simconsole.values.units import MPS_PER_KMH
 
 NODE_MPS: Final = 12.0
 """Speed from one figure of the stiffness to the next."""
 FAST_MPS: Final = 40.0
 """Speed at which the damping of the car's own weaving is in full force; it grows with speed, as its need does."""
+SHARES_KMH: Final = (30.0, 60.0, 90.0, 120.0, 150.0, 180.0, 210.0)
+"""Speeds for which people are told how much of the car's torque a wheel bears."""
 SLOWEST_MPS: Final = 2.0
 """Below it the tyres' relaxation is taken as at this speed."""
 
@@ -51,6 +54,16 @@ def share_of(stiff: float, fast: float, force: ForceSettings) -> float:
     x_per_s = 2.0 * most / (a + sqrt(a * a + 4.0 * fast * force.return_s * most))
     most_nm_per_rad = force.inertia_kgm2 * x_per_s * x_per_s
     return 1.0 if stiff <= most_nm_per_rad else most_nm_per_rad / stiff
+
+
+def shares_by_speed(force: ForceSettings) -> tuple[tuple[float, float], ...]:
+    """Return the speeds of SHARES_KMH and the share of the car's torque that this wheel bears at each of them."""
+
+    def share(speed_mps: float) -> float:
+        rolling = speed_mps / (speed_mps + force.fade_mps)
+        return share_of(force.car_share * rolling * stiffness(speed_mps, force), speed_mps / FAST_MPS, force)
+
+    return tuple((speed_kmh, share(speed_kmh * MPS_PER_KMH)) for speed_kmh in SHARES_KMH)
 
 
 @kernel

@@ -31,6 +31,8 @@ DELAYS_S: Final = 0.06
 STEP_S: Final = 0.0005
 MOVING_RADPS: Final = 4.0 * RAD_PER_DEG
 SHORTEST_S: Final = 0.04
+_PHYSICAL: Final = ((0, 1, 2), (0, 1), (0, 2), (0,))
+"""Columns of a fit that may be left out, so that none is negative: no wheel drives itself."""
 
 
 class Identified(NamedTuple):
@@ -134,14 +136,14 @@ def fitted(tape: Tape) -> Identified:
     delays = np.arange(0.0, DELAYS_S, STEP_S)
     fits = [_fit(rad, _twice_integrated(asked, delay, tick_s), stretches, tick_s) for delay in delays]
     best = int(np.argmin([remainder for _, remainder in fits]))
+    (accel_per_nm, friction, damping), remainder = fits[best]
+    if not np.isfinite(remainder):
+        raise DeviceError("wheel: motion: value against its motor: a wheel that nobody holds")
     delay_s = float(delays[best])
     if 0 < best < len(delays) - 1:  # the vertex of the parabola through the three
         left, middle, right = (fits[best + side][1] ** 2 for side in (-1, 0, 1))
         delay_s += 0.5 * STEP_S * (left - right) / max(left - 2.0 * middle + right, 1e-30)
-    (accel_per_nm, friction, damping), remainder = fits[best]
-    if accel_per_nm <= 0.0:
-        raise DeviceError("wheel: motion: value against its motor: a wheel that nobody holds")
-    return Identified(delay_s, accel_per_nm, max(0.0, friction), max(0.0, damping), remainder)
+    return Identified(delay_s, accel_per_nm, friction, damping, remainder)
 
 
 def _stretches(rad: Array, tick_hz: int) -> list[tuple[int, int, float]]:
@@ -175,7 +177,11 @@ def _twice_integrated(asked_nm: Array, delay_s: float, tick_s: float) -> Array:
 def _fit(
     rad: Array, torque: Array, stretches: list[tuple[int, int, float]], tick_s: float
 ) -> tuple[tuple[float, float, float], float]:
-    """Return torque, friction and damping over inertia and the RMS of the remainder."""
+    """Return torque, friction and damping over inertia and the RMS of the remainder, infinite where none is possible.
+
+    A wheel turns with its motor, and nothing but its motor drives it: a short look at a slow wheel would else be
+    explained best by a motor that pulls back and friction that pushes.
+    """
     rows, targets = [], []
     for first, last, side in stretches:
         t = np.arange(last - first) * tick_s
@@ -188,9 +194,15 @@ def _fit(
         rows.append(block[:, :3])
         targets.append(block[:, 3])
     left, right = np.concatenate(rows), np.concatenate(targets)
-    found, *_ = np.linalg.lstsq(left, right, rcond=None)
-    if found[2] < 0.0:  # no wheel drives itself: without damping
-        found[:2], *_ = np.linalg.lstsq(left[:, :2], right, rcond=None)
-        found[2] = 0.0
+    fits = [_of_columns(left, right, used) for used in _PHYSICAL]
+    possible = [(found, remainder) for found, remainder in fits if found[0] > 0.0 and min(found) >= 0.0]
+    found, remainder = min(possible, key=lambda fit: fit[1], default=((0.0, 0.0, 0.0), np.inf))
+    return found, remainder
+
+
+def _of_columns(left: Array, right: Array, used: tuple[int, ...]) -> tuple[tuple[float, float, float], float]:
+    """Return the least squares over some of the three columns, 0 for the others, and the RMS of the remainder."""
+    found = np.zeros(3)
+    found[list(used)], *_ = np.linalg.lstsq(left[:, used], right, rcond=None)
     remainder = float(np.sqrt(np.mean((left @ found - right) ** 2)))
     return (float(found[0]), float(found[1]), float(found[2])), remainder

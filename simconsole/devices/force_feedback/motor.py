@@ -10,6 +10,7 @@ from typing import Final, NamedTuple, Protocol
 from simconsole.devices.force_feedback.simulated_wheel import SimulatedWheel
 from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.values.errors import DeviceError
+from simconsole.values.labels import eased_label, is_eased
 from simconsole.values.latency import Hop
 from simconsole.values.signals import MOTOR_UNKNOWN, DeviceSample
 from simconsole.values.state_vector import Snapshot
@@ -128,7 +129,8 @@ class WheelMotor:
             port: The device.
             force: Its profile.
             clock_s: The time of a snapshot in s: real in a paced drive, simulated in any other.
-            say: Called with one line when there is no force, when it is lost and when it is back.
+            say: Called with one line when there is no force, when it is lost, when it is back, and when the wheel
+                gives less of the car's torque than there is, once in a drive.
         """
         self._port = port
         self._force = force
@@ -140,6 +142,7 @@ class WheelMotor:
         self._level = 0.0
         self._runs = False
         self._say = say
+        self._eased = False  # somebody has been told
         self.failure: str | None = None
         self._tell(first=True)
 
@@ -159,6 +162,9 @@ class WheelMotor:
             return
         try:
             torque = snapshot.torque
+            if not self._eased and is_eased(torque.enabled, torque.car_share):
+                self._eased = True
+                self._say(f"{eased_label(torque.car_share)}: more of the car's torque would make this wheel swing")
             if torque.enabled > 0.0:
                 self._drive(torque.torque_nm, self._clock_s(snapshot))
             elif self._runs:

@@ -6,12 +6,13 @@ which nobody is driven, the loop has stood still, or any part is not finite.
 
 from typing import Final, NamedTuple
 
-from simconsole.devices.force_feedback.aligning import FAST_MPS, aligning, answered, share_of, stiffness
+from simconsole.devices.force_feedback.aligning import answered
 from simconsole.devices.force_feedback.estimator import WheelEstimate, at_rest, observe
 from simconsole.devices.force_feedback.force_settings import ForceSettings
-from simconsole.devices.force_feedback.guidance import GuidanceReference, guidance, guidance_reference
+from simconsole.devices.force_feedback.guidance import GuidanceReference, guidance_reference
 from simconsole.devices.force_feedback.pipe import ahead, delivered, filled
 from simconsole.devices.force_feedback.rim import Rim, turn
+from simconsole.devices.force_feedback.torque_parts import TorqueParts, servo, soft_clip, torque_parts
 from simconsole.values.kernels import approach, clip, is_finite, kernel
 from simconsole.values.signals import (
     Arbitration,
@@ -24,14 +25,10 @@ from simconsole.values.signals import (
     WheelMemory,
     WheelTorque,
 )
-from simconsole.values.trigonometry import sin
 from simconsole.values.validity import is_trusted
 
 _STANDING: Final = int(Event.LOOP_STALL | Event.PAUSE)
 
-FRICTION_RADPS: Final = 1.0
-"""Rate over which simulated friction changes its sign; a steeper change would chatter due to the motor's delay."""
-END_STOP_NMS: Final = 1.0
 RESTING_S: Final = 0.05
 """Time constant with which the model follows a wheel with resting hands: that with which the estimate detects them."""
 CARRIED_NMPS: Final = 2.0
@@ -40,19 +37,6 @@ CENTRING_RADPS: Final = 2.0
 """How fast the motor centres the wheel before a restart: a turn in 3 s, which hands that rest on it can follow."""
 CENTRING_LEAD_RAD: Final = 0.15
 """Largest lead of the centring target over the wheel: a held wheel gets at most this times the servo's stiffness."""
-LONG_WAVE_RADPM: Final = 3.7
-SHORT_WAVE_RADPM: Final = 9.97
-"""Two waves of rough road, 1.7 m and 0.63 m long: 6 to 32 Hz between 36 and 72 km/h, incommensurable."""
-
-
-class TorqueParts(NamedTuple):
-    """What the torque is made of."""
-
-    car_nm: float
-    servo_nm: float
-    guide_nm: float
-    effects_nm: float  # damping, friction, end stop, road
-    car_share: float  # of the car's torque that the motor bears
 
 
 class WheelTarget(NamedTuple):
@@ -63,6 +47,14 @@ class WheelTarget(NamedTuple):
     asked: GuidanceReference  # where the controller would have the person's hands
 
 
+class CarAnswer(NamedTuple):
+    """How far the car has come after what it is steered by."""
+
+    answered_rad: float  # of the hand wheel's angle, what the tyres have answered
+    yaw_radps: float  # slow part of its yaw rate
+    swing_radps: float  # the rest of it
+
+
 class UnattendedWheel(NamedTuple):
     """The wheel as the motor alone would have it."""
 
@@ -71,98 +63,6 @@ class UnattendedWheel(NamedTuple):
     motor_nm: float
     explained_rad: float  # moved since the person may take over
     explained_radps: float
-
-
-@kernel
-def servo(target: Rim, rim: Rim, force: ForceSettings) -> float:
-    """Return the torque in N m that brings the rim to a target that moves itself (PD on the angle)."""
-    return force.servo_nm_per_rad * (target.rad - rim.rad) + force.servo_damping_nms * (target.radps - rim.radps)
-
-
-@kernel
-def soft_clip(torque_nm: float, force: ForceSettings) -> float:
-    """Return the torque below the motor's limit: unchanged up to the knee, then compressed, so that detail is kept.
-
-    Beyond the knee k, with room r above it: k + r x / (r + x) for an excess x; continuous in value and slope.
-    """
-    knee = force.soft_clip_from * force.max_torque_nm
-    size = abs(torque_nm)
-    if size <= knee:
-        return torque_nm
-    room = force.max_torque_nm - knee
-    bent = knee + room * (size - knee) / (room + size - knee)
-    return bent if torque_nm > 0.0 else -bent
-
-
-@kernel
-def end_stop(rim: Rim, force: ForceSettings) -> float:
-    """Return the spring at the lock: nothing inside it, and no pull back out of it when the rim already returns."""
-    beyond = abs(rim.rad) - force.end_stop_rad
-    if beyond <= 0.0:
-        return 0.0
-    side = 1.0 if rim.rad > 0.0 else -1.0
-    outwards = side * rim.radps
-    push = force.end_stop_nm_per_rad * beyond + (END_STOP_NMS * outwards if outwards > 0.0 else 0.0)
-    return -side * push
-
-
-@kernel
-def road(vehicle: VehicleState, rolling: float, force: ForceSettings) -> float:
-    """Return the torque of the road's texture: a function of distance only, so it rests with the car and replays."""
-    waves = sin(LONG_WAVE_RADPM * vehicle.distance_m) + sin(SHORT_WAVE_RADPM * vehicle.distance_m)
-    return 0.5 * force.texture_nm * rolling * waves
-
-
-@kernel
-def torque_parts(
-    follows: bool,
-    target: Rim,
-    rim: Rim,
-    vehicle: VehicleState,
-    asked: GuidanceReference,
-    share: float,
-    by_hand: float,
-    answered_rad: float,
-    swing_radps: float,
-    force: ForceSettings,
-) -> TorqueParts:
-    """Return the parts of the torque, unlimited.
-
-    Args:
-        follows: The wheel is to follow the road wheels; else it is the car's.
-        target: Where the road wheels have it.
-        rim: The wheel when this torque acts on it.
-        vehicle: The vehicle after this tick.
-        asked: What the controller asks of the hand wheel.
-        share: How much of its guidance there is, 0 to 1.
-        by_hand: How much of the road wheels' angle is the hand wheel's, 0 to 1; the rest is the controller's.
-        answered_rad: Of that part, what the car's tyres have answered, at the hand wheel.
-        swing_radps: The car's yaw rate, less its slow part.
-        force: Of this drive.
-    """
-    speed = abs(vehicle.vx_mps)
-    rolling = speed / (speed + force.fade_mps)
-    texture = road(vehicle, rolling, force)
-    if follows:
-        return TorqueParts(0.0, servo(target, rim, force), 0.0, texture, 0.0)
-    friction = force.friction_nm + (1.0 - rolling) * force.standstill_friction_nm
-    drag = -force.damping_nms * rim.radps - friction * rim.radps / (abs(rim.radps) + FRICTION_RADPS)
-    stiff = force.car_share * rolling * stiffness(speed, force)
-    fast = speed / FAST_MPS
-    bears = share_of(stiff, fast, force)
-    felt = by_hand * bears
-    car = aligning(
-        felt * force.car_share * rolling * vehicle.hand_wheel_torque_nm,
-        by_hand * rim.rad - answered_rad,
-        swing_radps,
-        rim.radps,
-        felt * stiff,
-        fast,
-        share,
-        force,
-    )
-    guide = guidance(asked, rim, rolling, share, force)
-    return TorqueParts(car, 0.0, guide, drag + end_stop(rim, force) + texture, bears)
 
 
 @kernel
@@ -202,7 +102,7 @@ def wheel_target(
     wanted_rad = vehicle.road_wheel_rad * force.hand_wheel_per_road_wheel
     known = is_finite(wanted_rad) and is_finite(vehicle.hand_wheel_torque_nm) and is_finite(vehicle.vx_mps)
     known = known and is_finite(vehicle.distance_m) and is_finite(estimated.rad) and is_finite(estimated.radps)
-    known = known and is_finite(arbitration.remote_road_wheel_rad)
+    known = known and is_finite(arbitration.remote_road_wheel_rad) and is_finite(vehicle.yaw_rate_radps)
     if not known:
         return WheelTarget(False, Rim(memory.target_rad, 0.0), GuidanceReference(0.0, 0.0))
     asked = guidance_reference(arbitration.remote_road_wheel_rad, memory.guide_rad, arbitration.mode, force, tick_s)
@@ -213,6 +113,46 @@ def wheel_target(
     target_rad = clip(wanted_rad, -lock, lock)
     radps = (target_rad - memory.target_rad) / tick_s if memory.live > 0.0 else 0.0
     return WheelTarget(True, Rim(target_rad, radps), asked)
+
+
+@kernel
+def car_answer(
+    arbitration: Arbitration,
+    vehicle: VehicleState,
+    known: bool,
+    memory: WheelMemory,
+    force: ForceSettings,
+    tick_s: float,
+) -> CarAnswer:
+    """Return how far the car has come; as in the tick before, and steady, where an input is not finite."""
+    if not known:
+        return CarAnswer(memory.answered_rad, memory.yaw_radps, 0.0)
+    hands_rad = vehicle.road_wheel_rad - arbitration.remote_lateral * arbitration.remote_road_wheel_rad
+    start_rad = memory.answered_rad if memory.live > 0.0 else hands_rad * force.hand_wheel_per_road_wheel
+    slow_radps = memory.yaw_radps
+    slow_radps += (vehicle.yaw_rate_radps - slow_radps) * (tick_s / (tick_s + force.yaw_slow_s))
+    return CarAnswer(
+        answered_rad=answered(start_rad, hands_rad, abs(vehicle.vx_mps), force, tick_s),
+        yaw_radps=slow_radps,
+        swing_radps=vehicle.yaw_rate_radps - slow_radps,
+    )
+
+
+@kernel
+def let_go(estimated: WheelEstimate) -> WheelTorque:
+    """Return no torque at all, beside what is known of the person's."""
+    return WheelTorque(
+        torque_nm=0.0,
+        car_nm=0.0,
+        servo_nm=0.0,
+        guide_nm=0.0,
+        ramp=0.0,
+        clipped=0.0,
+        enabled=0.0,
+        human_nm=estimated.human_nm,
+        hands_on=estimated.hands_on,
+        car_share=0.0,
+    )
 
 
 @kernel
@@ -234,6 +174,29 @@ def limited_torque(
         hands_on=estimated.hands_on,
         car_share=parts.car_share,
     )
+
+
+@kernel
+def driven_torque(
+    arbitration: Arbitration,
+    follows: bool,
+    target: WheelTarget,
+    rim: Rim,
+    vehicle: VehicleState,
+    answer: CarAnswer,
+    ramp: float,
+    estimated: WheelEstimate,
+    before: WheelTorque,
+    force: ForceSettings,
+) -> WheelTorque:
+    """Return the torque while somebody drives; `rim` is the wheel when this torque acts."""
+    guided = arbitration.remote_guidance if arbitration.mode == Mode.SHARED else 0.0
+    by_hand = 1.0 - arbitration.remote_lateral
+    answered_rad, swing_radps = answer.answered_rad, answer.swing_radps
+    parts = torque_parts(
+        follows, target.rim, rim, vehicle, target.asked, guided, by_hand, answered_rad, swing_radps, force
+    )
+    return limited_torque(parts, ramp, estimated, before, force)
 
 
 @kernel
@@ -299,6 +262,36 @@ def carried(before_nm: float, human_nm: float, watching: bool, tick_s: float) ->
 
 
 @kernel
+def remembered(
+    live: float,
+    estimated: WheelEstimate,
+    motor_nm: float,
+    target: WheelTarget,
+    unattended: UnattendedWheel,
+    answer: CarAnswer,
+    carried_nm: float,
+) -> WheelMemory:
+    """Return what the next tick must know of this one."""
+    return WheelMemory(
+        live=live,
+        wheel_rad=estimated.rad,
+        wheel_radps=estimated.radps,
+        motor_nm=motor_nm,
+        hands_nm=estimated.hands_nm,
+        target_rad=target.rim.rad,
+        model_rad=unattended.rad,
+        model_radps=unattended.radps,
+        model_nm=unattended.motor_nm,
+        explained_rad=unattended.explained_rad,
+        explained_radps=unattended.explained_radps,
+        guide_rad=target.asked.slow_rad,
+        answered_rad=answer.answered_rad,
+        yaw_radps=answer.yaw_radps,
+        carried_nm=carried_nm,
+    )
+
+
+@kernel
 def wheel_torque(
     driver: DriverInput,
     wheel_motor: float,
@@ -340,56 +333,14 @@ def wheel_torque(
     driven = follows or mode in (Mode.MANUAL, Mode.SHARED)
     enabled = live and target.known and driven and int(events) & _STANDING == 0
     ramp = approach(before.ramp, 1.0, force.ramp_per_tick) if enabled else 0.0
-    hands_rad = vehicle.road_wheel_rad - arbitration.remote_lateral * arbitration.remote_road_wheel_rad
-    answered_rad = memory.answered_rad
-    if target.known:
-        start_rad = answered_rad if memory.live > 0.0 else hands_rad * force.hand_wheel_per_road_wheel
-        answered_rad = answered(start_rad, hands_rad, abs(vehicle.vx_mps), force, tick_s)
-    yaw_radps = memory.yaw_radps
-    if target.known:
-        yaw_radps += (vehicle.yaw_rate_radps - yaw_radps) * (tick_s / (tick_s + force.yaw_slow_s))
-    swing_radps = vehicle.yaw_rate_radps - yaw_radps if target.known else 0.0
-    torque = WheelTorque(
-        torque_nm=0.0,
-        car_nm=0.0,
-        servo_nm=0.0,
-        guide_nm=0.0,
-        ramp=0.0,
-        clipped=0.0,
-        enabled=0.0,
-        human_nm=estimated.human_nm,
-        hands_on=estimated.hands_on,
-        car_share=0.0,
-    )
+    answer = car_answer(arbitration, vehicle, target.known, memory, force, tick_s)
+    torque = let_go(estimated)
     if enabled:
-        guided = arbitration.remote_guidance if mode == Mode.SHARED else 0.0
-        by_hand = 1.0 - arbitration.remote_lateral
-        parts = torque_parts(
-            follows, target.rim, rim, vehicle, target.asked, guided, by_hand, answered_rad, swing_radps, force
-        )
-        torque = limited_torque(parts, ramp, estimated, before, force)
+        torque = driven_torque(arbitration, follows, target, rim, vehicle, answer, ramp, estimated, before, force)
     share = ramp if follows else 0.0
     unattended = unattended_motion(
         driver, estimated, target.rim, share, watching, live, memory, force, rate_filter_s, tick_s
     )
-    return (
-        torque,
-        WheelMemory(
-            live=wheel_motor if live else 0.0,
-            wheel_rad=estimated.rad,
-            wheel_radps=estimated.radps,
-            motor_nm=motor_nm,
-            hands_nm=estimated.hands_nm,
-            target_rad=target.rim.rad,
-            model_rad=unattended.rad,
-            model_radps=unattended.radps,
-            model_nm=unattended.motor_nm,
-            explained_rad=unattended.explained_rad,
-            explained_radps=unattended.explained_radps,
-            guide_rad=target.asked.slow_rad,
-            answered_rad=answered_rad,
-            yaw_radps=yaw_radps,
-            carried_nm=carried(memory.carried_nm, estimated.human_nm, watching, tick_s),
-        ),
-        pipe,
-    )
+    held_nm = carried(memory.carried_nm, estimated.human_nm, watching, tick_s)
+    alive = wheel_motor if live else 0.0
+    return torque, remembered(alive, estimated, motor_nm, target, unattended, answer, held_nm), pipe

@@ -71,7 +71,7 @@ def weighed(
     hold = _Hold(turn, found, limit_nm, tick_hz)
     for _ in range(round(HANG_S * tick_hz)):
         hold.tick(0.0, 0.0)
-    means, target = [], 0.0
+    means, target, most_nm = [], 0.0, 0.0
     for sweep in range(2 * SWEEPS):
         side = 1.0 if sweep % 2 == 0 else -1.0
         ticks = round((SWEEP_RAD - side * target) / SWEEP_RADPS * tick_hz)
@@ -79,10 +79,11 @@ def weighed(
         for _ in range(ticks):
             target = clip(target + side * SWEEP_RADPS / tick_hz, -SWEEP_RAD, SWEEP_RAD)
             torque_nm, rad = hold.tick(target, side * SWEEP_RADPS)
-            held.append(torque_nm / math.cos(rad))
+            held.append((torque_nm / math.cos(rad), abs(torque_nm)))
         if sweep:  # the first is half a sweep
             even = held[round(SETTLE_SHARE * ticks) :]
-            means.append(sum(even) / len(even))
+            means.append(sum(nm for nm, _ in even) / len(even))
+            most_nm = max(most_nm, *(nm for _, nm in even))
     up = means[1::2]
     down = means[0::2][: len(up)]
     mean_nm = 0.5 * (sum(up) / len(up) + sum(down) / len(down))
@@ -93,4 +94,9 @@ def weighed(
     turn(0.0)
     if mean_nm < 0.1 * limit_nm:
         raise DeviceError(f"weight: torque: value {mean_nm:.2f} N m: a weight on the right side of the rim")
+    if most_nm >= limit_nm:
+        raise DeviceError(
+            f"weight: torque: value {weight_nm:.2f} N m: a lighter one, which the motor can move up with the "
+            f"{limit_nm:.2f} N m that it may use"
+        )
     return weight_nm / mean_nm

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from pathlib import Path
 from typing import Any, Final
 
@@ -61,10 +61,7 @@ def calibrate_devices(
     if path.exists():
         raise DeviceError(f"{path}: file: value exists: a file that does not")
     with ExitStack() as stack:
-        hands: _Hands | None = None
-        if virtual is not None:
-            hands = _Hands(virtual)
-            stack.callback(hands.close)
+        hands = None if virtual is None else stack.enter_context(closing(_Hands(virtual)))
         devices = stack.enter_context(RawJoysticks())
         entries = {
             key: Entry(found.name, found.axes, found.buttons, found.hats) for key, found in devices.entries.items()
@@ -73,29 +70,19 @@ def calibrate_devices(
             say(f"{key[0]:04x}:{key[1]:04x}  {entry.name}: {entry.axes} axes, {entry.buttons} buttons")
         how = "press Enter" if typed is None else "keep still for a second"
         say(f"Do what each line says, hold it, and {how}. q gives up for now.")
-        holds = HeldStill(LOOK_HZ)
         progress = _Progress(path, list(entries))
         if progress.learnt:
             say(f"{progress.path}: goes on after {list(progress.learnt)[-1]}; delete it to begin anew")
-
-        def put(step: str, text: str) -> str:
-            if hands is not None:
-                hands.do(step)
-            if typed is None or step in TYPED:
-                return answer(ask, f"{text} ")
-            say(text)
-            return _wait_for_hold(devices.read, holds, step, typed, pace(LOOK_HZ))
-
-        def look() -> SteadyReadings:
-            wait = pace(LOOK_HZ)
-            readings = []
-            for tick in range(1, round(LOOK_S * LOOK_HZ) + 1):
-                wait(tick)
-                readings.append(devices.read())
-            return steady_readings(readings)
-
+        bench = _Bench(devices.read, hands, ask, say, typed, pace)
         profile = Wizard(
-            base, entries, ask=put, say=say, look=look, known=known, learnt=progress.learnt, save=progress.save
+            base,
+            entries,
+            ask=bench.put,
+            say=say,
+            look=bench.look,
+            known=known,
+            learnt=progress.learnt,
+            save=progress.save,
         ).run(f"simconsole devices calibrate, {time.strftime('%Y-%m-%d')}")
     write_profile(path, profile)
     progress.path.unlink(missing_ok=True)
@@ -103,20 +90,52 @@ def calibrate_devices(
     return {"profile": str(path), "title": profile.title, "roles": [role.name for role in profile.roles]}
 
 
-def _wait_for_hold(
-    read: Callable[[], Readings], holds: HeldStill, step: str, typed: Callable[[], str], wait: Pace
-) -> str:
-    """Wait until what the step asks for is held still, or a key is typed: return that key, nothing for Enter."""
-    holds.begin()
-    tick = 0
-    while True:
-        tick += 1
-        wait(tick)
-        key = typed().strip().lower()[:1]
-        if key in (SKIP, QUIT):
-            return key
-        if holds.add(read(), at_rest=step in AT_REST):
-            return ""
+class _Bench:
+    """Puts the wizard's questions and reads the devices for it."""
+
+    def __init__(
+        self,
+        read: Callable[[], Readings],
+        hands: "_Hands | None",
+        ask: Callable[[str], str],
+        say: Say,
+        typed: Callable[[], str] | None,
+        pace: Callable[[int], Pace],
+    ) -> None:
+        self._read, self._hands, self._ask, self._say, self._typed, self._pace = read, hands, ask, say, typed, pace
+        self._holds = HeldStill(LOOK_HZ)
+
+    def put(self, step: str, text: str) -> str:
+        """Return what was typed at a step, nothing for Enter or for what was held still."""
+        if self._hands is not None:
+            self._hands.do(step)
+        if self._typed is None or step in TYPED:
+            return answer(self._ask, f"{text} ")
+        self._say(text)
+        return self._wait_for_hold(step, self._typed)
+
+    def look(self) -> SteadyReadings:
+        """Read for LOOK_S."""
+        wait = self._pace(LOOK_HZ)
+        readings = []
+        for tick in range(1, round(LOOK_S * LOOK_HZ) + 1):
+            wait(tick)
+            readings.append(self._read())
+        return steady_readings(readings)
+
+    def _wait_for_hold(self, step: str, typed: Callable[[], str]) -> str:
+        """Wait until what the step asks for is held still, or a key is typed: return that key, nothing for Enter."""
+        wait = self._pace(LOOK_HZ)
+        self._holds.begin()
+        tick = 0
+        while True:
+            tick += 1
+            wait(tick)
+            key = typed().strip().lower()[:1]
+            if key in (SKIP, QUIT):
+                return key
+            if self._holds.add(self._read(), at_rest=step in AT_REST):
+                return ""
 
 
 class _Progress:

@@ -8,6 +8,8 @@ from typing import Any, Final, Literal, NamedTuple
 
 import msgspec
 
+from simconsole.devices.force_feedback.aligning import shares_by_speed
+from simconsole.devices.force_feedback.force_settings import force_settings
 from simconsole.devices.force_feedback.identification import Identified, identify
 from simconsole.devices.force_feedback.servo_range import servo_refusal
 from simconsole.devices.force_feedback.weighing import weighed
@@ -16,9 +18,13 @@ from simconsole.devices.setup.device_commands import Pace, Say, realtime
 from simconsole.devices.setup.force_feedback_check import announce
 from simconsole.devices.setup.wheel_bench import WheelBench
 from simconsole.profiles.device import CockpitProfile, Provenance
+from simconsole.profiles.files.vehicle_files import load_vehicle
 from simconsole.profiles.force_feedback import ForceFeedback
+from simconsole.profiles.vehicle import CarProfile
 from simconsole.values.errors import DeviceError
-from simconsole.values.units import STANDARD_GRAVITY_MPS2
+from simconsole.values.labels import borne_label
+from simconsole.values.units import RAD_PER_DEG, STANDARD_GRAVITY_MPS2
+from simconsole.vehicle.rim_stiffness import rim_stiffness
 
 WEIGHT_KG: Final = (0.1, 3.0)
 RADIUS_M: Final = (0.05, 0.3)
@@ -86,7 +92,10 @@ def identify_motor(
             scale = _weigh(bench, force, found, weight, tick_hz, ask, say)
     now = identified_profile(cockpit, force, found, scale, weight)
     assert now.force_feedback is not None
-    results = _results(found, scale, weight, now.force_feedback)
+    results = {
+        **_results(found, scale, weight, now.force_feedback),
+        "torque_of_a_hatchback": borne_by_wheel(now, tick_hz),
+    }
     for name, value in results.items():
         say(f"{name}: {value}")
     if path is not None:
@@ -168,6 +177,15 @@ def _scale_words(weight: Weight | None) -> str:
 
 def _within(value: float, low: float, high: float) -> float:
     return round(min(high, max(low, value)), 6)
+
+
+def borne_by_wheel(cockpit: CockpitProfile, tick_hz: int) -> str:
+    """Return how much of a usual car's torque the wheel bears without swinging, by speed."""
+    car = load_vehicle("hatchback")
+    assert isinstance(car, CarProfile)
+    lock_rad = car.steering.max_road_wheel_deg * RAD_PER_DEG
+    force = force_settings(cockpit, car.steering.ratio, lock_rad, tick_hz, rim_stiffness(car))
+    return borne_label(shares_by_speed(force))
 
 
 def _results(found: Identified, scale: float, weight: Weight | None, force: ForceFeedback) -> dict[str, Any]:

@@ -121,9 +121,11 @@ class WheelBench:
         move(self.turn, rules, _AWAY_RAD, 1.0, moving=True)
         for _ in range(round(LET_GO_S * self._tick_hz)):
             self._look()
+            self._heed_keys()
         ended_radps = abs(self._radps)
         for _ in range(round(WATCH_S * self._tick_hz)):
             self._look()
+            self._heed_keys()
             if abs(self._rad - self._first_rad) > LIMIT_RAD:
                 break
         slows = abs(self._radps) <= max(0.95 * ended_radps, REST_RADPS)
@@ -143,7 +145,12 @@ class WheelBench:
         self.motor.publish(Snapshot(self._ticks, self._tick_hz, row))
         if self.motor.failure is not None:
             raise DeviceError(self.motor.failure)
+        self._heed_keys()
+
+    def _heed_keys(self) -> None:
+        """Let go of the wheel and give up where a key was pressed."""
         if self._pressed():
+            row = np.zeros(PLATFORM_AT)
             row[LAYOUT.torque.slice] = NO_TORQUE
             self.motor.publish(Snapshot(self._ticks, self._tick_hz, row))
             raise KeyboardInterrupt

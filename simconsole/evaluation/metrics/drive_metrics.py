@@ -12,6 +12,7 @@ from simconsole.evaluation.metrics.rule_metrics import plain_events
 from simconsole.evaluation.metrics.table import Drive
 from simconsole.evaluation.metrics.takeovers import takeovers
 from simconsole.evaluation.metrics.track import Track, track
+from simconsole.evaluation.metrics.wheel_metrics import force_feedback
 from simconsole.values.labels import mode_label, reason_label
 from simconsole.values.units import KMH_PER_MPS
 from simconsole.world.route import Route
@@ -135,6 +136,7 @@ def metrics(
         ],
         "faults": plain_spans(drive, faults),
         "rules": plain_events(drive),
+        "force_feedback": force_feedback(drive),
     }
 
 

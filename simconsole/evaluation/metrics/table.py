@@ -22,6 +22,7 @@ class Drive(NamedTuple):
     ticks: int
     tick_hz: int
     first_tick: int = 1
+    names: frozenset[str] = frozenset()  # of its columns, where they are known
 
     def column(self, name: str) -> Array:
         """Return one column, float64 [ticks].
@@ -115,7 +116,7 @@ def drive_of(vectors: ArrayLike, columns: Sequence[str], tick_hz: int, first_tic
                 raise RecordingError(f"drive: column {name} is missing: not a recording of this version")
         yield values[:, [places[name] for name in names]]
 
-    return Drive(read, len(values), tick_hz, first_tick)
+    return Drive(read, len(values), tick_hz, first_tick, frozenset(columns))
 
 
 def recorded_drive(recording: Recording, told: Callable[[float], object] = lambda passes: None) -> Drive:
@@ -149,4 +150,4 @@ def recorded_drive(recording: Recording, told: Callable[[float], object] = lambd
         if done < ticks:
             raise RecordingError(f"drive: only {done} of its {ticks} ticks were there when it was read again")
 
-    return Drive(read, ticks, recording.header.tick_hz, first)
+    return Drive(read, ticks, recording.header.tick_hz, first, frozenset(recording.header.columns))

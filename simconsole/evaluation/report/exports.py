@@ -21,9 +21,9 @@ from simconsole.world.kinds.worlds import open_world
 from simconsole.world.route import Route
 
 REPORT: Final = "report.html"
-PASSES: Final = 8
+PASSES: Final = 9
 """How often a report passes over its drive: to count the ticks, for the track, the mode changes, the acceleration, the
-faults, the take-overs (where there are any), the map and the traces."""
+faults, the wheel, the take-overs (where there are any), the map and the traces."""
 Told = Callable[[str, float], object]
 """Told what is being made, and the share of it that is done, from 0 to 1."""
 

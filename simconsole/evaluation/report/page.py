@@ -117,6 +117,7 @@ def page(
         *(("<h2>Take-overs</h2>", _takeovers_table(found)) if found["takeovers"] else ()),
         *(("<h2>Rules of the road</h2>", _rules_table(found)) if found["rules"] else ()),
         *(("<h2>Faults</h2>", _faults_table(found)) if found["faults"] else ()),
+        *(("<h2>Force feedback</h2>", _wheel_table(found["force_feedback"])) if found["force_feedback"] else ()),
         *(("<h2>Latency</h2>", _latency_table(latency_us)) if latency_us else ()),
         *(("<h2>Drive</h2>", _extra_table(extra)) if extra else ()),
         "</body></html>",
@@ -199,6 +200,18 @@ def _faults_table(found: Mapping[str, Any]) -> str:
     )
     head = "<table><tr><th>fault</th><th class=n>from</th><th class=n>to</th></tr>"
     return "\n".join((head, *lines, "</table>"))
+
+
+def _wheel_table(wheel: Mapping[str, Any]) -> str:
+    """Return how much of the car's torque the driver felt, and since when it was less than all."""
+    least = f"{100.0 * wheel['least_share']:.0f} % at {wheel['least_at_kmh']:.0f} km/h"
+    rows = [("Least share of the car's torque", least)]
+    if wheel["eased_from_s"] is not None:
+        rows.append(
+            ("Eased for the wheel's stability", f"{wheel['eased_s']:.1f} s, from {wheel['eased_from_s']:.2f} s")
+        )
+    lines = (f"<tr><th>{name}</th><td>{value}</td></tr>" for name, value in rows)
+    return "\n".join(("<table>", *lines, "</table>"))
 
 
 def _latency_table(latency_us: Mapping[str, Mapping[str, float]]) -> str:

@@ -9,6 +9,7 @@ from typing import Final
 import msgspec
 
 from simconsole.values.errors import RecordingError
+from simconsole.values.labels import borne_label
 
 NOTE_CHARS: Final = 500
 ID_CHARS: Final = 64
@@ -44,6 +45,13 @@ class Device(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     serial: str = ""
 
 
+class TorqueShare(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """How much of the car's torque the wheel bears without swinging, by its profile, at one speed."""
+
+    speed_kmh: float
+    share: float  # 0 to 1
+
+
 class Provenance(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """All of it. What nobody told is empty."""
 
@@ -55,6 +63,7 @@ class Provenance(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
     machine: Machine | None = None
     source: Source | None = None
     devices: tuple[Device, ...] = ()
+    torque_shares: tuple[TorqueShare, ...] = ()  # by speed; none where the cockpit has no motor
 
 
 UNKNOWN: Final = Provenance()
@@ -93,6 +102,7 @@ def facts(provenance: Provenance) -> dict[str, str]:
     found = {"started": provenance.started_utc, "participant": provenance.participant, "trial": provenance.trial}
     found["notes"] = "; ".join(provenance.notes)
     found["devices"] = ", ".join(f"{device.name} ({device.usb_id})" for device in provenance.devices)
+    found["force feedback"] = _torque_words(provenance.torque_shares)
     if machine is not None:
         found["machine"] = f"{machine.cpu}, {machine.cpus} CPUs, {machine.platform} {machine.kernel}, {machine.python}"
     if source is not None:
@@ -100,6 +110,12 @@ def facts(provenance: Provenance) -> dict[str, str]:
         commit = "" if source.commit is None else f", commit {source.commit[:12]}{changed}"
         found["simconsole"] = f"{source.version}{commit}, sources {source.sha256[:12]}"
     return {name: text for name, text in found.items() if text}
+
+
+def _torque_words(shares: tuple[TorqueShare, ...]) -> str:
+    """Return how much of the car's torque the wheel bears: all up to a speed, then less; nothing without a motor."""
+    borne = [(at.speed_kmh, at.share) for at in shares]
+    return f"of the car's torque: {borne_label(borne)}" if borne else ""
 
 
 def utc_now() -> str:

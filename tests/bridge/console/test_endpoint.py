@@ -133,6 +133,20 @@ def test_rosout_tells_what_changes_to_whoever_listens(
     assert bridge.router.topics["/rosout"].type == "rcl_interfaces/msg/Log"
 
 
+def test_rosout_warns_once_of_a_wheel_that_bears_a_share_of_the_cars_torque_only(
+    bridge: ConsoleBridge, join: Callable[..., Any], snapshot: Callable[..., Any]
+) -> None:
+    listener = join(bridge)
+    listener.send(op="subscribe", topic="/rosout")
+    for tick, share in enumerate((1.0, 0.74, 0.6), 1):
+        shot = snapshot(tick)
+        shot.vector[LAYOUT.torque.at("enabled")] = 1.0
+        shot.vector[LAYOUT.torque.at("car_share")] = share
+        bridge.publish(shot, 0)
+    told = [(message["msg"]["level"], message["msg"]["msg"]) for message in listener.heard()]
+    assert told[1:] == [(30, "force feedback eased to 74 %")]
+
+
 def test_a_controller_that_nobody_asked_for_is_told(
     bridge: ConsoleBridge, join: Callable[..., Any], snapshot: Callable[..., Any]
 ) -> None:

@@ -2,10 +2,21 @@
 
 import pytest
 
-from simconsole.devices.force_feedback.aligning import aligning, answered, share_of, stiffness
+from simconsole.devices.force_feedback.aligning import (
+    SHARES_KMH,
+    aligning,
+    answered,
+    share_of,
+    shares_by_speed,
+    stiffness,
+)
 from simconsole.devices.force_feedback.force_settings import ForceSettings, force_settings
+from simconsole.devices.force_feedback.guidance import GuidanceReference
+from simconsole.devices.force_feedback.rim import Rim
+from simconsole.devices.force_feedback.torque_parts import torque_parts
 from simconsole.profiles.device import CockpitProfile
 from simconsole.values.platform import RimStiffness
+from simconsole.values.signals import VehicleState
 
 STIFF = RimStiffness(5.0, 7.0, 10.0, 14.0, 19.0, relaxation_m=0.3)
 
@@ -43,6 +54,16 @@ def test_share_falls_with_stiffness_and_delay_and_is_full_with_the_shipped_figur
     assert share_of(15.0, 0.7, late) < 1.0
     assert share_of(60.0, 0.7, late) == pytest.approx(share_of(30.0, 0.7, late) / 2.0)
     assert share_of(30.0, 1.0, late) < share_of(30.0, 0.2, late)
+
+
+def test_shares_by_speed_are_those_that_the_torque_has(force: ForceSettings) -> None:
+    late = force._replace(rate_loop_per_s=0.3 * force.rate_loop_per_s)
+    shares = dict(shares_by_speed(late))
+    assert tuple(shares) == SHARES_KMH
+    vehicle = VehicleState(*(0.0,) * len(VehicleState._fields))._replace(vx_mps=120.0 / 3.6)
+    still, nothing = Rim(0.0, 0.0), GuidanceReference(0.0, 0.0)
+    parts = torque_parts(False, still, still, vehicle, nothing, 0.0, 1.0, 0.0, 0.0, late)
+    assert parts.car_share == shares[120.0] < 1.0
 
 
 def test_tyres_answer_over_their_relaxation(force: ForceSettings) -> None:

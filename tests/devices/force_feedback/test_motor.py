@@ -131,6 +131,16 @@ def test_person_is_told_in_words_what_becomes_of_the_force() -> None:
     assert said[2:] == ["force feedback ends: log: motor: value unplugged: plugged in; everything else goes on"]
 
 
+def test_wheel_that_gives_a_share_of_the_cars_torque_only_is_told_once() -> None:
+    said: list[str] = []
+    wheel = WheelMotor(Log(), FORCE, lambda snapshot: snapshot.t_s, said.append)
+    for tick, (share, enabled) in enumerate(((1.0, 1.0), (0.7, 0.0), (0.0, 1.0), (0.74, 1.0), (0.6, 1.0))):
+        row = shot(tick, 0.1, enabled)
+        row.vector[LAYOUT.torque.at("car_share")] = share
+        wheel.publish(row)
+    assert said == ["force feedback eased to 74 %: more of the car's torque would make this wheel swing"]
+
+
 class Still:
     """A cockpit at rest."""
 

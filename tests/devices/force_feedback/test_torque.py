@@ -8,16 +8,10 @@ from typing import Any
 import pytest
 
 from simconsole.devices.force_feedback.force_settings import NO_FORCE, ForceSettings, force_settings
-from simconsole.devices.force_feedback.guidance import GuidanceReference
 from simconsole.devices.force_feedback.rim import Rim
 from simconsole.devices.force_feedback.torque import (
     CENTRING_LEAD_RAD,
     CENTRING_RADPS,
-    TorqueParts,
-    end_stop,
-    servo,
-    soft_clip,
-    torque_parts,
     wheel_torque,
 )
 from simconsole.profiles.device import CockpitProfile
@@ -89,11 +83,6 @@ class Motor:
         return self.torque
 
 
-def alone(force: ForceSettings, target: Rim, rim: Rim, vehicle: VehicleState) -> TorqueParts:
-    """The parts in MANUAL."""
-    return torque_parts(False, target, rim, vehicle, GuidanceReference(0.0, 0.0), 0.0, 1.0, 0.0, 0.0, force)
-
-
 @pytest.fixture
 def motor(force: ForceSettings) -> Motor:
     return Motor(force)
@@ -137,7 +126,7 @@ def test_motor_lets_go_at_once_and_comes_back_slowly(why: dict[str, Any], motor:
     assert abs(motor.tick().torque_nm) < 0.02
 
 
-@pytest.mark.parametrize("field", ["hand_wheel_torque_nm", "road_wheel_rad", "vx_mps", "distance_m"])
+@pytest.mark.parametrize("field", ["hand_wheel_torque_nm", "road_wheel_rad", "vx_mps", "distance_m", "yaw_rate_radps"])
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
 def test_part_that_is_no_number_lets_go_and_leaves_nothing_behind(field: str, value: float, motor: Motor) -> None:
     for mode in (Mode.MANUAL, Mode.AUTONOMOUS):
@@ -145,46 +134,6 @@ def test_part_that_is_no_number_lets_go_and_leaves_nothing_behind(field: str, va
         assert motor.tick(vehicle=CAR._replace(**{field: value}), mode=float(mode)).torque_nm == 0.0
         motor.tick(mode=float(mode))
         assert all(map(math.isfinite, (*motor.torque, *motor.memory)))
-
-
-def test_car_torque_fades_and_friction_grows_towards_standstill(force: ForceSettings) -> None:
-    at = [alone(force, STRAIGHT, STRAIGHT, CAR._replace(vx_mps=v)).car_nm for v in (0.0, 0.5, 5.0, 30.0)]
-    assert at[0] == 0.0
-    assert at == sorted(at, reverse=True)
-    turning = Rim(0.0, 1.0)
-    drags = [alone(force, STRAIGHT, turning, CAR._replace(vx_mps=v)).effects_nm for v in (0.0, 1.0, 20.0)]
-    assert drags[0] < drags[1] < drags[2] < 0.0
-
-
-def test_road_is_felt_over_distance_alone(force: ForceSettings) -> None:
-    texture = [alone(force, STRAIGHT, STRAIGHT, CAR._replace(distance_m=0.1 * k)).effects_nm for k in range(400)]
-    assert 0.02 < max(texture) <= force.texture_nm
-    assert abs(sum(texture) / len(texture)) < 0.005
-    standing = CAR._replace(vx_mps=0.0, distance_m=3.3)
-    assert alone(force, STRAIGHT, STRAIGHT, standing).effects_nm == 0.0
-
-
-def test_end_stop_pushes_back_only_beyond_the_lock(force: ForceSettings) -> None:
-    lock = force.end_stop_rad
-    assert lock < math.radians(540.0)
-    assert end_stop(Rim(lock, 3.0), force) == 0.0
-    assert end_stop(Rim(lock + 0.1, 0.0), force) == pytest.approx(-2.5)
-    assert end_stop(Rim(-lock - 0.1, 0.0), force) == pytest.approx(2.5)
-    assert end_stop(Rim(lock + 0.1, 2.0), force) < end_stop(Rim(lock + 0.1, -2.0), force) < 0.0
-
-
-def test_soft_clip_is_monotone_bounded_odd_and_smooth(force: ForceSettings) -> None:
-    top = force.max_torque_nm
-    values = [soft_clip(0.01 * k, force) for k in range(5000)]
-    assert all(before < after < top for before, after in itertools.pairwise(values))
-    assert max(after - before for before, after in itertools.pairwise(values)) < 0.01 + 1e-9
-    assert values[200] == 2.0
-    assert soft_clip(-7.0, force) == -soft_clip(7.0, force)
-
-
-def test_servo_pulls_towards_the_target(force: ForceSettings) -> None:
-    assert servo(Rim(0.1, 0.0), STRAIGHT, force) == pytest.approx(1.8)
-    assert servo(Rim(0.0, 1.0), Rim(0.0, 1.0), force) == 0.0
 
 
 @pytest.mark.fault("D13")

@@ -33,6 +33,18 @@ def test_scale_is_found(t500: CockpitProfile, sample: Sample, record_property: C
     record_property("torque by a weight", f"within {worst:.1%}")
 
 
+def test_weight_that_is_more_than_the_motor_may_hold_is_said_once_it_is_off(t500: CockpitProfile) -> None:
+    """Half the torque, much friction: a sweep upwards would need more than there is, and the scale would be wrong."""
+    force = t500.force_feedback
+    assert force is not None
+    wheel = BenchedWheel(force, Draw(torque=0.5, friction_nm=0.3))
+    found = identify(wheel.turn, force, 0.4, TICK_HZ)
+    wheel.hung_nm = 2.0 * WEIGHT_NM
+    with pytest.raises(DeviceError, match=r"weight: torque: value 1\.40 N m: a lighter one"):
+        weighed(wheel.turn, found, 2.0 * WEIGHT_NM, 0.8 * force.max_torque_nm, TICK_HZ, wheel.take_off)
+    assert wheel.hung_nm == 0.0
+
+
 def test_missing_weight_is_said(t500: CockpitProfile) -> None:
     force = t500.force_feedback
     assert force is not None

@@ -2,10 +2,11 @@
 
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from simconsole.devices.setup.device_commands import unpaced
-from simconsole.devices.setup.identify_dialogue import Weight, identify_motor
+from simconsole.devices.setup.identify_dialogue import Weight, borne_by_wheel, identify_motor
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load
 from simconsole.values.errors import DeviceError
@@ -25,6 +26,7 @@ def test_figures_come_into_a_profile_with_their_source(t500: CockpitProfile, tmp
     path = tmp_path / "cockpit.yaml"
     found = identify_motor(t500, path, say=quiet, ask=enter, virtual=True, pace=unpaced)
     assert found["refusal"] == ""
+    assert found["torque_of_a_hatchback"].endswith("km/h"), "what this wheel bears"
     learnt = load("devices", str(path), CockpitProfile)
     assert learnt.force_feedback is not None
     motor = learnt.force_feedback.motor
@@ -41,6 +43,15 @@ def test_weight_gives_the_scale_and_the_report_says_so(t500: CockpitProfile) -> 
     found = identify_motor(t500, None, say=quiet, ask=enter, virtual=True, pace=unpaced, weight=Weight(1.0, 0.14))
     assert found["max_torque_nm"] == pytest.approx(4.0, rel=0.02)
     assert found["scale"] == "a weight of 1 kg at 0.14 m"
+
+
+def test_share_of_a_hatchbacks_torque_falls_where_the_motor_is_late(t500: CockpitProfile) -> None:
+    force = t500.force_feedback
+    assert force is not None
+    motor = msgspec.structs.replace(force.motor, delay_s=0.032)
+    late = msgspec.structs.replace(t500, force_feedback=msgspec.structs.replace(force, motor=motor))
+    assert borne_by_wheel(t500, 250).startswith("99 % at 210 km/h")
+    assert borne_by_wheel(late, 250).startswith("85 % at 60 km/h, 67 % at 90 km/h")
 
 
 def test_what_is_no_weight_or_no_new_file_is_refused_first(t500: CockpitProfile, tmp_path: Path) -> None:

@@ -2,7 +2,16 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from simconsole.recording.bundles.provenance import Device, Given, Machine, Provenance, Source, facts, utc_now
+from simconsole.recording.bundles.provenance import (
+    Device,
+    Given,
+    Machine,
+    Provenance,
+    Source,
+    TorqueShare,
+    facts,
+    utc_now,
+)
 from simconsole.values.errors import RecordingError
 
 
@@ -54,3 +63,10 @@ def test_facts_are_short_and_leave_out_what_nobody_told() -> None:
         "machine": "Fast, 8 CPUs, Linux x86_64 6.1, CPython 3.11.7",
         "simconsole": "1.2, commit bbbbbbbbbbbb with changes, sources aaaaaaaaaaaa",
     }
+
+
+def test_facts_say_from_which_speed_on_the_wheel_bears_a_share_of_the_cars_torque_only() -> None:
+    shares = [TorqueShare(speed_kmh=speed, share=share) for speed, share in ((60.0, 1.0), (90.0, 0.998), (120.0, 0.81))]
+    eased = facts(Provenance(torque_shares=tuple(shares)))
+    assert eased == {"force feedback": "of the car's torque: 81 % at 120 km/h"}
+    assert facts(Provenance(torque_shares=tuple(shares[:2])))["force feedback"].endswith("all up to 90 km/h")
