@@ -5,7 +5,7 @@ from argparse import Namespace
 
 from simconsole.cli.outcome import Outcome, table
 from simconsole.processes.lifetimes import DRIVE_VARIABLE, follow_parent
-from simconsole.session.lockstep import TOKEN_VARIABLE
+from simconsole.session.autopilot_program import TOKEN_VARIABLE
 from simconsole.values.errors import ProfileError
 
 END_S = 0.5

@@ -1,16 +1,10 @@
-"""A headless drive's outputs: the bridge on the core's own sockets in lockstep, and programs beside it."""
+"""The bridge on the core's own sockets in lockstep, as the drive loop sees it."""
 
-import os
-import subprocess
 from collections.abc import Callable
 from typing import Any, Final, Protocol
 
 import numpy as np
 
-from simconsole.processes.lifetimes import ATTACHED, DRIVE_VARIABLE, spawn
-from simconsole.profiles.bridge import BridgeProfile
-from simconsole.profiles.session import SessionProfile
-from simconsole.values.errors import BridgeError
 from simconsole.values.kernels import Row
 from simconsole.values.latency import Hop
 from simconsole.values.signals import NEVER_TICKS, Event, EventInput, RemoteCommand
@@ -18,8 +12,6 @@ from simconsole.values.state_vector import Snapshot
 
 _AGE_AT: Final = RemoteCommand._fields.index("age_ticks")
 STAND_S = 0.02
-TOKEN_VARIABLE = "SIMCONSOLE_TOKEN"
-"""Environment variable with the token that commands show to the server they connect to."""
 
 
 class LockstepServer(Protocol):
@@ -129,52 +121,3 @@ class LockstepLink:
         self._sequence = remote.sequence
         self._raised |= int(events.events)
         return remote
-
-
-def start_autopilot(
-    url: str, session: SessionProfile, bridge: BridgeProfile, drive: str, token: str | None
-) -> "subprocess.Popen[bytes]":
-    """Start `simconsole autopilot` as a program of its own, which ends with this process.
-
-    Args:
-        url: the console's own server.
-        session: what to follow, how, and in which car.
-        bridge: what its topics are called, its certificate, and how late its commands act.
-        drive: the drive's nonce, without which the program would take the next drive at this address for this one.
-        token: what the server asks for; both go by the environment, for everyone can read a program's arguments.
-
-    Raises:
-        BridgeError: it cannot be started.
-    """
-    arguments = [
-        "-m",
-        "simconsole",
-        "autopilot",
-        ATTACHED,
-        "--url",
-        _here(url),
-        "--course",
-        session.features.autopilot or "",
-        "--tracker",
-        session.features.tracker,
-        "--vehicle",
-        session.scenario.vehicle,
-    ]
-    if late_ms := bridge.link.delay_ms + 0.5 * bridge.link.jitter_ms:
-        arguments += ["--delay-ms", f"{late_ms:g}"]
-    if bridge.namespace:
-        arguments += ["--namespace", bridge.namespace]
-    for standard, name in bridge.rename.items():
-        arguments += ["--rename", f"{standard}={name}"]
-    if bridge.certificate is not None:
-        arguments += ["--certificate", bridge.certificate]
-    shown = {DRIVE_VARIABLE: drive} if token is None else {DRIVE_VARIABLE: drive, TOKEN_VARIABLE: token}
-    try:
-        return spawn(arguments, environment={**os.environ, **shown})
-    except OSError as error:
-        raise BridgeError(f"the autopilot cannot be started: {error.strerror}") from None
-
-
-def _here(url: str) -> str:
-    """Return the address for this machine of a server that listens on all addresses: no certificate names those."""
-    return url.replace("//0.0.0.0:", "//127.0.0.1:").replace("//[::]:", "//[::1]:")

@@ -1,6 +1,5 @@
 """Opens the components that a session's profile names, for headless and for paced drives."""
 
-import secrets
 import time
 from collections.abc import Callable
 from contextlib import ExitStack
@@ -17,7 +16,8 @@ from simconsole.processes.supervisor import SupervisorHandle
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.session import SessionProfile
 from simconsole.recording.bundles.log import LogWriter
-from simconsole.session.lockstep import STAND_S, LockstepLink, start_autopilot
+from simconsole.session.autopilot_program import PROGRAM_END_S, new_nonce, own_token, start_autopilot
+from simconsole.session.lockstep import STAND_S, LockstepLink
 from simconsole.session.paced import (
     CommandPort,
     Memory,
@@ -49,8 +49,6 @@ LOOKED_AT = 64
 """In a drive that is not paced, hops are timed in each 64th tick."""
 LOOK_S = 0.2
 """How often a wait for another process checks whether it was cancelled."""
-PROGRAM_END_S = 0.3
-"""How long a program that the drive has started may take to close its connection; it has nothing else to finish."""
 
 if TYPE_CHECKING:
     from simconsole.bridge.transport.lockstep_server import LockstepBridge
@@ -156,7 +154,7 @@ def open_realtime(
     check_commander(resolved.session)
     if resolved.session.outputs.bridge is not None:
         _check_address(resolved.session.outputs.bridge)
-    token, drive = _own_token(resolved.session), new_nonce()
+    token, drive = own_token(resolved.session), new_nonce()
     folder = make_run_folder()
     stack.callback(remove_run_folder, folder)
     opening = stack.enter_context(ExitStack())
@@ -292,11 +290,6 @@ def _idle(snapshot: Snapshot) -> None:
     time.sleep(STAND_S)
 
 
-def new_nonce() -> str:
-    """Return a nonce that identifies this drive to the programs that it starts."""
-    return secrets.token_hex(16)
-
-
 def _open_lockstep(
     resolved: ResolvedSession,
     console: Console,
@@ -314,7 +307,7 @@ def _open_lockstep(
     if session.outputs.bridge is None:
         raise ProfileError("outputs.bridge: value missing: a bridge, where mode.pacing is lockstep")
     period_ticks = session.mode.control_period_ticks
-    token, drive = _own_token(session), new_nonce()
+    token, drive = own_token(session), new_nonce()
     odometry_hz = console.tick_hz / period_ticks
     view = NO_VIEW
     if session.outputs.bridge.external_view:
@@ -348,15 +341,6 @@ def _open_bag(session: SessionProfile, console: Console, stack: ExitStack) -> "B
     bag = BagCommands(choice, session.outputs.bridge or BridgeProfile(), console.tick_hz)
     stack.callback(bag.close)
     return bag
-
-
-def _own_token(session: SessionProfile) -> str | None:
-    """Return the token with which the session's own autopilot connects to its bridge; None where none is needed."""
-    if session.outputs.bridge is None or session.features.autopilot is None:
-        return None
-    from simconsole.bridge.transport.credentials import control_token
-
-    return control_token(session.outputs.bridge)
 
 
 def _wait_for_controller(

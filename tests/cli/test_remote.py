@@ -6,7 +6,7 @@ from argparse import Namespace
 import pytest
 
 from simconsole.cli.remote import autopilot, own_token
-from simconsole.session.lockstep import TOKEN_VARIABLE
+from simconsole.session.autopilot_program import TOKEN_VARIABLE
 from simconsole.values.errors import ProfileError
 from tests.drives.console import complaint, simconsole
 

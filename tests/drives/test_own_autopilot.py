@@ -9,8 +9,8 @@ import pytest
 
 from simconsole.cli.certificate import make, write_private
 from simconsole.recording.bundles.bundle import open_bundle
+from simconsole.session.autopilot_program import TOKEN_VARIABLE
 from simconsole.session.lifecycle import drive
-from simconsole.session.lockstep import TOKEN_VARIABLE
 from simconsole.session.resolution import load_session, override, resolve
 from simconsole.values.errors import ProfileError
 from simconsole.values.signals import Mode

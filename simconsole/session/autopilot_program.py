@@ -1,0 +1,78 @@
+"""The session's own autopilot: a program beside the drive, and what it needs to be let in by its bridge."""
+
+import os
+import secrets
+import subprocess
+
+from simconsole.processes.lifetimes import ATTACHED, DRIVE_VARIABLE, spawn
+from simconsole.profiles.bridge import BridgeProfile
+from simconsole.profiles.session import SessionProfile
+from simconsole.values.errors import BridgeError
+
+TOKEN_VARIABLE = "SIMCONSOLE_TOKEN"
+"""Environment variable with the token that commands show to the server they connect to."""
+PROGRAM_END_S = 0.3
+"""How long a program that the drive has started may take to close its connection; it has nothing else to finish."""
+
+
+def new_nonce() -> str:
+    """Return a nonce that identifies this drive to the programs that it starts."""
+    return secrets.token_hex(16)
+
+
+def own_token(session: SessionProfile) -> str | None:
+    """Return the token with which the session's own autopilot connects to its bridge; None where none is needed."""
+    if session.outputs.bridge is None or session.features.autopilot is None:
+        return None
+    from simconsole.bridge.transport.credentials import control_token
+
+    return control_token(session.outputs.bridge)
+
+
+def start_autopilot(
+    url: str, session: SessionProfile, bridge: BridgeProfile, drive: str, token: str | None
+) -> "subprocess.Popen[bytes]":
+    """Start `simconsole autopilot` as a program of its own, which ends with this process.
+
+    Args:
+        url: the console's own server.
+        session: what to follow, how, and in which car.
+        bridge: what its topics are called, its certificate, and how late its commands act.
+        drive: the drive's nonce, without which the program would take the next drive at this address for this one.
+        token: what the server asks for; both go by the environment, for everyone can read a program's arguments.
+
+    Raises:
+        BridgeError: it cannot be started.
+    """
+    arguments = [
+        "-m",
+        "simconsole",
+        "autopilot",
+        ATTACHED,
+        "--url",
+        _here(url),
+        "--course",
+        session.features.autopilot or "",
+        "--tracker",
+        session.features.tracker,
+        "--vehicle",
+        session.scenario.vehicle,
+    ]
+    if late_ms := bridge.link.delay_ms + 0.5 * bridge.link.jitter_ms:
+        arguments += ["--delay-ms", f"{late_ms:g}"]
+    if bridge.namespace:
+        arguments += ["--namespace", bridge.namespace]
+    for standard, name in bridge.rename.items():
+        arguments += ["--rename", f"{standard}={name}"]
+    if bridge.certificate is not None:
+        arguments += ["--certificate", bridge.certificate]
+    shown = {DRIVE_VARIABLE: drive} if token is None else {DRIVE_VARIABLE: drive, TOKEN_VARIABLE: token}
+    try:
+        return spawn(arguments, environment={**os.environ, **shown})
+    except OSError as error:
+        raise BridgeError(f"the autopilot cannot be started: {error.strerror}") from None
+
+
+def _here(url: str) -> str:
+    """Return the address for this machine of a server that listens on all addresses: no certificate names those."""
+    return url.replace("//0.0.0.0:", "//127.0.0.1:").replace("//[::]:", "//[::1]:")
