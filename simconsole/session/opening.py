@@ -298,6 +298,7 @@ def _open_lockstep(
     stack: ExitStack,
     traffic: TrafficSource | None,
 ) -> LockstepLink:
+    from simconsole.bridge.console.surroundings import Surroundings
     from simconsole.bridge.console.view_topics import NO_VIEW
     from simconsole.bridge.transport.lockstep_server import LockstepBridge
     from simconsole.session.external_view import display_settings, external_view
@@ -317,11 +318,13 @@ def _open_lockstep(
         odometry_hz=odometry_hz,
         folder=folder,
         drive=drive,
-        route=route_points(resolved.world),
-        steering=steering_limit(session.features.control, console.platform.wheelbase_m),
-        view=view,
-        road_users=None if traffic is None else traffic.newest,
-        signals=road_signals(resolved.world, console.tick_hz),
+        around=Surroundings(
+            route=route_points(resolved.world),
+            signals=road_signals(resolved.world, console.tick_hz),
+            road_users=None if traffic is None else traffic.newest,
+            view=view,
+            steering=steering_limit(session.features.control, console.platform.wheelbase_m),
+        ),
     )
     program = None
     if session.features.autopilot is not None:

@@ -48,7 +48,6 @@ from simconsole.values.protocols import CommandSource, NobodyCommands
 from simconsole.values.signals import NEVER_TICKS, NO_COMMAND, EventInput, RemoteCommand
 from simconsole.values.state_vector import LAYOUT, Snapshot
 from simconsole.values.units import NS_PER_S
-from simconsole.world.kinds.worlds import route_points
 from simconsole.world.traffic.road_users import RECORD_WIDTH, to_record
 
 START_PATIENCE_S = 20.0
@@ -199,7 +198,6 @@ def worker_specs(
             tick_hz=tick_hz,
             drive=drive,
             bundle=str(bundle.absolute()),
-            route=route_points(resolved.world),
             steering=steering_limit(resolved.session.features.control, console.platform.wheelbase_m),
             display=display_settings(resolved) if outputs.bridge.external_view else None,
             has_traffic=has_traffic,

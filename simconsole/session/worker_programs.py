@@ -63,8 +63,6 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
     """The drive's nonce."""
     bundle: str
     """The bundle's folder, for recorded topics."""
-    route: tuple[tuple[float, float, float], ...] = ()
-    """What /route shows."""
     steering: SteeringLimit | None = None
     """Beyond it the arbiter refuses a command."""
     display: HudSettings | None = None
@@ -72,17 +70,18 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
     there is no such display."""
     has_traffic: bool = False
     world: WorldProfile | None = None
-    """Whose traffic lights it tells of."""
+    """Whose route and traffic lights it tells of."""
 
     def run(self, folder: Path, stop: Callable[[], bool]) -> None:
         """Serve until `stop`."""
         from simconsole.bridge.console.operator_acts import Act
+        from simconsole.bridge.console.surroundings import Surroundings
         from simconsole.bridge.console.view_topics import NO_VIEW
         from simconsole.bridge.transport.server import serve
         from simconsole.bridge.transport.sockets import address_url
         from simconsole.session.external_view import external_view
         from simconsole.session.view_job import load_view_job
-        from simconsole.world.kinds.worlds import road_signals
+        from simconsole.world.kinds.worlds import road_signals, route_points
 
         profile = self.profile
         receipts = Receipts(folder / f"{LATENCY}.bridge.json")
@@ -91,7 +90,13 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
 
         acts = TextQueue.open(folder / ACTS, writable=True)
 
-        view = NO_VIEW if self.display is None else external_view(load_view_job(folder / VIEW_JOB), self.display)
+        around = Surroundings(
+            route=route_points(self.world),
+            signals=road_signals(self.world, self.tick_hz),
+            road_users=RoadUsersRing(folder).newest if self.has_traffic else None,
+            view=NO_VIEW if self.display is None else external_view(load_view_job(folder / VIEW_JOB), self.display),
+            steering=self.steering,
+        )
 
         def keep_act(act: Act) -> bool:
             return acts.put(msgspec.json.encode(act))
@@ -109,10 +114,7 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
         serve(
             profile, snapshots, command_writer(folder / COMMAND), events.raise_events, stop,
             on_ready=ready, on_act=keep_act, on_counts=write_counts, on_link_state=write_link_state,
-            folder=Path(self.bundle), drive=self.drive, route=self.route, steering=self.steering,
-            view=view,
-            road_users=RoadUsersRing(folder).newest if self.has_traffic else None,
-            signals=road_signals(self.world, self.tick_hz),
+            folder=Path(self.bundle), drive=self.drive, around=around,
         )  # fmt: skip
 
 

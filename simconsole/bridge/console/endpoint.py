@@ -8,21 +8,21 @@ from simconsole.bridge.console.input_slots import BridgeInputs, OnCommand, OnEve
 from simconsole.bridge.console.operator_acts import ACTS_MAX, OPERATE, OPERATE_TYPE, Act, OnAct, Operator
 from simconsole.bridge.console.output_schedule import OutputSchedule, topic_names
 from simconsole.bridge.console.published_tick import PublishedTick
-from simconsole.bridge.console.road_user_topics import ReadRoadUsers, RoadUserTopics
-from simconsole.bridge.console.topics import ROSOUT, ROSOUT_TYPE, Outputs, Route
-from simconsole.bridge.console.view_topics import NO_VIEW, ExternalView, view_topics
+from simconsole.bridge.console.road_user_topics import RoadUserTopics
+from simconsole.bridge.console.surroundings import NOWHERE, Surroundings
+from simconsole.bridge.console.topics import ROSOUT, ROSOUT_TYPE, Outputs
+from simconsole.bridge.console.view_topics import view_topics
 from simconsole.bridge.messages import Registry, standard_registry
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.client_session import ClientSession
 from simconsole.bridge.protocol.rosapi import RosApi
 from simconsole.bridge.protocol.server_protocol import Outcome, Router
 from simconsole.bridge.protocol.topic_registry import Origin
-from simconsole.control.requests.refusals import SteeringLimit, broken_limit
+from simconsole.control.requests.refusals import broken_limit
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.labels import arbitration_label, eased_label, is_eased
 from simconsole.values.signals import Event
 from simconsole.values.state_vector import Snapshot
-from simconsole.world.rules.road_signals import RoadSignals
 
 
 class ConsoleBridge:
@@ -35,11 +35,7 @@ class ConsoleBridge:
         on_command: OnCommand | None = None,
         on_events: OnEvents | None = None,
         on_act: OnAct | None = None,
-        route: Route = (),
-        steering: SteeringLimit | None = None,
-        view: ExternalView = NO_VIEW,
-        road_users: ReadRoadUsers | None = None,
-        signals: RoadSignals | None = None,
+        around: Surroundings = NOWHERE,
     ) -> None:
         """Build the topics of `profile`.
 
@@ -49,11 +45,7 @@ class ConsoleBridge:
             on_command: sees each change of the command at once (`BridgeInputs`).
             on_events: sees each event at once.
             on_act: sees each act of an operator at once; without, they are kept until `take_acts`.
-            route: what /route shows.
-            signals: the traffic lights of the world; without, it has none.
-            steering: beyond it the arbiter refuses a command, and its sender is told so; without, nobody is.
-            view: what the topics of `external_view` show.
-            road_users: returns the newest; without, they have no topics.
+            around: what there is to tell of beside the state vector.
 
         Raises:
             ProfileError: the profile renames or rates a topic that does not exist, or gives two topics one name.
@@ -74,12 +66,16 @@ class ConsoleBridge:
         self.router.on_new_commander = self._command_decoder.forget_stamps
         self._now_ns = 0
         self._out = Outputs(
-            self.router.registry, profile, lambda: bridge_status(self.router, self._now_ns), route, signals
+            self.router.registry,
+            profile,
+            lambda: bridge_status(self.router, self._now_ns),
+            around.route,
+            around.signals,
         )
-        outputs = (*view_topics(self.router.registry, profile, view), *self._out.topics())
+        outputs = (*view_topics(self.router.registry, profile, around.view), *self._out.topics())
         commands = self._command_decoder.topics()
-        if road_users is not None:
-            outputs = (*RoadUserTopics(self.router.registry, road_users).topics(), *outputs)
+        if around.road_users is not None:
+            outputs = (*RoadUserTopics(self.router.registry, around.road_users).topics(), *outputs)
         self.names = topic_names(profile, [*(topic.name for topic in outputs), *(topic.name for topic in commands)])
         self._schedule = OutputSchedule(outputs, self.names, profile)
         self._topics = {
@@ -89,7 +85,7 @@ class ConsoleBridge:
         self.router.add_shared(ROSOUT, ROSOUT_TYPE)
         self._eased = False  # it has been told
         self._happened: tuple[float, float, float, float] | None = None
-        self._steering = steering
+        self._steering = around.steering
         self._implausible = 0.0  # as many commands have been refused by the arbiter so far
         for command in commands:
             self.router.add_command(self.names[command.name], command.type, command.accept, command.leased)

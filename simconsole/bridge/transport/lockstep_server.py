@@ -17,9 +17,8 @@ from typing import TYPE_CHECKING, Final, Self
 import msgspec
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
-from simconsole.bridge.console.road_user_topics import ReadRoadUsers
-from simconsole.bridge.console.topics import ODOMETRY, Route
-from simconsole.bridge.console.view_topics import NO_VIEW, ExternalView
+from simconsole.bridge.console.surroundings import NOWHERE, Surroundings
+from simconsole.bridge.console.topics import ODOMETRY
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.protocol.access import Access
 from simconsole.bridge.protocol.client_session import ClientSession
@@ -31,12 +30,10 @@ from simconsole.bridge.transport.lockstep_connection import LockstepConnection
 from simconsole.bridge.transport.message_files import load_registry
 from simconsole.bridge.transport.sockets import RECEIVE_BYTES, address_url, listen
 from simconsole.bridge.transport.topic_recorder import open_recorder
-from simconsole.control.requests.refusals import SteeringLimit
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.signals import EventInput, RemoteCommand
 from simconsole.values.state_vector import Snapshot
-from simconsole.world.rules.road_signals import RoadSignals
 
 if TYPE_CHECKING:
     from simconsole.bridge.ros2.node import Ros2Link
@@ -59,11 +56,7 @@ class LockstepBridge:
         odometry_hz: float | None = None,
         folder: Path | None = None,
         drive: str | None = None,
-        route: Route = (),
-        steering: SteeringLimit | None = None,
-        view: ExternalView = NO_VIEW,
-        road_users: ReadRoadUsers | None = None,
-        signals: RoadSignals | None = None,
+        around: Surroundings = NOWHERE,
     ) -> None:
         """Listen on the profile's host and port.
 
@@ -72,11 +65,7 @@ class LockstepBridge:
             registry: message types; without, the standard ones and those of the profile's folder.
             folder: where topics are recorded if the profile says so.
             drive: the nonce of the drive whose bridge it is.
-            route: what /route shows.
-            steering: as `ConsoleBridge`.
-            view: as `ConsoleBridge`.
-            road_users: as `ConsoleBridge`.
-            signals: likewise.
+            around: what there is to tell of beside the state vector.
             odometry_hz: rate of /odom in place of the profile's: the control rate, so that every answer is waited for.
 
         Raises:
@@ -92,11 +81,7 @@ class LockstepBridge:
         self.console = ConsoleBridge(
             profile,
             registry,
-            route=route,
-            steering=steering,
-            view=view,
-            road_users=road_users,
-            signals=signals,
+            around=around,
         )
         self.console.router.access = load_access(profile)
         if profile.upstream is not None:

@@ -15,9 +15,7 @@ from simconsole.bridge.console.counters import link_state
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.input_slots import OnCommand, OnEvents
 from simconsole.bridge.console.operator_acts import OnAct
-from simconsole.bridge.console.road_user_topics import ReadRoadUsers
-from simconsole.bridge.console.topics import Route
-from simconsole.bridge.console.view_topics import NO_VIEW, ExternalView
+from simconsole.bridge.console.surroundings import NOWHERE, Surroundings
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.handshake import Admission, HandshakeRequest, Refusal, admit, places
@@ -30,11 +28,9 @@ from simconsole.bridge.transport.sockets import CLOSE_S, address_url, listen
 from simconsole.bridge.transport.topic_recorder import TopicRecorder, open_recorder
 from simconsole.bridge.transport.transport_registry import load_transport
 from simconsole.bridge.transport.upstream_client import UpstreamClient
-from simconsole.control.requests.refusals import SteeringLimit
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.state_vector import Snapshot
 from simconsole.values.units import NS_PER_S
-from simconsole.world.rules.road_signals import RoadSignals
 
 if TYPE_CHECKING:
     from simconsole.bridge.ros2.node import Ros2Link
@@ -61,11 +57,7 @@ class BridgeServer:
         clock_ns: Callable[[], int] = time.monotonic_ns,
         folder: Path | None = None,
         drive: str | None = None,
-        route: Route = (),
-        steering: SteeringLimit | None = None,
-        view: ExternalView = NO_VIEW,
-        road_users: ReadRoadUsers | None = None,
-        signals: RoadSignals | None = None,
+        around: Surroundings = NOWHERE,
     ) -> None:
         """Build the bridge; `start` opens it.
 
@@ -79,11 +71,7 @@ class BridgeServer:
             on_command=on_command,
             on_events=on_events,
             on_act=on_act,
-            route=route,
-            steering=steering,
-            view=view,
-            road_users=road_users,
-            signals=signals,
+            around=around,
         )
         self._folder = folder
         self._drive = drive
@@ -252,11 +240,7 @@ def serve(
     registry: Registry | None = None,
     folder: Path | None = None,
     drive: str | None = None,
-    route: Route = (),
-    steering: SteeringLimit | None = None,
-    view: ExternalView = NO_VIEW,
-    road_users: ReadRoadUsers | None = None,
-    signals: RoadSignals | None = None,
+    around: Surroundings = NOWHERE,
 ) -> None:
     """Run a bridge server until `stop()` says so; for a process of its own.
 
@@ -273,11 +257,7 @@ def serve(
         registry: message types; without, the standard ones and those of the profile's folder.
         folder: where topics are recorded if the profile says so.
         drive: the nonce of the drive whose bridge it is.
-        route: what /route shows.
-        steering: as `ConsoleBridge`.
-        view: as `ConsoleBridge`.
-        road_users: as `ConsoleBridge`.
-        signals: likewise.
+        around: what there is to tell of beside the state vector.
 
     Raises:
         BridgeError: the address cannot be listened on.
@@ -291,11 +271,7 @@ def serve(
         on_act=on_act,
         folder=folder,
         drive=drive,
-        route=route,
-        steering=steering,
-        view=view,
-        road_users=road_users,
-        signals=signals,
+        around=around,
     )
     reporter = _StatusReporter(server, on_counts, on_link_state)
     asyncio.run(_run(server, read_snapshot, stop, on_ready, reporter))

@@ -5,6 +5,7 @@ from typing import Any
 import pytest
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.console.surroundings import Surroundings
 from simconsole.control.requests.refusals import SteeringLimit
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import ProfileError
@@ -163,7 +164,7 @@ def test_a_controller_that_nobody_asked_for_is_told(
 
 
 def test_route_is_there_for_whoever_comes_later(join: Callable[..., Any], snapshot: Callable[..., Any]) -> None:
-    bridge = ConsoleBridge(BridgeProfile(), route=[(1.0, 2.0, 0.0), (1.0, 4.0, math.pi / 2.0)])
+    bridge = ConsoleBridge(BridgeProfile(), around=Surroundings(route=[(1.0, 2.0, 0.0), (1.0, 4.0, math.pi / 2.0)]))
     bridge.publish(snapshot(1), 0)
     late = join(bridge)
     late.send(op="subscribe", topic="/route", type="nav_msgs/Path")
@@ -180,7 +181,7 @@ def test_route_is_there_for_whoever_comes_later(join: Callable[..., Any], snapsh
 def test_the_commander_and_rosout_are_told_which_limit_a_command_has_broken(
     join: Callable[..., Any], snapshot: Callable[..., Any], control: Callable[..., Any]
 ) -> None:
-    bridge = ConsoleBridge(BridgeProfile(port=0), steering=SteeringLimit(10.0, 2.5))
+    bridge = ConsoleBridge(BridgeProfile(port=0), around=Surroundings(steering=SteeringLimit(10.0, 2.5)))
     driver, listener = join(bridge), join(bridge)
     listener.send(op="subscribe", topic="/rosout")
     driver.publish(CONTROL, control(0.5))

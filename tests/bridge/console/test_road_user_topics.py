@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.console.surroundings import Surroundings
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.link import LinkProfile, LocalisationProfile
 from simconsole.world.traffic.road_users import NOBODY, RoadUser, RoadUserKind, RoadUsersAt, table
@@ -27,7 +28,7 @@ VAN = RoadUser(
 
 
 def told(snapshot: Callable[..., Any], profile: BridgeProfile, at: RoadUsersAt, **fields: float) -> dict[str, Any]:
-    peer = Peer(ConsoleBridge(profile, road_users=lambda: at))
+    peer = Peer(ConsoleBridge(profile, around=Surroundings(road_users=lambda: at)))
     for topic, kind in TYPES.items():
         assert peer.send(op="subscribe", topic=topic, type=kind).kind == "done"
     peer.bridge.publish(snapshot(375, **fields), 0)
@@ -60,7 +61,7 @@ def test_nobody_is_an_empty_message(snapshot: Callable[..., Any]) -> None:
 def test_places_relative_to_the_vehicle_are_exact_whatever_its_localisation(snapshot: Callable[..., Any]) -> None:
     errors = LocalisationProfile(position_noise_m=0.5, yaw_noise_deg=2.0)
     profile = BridgeProfile(link=LinkProfile(localisation=errors, seed=3))
-    peer = Peer(ConsoleBridge(profile, road_users=lambda: RoadUsersAt(375, table([VAN]))))
+    peer = Peer(ConsoleBridge(profile, around=Surroundings(road_users=lambda: RoadUsersAt(375, table([VAN])))))
     for topic, kind in {**TYPES, "/odom": "nav_msgs/Odometry"}.items():
         peer.send(op="subscribe", topic=topic, type=kind)
     peer.bridge.publish(snapshot(375, x_m=10.0, y_m=2.0, yaw_rad=0.4), 0)
@@ -81,5 +82,5 @@ def test_without_traffic_there_are_no_such_topics(bridge: ConsoleBridge) -> None
 
 def test_names_and_rates_are_the_profiles(snapshot: Callable[..., Any]) -> None:
     profile = BridgeProfile(rename={"/road_users": "/objects"}, rates_hz={"/road_users": 5.0})
-    bridge = ConsoleBridge(profile, road_users=lambda: RoadUsersAt(0, NOBODY))
+    bridge = ConsoleBridge(profile, around=Surroundings(road_users=lambda: RoadUsersAt(0, NOBODY)))
     assert bridge.names["/road_users"] == "/objects"

@@ -8,6 +8,7 @@ import pytest
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.signal_topics import SIGNALS, SIGNALS_TYPE, STOP_LINES, SignalTopics
+from simconsole.bridge.console.surroundings import Surroundings
 from simconsole.bridge.messages import standard_registry
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.world.rules.road_signals import IN_REACH_M, RoadSignals
@@ -32,7 +33,7 @@ def heard(bridge: ConsoleBridge, snapshots: list[Any]) -> dict[str, list[dict[st
 def test_lights_near_the_vehicle_ten_times_a_second_and_stop_lines_once(snapshot: Callable[..., Any]) -> None:
     signals = RoadSignals(generated_map(*CITY), HZ)
     place = signals.stop_lines[0]
-    bridge = ConsoleBridge(BridgeProfile(port=0), signals=signals)
+    bridge = ConsoleBridge(BridgeProfile(port=0), around=Surroundings(signals=signals))
     found = heard(bridge, [snapshot(tick, x_m=place.x_m, y_m=place.y_m) for tick in range(1, 2 * HZ + 1)])
     assert (len(found[SIGNALS]), len(found[STOP_LINES])) == (20, 1)
     for message in found[SIGNALS]:
@@ -53,7 +54,7 @@ def test_lights_near_the_vehicle_ten_times_a_second_and_stop_lines_once(snapshot
 
 def test_far_lights_are_not_told(snapshot: Callable[..., Any]) -> None:
     signals = RoadSignals(generated_map(*CITY), HZ)
-    bridge = ConsoleBridge(BridgeProfile(port=0), signals=signals)
+    bridge = ConsoleBridge(BridgeProfile(port=0), around=Surroundings(signals=signals))
     assert heard(bridge, [snapshot(25, x_m=-2.0 * IN_REACH_M)])[SIGNALS][0]["signals"] == []
 
 

@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.console.surroundings import Surroundings
 from simconsole.bridge.console.view_topics import ExternalView, Model, view_topics
 from simconsole.bridge.messages import standard_registry
 from simconsole.profiles.bridge import BridgeProfile
@@ -26,7 +27,7 @@ VIEW = ExternalView(
 
 
 def heard(snapshots: list[Snapshot], profile: BridgeProfile = GRANTED) -> dict[str, list[dict[str, Any]]]:
-    peer = Peer(ConsoleBridge(profile, view=VIEW))
+    peer = Peer(ConsoleBridge(profile, around=Surroundings(view=VIEW)))
     found: dict[str, list[dict[str, Any]]] = {}
     for topic in ("/view/scene", "/view/poses", "/view/hud"):
         peer.send(op="subscribe", topic=topic)
@@ -57,7 +58,7 @@ def test_models_come_once_each_in_its_frame(snapshot: Callable[..., Snapshot]) -
 
 
 def test_who_comes_late_gets_the_scene(snapshot: Callable[..., Snapshot]) -> None:
-    bridge = ConsoleBridge(GRANTED, view=VIEW)
+    bridge = ConsoleBridge(GRANTED, around=Surroundings(view=VIEW))
     bridge.publish(snapshot(1), 0)
     peer = Peer(bridge)
     peer.send(op="subscribe", topic="/view/scene")

@@ -1,0 +1,22 @@
+"""What a drive's bridge tells of, or knows, beside the state vector."""
+
+from typing import Final, NamedTuple
+
+from simconsole.bridge.console.road_user_topics import ReadRoadUsers
+from simconsole.bridge.console.topics import Route
+from simconsole.bridge.console.view_topics import NO_VIEW, ExternalView
+from simconsole.control.requests.refusals import SteeringLimit
+from simconsole.world.rules.road_signals import RoadSignals
+
+
+class Surroundings(NamedTuple):
+    """World, traffic, view and limits of a drive."""
+
+    route: Route = ()  # what /route shows
+    signals: RoadSignals | None = None  # the traffic lights of the world; None where it has none
+    road_users: ReadRoadUsers | None = None  # returns the newest; None: they have no topics
+    view: ExternalView = NO_VIEW  # what the topics of `external_view` show
+    steering: SteeringLimit | None = None  # beyond it the arbiter refuses a command, and its sender is told so
+
+
+NOWHERE: Final = Surroundings()
