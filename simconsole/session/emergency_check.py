@@ -11,7 +11,7 @@ from simconsole.tick.advance import advance_vector
 from simconsole.tick.assembly import assemble
 from simconsole.values.host.jit import plain
 from simconsole.values.signals import NO_COMMAND, NO_EVENTS, DeviceSample, Mode
-from simconsole.values.state_vector import Snapshot
+from simconsole.values.state_vector import Snapshot, TickInputs, input_vector
 
 
 def stops(cockpit: CockpitProfile, samples: Sequence[DeviceSample]) -> Verdict:
@@ -22,7 +22,8 @@ def stops(cockpit: CockpitProfile, samples: Sequence[DeviceSample]) -> Verdict:
     console, state = assemble(resolved, plain)
     row, modes = state.vector, []
     for sample in samples:
-        row = advance_vector(row, (*sample._replace(wheel_motor=1.0), *NO_COMMAND, *NO_EVENTS, *NO_COMMAND), console)
+        inputs = TickInputs(sample._replace(wheel_motor=1.0), NO_COMMAND, NO_EVENTS)
+        row = advance_vector(row, input_vector(inputs), console)
         modes.append(Mode(int(Snapshot(0, HZ, row).arbitration.mode)))
     torque_nm = Snapshot(0, HZ, row).torque.torque_nm
     ok = modes[-1] == Mode.EMERGENCY_STOP and torque_nm == 0.0

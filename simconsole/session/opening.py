@@ -120,6 +120,7 @@ def open_headless(
         seat=seating.seat,
         ecu=can or NobodyCommands(),
         standby=(*standby, *(() if can is None else (can.listen,))),
+        road_users=traffic,
     )
     latencies = LatencyStatistics(time.monotonic_ns, console.tick_hz, every=LOOKED_AT)
     faulty = with_faults(components, resolved, console.tick_hz)
@@ -185,6 +186,7 @@ def open_realtime(
             seat=seating.seat,
             ecu=ecu,
             standby=(supervisor.publish, memory.commands.stand),
+            road_users=traffic,
         ),
     )._replace(latencies=latencies)
 

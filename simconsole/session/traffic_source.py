@@ -11,11 +11,13 @@ from simconsole.values.errors import ProfileError
 from simconsole.values.host.jit import compiled
 from simconsole.values.latency import Hop
 from simconsole.values.platform import Platform
-from simconsole.values.signals import Event, VehicleState
+from simconsole.values.signals import AheadInput, Event, VehicleState
 from simconsole.values.state_vector import Snapshot
 from simconsole.values.trigonometry import direction
 from simconsole.world.kinds.worlds import open_map, open_world
+from simconsole.world.route import Route
 from simconsole.world.traffic.collisions import struck
+from simconsole.world.traffic.leader import leader
 from simconsole.world.traffic.road_users import Box, RoadUsersAt, to_bytes
 from simconsole.world.traffic.traffic import Traffic
 
@@ -30,11 +32,14 @@ class TrafficSource:
 
     hop = Hop.OTHERS
 
-    def __init__(self, traffic: Traffic, platform: Platform, period_ticks: int) -> None:
+    def __init__(self, traffic: Traffic, platform: Platform, period_ticks: int, route: Route | None = None) -> None:
+        """Take what the vehicle follows as `route`; without one it goes straight on."""
         self._traffic = traffic
+        self._route = route
         self._platform = platform
         self._period_ticks = period_ticks
         self._newest = RoadUsersAt(0, traffic.road_users())
+        self._ahead = self._leader(ego_box(platform.initial_vehicle, platform))
         self._fresh = True
         self._touched: frozenset[float] = frozenset()
         self._events = 0
@@ -57,6 +62,7 @@ class TrafficSource:
         ego = ego_box(snapshot.vehicle, self._platform)
         self._newest = RoadUsersAt(snapshot.tick, self._traffic.step(ego))
         self._fresh = True
+        self._ahead = self._leader(ego)
         touched = frozenset(user.id for user in struck(ego, self._newest.users))
         if touched - self._touched:
             self._events |= int(Event.COLLISION)
@@ -64,6 +70,13 @@ class TrafficSource:
         self._touched = touched
         for show in self._shown:
             show(self._newest)
+
+    def ahead(self) -> AheadInput:
+        """Return whom the vehicle follows, as of the last step."""
+        return self._ahead
+
+    def _leader(self, ego: Box) -> AheadInput:
+        return leader(self._route, ego, self._newest.users)
 
     def unseen(self, tick: int) -> int:
         """Return how many ticks, from `tick` on, do not end a period."""
@@ -100,15 +113,15 @@ def open_traffic(resolved: ResolvedSession, console: Console) -> TrafficSource |
             f"environment.traffic.period_ms: value {profile.period_ms}: a whole number of ticks"
             f" of {1000.0 / console.tick_hz:g} ms"
         )
-    platform = console.platform
+    platform, route = console.platform, open_world(resolved.world).route
     traffic = Traffic(
         open_map(resolved.world),
         profile,
         compiled,
-        route=open_world(resolved.world).route,
+        route=route,
         ego=ego_box(platform.initial_vehicle, platform),
     )
-    return TrafficSource(traffic, platform, profile.period_ms * console.tick_hz // 1000)
+    return TrafficSource(traffic, platform, profile.period_ms * console.tick_hz // 1000, route)
 
 
 def ego_box(vehicle: VehicleState, platform: Platform) -> Box:

@@ -21,7 +21,7 @@ from simconsole.values.kernels import Row, kernel, put
 from simconsole.values.latency import Hop, Mark, unheard
 from simconsole.values.layout import Part, lay_out, read, write
 from simconsole.values.platform import Platform
-from simconsole.values.signals import NO_COMMAND, NO_RULES_BROKEN, NO_SAMPLE, NO_SITUATION, Commander
+from simconsole.values.signals import NO_AHEAD, NO_COMMAND, NO_RULES_BROKEN, NO_SAMPLE, NO_SITUATION, Commander
 from simconsole.values.state_vector import INPUT_WIDTH, LAYOUT, PLATFORM_AT, Snapshot, TickInputs, columns
 from simconsole.world.rules.road_rules import NO_ROADS, RoadRules
 from simconsole.world.rules.situation import look_around
@@ -123,6 +123,7 @@ def _initial(platform: Platform) -> Row:
     write(row, LAYOUT.sample, NO_SAMPLE)
     write(row, LAYOUT.ros, NO_COMMAND)
     write(row, LAYOUT.ecu, NO_COMMAND)
+    write(row, LAYOUT.ahead, NO_AHEAD)
     write(row, LAYOUT.vehicle, platform.initial_vehicle)
     write(row, LAYOUT.situation, NO_SITUATION)
     put(row, PLATFORM_AT, platform.initial_state)
@@ -138,7 +139,8 @@ def advance(
     state: ConsoleState, inputs: TickInputs, console: Console, mark: Mark = unheard
 ) -> tuple[ConsoleState, Snapshot]:
     """Advance the console by one tick. `state` is not changed; `mark` is called at the end of each stage."""
-    row = advance_vector(state.vector, (*inputs.sample, *inputs.ros, *inputs.events, *inputs.ecu), console, mark)
+    values = (*inputs.sample, *inputs.ros, *inputs.events, *inputs.ecu, *inputs.ahead)
+    row = advance_vector(state.vector, values, console, mark)
     tick = state.tick + 1
     return ConsoleState(tick, row), Snapshot(tick, console.tick_hz, row)
 

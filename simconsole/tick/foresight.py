@@ -4,7 +4,7 @@ A script, a trace or the pause between two answers of a controller in lockstep: 
 call, one block in the log and one look of each output. What comes out is the same to the bit.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple, Protocol, Self, runtime_checkable
 
 import numpy as np
@@ -13,7 +13,7 @@ from simconsole.tick.advance import Console, ConsoleState, advance_block
 from simconsole.values.kernels import Row
 from simconsole.values.latency import LatencyStatistics
 from simconsole.values.protocols import Output
-from simconsole.values.signals import Button, Event
+from simconsole.values.signals import AheadInput, Button, Event
 from simconsole.values.state_vector import LAYOUT
 
 BLOCK_TICKS: Final = 64
@@ -73,6 +73,7 @@ class _Parts(NamedTuple):
     ecu: ForeseeingCommands
     recorder: BlockRecorder
     outputs: Sequence[PatientOutput]
+    ahead: Callable[[], AheadInput]
 
 
 class Foresight:
@@ -92,6 +93,7 @@ class Foresight:
         recorder: object,
         outputs: Sequence[Output],
         latencies: LatencyStatistics | None,
+        ahead: Callable[[], AheadInput],
     ) -> Self | None:
         """Return the foresight of a drive with these devices, commands of ROS side and ECU; None if a part has none."""
         devices, ros, ecu = sources
@@ -105,7 +107,11 @@ class Foresight:
         patient = [output for output in outputs if isinstance(output, PatientOutput)]
         if len(patient) < len(outputs):
             return None
-        return cls(console, _Parts(devices, ros, ecu, recorder, patient), latencies)
+        return cls(
+            console,
+            _Parts(devices=devices, ros=ros, ecu=ecu, recorder=recorder, outputs=patient, ahead=ahead),
+            latencies,
+        )
 
     def advance(self, state: ConsoleState, end: int) -> tuple[ConsoleState, int]:
         """Make the coming ticks that are foreseen, up to `end`, and record them.
@@ -117,6 +123,7 @@ class Foresight:
             return state, 0
         rows = self._rows[:count]
         rows[:, LAYOUT.events.slice] = 0.0
+        rows[:, LAYOUT.ahead.slice] = self._parts.ahead()  # the same until the last tick's outputs have looked
         advance_block(state.vector, rows, self._console)
         count = _up_to_pause(rows)
         kept, events = self._parts.recorder.write_block(state.tick + 1, rows[:count])

@@ -7,7 +7,7 @@ from simconsole.tick.advance import Console, ConsoleState, advance
 from simconsole.tick.foresight import Foresight
 from simconsole.values.latency import Hop, LatencyStatistics, unheard
 from simconsole.values.protocols import CommandSource, DeviceSource, NobodyCommands, Output, Seat
-from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE, Button, Event, EventInput
+from simconsole.values.signals import NO_AHEAD, NO_COMMAND, NO_EVENTS, NO_SAMPLE, AheadInput, Button, Event, EventInput
 from simconsole.values.state_vector import Snapshot, TickInputs
 
 
@@ -23,6 +23,13 @@ class Pace(Protocol):
 
     def wait(self) -> int:
         """Sleep until the next tick and return the events (mask) that pacing itself raised."""
+
+
+class RoadUsers(Protocol):
+    """Everybody else on the road."""
+
+    def ahead(self) -> AheadInput:
+        """Return whom the vehicle follows, as of the last step."""
 
 
 class Faults(Protocol):
@@ -59,6 +66,7 @@ class Components(NamedTuple):
     faults: Faults | None = None
     ecu: CommandSource = NobodyCommands()
     latencies: LatencyStatistics | None = None
+    road_users: RoadUsers | None = None
     standby: Sequence[Standby] = ()  # called again and again while simulated time stands
 
 
@@ -86,7 +94,8 @@ def run(
     snapshot = Snapshot(state.tick, console.tick_hz, state.vector)
     end, latencies = state.tick + ticks, components.latencies
     outputs = [(output, getattr(output, "hop", Hop.OTHERS)) for output in components.outputs]
-    foresight = _foresight(console, components) if at_once else None
+    ahead_now = _ahead_of(components)
+    foresight = _foresight(console, components, ahead_now) if at_once else None
     while state.tick < end and not finished(snapshot):
         if foresight is not None and not carried:
             state, carried = foresight.advance(state, end)
@@ -107,12 +116,13 @@ def run(
         mark(Hop.READ)
         ros, events = components.commands.take(coming)
         ecu, ecu_events = components.ecu.take(coming)
+        ahead = ahead_now()
         mark(Hop.TAKE)
         carried |= int(events.events) | raised
         if carried & _START:
             carried &= ~_PAUSE
         edges = EventInput(float(carried), faults, float(int(ecu_events.events) | carried_ecu))
-        state, snapshot = advance(state, TickInputs(sample, ros, edges, ecu), console, mark)
+        state, snapshot = advance(state, TickInputs(sample, ros, edges, ecu, ahead), console, mark)
         recorded = components.recorder.write(snapshot)
         mark(Hop.RECORD)
         for output, hop in outputs:
@@ -127,7 +137,15 @@ def run(
     return state
 
 
-def _foresight(console: Console, components: Components) -> Foresight | None:
+def _ahead_of(components: Components) -> Callable[[], AheadInput]:
+    return _nobody_ahead if components.road_users is None else components.road_users.ahead
+
+
+def _nobody_ahead() -> AheadInput:
+    return NO_AHEAD
+
+
+def _foresight(console: Console, components: Components, ahead_now: Callable[[], AheadInput]) -> Foresight | None:
     """Return the foresight of a drive; None where somebody must act or wait in every tick."""
     if (
         components.seat is not None
@@ -136,7 +154,7 @@ def _foresight(console: Console, components: Components) -> Foresight | None:
     ):
         return None
     sources = (components.devices, components.commands, components.ecu)
-    return Foresight.of(console, sources, components.recorder, components.outputs, components.latencies)
+    return Foresight.of(console, sources, components.recorder, components.outputs, components.latencies, ahead_now)
 
 
 def come_to_rest(console: Console, state: ConsoleState, recorder: Recorder) -> ConsoleState:

@@ -11,7 +11,9 @@ import numpy as np
 from simconsole.values.kernels import Row
 from simconsole.values.layout import Part, lay_out, read
 from simconsole.values.signals import (
+    NO_AHEAD,
     NO_COMMAND,
+    AheadInput,
     ArbiterMemory,
     Arbitration,
     Commander,
@@ -42,6 +44,7 @@ class Layout(NamedTuple):
     ros: Part[RemoteCommand]
     events: Part[EventInput]
     ecu: Part[RemoteCommand]
+    ahead: Part[AheadInput]
     driver: Part[DriverInput]
     memory: Part[ArbiterMemory]
     ros_link: Part[Link]
@@ -57,7 +60,7 @@ class Layout(NamedTuple):
 
 
 LAYOUT: Final = lay_out(Layout)
-INPUT_WIDTH: Final = LAYOUT.ecu.stop
+INPUT_WIDTH: Final = LAYOUT.ahead.stop
 """The first columns: what comes from outside."""
 PLATFORM_AT: Final = LAYOUT.rules.stop
 """Where the platform's own state begins."""
@@ -77,6 +80,7 @@ class TickInputs(NamedTuple):
     ros: RemoteCommand
     events: EventInput
     ecu: RemoteCommand = NO_COMMAND
+    ahead: AheadInput = NO_AHEAD
 
 
 def columns(platform_state: type[tuple[float, ...]]) -> tuple[str, ...]:
@@ -87,7 +91,7 @@ def columns(platform_state: type[tuple[float, ...]]) -> tuple[str, ...]:
 
 def input_vector(inputs: TickInputs) -> Row:
     """Return the first INPUT_WIDTH columns of a state vector."""
-    return np.array((*inputs.sample, *inputs.ros, *inputs.events, *inputs.ecu), dtype=np.float64)
+    return np.array((*inputs.sample, *inputs.ros, *inputs.events, *inputs.ecu, *inputs.ahead), dtype=np.float64)
 
 
 class Snapshot(NamedTuple):

@@ -20,7 +20,7 @@ from simconsole.tick.advance import Console, advance_vector
 from simconsole.tick.assembly import ResolvedSession, assemble
 from simconsole.values.host.jit import compiled
 from simconsole.values.signals import NO_COMMAND, NO_EVENTS
-from simconsole.values.state_vector import Snapshot
+from simconsole.values.state_vector import Snapshot, TickInputs, input_vector
 from simconsole.vehicle.rim_stiffness import rim_stiffness
 from tests.paths import ROOT
 
@@ -140,7 +140,7 @@ def bend(vehicle: str, speed_kmh: float, lateral_mps2: float) -> Bend | None:
         snapshot = Snapshot(
             snapshot.tick + 1,
             TICK_HZ,
-            advance_vector(snapshot.vector, (*sample, *NO_COMMAND, *NO_EVENTS, *NO_COMMAND), console),
+            advance_vector(snapshot.vector, input_vector(TickInputs(sample, NO_COMMAND, NO_EVENTS)), console),
         )
     return None
 
@@ -169,7 +169,7 @@ def let_go(vehicle: str, start: Bend, true: ForceFeedback, found: ForceFeedback,
         held = tick < TICK_HZ
         axis = wheel_raw(wheel.turn(HELD if held else HANDS_OFF, start.hand_rad if held else None), settings)
         sample = rest._replace(wheel_axis=round(axis * 32767.0) / 32768.0)
-        row = advance_vector(snapshot.vector, (*sample, *NO_COMMAND, *NO_EVENTS, *NO_COMMAND), console)
+        row = advance_vector(snapshot.vector, input_vector(TickInputs(sample, NO_COMMAND, NO_EVENTS)), console)
         snapshot = Snapshot(snapshot.tick + 1, TICK_HZ, row)
         motor.publish(snapshot)
         if not held:

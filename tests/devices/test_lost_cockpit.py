@@ -9,7 +9,7 @@ from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
 from simconsole.tick.advance import advance_vector
 from simconsole.values.signals import NO_COMMAND, NO_EVENTS, DeviceSample, Mode, Reason
-from simconsole.values.state_vector import Snapshot
+from simconsole.values.state_vector import Snapshot, TickInputs, input_vector
 from tests.devices.hands_off import TICK_HZ, Bend, bend, console_of
 
 SILENT_TICKS = 60
@@ -46,7 +46,7 @@ def driven(start: Bend, silent_ticks: int, back: Intent, seconds: float = 1.0, t
     snapshot = Snapshot(start.tick, TICK_HZ, start.vector)
 
     def tick(sample: DeviceSample) -> Snapshot:
-        inputs = (*sample, *NO_COMMAND, *NO_EVENTS, *NO_COMMAND)
+        inputs = input_vector(TickInputs(sample, NO_COMMAND, NO_EVENTS))
         return Snapshot(snapshot.tick + 1, TICK_HZ, advance_vector(snapshot.vector, inputs, console))
 
     before = raw_sample(Intent(hand_wheel_rad=start.hand_rad, throttle=start.throttle, gear=1.0), settings)

@@ -16,7 +16,7 @@ from simconsole.profiles.manoeuvre import Weave
 from simconsole.tick.advance import advance_vector
 from simconsole.values.host.jit import compiled
 from simconsole.values.signals import NO_COMMAND, NO_EVENTS
-from simconsole.values.state_vector import Snapshot
+from simconsole.values.state_vector import Snapshot, TickInputs, input_vector
 from tests.devices.hands_off import HELD, TICK_HZ, console_of
 
 GRADIENT_NM_PER_G = (15.0, 30.0)
@@ -41,7 +41,7 @@ def felt(vehicle: str, pilot: Pilot, longest_s: float) -> Drive:
             break
         axis = wheel_raw(wheel.turn(HELD, intent.hand_wheel_rad), settings)
         sample = raw_sample(intent, settings)._replace(wheel_motor=1.0, wheel_axis=round(axis * 32767.0) / 32768.0)
-        row = advance_vector(snapshot.vector, (*sample, *NO_COMMAND, *NO_EVENTS, *NO_COMMAND), console)
+        row = advance_vector(snapshot.vector, input_vector(TickInputs(sample, NO_COMMAND, NO_EVENTS)), console)
         snapshot = Snapshot(snapshot.tick + 1, TICK_HZ, row)
         motor.publish(snapshot)
         vehicle_now = snapshot.vehicle

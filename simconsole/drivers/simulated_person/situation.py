@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 from enum import IntEnum
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 from simconsole.values.state_vector import Snapshot
 
@@ -42,10 +42,8 @@ _FAR_M: Final = 1e8
 
 
 def ahead_in(snapshot: Snapshot) -> Situation:
-    """Return what the state vector's situation tells of the way ahead; of an older one without it, that it is empty."""
-    seen: Any = getattr(snapshot, "situation", None)
-    if seen is None:
-        return NOTHING_AHEAD
+    """Return what the state vector's situation tells of the way ahead."""
+    seen = snapshot.situation
     is_ahead = _PASSED_M < seen.signal_distance_m < _FAR_M
     return Situation(
         lead_gap_m=_metres(seen.lead_gap_m),

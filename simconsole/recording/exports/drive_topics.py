@@ -23,7 +23,7 @@ from simconsole.recording.reading import Recording
 from simconsole.recording.recorded_road_users import recorded_road_users
 from simconsole.values.kernels import Row
 from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE, NO_SITUATION
-from simconsole.values.state_vector import INPUT_WIDTH, LAYOUT, PLATFORM_AT, Snapshot
+from simconsole.values.state_vector import INPUT_WIDTH, LAYOUT, PLATFORM_AT, Snapshot, TickInputs, input_vector
 from simconsole.values.units import tick_time_ns
 from simconsole.world.rules.road_signals import RoadSignals
 from simconsole.world.traffic.road_users import NOBODY, RoadUsersAt
@@ -142,6 +142,6 @@ def snapshots(recording: Recording, on_tick: OnTick = lambda tick: None) -> Iter
 def empty_vector() -> Row:
     """Return the stages of a tick in which nothing has come from outside and nothing has happened."""
     vector = np.zeros(PLATFORM_AT)
-    vector[:INPUT_WIDTH] = (*NO_SAMPLE, *NO_COMMAND, *NO_EVENTS, *NO_COMMAND)
+    vector[:INPUT_WIDTH] = input_vector(TickInputs(NO_SAMPLE, NO_COMMAND, NO_EVENTS))
     vector[LAYOUT.situation.slice] = NO_SITUATION
     return vector

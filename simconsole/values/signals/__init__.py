@@ -42,18 +42,28 @@ from simconsole.values.signals.stages import (
     WheelMemory,
     WheelTorque,
 )
-from simconsole.values.signals.surroundings import FAR, NO_RULES_BROKEN, NO_SITUATION, Rules, Situation
+from simconsole.values.signals.surroundings import (
+    FAR,
+    NO_AHEAD,
+    NO_RULES_BROKEN,
+    NO_SITUATION,
+    AheadInput,
+    Rules,
+    Situation,
+)
 
 __all__ = [
     "FAR",
     "MOTOR_UNKNOWN",
     "NEVER_TICKS",
+    "NO_AHEAD",
     "NO_COMMAND",
     "NO_EVENTS",
     "NO_RULES_BROKEN",
     "NO_SAMPLE",
     "NO_SITUATION",
     "NO_TORQUE",
+    "AheadInput",
     "ArbiterMemory",
     "Arbitration",
     "Button",

@@ -6,6 +6,17 @@ FAR: Final = 1e9
 """Distance in m, time in s or speed limit in m/s where there is nobody, no signal and no limit."""
 
 
+class AheadInput(NamedTuple):
+    """The road user ahead as traffic's last step found them: an input, for nobody else on the road is in the state."""
+
+    lead_gap_m: float  # from the vehicle's front, along its way; FAR: nobody
+    lead_speed_mps: float  # along the vehicle's way
+
+
+NO_AHEAD: Final = AheadInput(lead_gap_m=FAR, lead_speed_mps=0.0)
+"""An empty road."""
+
+
 class Situation(NamedTuple):
     """The road around the vehicle; everything else of a world is drawn from the map, the tick and other streams."""
 
@@ -18,7 +29,7 @@ class Situation(NamedTuple):
     signal_state: float  # `SignalState` of the next signal ahead
     signal_distance_m: float  # from the vehicle's front to its stop line, negative beyond it; FAR: none
     signal_change_s: float  # until its state changes; FAR: never
-    lead_gap_m: float  # to the road user ahead in the lane; FAR: nobody
+    lead_gap_m: float  # to the road user ahead, as of traffic's last step; FAR: nobody
     lead_speed_mps: float
     time_to_collision_s: float  # FAR: never
 

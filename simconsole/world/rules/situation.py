@@ -1,10 +1,14 @@
-"""What lies ahead of the vehicle in each tick: lane, limit, next signal. A kernel, a stage of the tick."""
+"""What lies ahead of the vehicle in each tick: lane, limit, next signal, leader. A kernel, a stage of the tick.
 
-from typing import Final
+Time to collision as of Hayward: Near-miss determination through use of a scale of danger, Highway Research Record 384
+(1972), 24-34: the gap divided by the speed at which it closes.
+"""
+
+from typing import Final, NamedTuple
 
 from simconsole.values.kernels import Row, kernel
 from simconsole.values.layout import read, write
-from simconsole.values.signals import FAR, SignalState, Situation, VehicleState
+from simconsole.values.signals import FAR, AheadInput, SignalState, Situation, VehicleState
 from simconsole.values.state_vector import LAYOUT
 from simconsole.values.trigonometry import Direction, direction
 from simconsole.world.roads.lane_index import HEADING_M, Found, nearest_segment
@@ -25,6 +29,25 @@ from simconsole.world.rules.timetable import phase_now
 
 _NO_SIGNAL: Final = float(SignalState.UNAVAILABLE)
 _FAR: Final = FAR
+LEAST_CLOSING_MPS: Final = 0.1
+"""A gap that closes more slowly than this counts as one that stays."""
+
+
+class Lead(NamedTuple):
+    """The road user ahead."""
+
+    gap_m: float
+    speed_mps: float
+    contact_s: float  # time to collision
+
+
+@kernel
+def time_to_collision(ahead: AheadInput, speed_mps: float) -> float:
+    """Return the time in s until the gap to the road user ahead is gone, FAR while it does not close."""
+    closing_mps = speed_mps - ahead.lead_speed_mps
+    if ahead.lead_gap_m >= _FAR or closing_mps < LEAST_CLOSING_MPS:
+        return _FAR
+    return ahead.lead_gap_m / closing_mps
 
 
 @kernel
@@ -45,14 +68,16 @@ def look_around(previous: Row, row: Row, rules: RoadRules, tick_s: float) -> Non
         heading.sin,
         HEADING_M,
     )
-    situation = situation_at(found, before.tick + 1.0, rules, tick_s)
+    ahead = read(row, LAYOUT.ahead)
+    lead = Lead(ahead.lead_gap_m, ahead.lead_speed_mps, time_to_collision(ahead, vehicle.vx_mps))
+    situation = situation_at(found, before.tick + 1.0, rules, lead, tick_s)
     place = place_of(found, heading, vehicle, rules)
     write(row, LAYOUT.situation, situation)
     write(row, LAYOUT.rules, judged(read(previous, LAYOUT.rules), before, situation, place, tick_s))
 
 
 @kernel
-def situation_at(found: Found, tick: float, rules: RoadRules, tick_s: float) -> Situation:
+def situation_at(found: Found, tick: float, rules: RoadRules, lead: Lead, tick_s: float) -> Situation:
     """Return the situation of a vehicle on the segment that was found for it."""
     lane, edge, lane_s, lateral, limit = -1.0, -1.0, 0.0, 0.0, _FAR
     state, distance, change = _NO_SIGNAL, _FAR, _FAR
@@ -82,9 +107,9 @@ def situation_at(found: Found, tick: float, rules: RoadRules, tick_s: float) -> 
         signal_state=state,
         signal_distance_m=distance,
         signal_change_s=change,
-        lead_gap_m=_FAR,
-        lead_speed_mps=0.0,
-        time_to_collision_s=_FAR,
+        lead_gap_m=lead.gap_m,
+        lead_speed_mps=lead.speed_mps,
+        time_to_collision_s=lead.contact_s,
     )
 
 

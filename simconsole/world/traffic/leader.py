@@ -1,38 +1,24 @@
-"""Whom the console's vehicle follows: the nearest road user in its way, the gap to them and the time until it is gone.
-
-Time to collision as of Hayward: Near-miss determination through use of a scale of danger, Highway Research Record 384
-(1972), 24-34: the gap divided by the speed at which it closes.
-"""
+"""Whom the console's vehicle follows: the nearest road user in its way, and the gap to them."""
 
 import math
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
+from simconsole.values.signals import NO_AHEAD, AheadInput
 from simconsole.world.roads.road_map import Array
 from simconsole.world.route import Route
 from simconsole.world.traffic.road_users import Box
 
-FAR: Final = 1e9
-"""Gap in m and time in s where nobody is ahead, or the gap does not close."""
 AHEAD_M: Final = 150.0
 MARGIN_M: Final = 0.2
 _STEP_M: Final = 0.5
 _BESIDE_M: Final = 5.0  # further beside its route, the vehicle's way is straight on
 _TURNED_RAD: Final = 1.0  # likewise
-_LEAST_MPS: Final = 0.1
 
 
-class Leader(NamedTuple):
-    """The road user ahead: bumper to bumper along the way, and its speed along it."""
-
-    gap_m: float = FAR
-    speed_mps: float = 0.0
-    time_to_collision_s: float = FAR
-
-
-def leader(route: Route | None, ego: Box, users: Array) -> Leader:
-    """Return the nearest road user on the way ahead.
+def leader(route: Route | None, ego: Box, users: Array) -> AheadInput:
+    """Return the nearest road user on the way ahead, bumper to bumper along it.
 
     Args:
         route: what the vehicle follows; far beside it, or without one, it goes straight on.
@@ -41,7 +27,7 @@ def leader(route: Route | None, ego: Box, users: Array) -> Leader:
     """
     near = users[np.hypot(users[:, 2] - ego.x_m, users[:, 3] - ego.y_m) < AHEAD_M]
     if not len(near):
-        return Leader()
+        return NO_AHEAD
     way = _way_ahead(route, ego)
     dx, dy = near[:, None, 2] - way[None, :, 0], near[:, None, 3] - way[None, :, 1]
     place = np.argmin(dx * dx + dy * dy, axis=1)
@@ -56,12 +42,11 @@ def leader(route: Route | None, ego: Box, users: Array) -> Leader:
     gap = place * _STEP_M + along - 0.5 * (ego.length_m + length)
     before = (place > 0) & (np.abs(along) <= _STEP_M) & (aside <= 0.5 * (ego.width_m + width) + MARGIN_M)
     if not before.any():
-        return Leader()
+        return NO_AHEAD
     chosen = int(np.flatnonzero(before)[np.argmin(gap[before])])
     gap_m = max(0.0, float(gap[chosen]))
     speed_mps = float(near[chosen, 5] * np.cos(turned[chosen]))
-    closing_mps = ego.speed_mps - speed_mps
-    return Leader(gap_m, speed_mps, gap_m / closing_mps if closing_mps > _LEAST_MPS else FAR)
+    return AheadInput(gap_m, speed_mps)
 
 
 def _way_ahead(route: Route | None, ego: Box) -> Array:

@@ -10,7 +10,7 @@ import pytest
 from simconsole.values.host.jit import compiled, plain
 from simconsole.values.kernels import Row
 from simconsole.values.layout import write
-from simconsole.values.signals import FAR, NO_SITUATION, SignalState, Situation, VehicleState
+from simconsole.values.signals import FAR, NO_AHEAD, NO_SITUATION, AheadInput, SignalState, Situation, VehicleState
 from simconsole.values.state_vector import LAYOUT, PLATFORM_AT, Snapshot
 from simconsole.values.trigonometry import direction
 from simconsole.world.roads.lane_graph import LaneGraph, Leg
@@ -18,7 +18,7 @@ from simconsole.world.roads.lane_index import Found
 from simconsole.world.roads.road_map import RoadMap
 from simconsole.world.roads.road_route import route_over
 from simconsole.world.rules.road_rules import RoadRules, road_rules
-from simconsole.world.rules.situation import look_around, place_of, situation_at
+from simconsole.world.rules.situation import Lead, look_around, place_of, situation_at, time_to_collision
 from simconsole.world.rules.timetable import Signals
 from tests.world.nets import CITY, generated_map, straight_map
 
@@ -38,6 +38,7 @@ class Mover:
 
     def at(self, x_m: float, y_m: float, yaw_rad: float, speed_mps: float = 10.0) -> Snapshot:
         row = np.zeros(PLATFORM_AT)
+        write(row, LAYOUT.ahead, NO_AHEAD)
         write(row, LAYOUT.vehicle, STANDING._replace(x_m=x_m, y_m=y_m, yaw_rad=yaw_rad, vx_mps=speed_mps))
         self._look(self.row, row, self.rules, 1.0 / HZ)
         self.row = row
@@ -119,7 +120,17 @@ def test_against_the_lanes_is_the_wrong_way() -> None:
 
 def test_kernels_alone_agree() -> None:
     rules = road_rules(straight_map(), (), HZ, FRONT_M)
+    lead = Lead(20.0, 5.0, 4.0)
     nowhere = Found(-1.0, 0.0, 0.0)
-    assert situation_at(nowhere, 7.0, rules, 0.02) == compiled(situation_at)(nowhere, 7.0, rules, 0.02)
-    assert isinstance(situation_at(Found(0.0, 1.0, 0.2), 7.0, rules, 0.02), Situation)
+    assert situation_at(nowhere, 7.0, rules, lead, 0.02) == compiled(situation_at)(nowhere, 7.0, rules, lead, 0.02)
+    assert isinstance(situation_at(Found(0.0, 1.0, 0.2), 7.0, rules, lead, 0.02), Situation)
     assert place_of(Found(0.0, 1.0, 0.2), direction(0.3), STANDING, rules).along == pytest.approx(math.cos(0.3))
+
+
+@pytest.mark.parametrize(
+    ("gap_m", "lead_mps", "contact_s"),
+    [(25.0, 10.0, 5.0), (25.0, -10.0, 1.0), (25.0, 15.0, FAR), (25.0, 20.0, FAR), (FAR, 0.0, FAR), (0.0, 10.0, 0.0)],
+)
+def test_time_to_collision_is_that_of_a_gap_that_closes(gap_m: float, lead_mps: float, contact_s: float) -> None:
+    assert time_to_collision(AheadInput(gap_m, lead_mps), 15.0) == contact_s
+    assert compiled(time_to_collision)(AheadInput(gap_m, lead_mps), 15.0) == contact_s
