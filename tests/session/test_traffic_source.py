@@ -19,9 +19,11 @@ from simconsole.session.traffic_source import TrafficSource, ego_box, open_traff
 from simconsole.tick.assembly import ResolvedSession, assemble
 from simconsole.values.errors import ProfileError
 from simconsole.values.host.jit import compiled
-from simconsole.values.signals import Event
+from simconsole.values.signals import FAR, Event
 from simconsole.values.state_vector import Snapshot
+from simconsole.world.kinds.worlds import open_world
 from simconsole.world.traffic import traffic as modelled
+from simconsole.world.traffic.leader import leader
 from simconsole.world.traffic.road_users import Box, table, users
 from tests.paths import ROOT
 from tests.scene.viewer.test_export import contents
@@ -62,6 +64,27 @@ def test_equal_seeds_give_equal_logs_and_others_do_not(driven: Path, tmp_path: P
     assert (driven / "drive.log").read_bytes() == (again / "drive.log").read_bytes()
     tables = [[at.users.tobytes() for at in recorded_road_users(open_bundle(one).log)] for one in (driven, other)]
     assert tables[0] != tables[1]
+
+
+def test_whom_the_vehicle_follows_is_an_input_from_the_tick_after_each_step_on(tmp_path: Path) -> None:
+    lead = {"gap_m": 12.0, "speeds": [{"speed_kmh": 15.0}]}
+    leading = session(traffic={"vehicles": 6, "lead": lead})
+    bundle = open_bundle(drive(leading, tmp_path / "led").folder)
+    assert leading.world is not None
+    route, console = open_world(leading.world).route, assemble(leading, compiled)[0]
+    table = bundle.log.table()
+    told = np.column_stack([table.column("ahead.lead_gap_m"), table.column("ahead.lead_speed_mps")])
+    vectors = {record.tick: np.array(record.vector) for record in bundle.log}
+    for at in recorded_road_users(bundle.log):
+        if at.tick:
+            vehicle = Snapshot(at.tick, console.tick_hz, vectors[at.tick]).vehicle
+            found = leader(route, ego_box(vehicle, console.platform), at.users)
+            assert (told[at.tick : at.tick + PERIOD_TICKS] == np.array(found)).all()
+    assert (told[:, 0] < FAR).all(), "the leader is there from the first tick on"
+    assert (table.column("situation.lead_gap_m") == told[:, 0]).all()
+    contact_s = table.column("situation.time_to_collision_s")
+    assert ((contact_s == FAR) | (contact_s > 0.0)).all()
+    assert replay_bundle(bundle.folder).hashes_equal
 
 
 def test_drive_that_is_watched_in_each_tick_records_the_same(driven: Path, tmp_path: Path) -> None:
