@@ -118,11 +118,15 @@ def test_never_more_than_one_rate_step(long_drive: Drive) -> None:
     assert smooth.sum() > 1_000
     jerk = np.abs(np.diff(angle)) * speed**2 / (long_drive.settings.wheelbase_m * np.cos(angle[:-1]) ** 2)
     assert (jerk[smooth] <= jerk_step[smooth] + 1e-9).all()
-    assert (np.abs(np.diff(long_drive.of(VehicleCommand, "brake"))) <= brake_step + tiny).all()
+    braked = np.diff(long_drive.of(VehicleCommand, "brake"))
+    hand = long_drive.settings.manual_pedal_slew_per_s * long_drive.tick_s
+    asks = long_drive.of(Arbitration, "person_brake")[1:] > long_drive.of(VehicleCommand, "brake")[:-1]
+    assert (braked <= np.where(asks, np.maximum(brake_step, hand), brake_step) + tiny).all(), "a foot may be faster"
+    assert (-braked <= brake_step + tiny).all()
+    assert (braked > brake_step + tiny).any(), "some feet are"
     assert (np.diff(long_drive.of(VehicleCommand, "throttle")) <= throttle_step + tiny).all()
     assert (np.abs(np.diff(long_drive.of(VehicleCommand, "target_speed_mps"))) <= speed_step + tiny).all()
-    hand = long_drive.settings.manual_pedal_slew_per_s * long_drive.tick_s + tiny
-    assert (np.abs(np.diff(long_drive.of(VehicleCommand, "clutch"))) <= hand).all()
+    assert (np.abs(np.diff(long_drive.of(VehicleCommand, "clutch"))) <= hand + tiny).all()
 
 
 def test_the_brake_beats_the_throttle(long_drive: Drive) -> None:
