@@ -31,13 +31,19 @@ def file_of(core: str) -> Path:
     return TESTS / Path(core).parent / f"test_{Path(core).name}"
 
 
+def files_of(core: str) -> list[Path]:
+    """All test files of a core: a large one is split, as test_relay_losses.py from test_relay.py."""
+    own = file_of(core)
+    return [path for path in (own, *own.parent.glob(f"{own.stem}_*.py")) if path.exists()]
+
+
 @pytest.mark.parametrize("core", [core for core in cores() if not core.endswith(RE_EXPORTS)])
 def test_core_has_its_own_test_file(core: str) -> None:
     assert file_of(core).exists()
 
 
 def test_every_line_and_branch_is_taken_without_a_socket(tmp_path: Path) -> None:
-    files = sorted(path for path in map(file_of, cores()) if path.exists())
+    files = sorted({path for core in cores() for path in files_of(core)})
     environment = {"COVERAGE_FILE": str(tmp_path / "coverage"), "PYTHONPATH": str(ROOT), "PATH": ""}
     run = [sys.executable, "-m", "coverage"]
     measure = [*run, "run", "--branch", "--source", str(ROOM), "-m", "pytest", "-q", "-p", "no:cacheprovider"]
