@@ -10,7 +10,8 @@ from typing import Any
 from simconsole.bridge.console.command_decoder import REQUESTS, CommandDecoder
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.input_slots import BridgeInputs
-from simconsole.bridge.console.published_tick import ONCE
+from simconsole.bridge.console.published_tick import ONCE, OutputTopic
+from simconsole.bridge.console.road_user_topics import RoadUserTopics
 from simconsole.bridge.console.topics import Outputs
 from simconsole.bridge.messages import standard_registry
 from simconsole.bridge.protocol.operations import OPERATIONS
@@ -18,6 +19,7 @@ from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.files.loader import parse
 from simconsole.profiles.session import Outputs as OutputsSection
 from simconsole.values.signals import RemoteKind
+from simconsole.world.traffic.road_users import NOBODY, RoadUsersAt
 from tests.paths import ROOT
 from tests.patience import PATIENCE_S
 
@@ -34,11 +36,14 @@ def blocks(language: str) -> list[str]:
 
 
 def test_output_table() -> None:
-    def rate(rate_hz: float) -> str:
-        return "once, latched" if rate_hz == ONCE else f"{rate_hz:g}"
+    def rate(row: OutputTopic) -> str:
+        if row.watched is not None:
+            return f"{row.rate_hz:g}, latched, and with each change"
+        return "once, latched" if row.rate_hz == ONCE else f"{row.rate_hz:g}"
 
-    topics = Outputs(standard_registry(), BridgeProfile()).topics()
-    assert rows("What the console publishes") == [[f"`{row.name}`", row.type, rate(row.rate_hz)] for row in topics]
+    others = RoadUserTopics(standard_registry(), lambda: RoadUsersAt(0, NOBODY)).topics()
+    topics = (*others, *Outputs(standard_registry(), BridgeProfile()).topics())
+    assert rows("What the console publishes") == [[f"`{row.name}`", row.type, rate(row)] for row in topics]
 
 
 def test_command_table() -> None:

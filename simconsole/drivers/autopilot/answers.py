@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import Final
 
+from simconsole.drivers.autopilot.others import Others
 from simconsole.drivers.path_tracker.approach import why_not
 from simconsole.drivers.path_tracker.geometric import GeometricTracker, pure_pursuit, stanley
 from simconsole.drivers.path_tracker.signal_stops import Light, SignalStops
@@ -10,6 +11,7 @@ from simconsole.drivers.path_tracker.state_estimator import VehicleMotion
 from simconsole.drivers.path_tracker.tracker import Tracker, TrackerCommand
 from simconsole.drivers.path_tracker.tracker_settings import TIMING, CarModel
 from simconsole.drivers.path_tracker.tracking_statistics import TrackingStatistics
+from simconsole.world.roads.road_map import Array
 from simconsole.world.route import Route
 
 _LAWS: Final = {"pure_pursuit": pure_pursuit, "stanley": stanley}
@@ -28,10 +30,14 @@ class Answers:
     """Answers one odometry after the other; what people must know is said once, when it begins."""
 
     def __init__(
-        self, tracker: Tracker | GeometricTracker, say: Callable[[str], None], lights: SignalStops | None = None
+        self,
+        tracker: Tracker | GeometricTracker,
+        say: Callable[[str], None],
+        lights: SignalStops | None = None,
+        others: Others | None = None,
     ) -> None:
-        """Ask `tracker`, tell people by `say`, and obey `lights`."""
-        self._tracker, self._say, self._lights = tracker, say, lights
+        """Ask `tracker`, tell people by `say`, obey `lights` and keep behind `others`."""
+        self._tracker, self._say, self._lights, self._others = tracker, say, lights, others
         self.statistics = TrackingStatistics()
         self._withholds = False
 
@@ -40,6 +46,8 @@ class Answers:
         tracker, statistics = self._tracker, self.statistics
         if self._lights is not None and tracker.s_m is not None:
             tracker.along.stop = self._lights.stop(tracker.s_m, seen.vx_mps, tracker.along.profile, stamp_s)
+        if self._others is not None:
+            tracker.along.leader = self._others.leader(seen, stamp_s)
         command = tracker.step(seen, engaged, stamp_s)
         reason = why_not(tracker.lateral_m, tracker.heading_error_rad, seen.vx_mps, engaged)
         if reason:
@@ -60,6 +68,11 @@ class Answers:
         """Take what traffic lights show (`lights.lights_of`)."""
         if self._lights is not None:
             self._lights.see(lights)
+
+    def see_others(self, users: Array, stamp_s: float) -> None:
+        """Take where other road users were at `stamp_s` (`others.road_users_of`)."""
+        if self._others is not None:
+            self._others.see(users, stamp_s)
 
     def _look_for_the_end(self, s_m: float, stands: bool) -> None:
         course = self._tracker.course

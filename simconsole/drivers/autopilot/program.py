@@ -14,6 +14,7 @@ from typing import Any, Final, NamedTuple
 from simconsole.bridge.client.bridge_client import BridgeClient
 from simconsole.drivers.autopilot.answers import Answers, make_tracker
 from simconsole.drivers.autopilot.lights import SIGNALS, SIGNALS_TYPE, lights_of, signal_stops
+from simconsole.drivers.autopilot.others import ROAD_USERS, ROAD_USERS_TYPE, Others, road_users_of
 from simconsole.drivers.autopilot.remarks import Remarks
 from simconsole.drivers.path_tracker.car_model import car_model
 from simconsole.drivers.path_tracker.state_estimator import VehicleMotion
@@ -25,6 +26,7 @@ from simconsole.values.errors import BridgeError, OtherDriveError
 from simconsole.values.labels import mode_label
 from simconsole.values.signals import Mode
 from simconsole.world.kinds.worlds import open_world
+from simconsole.world.roads.road_world import roads_of
 
 ODOMETRY: Final = "/odom"
 MODE: Final = "/console/mode"
@@ -45,6 +47,7 @@ class Topics(NamedTuple):
     odometry: str
     command: str
     signals: str
+    road_users: str
 
 
 def run(
@@ -85,19 +88,22 @@ def run(
     """
     world, car = open_world(load_world(course_name)), load_vehicle(vehicle)
     lights = signal_stops(world, car)
-    answers = Answers(make_tracker(tracker, world.route, car_model(car), delay_s), _say, lights)
+    others = None if roads_of(world) is None else Others(world.route, car)
+    answers = Answers(make_tracker(tracker, world.route, car_model(car), delay_s), _say, lights, others)
     with BridgeClient(url, token=token, certificate=certificate, drive=drive, until_good_bye=True) as client:
-        odometry, mode, command, signals = (
-            (rename or {}).get(topic, namespace + topic) for topic in (ODOMETRY, MODE, COMMAND, SIGNALS)
+        odometry, mode, command, signals, road_users = (
+            (rename or {}).get(topic, namespace + topic) for topic in (ODOMETRY, MODE, COMMAND, SIGNALS, ROAD_USERS)
         )
         client.advertise(command, CONTROL)
         client.subscribe(odometry, "nav_msgs/Odometry")
         client.subscribe(mode, "std_msgs/String")
         if lights is not None:
             client.subscribe(signals, SIGNALS_TYPE)
+        if others is not None:
+            client.subscribe(road_users, ROAD_USERS_TYPE)
         client.connect(patience_s)
         try:
-            topics = Topics(odometry, command, signals)
+            topics = Topics(odometry, command, signals, road_users)
             ended = _answer(client, answers, topics, stop or _never, patience_s)
         except OtherDriveError:
             raise
@@ -138,6 +144,9 @@ def _answer(
         topic, message = received
         if topic == topics.signals:
             answers.see(lights_of(message))
+            continue
+        if topic == topics.road_users:
+            answers.see_others(*road_users_of(message))
             continue
         if topic != topics.odometry:
             engaged = message.data in _DRIVING

@@ -2,6 +2,7 @@
 
 from typing import Final, NamedTuple
 
+from simconsole.drivers.car_following import Following, following_mps2
 from simconsole.drivers.path_tracker.speed_profile import Stop, plan_speed, stopping
 from simconsole.drivers.path_tracker.tracker_settings import Comfort
 from simconsole.values.kernels import approach, clip
@@ -11,6 +12,12 @@ _GAIN_1PS: Final = 1.2
 _LEAD_S: Final = 0.15
 _JERK_MPS3: Final = 2.8
 _CORRECTION_MPS2: Final = 0.4  # more than a stop on the way plans with
+_GAP_M: Final = 3.0
+_HEADWAY_S: Final = 1.5
+_HARDEST_MPS2: Final = 6.0
+_EMERGENCY_MPS2: Final = 3.0
+"""Who must brake harder than this behind a vehicle brakes for an emergency: comfort no longer bounds the jerk."""
+_EMERGENCY_JERK_MPS3: Final = 20.0
 
 
 class Longitudinal(NamedTuple):
@@ -19,6 +26,13 @@ class Longitudinal(NamedTuple):
     speed_mps: float
     accel_mps2: float
     jerk_mps3: float
+
+
+class Leader(NamedTuple):
+    """The vehicle ahead."""
+
+    gap_m: float  # bumper to bumper
+    speed_mps: float  # along the course
 
 
 class SpeedControl:
@@ -31,7 +45,16 @@ class SpeedControl:
         """What was asked for last."""
         self.stop: Stop | None = None
         """Where to stop before the course's end, for as long as it is so."""
+        self.leader: Leader | None = None
+        """Whom to keep behind."""
         self._comfort, self._period_s = comfort, period_s
+        self._following = Following(
+            gap_m=_GAP_M,
+            headway_s=_HEADWAY_S,
+            accelerate_mps2=comfort.accelerate_mps2,
+            brake_mps2=comfort.brake_mps2,
+            hardest_mps2=_HARDEST_MPS2,
+        )
 
     def step(self, s_m: float, speed_mps: float) -> Longitudinal:
         """Return what to ask for in the coming period, from place and speed."""
@@ -48,5 +71,12 @@ class SpeedControl:
         if self.stop is not None:
             most = max(most, self.stop.brake_mps2 + _CORRECTION_MPS2)
         wanted = clip(wanted, -most, self._comfort.accelerate_mps2)
-        before, self.accel_mps2 = self.accel_mps2, approach(self.accel_mps2, wanted, _JERK_MPS3 * self._period_s)
+        jerk_mps3 = _JERK_MPS3
+        if self.leader is not None:
+            allowed = following_mps2(self.leader.gap_m, self.leader.speed_mps, speed_mps, self._following)
+            if allowed < wanted:
+                wanted, target = allowed, clip(speed_mps + allowed / _GAIN_1PS, 0.0, target)
+            if wanted < -_EMERGENCY_MPS2:
+                jerk_mps3 = _EMERGENCY_JERK_MPS3
+        before, self.accel_mps2 = self.accel_mps2, approach(self.accel_mps2, wanted, jerk_mps3 * self._period_s)
         return Longitudinal(target, self.accel_mps2, (self.accel_mps2 - before) / self._period_s)

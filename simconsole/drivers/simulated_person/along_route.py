@@ -9,9 +9,10 @@ import math
 from collections import deque
 from typing import Final, NamedTuple
 
+from simconsole.drivers.car_following import following_mps2
 from simconsole.drivers.path_tracker.speed_profile import plan_speed
 from simconsole.drivers.path_tracker.tracker_settings import Comfort
-from simconsole.drivers.simulated_person.following import Obedience, following_mps2, stopping_mps2
+from simconsole.drivers.simulated_person.following import Obedience, following, stopping_mps2
 from simconsole.drivers.simulated_person.guidance import Pace
 from simconsole.drivers.simulated_person.situation import Situation
 from simconsole.drivers.simulated_person.two_point import Points, TwoPointSteering, distances_m, wheel_to
@@ -65,7 +66,7 @@ class AlongRoute:
         self._steering = TwoPointSteering(road, self._tick_s)
         self._seen: deque[Seen] = deque(maxlen=1 + round(road.visual_delay_s * tick_hz))
         self._situations: deque[tuple[Situation, float]] = deque(maxlen=1 + round(road.reaction_s * tick_hz))
-        self._obedience = Obedience()
+        self._obedience, self._following = Obedience(), following(road)
         care = LEAST_SHARE + 2.0 * (1.0 - LEAST_SHARE) * even(plan.seed, Channel.PERSON_CARE, 0)
         self._aim_deviation_m = road.aim_deviation_m * care
         self._s_m: float | None = None
@@ -124,7 +125,7 @@ class AlongRoute:
         """Return the acceleration that vehicles ahead, signals and those with right of way allow."""
         seen, road, speed_mps = self._known_ahead(view.distance_m), self._road, view.speed_mps
         allowed = min(
-            following_mps2(seen.lead_gap_m, seen.lead_speed_mps, speed_mps, road),
+            following_mps2(seen.lead_gap_m, seen.lead_speed_mps, speed_mps, self._following),
             stopping_mps2(seen.yield_m, speed_mps, road),
         )
         if self._obedience.must_stop(seen, speed_mps):

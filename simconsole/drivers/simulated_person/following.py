@@ -1,8 +1,6 @@
-"""How a person drives behind others and up to a line: accelerations that what is ahead allows. Pure.
+"""How a person drives up to a line, and how close behind others. Pure.
 
-Car following is the Intelligent Driver Model: Treiber, Hennecke and Helbing, "Congested traffic states in empirical
-observations and microscopic simulations", Physical Review E 62 (2000) 1805; without its free-road term, which the
-speed profile of the road takes the place of. A line to stop at is a standing vehicle. At amber a driver stops who can
+They follow as of `drivers/car_following.py`. A line to stop at is a standing vehicle. At amber a driver stops who can
 do so gently enough: the deceleration of the dilemma zone, Gazis, Herman and Maradudin, "The problem of the amber signal
 light in traffic flow", Operations Research 8 (1960) 112-132.
 """
@@ -10,23 +8,24 @@ light in traffic flow", Operations Research 8 (1960) 112-132.
 import math
 from typing import Final
 
+from simconsole.drivers.car_following import NEAREST_M, Following
 from simconsole.drivers.simulated_person.situation import Light, Situation
 from simconsole.profiles.person import RoadHabits
 
 AMBER_MPS2: Final = 3.0
 """Who would have to brake harder than this for amber drives on."""
 HARDEST_MPS2: Final = 8.0
-_NEAREST_M: Final = 0.1
 
 
-def following_mps2(gap_m: float, lead_mps: float, speed_mps: float, road: RoadHabits) -> float:
-    """Return the acceleration that a vehicle ahead allows; at most accelerate_mps2."""
-    if gap_m == math.inf:
-        return road.accelerate_mps2
-    closing = speed_mps * (speed_mps - lead_mps) / (2.0 * math.sqrt(road.accelerate_mps2 * road.brake_mps2))
-    wanted_m = road.gap_m + max(0.0, speed_mps * road.headway_s + closing)
-    share = wanted_m / max(gap_m, _NEAREST_M)
-    return max(-HARDEST_MPS2, road.accelerate_mps2 * (1.0 - share * share))
+def following(road: RoadHabits) -> Following:
+    """Return how a person of these habits follows."""
+    return Following(
+        gap_m=road.gap_m,
+        headway_s=road.headway_s,
+        accelerate_mps2=road.accelerate_mps2,
+        brake_mps2=road.brake_mps2,
+        hardest_mps2=HARDEST_MPS2,
+    )
 
 
 def stopping_mps2(line_m: float, speed_mps: float, road: RoadHabits) -> float:
@@ -37,7 +36,7 @@ def stopping_mps2(line_m: float, speed_mps: float, road: RoadHabits) -> float:
     if line_m == math.inf:
         return road.accelerate_mps2
     left_m = line_m - road.gap_m
-    if left_m <= _NEAREST_M:
+    if left_m <= NEAREST_M:
         return -road.brake_mps2 if speed_mps < 1.0 else -HARDEST_MPS2
     needed_mps2 = speed_mps * speed_mps / (2.0 * left_m)
     if needed_mps2 >= road.brake_mps2:
@@ -60,5 +59,5 @@ class Obedience:
             self._passes_amber = False
             return False
         if not self._passes_amber and seen.line_m < math.inf:
-            self._passes_amber = speed_mps * speed_mps > 2.0 * AMBER_MPS2 * max(seen.line_m, _NEAREST_M)
+            self._passes_amber = speed_mps * speed_mps > 2.0 * AMBER_MPS2 * max(seen.line_m, NEAREST_M)
         return not self._passes_amber

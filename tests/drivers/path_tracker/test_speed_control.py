@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from simconsole.drivers.path_tracker.speed_control import SpeedControl
+from simconsole.drivers.path_tracker.speed_control import Leader, SpeedControl
 from simconsole.drivers.path_tracker.tracker_settings import COMFORT
 from simconsole.world.course import Course
 
@@ -29,3 +29,27 @@ def test_at_the_planned_speed_it_asks_for_the_planned_acceleration(course: Cours
         answer = control.step(s_m, speed)
     assert answer.accel_mps2 == pytest.approx(control.profile.at(s_m + 0.15 * speed)[1])
     assert answer.speed_mps == speed
+
+
+def test_behind_a_vehicle_it_slows_down_with_comfort_and_stops_before_it(course: Course) -> None:
+    control = SpeedControl(course, COMFORT, PERIOD_S)
+    s_m, speed_mps, rear_m, accel = 300.0, 10.0, 400.0, []
+    for _ in range(3000):
+        control.leader = Leader(rear_m - s_m, 0.0)
+        answer = control.step(s_m, speed_mps)
+        accel.append(answer.accel_mps2)
+        speed_mps = max(0.0, speed_mps + answer.accel_mps2 * PERIOD_S)
+        s_m += speed_mps * PERIOD_S
+    assert speed_mps < 0.01
+    assert 2.5 < rear_m - s_m < 4.5
+    assert min(accel) >= -2.5
+    assert np.abs(np.diff(accel) / PERIOD_S).max() <= 2.8 + 1e-9
+
+
+def test_a_vehicle_that_is_suddenly_near_is_braked_for_at_once_and_a_gone_one_forgotten(course: Course) -> None:
+    control = SpeedControl(course, COMFORT, PERIOD_S)
+    control.leader = Leader(6.0, 0.0)
+    hard = [control.step(300.0, 10.0).accel_mps2 for _ in range(25)]
+    assert hard[-1] == -6.0
+    control.leader = None
+    assert [control.step(300.0, 10.0).accel_mps2 for _ in range(400)][-1] > -0.5

@@ -4,7 +4,8 @@ import math
 
 import pytest
 
-from simconsole.drivers.simulated_person.following import HARDEST_MPS2, Obedience, following_mps2, stopping_mps2
+from simconsole.drivers.car_following import following_mps2
+from simconsole.drivers.simulated_person.following import HARDEST_MPS2, Obedience, following, stopping_mps2
 from simconsole.drivers.simulated_person.situation import NOTHING_AHEAD, Light, Situation
 from simconsole.profiles.person import RoadHabits
 
@@ -13,7 +14,7 @@ STEP_S = 0.05
 
 
 def test_an_empty_road_allows_everything() -> None:
-    assert following_mps2(math.inf, 0.0, 20.0, ROAD) == ROAD.accelerate_mps2
+    assert following_mps2(math.inf, 0.0, 20.0, following(ROAD)) == ROAD.accelerate_mps2
     assert stopping_mps2(math.inf, 20.0, ROAD) == ROAD.accelerate_mps2
 
 
@@ -22,7 +23,7 @@ def test_an_empty_road_allows_everything() -> None:
 def test_behind_a_vehicle_the_gap_becomes_that_of_the_headway(lead_mps: float, speed_mps: float) -> None:
     gap_m, least_m = 60.0, math.inf
     for _ in range(4000):
-        accel = following_mps2(gap_m, lead_mps, speed_mps, ROAD)
+        accel = following_mps2(gap_m, lead_mps, speed_mps, following(ROAD))
         speed_mps = max(0.0, speed_mps + accel * STEP_S)
         gap_m += (lead_mps - speed_mps) * STEP_S
         least_m = min(least_m, gap_m)
@@ -48,7 +49,7 @@ def test_a_line_is_stopped_before_and_neither_far_nor_beyond(speed_mps: float, s
 
 def test_too_near_is_braked_for_with_all_there_is() -> None:
     assert stopping_mps2(1.0, 10.0, ROAD) == -HARDEST_MPS2
-    assert following_mps2(0.0, 0.0, 20.0, ROAD) == -HARDEST_MPS2
+    assert following_mps2(0.0, 0.0, 20.0, following(ROAD)) == -HARDEST_MPS2
 
 
 def signal(light: Light, line_m: float) -> Situation:
