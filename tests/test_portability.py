@@ -51,6 +51,26 @@ def test_the_other_system_is_there(platform: str) -> None:
         assert done.returncode == 0
 
 
+def test_libraries_see_the_system_that_they_run_on(platform: str, tmp_path: Path) -> None:
+    """Wherever the console lies, below a folder of its own name too: they load files of this system."""
+    libraries = tmp_path / "simconsole" / ".venv"
+    libraries.mkdir(parents=True)
+    (libraries / "library.py").write_text("import sys\nprint(sys.platform)\n")
+    done = run(platform, "-c", f"import sys; sys.path.append({str(libraries)!r}); import library")
+    assert done.stdout.split() == [sys.platform], done.stderr
+
+
+def test_the_program_itself_is_a_part_of_the_console(platform: str, tmp_path: Path) -> None:
+    """What `python -m` runs is no module of the console by name: it is called __main__."""
+    package = tmp_path / "simconsole"
+    package.mkdir()
+    (package / "__init__.py").touch()
+    (package / "__main__.py").write_text("import sys\nprint(sys.platform)\n")
+    as_m_does = "import runpy; runpy.run_module('simconsole', run_name='__main__', alter_sys=True)"
+    done = run(platform, "-c", f"import sys; sys.path.insert(0, {str(tmp_path)!r}); {as_m_does}")
+    assert done.stdout.split() == [platform], done.stderr
+
+
 def test_every_module_can_be_imported(platform: str) -> None:
     done = run(platform, FOREIGN / "import_all.py")
     assert done.returncode == 0, done.stdout

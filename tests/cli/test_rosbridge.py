@@ -5,11 +5,14 @@ import re
 import signal
 import subprocess
 import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
-from websockets.sync.client import connect
+from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Origin
 
 from tests.drives.console import Running, complaint, results, simconsole
@@ -40,30 +43,63 @@ def test_a_controller_reads_and_commands_a_standing_car(tmp_path: Path) -> None:
     assert not list(tmp_path.glob("bundle*"))
 
 
-def test_a_copied_example_drives_at_once(tmp_path: Path) -> None:
+@contextmanager
+def copied_example(folder: Path) -> Iterator[tuple[subprocess.Popen[bytes], Callable[[], tuple[float, str]]]]:
+    """The documentation's first controller drives the car of a server; yields it and what reads speed (m/s), mode."""
     port = free_port()
     example = re.findall(r"```python\n(.*?)```", (ROOT / "docs/rosbridge.md").read_text(), re.DOTALL)[0]
-    program = tmp_path / "controller.py"
+    program = folder / "controller.py"
     program.write_text(example.replace("9090", str(port)))
-    with Running(tmp_path, "bridge", "serve", "--port", port, "--json") as server:
+    driving: list[subprocess.Popen[bytes]] = []
+    with Running(folder, "bridge", "serve", "--port", port, "--json") as server:
         watcher = Controller(port, lambda count, stamp: [json.dumps(command(stamp))] if not driving else [])
-        driving: list[subprocess.Popen[bytes]] = []
         watcher.start()
         wait_until(lambda: "parked: nobody has asked for autonomy" in server.out.read_text(), "the notice")
         driving.append(subprocess.Popen([sys.executable, str(program)]))
         try:
             with connect(f"ws://127.0.0.1:{port}") as viewer:
-                viewer.send(json.dumps({"op": "subscribe", "topic": "/odom"}))
-                speed_mps = 0.0
-                while speed_mps < 1.0:
-                    message = json.loads(viewer.recv(timeout=PATIENCE_S))
-                    speed_mps = message["msg"]["twist"]["twist"]["linear"]["x"] if message["op"] == "publish" else 0.0
+                yield driving[0], seen_by(viewer, driving[0])
         finally:
             driving[0].kill()
             driving[0].wait()
         server.process.send_signal(signal.SIGINT)
         server.end()
         watcher.join(PATIENCE_S)
+
+
+def seen_by(viewer: ClientConnection, program: subprocess.Popen[bytes]) -> Callable[[], tuple[float, str]]:
+    """Return what reads the next message, and returns the speed (m/s) and the mode that were said last."""
+    for topic in ("/odom", "/console/mode"):
+        viewer.send(json.dumps({"op": "subscribe", "topic": topic}))
+    said: dict[str, Any] = {}
+
+    def see() -> tuple[float, str]:
+        assert program.poll() is None, "the example has ended"
+        message = json.loads(viewer.recv(timeout=PATIENCE_S))
+        said[message.get("topic", "")] = message.get("msg")
+        odometry, mode = said.get("/odom"), said.get("/console/mode")
+        return odometry["twist"]["twist"]["linear"]["x"] if odometry else 0.0, mode["data"] if mode else ""
+
+    return see
+
+
+def test_a_copied_example_drives_at_once(tmp_path: Path) -> None:
+    with copied_example(tmp_path) as (_, see):
+        while see()[0] < 1.0:
+            pass
+
+
+def test_a_copied_example_that_was_held_up_drives_on(tmp_path: Path) -> None:
+    """The console has stopped the car then: it stands, but its speed is hardly ever 0 to the last digit again."""
+    with copied_example(tmp_path) as (program, see):
+        while see()[0] < 0.2:
+            pass
+        program.send_signal(signal.SIGSTOP)
+        while see()[1] != "STOPPED":
+            pass
+        program.send_signal(signal.SIGCONT)
+        while see()[0] < 1.0:
+            pass
 
 
 def test_it_ends_by_itself_when_told_so() -> None:

@@ -91,8 +91,9 @@ def pretend(platform: str) -> None:
 
     def foreign_import(name: str, importer: Any = None, *rest: Any, **named: Any) -> types.ModuleType:
         importer = named.get("globals") if importer is None else importer
-        ours = str((importer or {}).get("__name__", "")).partition(".")[0] == "simconsole"
-        ours = ours or "/simconsole/" in str((importer or {}).get("__file__", ""))  # a program run by `python -m`
+        # The spec has the whole name, also of a program that `python -m` runs; no path tells ours from a library's.
+        spec, own_name = (importer or {}).get("__spec__"), str((importer or {}).get("__name__", ""))
+        ours = (spec.name if spec else own_name).partition(".")[0] == "simconsole"
         if ours and name.partition(".")[0] in missing:
             raise ModuleNotFoundError(f"No module named {name!r}", name=name)
         words = (importer, *rest) if "globals" not in named else ()

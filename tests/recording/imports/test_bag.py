@@ -2,6 +2,7 @@
 
 import sqlite3
 from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
 
 import numpy as np
@@ -62,7 +63,7 @@ def test_a_bag_without_definitions_is_read_with_ours(write: Callable[..., Path])
     """As ROS 2 Humble writes them."""
     folder = write("sqlite3")
     (file,) = folder.glob("*.db3")
-    with sqlite3.connect(file) as base:
+    with closing(sqlite3.connect(file)) as base:
         base.executescript("DELETE FROM message_definitions;")
     with pytest.raises(RecordingError, match="cannot be read as a bag"):
         list(Bag(folder).messages(["/ego/drive"]))

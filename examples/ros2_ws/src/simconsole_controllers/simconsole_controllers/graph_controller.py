@@ -13,6 +13,7 @@ from std_msgs.msg import String
 from simconsole_controllers.pursuit import Pursuit
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+STANDSTILL_MPS = 0.1  # as in the console; a car that has moved is hardly ever at 0 to the last digit again
 
 
 class GraphController(Node):
@@ -52,7 +53,7 @@ class GraphController(Node):
             pose.position.x, pose.position.y, yaw_rad
         )
         self._commands.publish(command)
-        if self._asks and odometry.twist.twist.linear.x == 0.0:
+        if self._asks and abs(odometry.twist.twist.linear.x) < STANDSTILL_MPS:
             self._requests.publish(String(data="autonomous"))
 
 

@@ -14,6 +14,7 @@ from rclpy.node import Node
 from simconsole_controllers.pursuit import Pursuit
 
 CONNECT_S = 20.0
+STANDSTILL_MPS = 0.1  # as in the console; a car that has moved is hardly ever at 0 to the last digit again
 
 
 class RosbridgeController(Node):
@@ -65,7 +66,7 @@ class RosbridgeController(Node):
         header = {"stamp": odometry["header"]["stamp"], "frame_id": "base_link"}
         twist = {"linear": {"x": speed_mps}, "angular": {"z": yaw_rate_radps}}
         self._commands.publish(roslibpy.Message({"header": header, "twist": twist}))
-        if self._asks and odometry["twist"]["twist"]["linear"]["x"] == 0.0:
+        if self._asks and abs(odometry["twist"]["twist"]["linear"]["x"]) < STANDSTILL_MPS:
             self._requests.publish(roslibpy.Message({"data": "autonomous"}))
 
 
