@@ -278,9 +278,7 @@ def remove_run_folder(folder: Path) -> None:
     """Remove a run folder; mappings that are still open stay valid until they are closed."""
     gone = folder.with_name(f"{folder.name}-gone")  # `sweep` knows it as well
     with contextlib.suppress(OSError):
-        folder.rename(
-            gone
-        )  # first, so that whoever still writes finds no folder: it could not be removed with new files
+        folder.rename(gone)  # first: whoever still writes finds no folder, and cannot keep it from being empty
     for path in (gone, folder):
         shutil.rmtree(path, ignore_errors=True)
     descriptor = _owned.pop(folder, None)

@@ -157,7 +157,7 @@ class BundleWriter:
             self._undo.enter_context(undone(partial(self._leave, failed=True)))
 
     def _make(self, header: LogHeader, manifest: Manifest) -> None:
-        """Make folder, profiles and log, and then the manifest that vouches for them. Raises OSError, RecordingError."""
+        """Make folder, profiles, log, and then the manifest that vouches for them. Raises OSError, RecordingError."""
         self.folder.mkdir(parents=True, exist_ok=True)
         for name, content in self._contents.items():
             write_atomically(self.folder / plain_name(name, self.folder), content)
