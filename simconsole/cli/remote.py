@@ -1,5 +1,6 @@
 """`simconsole autopilot`: the ROS side's driver, as a program of its own."""
 
+import math
 import os
 from argparse import Namespace
 
@@ -25,6 +26,7 @@ def autopilot(options: Namespace) -> Outcome:
         OtherDriveError: the console there is not the one that started this program.
     """
     stop = follow_parent(END_S).wants_end if options.attached else None
+    from simconsole.bridge.protocol.backoff import DEAD_AFTER_S
     from simconsole.drivers.autopilot.program import run
 
     results = run(
@@ -40,6 +42,8 @@ def autopilot(options: Namespace) -> Outcome:
         vehicle=options.vehicle,
         delay_s=options.delay_ms / 1000.0,
         tracker=options.tracker,
+        # A console that started this program and is gone closes its pipe; one that is silent is merely held up.
+        dead_after_s=math.inf if options.attached else DEAD_AFTER_S,
     )
     return Outcome(0, results, table([(name, str(value)) for name, value in results.items()]))
 

@@ -41,6 +41,8 @@ _GRACE_S: Final = 0.1
 Handler = Callable[[int, FrameType | None], object]
 
 _undo: list[Callable[[], object]] = []
+_ending = threading.RLock()
+"""Whoever ends this process at once takes it and never gives it back."""
 
 
 def spawn(
@@ -208,6 +210,16 @@ def undone(undo: Callable[[], object]) -> Iterator[None]:
         _undo.remove(undo)
 
 
+@contextlib.contextmanager
+def unbroken() -> Iterator[None]:
+    """Within the block no other thread ends this process at once: for a few short steps of which none is good alone.
+
+    A signal's handler that comes in between, in this very thread, does: nothing follows it.
+    """
+    with _ending:
+        yield
+
+
 def remove_half_made(folder: Path) -> None:
     """Remove drafts: files that were not yet renamed to their final names."""
     for path in folder.glob(f"*{DRAFT}"):
@@ -215,7 +227,11 @@ def remove_half_made(folder: Path) -> None:
 
 
 def end_at_once(code: int) -> NoReturn:
-    """End this process now and leave nothing behind; children end by their pipes."""
+    """End this process now and leave nothing behind; children end by their pipes.
+
+    A second thread that ends it, too, waits here, or it would cut short what the first one undoes.
+    """
+    _ending.acquire()
     for undo in reversed(_undo):
         with contextlib.suppress(Exception):
             undo()

@@ -276,7 +276,11 @@ def _make(base: Path) -> Path:
 
 def remove_run_folder(folder: Path) -> None:
     """Remove a run folder; mappings that are still open stay valid until they are closed."""
-    shutil.rmtree(folder, ignore_errors=True)
+    gone = folder.with_name(f"{folder.name}-gone")  # `sweep` knows it as well
+    with contextlib.suppress(OSError):
+        folder.rename(gone)  # first: whoever still writes finds no folder, and cannot keep it from being empty
+    for path in (gone, folder):
+        shutil.rmtree(path, ignore_errors=True)
     descriptor = _owned.pop(folder, None)
     if descriptor is not None:
         os.close(descriptor)

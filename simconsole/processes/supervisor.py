@@ -21,7 +21,7 @@ from typing import Final
 
 import msgspec
 
-from simconsole.processes.lifetimes import ORPHAN_S, close_pipe, end, follow_parent, spawn
+from simconsole.processes.lifetimes import ORPHAN_S, close_pipe, end, follow_parent, spawn, undone
 from simconsole.processes.shared_memory import remove_run_folder
 from simconsole.processes.worker import WorkerCall, WorkerSpec, run_child
 from simconsole.values.errors import WorkerError
@@ -203,8 +203,10 @@ def _laid_over(environment: Mapping[str, str], changes: Mapping[str, str | None]
 
 
 def _run(line: bytes) -> None:
-    core = follow_parent(None, SUPERVISOR_END_S)
-    supervise(msgspec.json.decode(line, type=SupervisorSpec), core.wants_end, core.is_gone)
+    spec = msgspec.json.decode(line, type=SupervisorSpec)
+    with undone(lambda: remove_run_folder(Path(spec.folder))):  # on a busy machine its time may be too short
+        core = follow_parent(None, SUPERVISOR_END_S)
+        supervise(spec, core.wants_end, core.is_gone)
 
 
 def main() -> int:

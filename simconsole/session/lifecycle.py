@@ -76,7 +76,6 @@ def drive(
         interrupt = stack.enter_context(Interrupt())
         bundle = stack.enter_context(_bundle(resolved, console, folder, given))
         stack.enter_context(undone(lambda: remove_half_made(folder)))
-        stack.enter_context(undone(lambda: bundle.__exit__(KeyboardInterrupt, KeyboardInterrupt(), None)))
         opened = _open(resolved, console, bundle, interrupt, stack)
         if opened.bridge_url is not None:
             on_bridge(opened.bridge_url)

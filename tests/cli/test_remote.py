@@ -1,11 +1,16 @@
 """`simconsole autopilot`: what a user can do wrong."""
 
+import math
 import os
 from argparse import Namespace
+from typing import Any
 
 import pytest
 
+from simconsole.cli import remote
 from simconsole.cli.remote import autopilot, own_token
+from simconsole.drivers.autopilot import program
+from simconsole.processes.lifetimes import Parent
 from simconsole.session.autopilot_program import TOKEN_VARIABLE
 from simconsole.values.errors import ProfileError
 from tests.drives.console import complaint, simconsole
@@ -27,6 +32,20 @@ def test_rename_that_is_none_is_refused_before_anything_is_opened(word: str) -> 
     options.wait, options.certificate = 0.0, None
     with pytest.raises(ProfileError, match=f"--rename: {word}: expected /TOPIC=/NAME"):
         autopilot(options)
+
+
+@pytest.mark.parametrize(("attached", "dead_after_s"), [(True, math.inf), (False, 3.0)])
+def test_a_console_that_is_held_up_keeps_the_autopilot_that_it_has_started(
+    attached: bool, dead_after_s: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is told of the console's end by its pipe."""
+    told: dict[str, Any] = {}
+    monkeypatch.setattr(program, "run", lambda *arguments, **words: told.update(words) or {})
+    monkeypatch.setattr(remote, "follow_parent", lambda patience_s: Parent())
+    options = Namespace(attached=attached, url="ws://127.0.0.1:9", course="urban", namespace="", rename=[], wait=0.0)
+    options.certificate, options.vehicle, options.delay_ms, options.tracker = None, "hatchback", 0.0, "stanley"
+    autopilot(options)
+    assert told["dead_after_s"] == dead_after_s
 
 
 def test_token_is_taken_out_of_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:

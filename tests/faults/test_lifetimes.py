@@ -267,7 +267,7 @@ def test_a_closed_terminal_ends_a_drive_in_order(tmp_path: Path) -> None:
     )  # fmt: skip
     os.close(theirs)
     try:
-        wait_until(lambda: (tmp_path / "bundle" / "drive.log").exists(), "the log")
+        wait_until(lambda: (tmp_path / "bundle" / "manifest.json").exists(), "the bundle")
         wait_until(lambda: len(open_bundle(tmp_path / "bundle").log.table().ticks) > 10, "driving")
     finally:
         os.close(ours)

@@ -38,8 +38,9 @@ scenario:
 features: {autopilot: urban}
 outputs: {bridge: {port: 0}, hud: null, scene: null, report: false}
 devices: {driver: "script:person.yaml"}
-mode: {pacing: lockstep}
+mode: {pacing: lockstep, answer_timeout_s: 60}
 """
+"""The faults are the scenario's alone: an autopilot that a busy machine holds up is waited for, and no fault."""
 PERSON = """points:
   - {time_s: 0.0, throttle: 0, brake: 0, clutch: 0, hand_wheel_deg: 0, gear: 0}
   - {time_s: 3.0, press: [autonomous]}
@@ -85,6 +86,7 @@ def test_a_whole_drive_with_a_fault_ends_as_promised_and_its_report_says_why(kin
     assert done.returncode == 0, done.stderr
     table = open_bundle(tmp_path / "bundle").log.table()
     modes = table.column("arbitration.mode")
+    assert table.column("events.faults").any(), f"ended before its fault: {results(done)}"
     fault = int(np.flatnonzero(table.column("events.faults"))[0])
     assert modes[fault - 1] == Mode.AUTONOMOUS
     x, y, yaw = (float(table.column(f"vehicle.{name}")[-1]) for name in ("x_m", "y_m", "yaw_rad"))

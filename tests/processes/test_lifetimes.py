@@ -184,6 +184,38 @@ def test_what_is_ended_at_once_leaves_nothing(number: signal.Signals, where: str
     assert not folder.exists()
 
 
+TWO_THREADS = """
+import sys, threading, time
+from simconsole.processes import lifetimes
+def another_thread_ends_it():
+    thread = threading.Thread(target=lifetimes.end_at_once, args=(130,))
+    thread.start()
+    thread.join(0.3)  # the other one has this long to spoil it
+def undo():
+    if threading.current_thread() is not threading.main_thread():
+        print("undone by the other", flush=True)
+        return
+    print("begins", flush=True)
+    another_thread_ends_it()
+    print("undone", flush=True)
+with lifetimes.undone(undo):
+    if sys.argv[1] == "undoing":
+        lifetimes.end_at_once(130)
+    with lifetimes.unbroken():
+        another_thread_ends_it()
+        print("whole", flush=True)
+    time.sleep(3600.0)
+"""
+
+
+@pytest.mark.fault("P11")
+@pytest.mark.parametrize(("what", "said"), [("undoing", "begins undone"), ("making", "whole undone by the other")])
+def test_a_second_thread_that_ends_the_process_cuts_nothing_short(what: str, said: str) -> None:
+    """At a second signal the main thread and that of the signals both end the process."""
+    done = subprocess.run([sys.executable, "-c", TWO_THREADS, what], capture_output=True, text=True, check=False)
+    assert (done.stdout.split(), done.returncode) == (said.split(), 130), done.stderr
+
+
 def test_a_temporary_folder_ends_with_its_block() -> None:
     with temporary_folder() as folder:
         assert folder.stat().st_mode & 0o777 == 0o700

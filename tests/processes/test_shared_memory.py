@@ -278,6 +278,22 @@ def test_the_run_folder_is_this_users_alone(run_base: Path) -> None:
     remove_run_folder(folder)
 
 
+def test_somebody_who_still_writes_does_not_keep_the_folder(run_base: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder, unlink = make_run_folder(), os.unlink
+
+    def unlink_while_another_writes(*arguments: object, **words: object) -> None:
+        unlink(*arguments, **words)  # type: ignore[arg-type]  # passed on as they are
+        try:
+            (folder / "late").write_text("")
+        except FileNotFoundError:
+            return
+
+    (folder / "file").write_text("")
+    monkeypatch.setattr(os, "unlink", unlink_while_another_writes)
+    remove_run_folder(folder)
+    assert list(run_base.iterdir()) == []
+
+
 def test_the_folder_of_a_dead_owner_is_swept_and_no_other(run_base: Path) -> None:
     words = [sys.executable, "-c", MAKE_AND_STAY, str(run_base)]
     process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)

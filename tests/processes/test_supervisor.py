@@ -11,8 +11,9 @@ import msgspec
 import numpy as np
 import pytest
 
+from simconsole.processes.lifetimes import close_pipe, spawn
 from simconsole.processes.shared_memory import Ring, make_run_folder
-from simconsole.processes.supervisor import SupervisorHandle
+from simconsole.processes.supervisor import SupervisorHandle, SupervisorSpec
 from simconsole.processes.worker import WorkerSpec
 from simconsole.values.errors import WorkerError
 from simconsole.values.state_vector import Snapshot
@@ -264,6 +265,24 @@ def test_killing_the_core_leaves_no_process_mapping_or_file(
     wait_until(lambda: not any(is_running(process_id) for process_id in processes))
     assert list(run_base.iterdir()) == []
     assert mappings_of(folder) == []
+
+
+BUSY = """
+import threading
+from simconsole.processes import supervisor
+supervisor.end = lambda *arguments: threading.Event().wait()  # a machine so busy that it does not come to the end
+supervisor.main()
+"""
+
+
+def test_a_supervisor_that_runs_out_of_time_removes_the_run_folder(run_base: Path) -> None:
+    folder = make_run_folder()
+    (folder / "file").write_text("shared")
+    told = msgspec.json.encode(SupervisorSpec(folder=str(folder), workers=[], patience_s=0.3)) + b"\n"
+    process = spawn(["-c", BUSY], told=told)
+    close_pipe(process)
+    assert process.wait(patience.PATIENCE_S) == 1
+    assert list(run_base.iterdir()) == []
 
 
 def test_killing_core_and_supervisor_at_once_leaves_no_process_and_the_next_start_no_file(

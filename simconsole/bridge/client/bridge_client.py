@@ -21,7 +21,7 @@ from typing import Any, Final, Literal, Self
 
 from simconsole.bridge.client.client_connection import ABNORMAL, ClientConnection
 from simconsole.bridge.messages import Registry
-from simconsole.bridge.protocol.backoff import CAP_S, FIRST_S, Backoff, Liveness
+from simconsole.bridge.protocol.backoff import CAP_S, DEAD_AFTER_S, FIRST_S, Backoff, Liveness
 from simconsole.bridge.protocol.client_protocol import (
     Answer,
     Callback,
@@ -63,6 +63,7 @@ class BridgeClient:
         on_state: Callable[[State], None] = lambda state: None,
         first_s: float = FIRST_S,
         cap_s: float = CAP_S,
+        dead_after_s: float = DEAD_AFTER_S,
     ) -> None:
         """Remember where to connect.
 
@@ -79,6 +80,8 @@ class BridgeClient:
             on_state: called with each change of the connection's state.
             first_s: the first pause between two attempts.
             cap_s: the longest, without its scatter.
+            dead_after_s: how long the server may be silent before it counts as gone; infinite where whoever uses this
+                client learns of its end in another way.
 
         Raises:
             BridgeError: `url` is not such an address, or the certificate cannot be read.
@@ -89,7 +92,7 @@ class BridgeClient:
         self._until_good_bye = until_good_bye
         self._on_state = on_state
         self._backoff = Backoff(first_s, cap_s)
-        self._liveness = Liveness()
+        self._liveness = Liveness(dead_after_s=dead_after_s)
         self._chance = random.Random()
         self._next_attempt_s = 0.0
         self._received: deque[Received] = deque()

@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, Final, NamedTuple
 
 from simconsole.bridge.client.bridge_client import BridgeClient
+from simconsole.bridge.protocol.backoff import DEAD_AFTER_S
 from simconsole.drivers.autopilot.answers import Answers, make_tracker
 from simconsole.drivers.autopilot.lights import SIGNALS, SIGNALS_TYPE, lights_of, signal_stops
 from simconsole.drivers.autopilot.others import ROAD_USERS, ROAD_USERS_TYPE, Others, road_users_of
@@ -64,6 +65,7 @@ def run(
     vehicle: str = "hatchback",
     delay_s: float = TIMING.delay_s,
     tracker: str = TRACKERS[0],
+    dead_after_s: float = DEAD_AFTER_S,
 ) -> dict[str, Any]:
     """Drive until the server ends the session, is gone for `patience_s`, or `stop()` is true; return statistics.
 
@@ -80,6 +82,7 @@ def run(
         vehicle: the profile of the car, by name or path.
         delay_s: from an odometry's stamp to the moment at which the command that answers it acts.
         tracker: how it steers, one of `tracker_settings.TRACKERS`.
+        dead_after_s: how long the server may be silent before it counts as gone.
 
     Raises:
         ProfileError: the world cannot be read.
@@ -90,7 +93,9 @@ def run(
     lights = signal_stops(world, car)
     others = None if roads_of(world) is None else Others(world.route, car)
     answers = Answers(make_tracker(tracker, world.route, car_model(car), delay_s), _say, lights, others)
-    with BridgeClient(url, token=token, certificate=certificate, drive=drive, until_good_bye=True) as client:
+    with BridgeClient(
+        url, token=token, certificate=certificate, drive=drive, until_good_bye=True, dead_after_s=dead_after_s
+    ) as client:
         odometry, mode, command, signals, road_users = (
             (rename or {}).get(topic, namespace + topic) for topic in (ODOMETRY, MODE, COMMAND, SIGNALS, ROAD_USERS)
         )

@@ -16,6 +16,7 @@ from typing import Any, Final
 
 import msgspec
 
+from simconsole.processes.lifetimes import unbroken, undone
 from simconsole.recording.bundles.log import LAST_TICKS, LogReader, LogWriter
 from simconsole.recording.bundles.manifest import (
     MANIFEST,
@@ -35,7 +36,7 @@ from simconsole.recording.framing import frame_size
 from simconsole.recording.log_header import LogHeader
 from simconsole.recording.scan import Break
 from simconsole.values.errors import RecordingError
-from simconsole.values.host.files import DRAFT, draft_of, give_back, reserve, sync_folder, write_atomically
+from simconsole.values.host.files import DRAFT, draft_of, give_back, reserve, write_atomically
 from simconsole.values.signals import Event
 
 LOG: Final = "drive.log"
@@ -107,6 +108,7 @@ class BundleWriter:
     """Records one drive. Leaving it without `finish` keeps an unfinished but readable bundle.
 
     Leaving it by an error before the first tick removes the folder: a device or port was not available, no drive began.
+    So does a signal that ends the process at once. At no moment the manifest vouches for what is not there.
 
     Attributes:
         folder: where it is.
@@ -136,32 +138,39 @@ class BundleWriter:
         self.folder = folder
         self._contents = dict(contents)
         self._made = [path for path in (folder, *folder.parents) if not path.exists()]  # innermost first
+        self._undo = contextlib.ExitStack()
         try:
-            folder.mkdir(parents=True, exist_ok=True)
-            filled = any(folder.iterdir())
+            filled = folder.is_dir() and any(folder.iterdir())
         except OSError as error:
             raise RecordingError(f"{folder}: cannot be recorded to: {error.strerror}") from None
         if filled:
             raise RecordingError(f"{folder}: cannot be recorded to: the folder is not empty")
+        with unbroken(), undone(self._discard):
+            try:
+                self._make(header, Manifest(versions=dict(versions or {}), provenance=provenance))
+            except OSError as error:
+                self._discard()
+                raise RecordingError(f"{folder}: cannot be recorded to: {error.strerror}") from None
+            except RecordingError:
+                self._discard()
+                raise
+            self._undo.enter_context(undone(partial(self._leave, failed=True)))
+
+    def _make(self, header: LogHeader, manifest: Manifest) -> None:
+        """Make folder, profiles, log, and then the manifest that vouches for them. Raises OSError, RecordingError."""
+        self.folder.mkdir(parents=True, exist_ok=True)
+        for name, content in self._contents.items():
+            write_atomically(self.folder / plain_name(name, self.folder), content)
+        files = {name: file_entry(self.folder / name) for name in self._contents}
+        self.manifest = msgspec.structs.replace(manifest, files=files)
+        last_ticks_bytes = LAST_TICKS * (frame_size(len(header.columns)) + MESSAGE_BYTES) + 2 * BLOCK_BYTES
+        self._room_bytes = ROOM_BYTES + last_ticks_bytes
+        free_room = partial(give_back, self.folder / MANIFEST, ROOM_BYTES)
+        self.log = LogWriter(self.folder / LOG, header, free_room=free_room)
         try:
-            for name, content in contents.items():
-                write_atomically(folder / plain_name(name, folder), content)
-            self.manifest = Manifest(
-                files={name: file_entry(folder / name) for name in contents},
-                versions=dict(versions or {}),
-                provenance=provenance,
-            )
-            last_ticks_bytes = LAST_TICKS * (frame_size(len(header.columns)) + MESSAGE_BYTES) + 2 * BLOCK_BYTES
-            self._room_bytes = ROOM_BYTES + last_ticks_bytes
-            self._write_first()
-            free_room = partial(give_back, folder / MANIFEST, ROOM_BYTES)
-            self.log = LogWriter(folder / LOG, header, free_room=free_room)
-            sync_folder(folder)  # a power cut may lose ticks, but no files
-        except OSError as error:
-            self._discard()
-            raise RecordingError(f"{folder}: cannot be recorded to: {error.strerror}") from None
-        except RecordingError:
-            self._discard()
+            self._write_first()  # which syncs the folder: a power cut may lose ticks, but no files
+        except OSError:
+            self.log.close()
             raise
 
     def extend_provenance(self, provenance: Provenance) -> None:
@@ -172,7 +181,8 @@ class BundleWriter:
         """
         self.manifest = msgspec.structs.replace(self.manifest, provenance=provenance)
         try:
-            self._write_first()
+            with unbroken():
+                self._write_first()
         except OSError as error:
             raise RecordingError(f"{self.folder}: cannot be recorded to: {error.strerror}") from None
 
@@ -222,8 +232,14 @@ class BundleWriter:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        with unbroken():
+            self._leave(failed=error is not None)
+        self._undo.close()
+
+    def _leave(self, failed: bool) -> None:
+        """Close the log, and remove everything if it has `failed` before the first tick. Twice is harmless."""
         self.log.close()
-        if error is not None and self.log.ticks == 0:
+        if failed and self.log.ticks == 0:
             self._discard()
         with contextlib.suppress(OSError):
             draft_of(self.folder / MANIFEST).unlink(missing_ok=True)  # the space reserved for the final manifest
@@ -231,9 +247,11 @@ class BundleWriter:
     def _discard(self) -> None:
         """Remove what was made. The folder was empty before, so that all in it belongs to this drive."""
         with contextlib.suppress(OSError):
+            (self.folder / MANIFEST).unlink(missing_ok=True)  # first: it vouches for the others
             for path in self.folder.iterdir():
-                path.unlink()
-            for path in self._made:
+                path.unlink(missing_ok=True)
+        for path in self._made:
+            with contextlib.suppress(OSError):
                 path.rmdir()
 
 

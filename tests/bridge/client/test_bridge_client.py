@@ -1,3 +1,4 @@
+import math
 import socket
 import threading
 from collections.abc import Callable, Iterator
@@ -175,6 +176,15 @@ def test_silent_server_is_given_up(serving: Callable[..., Any]) -> None:
         assert "silent" in client.failure
         wait_until(lambda: client.receive(0.01) is None and client.connections == 2, "the next connection")
         assert client.state == "connected"
+
+
+def test_a_server_may_be_silent_for_as_long_as_the_client_allows(serving: Callable[..., Any]) -> None:
+    with BridgeClient(serving().url, dead_after_s=math.inf) as client:
+        assert client.receive(0.05) is None
+        client._liveness.begin(stamp_ns() / 1e9 - 3600.0)
+        client._connection.heard_s = 0.0
+        assert client.receive(0.0) is None
+        assert (client.state, client.connections) == ("connected", 1)
 
 
 def test_ping_keeps_a_quiet_connection(serving: Callable[..., Any]) -> None:

@@ -1,4 +1,6 @@
 import shutil
+import subprocess
+import sys
 from collections.abc import Callable
 from hashlib import sha256
 from pathlib import Path
@@ -25,14 +27,13 @@ def test_a_finished_bundle_opens_and_verifies(bundle: Path) -> None:
 
 
 def test_a_killed_drive_is_still_a_bundle(tmp_path: Path, header: LogHeader) -> None:
-    writer = BundleWriter(tmp_path / "drive", header, TEXTS)
-    writer.log.append(1, np.zeros(4))
-    opened = open_bundle(tmp_path / "drive")
-    assert not opened.manifest.finished
-    assert [record.tick for record in opened.log] == [1]
-    assert opened.text("vehicle.yaml") == TEXTS["vehicle.yaml"]
-    assert verify(tmp_path / "drive") == [f"{tmp_path / 'drive' / 'manifest.json'}: the drive was not finished"]
-    writer.log.close()
+    with BundleWriter(tmp_path / "drive", header, TEXTS) as writer:
+        writer.log.append(1, np.zeros(4))
+        opened = open_bundle(tmp_path / "drive")
+        assert not opened.manifest.finished
+        assert [record.tick for record in opened.log] == [1]
+        assert opened.text("vehicle.yaml") == TEXTS["vehicle.yaml"]
+        assert verify(tmp_path / "drive") == [f"{tmp_path / 'drive' / 'manifest.json'}: the drive was not finished"]
 
 
 def test_a_recording_that_stopped_says_so(tmp_path: Path, header: LogHeader, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -151,3 +152,66 @@ def test_a_folder_that_was_removed_is_made_again_with_all_that_was_recorded(tmp_
     assert [record.tick for record in bundle.log] == [1, 2, 3]
     assert bundle.text("session.json") == "{}"
     assert sorted(path.name for path in folder.iterdir()) == [LOG, "manifest.json", "session.json"]
+
+
+AT_EACH_STEP = """
+import os, sys
+from hashlib import sha256
+from pathlib import Path
+from simconsole.processes.lifetimes import end_at_once
+from simconsole.recording.bundles.bundle import BundleWriter
+from simconsole.recording.log_header import LogHeader, vector_stream
+ends = {"ended": end_at_once, "killed": os._exit}[sys.argv[2]]
+session = sha256(b"{}").hexdigest()
+header = LogHeader(
+    tick_hz=250, streams=(vector_stream(("vehicle.x_m", "vehicle.y_m"), 1),),
+    console_version="0", source_sha256="", session_sha256=session,
+)
+steps = ("open", "os.mkdir", "os.remove", "os.rmdir", "os.rename", "os.truncate")
+def drive(folder, last):
+    left = [last]
+    def step(event, arguments):
+        if event in steps and str(folder) in str(arguments[0]):
+            left[0] -= 1
+            if left[0] == 0:
+                ends(130)
+    sys.addaudithook(step)
+    with BundleWriter(folder, header, {"session.json": "{}", "road.osm": "<osm/>"}) as writer:
+        writer.extend_provenance(writer.manifest.provenance)
+        raise KeyboardInterrupt
+number, code = 0, 130
+while code == 130:
+    number += 1
+    folder = Path(sys.argv[1], str(number), "bundle")
+    if number % 2:
+        folder.mkdir(parents=True)  # as somebody may have made it, empty
+    else:
+        folder.parent.mkdir(parents=True)
+    process = os.fork()
+    if process == 0:
+        try:
+            drive(folder, number)
+        except KeyboardInterrupt:
+            os._exit(0)
+        os._exit(1)
+    code = os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
+sys.exit(code)
+"""
+
+
+@pytest.mark.fault("P11")
+@pytest.mark.parametrize("how", ["ended", "killed"])
+def test_no_manifest_ever_vouches_for_what_is_not_there(how: str, tmp_path: Path) -> None:
+    """A drive that begins and is given up before its first tick, ended before each of its steps on the disk."""
+    done = subprocess.run(
+        [sys.executable, "-c", AT_EACH_STEP, str(tmp_path), how], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    folders = sorted(tmp_path.glob("*/bundle"), key=lambda folder: int(folder.parent.name))
+    assert len(list(tmp_path.iterdir())) > 15
+    for folder in folders:
+        if how == "ended":
+            assert list(folder.iterdir()) == []
+            assert int(folder.parent.name) % 2, "it was not there before"
+        elif (folder / "manifest.json").exists():
+            assert verify(folder) == [f"{folder / 'manifest.json'}: the drive was not finished"]

@@ -71,11 +71,10 @@ def test_no_changed_byte_of_a_drive_that_was_killed_goes_unnoticed(
     tmp_path: Path, header: LogHeader, rows: list[np.ndarray]
 ) -> None:
     """Its log has no checksum in the manifest yet: its header and ticks have their own."""
-    writer = BundleWriter(tmp_path / "b", header, TEXTS)
-    for tick, row in enumerate(rows, start=1):
-        writer.log.append(tick, row)
-    shutil.copytree(tmp_path / "b", tmp_path / "killed")
-    writer.log.close()
+    with BundleWriter(tmp_path / "b", header, TEXTS) as writer:
+        for tick, row in enumerate(rows, start=1):
+            writer.log.append(tick, row)
+        shutil.copytree(tmp_path / "b", tmp_path / "killed")
     as_left = verify(tmp_path / "killed")
     assert as_left == [f"{tmp_path / 'killed' / 'manifest.json'}: the drive was not finished"]
     chance = random.Random(1)
@@ -103,14 +102,13 @@ def test_what_nobody_listed_is_named(bundle: Path) -> None:
 
 
 def test_what_a_killed_drive_leaves_beside_its_log_is_no_more_than_a_remark(tmp_path: Path, header: LogHeader) -> None:
-    writer = BundleWriter(tmp_path / "b", header, TEXTS)
-    (tmp_path / "b" / "can.blf").write_bytes(b"what the worker had written")
-    assert (tmp_path / "b" / "manifest.json.new").exists(), "the room for its end"
-    found = examine(tmp_path / "b")
+    with BundleWriter(tmp_path / "b", header, TEXTS):
+        (tmp_path / "b" / "can.blf").write_bytes(b"what the worker had written")
+        assert (tmp_path / "b" / "manifest.json.new").exists(), "the room for its end"
+        found = examine(tmp_path / "b")
     assert found.problems == [f"{tmp_path / 'b' / 'manifest.json'}: the drive was not finished"]
     assert found.remarks == [f"{tmp_path / 'b' / 'can.blf'}: not in manifest.json: nothing vouches for it"]
     assert coverage(tmp_path / "b").replayed == ["drive.log", "session.yaml", "vehicle.yaml"]
-    writer.log.close()
 
 
 def test_replay_vouches_for_the_drive_and_not_for_what_was_made_from_it(bundle: Path) -> None:
