@@ -159,6 +159,9 @@ class PersonBehaviour:
         if not view.engine_running:
             self._go(Phase.CLUTCH_DOWN, view)
             return _PedalTarget(0.0, 0.0, 1.0)
+        if self._guidance.pace(view).brake > 0.0:
+            self._go(Phase.ROLL, view)
+            return self._declutched(view)
         habits, foot = self._plan.habits, self._intent.clutch
         if view.speed_mps > ROLLING_MPS:
             foot = max(0.0, foot - habits.foot_per_s * self._tick_s)
@@ -247,6 +250,9 @@ class PersonBehaviour:
         return self._declutched(view)
 
     def _shift_close(self, view: View) -> _PedalTarget:
+        if self._guidance.pace(view).brake > 0.0 and view.speed_mps < SECOND_MPS:
+            self._go(Phase.ROLL, view)  # a clutch that closes while somebody brakes to a stop stalls the engine
+            return self._declutched(view)
         foot = max(0.0, self._intent.clutch - 0.5 * self._plan.habits.foot_per_s * self._tick_s)
         if foot == 0.0:
             self._go(Phase.DRIVE, view)

@@ -175,6 +175,23 @@ def test_for_a_stop_on_the_way_the_person_shifts_down_rolls_waits_and_drives_off
     assert watched.person.phase is Phase.BITE
 
 
+def test_who_must_brake_to_a_stop_while_the_clutch_closes_presses_it_again() -> None:
+    watched, way = Watched(), Slow()
+    watched.person = PersonBehaviour(PersonPlan(), HZ, way)
+    watched.live(2.0, gear=0.0)
+    watched.live(1.0, gear=1.0, engine_radps=180.0)
+    assert watched.person.phase is Phase.BITE
+    way.wanted = Pace(0.0, 0.8)
+    stopped = watched.live(1.0, speed_mps=0.5, engine_radps=100.0)
+    assert (watched.person.phase, stopped.clutch, stopped.brake) == (Phase.ROLL, 1.0, 0.8)
+    way.wanted = Pace(8.0, 0.0)
+    watched.live(0.3, speed_mps=4.0, gear=0.0)
+    watched.person.phase = Phase.SHIFT_CLOSE
+    way.wanted = Pace(0.0, 0.8)
+    stopped = watched.live(1.0, speed_mps=1.0, engine_radps=100.0)
+    assert (watched.person.phase, stopped.clutch, stopped.brake) == (Phase.ROLL, 1.0, 0.8)
+
+
 @pytest.mark.parametrize(("hurried", "gear"), [(False, 3.0), (True, 2.0)])
 def test_who_is_in_a_hurry_lets_the_engine_work(hurried: bool, gear: float) -> None:
     watched, way = Watched(), Slow()
