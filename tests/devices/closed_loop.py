@@ -22,7 +22,7 @@ from simconsole.values.signals import (
     RemoteCommand,
     RemoteKind,
 )
-from simconsole.values.state_vector import LAYOUT, Snapshot
+from simconsole.values.state_vector import LAYOUT, Snapshot, TickInputs, input_vector
 from simconsole.world.kinds.worlds import open_world
 
 SPEED_MPS = 10.0
@@ -116,7 +116,7 @@ class Loop:
             sample = sample._replace(**raw)
         tick, before = self.snapshot.tick + 1, self.snapshot.vector
         remote = self.controller.take(tick, before[DISTANCE_AT])
-        row = advance_vector(before, (*sample, *remote, *events, *NO_COMMAND), self.console)
+        row = advance_vector(before, input_vector(TickInputs(sample, remote, events)), self.console)
         self.snapshot = Snapshot(tick, self.tick_hz, row)
         self.motor.publish(self.snapshot)
         return self.snapshot
