@@ -34,6 +34,7 @@ lint: .venv/ready-to-test  ## Format, lint, types and import contracts only
 	$(BIN)/ruff format --check --quiet
 	$(BIN)/ruff check --quiet
 	$(BIN)/mypy
+	$(BIN)/mypy benchmarks scripts
 	for platform in win32 darwin; do $(BIN)/mypy --platform $$platform --cache-dir .mypy_cache/$$platform simconsole || exit 1; done
 	$(BIN)/lint-imports --no-logo
 

@@ -18,8 +18,9 @@ from simconsole.profiles.files.loader import parse
 from simconsole.profiles.session import SessionProfile
 from simconsole.recording.bundles.log import LogWriter
 from simconsole.recording.log_header import ACTS, LogHeader, message_stream, vector_stream
+from simconsole.session.autopilot_program import start_autopilot
 from simconsole.session.lifecycle import warm_up
-from simconsole.session.lockstep import LockstepLink, start_autopilot
+from simconsole.session.lockstep import LockstepLink
 from simconsole.session.pacing import UnpacedPacer
 from simconsole.session.recorder import LogRecorder
 from simconsole.session.resolution import resolve

@@ -15,7 +15,7 @@ import os
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from statistics import median
 
@@ -135,7 +135,7 @@ def main() -> int:
     parser.add_argument("--part", help=argparse.SUPPRESS)
     parser.add_argument("--url", default="", help=argparse.SUPPRESS)
     options = parser.parse_args()
-    parts = {
+    parts: dict[str, Callable[[], None]] = {
         "node": publish,
         "viewer": lambda: view(options.url),
         "rosapi": lambda: ask_without_end(options.url, None),

@@ -15,8 +15,9 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
+from functools import partial
 from statistics import median
 
 import orjson
@@ -72,11 +73,16 @@ class Link:
     def __init__(self, way: str) -> None:
         self.way = way
         self.received = 0
-        self.on_message = lambda: None
+        self.on_message: Callable[[], object] = lambda: None
+        self.send: Callable[[], object]
 
     def _arrived(self) -> None:
         self.received += 1
         self.on_message()
+
+    def _all_arrived(self, messages: bytes) -> None:
+        for _ in messages:
+            self._arrived()
 
     async def open(self, url: str, domain: int, stack: ExitStack) -> None:
         topic = f"/bench/t{time.monotonic_ns()}"
@@ -115,7 +121,7 @@ class Link:
             self.send = lambda: os.write(told, b"m")
         else:
             loop = asyncio.get_running_loop()
-            loop.add_reader(tells, lambda: [self._arrived() for _ in os.read(tells, 4096)])
+            loop.add_reader(tells, lambda: self._all_arrived(os.read(tells, 4096)))
             stack.callback(loop.remove_reader, tells)
 
     async def silence(self) -> None:
@@ -159,13 +165,18 @@ class Link:
         for _ in range(int(seconds * RATE_HZ)):
             await asyncio.sleep(max(0.0, next_s - time.monotonic()))
             next_s += 1.0 / RATE_HZ
-            arrived = asyncio.get_running_loop().create_future()
-            self.on_message = lambda arrived=arrived: arrived.done() or arrived.set_result(time.monotonic())
+            arrived: asyncio.Future[float] = asyncio.get_running_loop().create_future()
+            self.on_message = partial(note_time, arrived)
             sent_s = time.monotonic()
             self.send()
             found.append(1000.0 * (await asyncio.wait_for(arrived, 5.0) - sent_s))
         self.on_message = lambda: None
         return sorted(found)
+
+
+def note_time(arrived: "asyncio.Future[float]") -> None:
+    if not arrived.done():
+        arrived.set_result(time.monotonic())
 
 
 async def measure(url: str, domain: int, way: str, seconds: float) -> tuple[float, float, float, float]:
@@ -229,8 +240,8 @@ def main() -> None:
                     print(name, way, *(f"{figure:.2f}" for figure in figures), file=sys.stderr, flush=True)
     for (name, way), several in found.items():
         rate_hz, under_way, p50_ms, p99_ms = (median(column) for column in zip(*several, strict=True))
-        figures = f"{rate_hz:8.0f} /s with {under_way:.0f} under way; p50 {p50_ms:.2f}, p99 {p99_ms:.2f} ms"
-        print(f"{name:12s} {WAYS[way]}: {figures}")
+        line = f"{rate_hz:8.0f} /s with {under_way:.0f} under way; p50 {p50_ms:.2f}, p99 {p99_ms:.2f} ms"
+        print(f"{name:12s} {WAYS[way]}: {line}")
     if args.peer:
         for way in args.ways:
             ratios = [a[0] / b[0] for a, b in zip(found["simconsole", way], found["peer", way], strict=True)]

@@ -18,7 +18,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import orjson
 from two_trees import interval
@@ -38,7 +38,7 @@ CONTENT = {
 }
 
 
-async def work(transport: str) -> None:
+async def work(transport: Literal["websockets", "picows"]) -> None:
     """Serve; for each number of subscribers on standard input, say what a message to one of them costs, in us."""
     from simconsole.bridge.transport.server import BridgeServer
     from simconsole.profiles.bridge import BridgeLimits, BridgeProfile

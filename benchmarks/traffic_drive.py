@@ -40,7 +40,7 @@ def main() -> None:
     os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
     scenario, _ = load_scenario("hand_over")
     assert scenario.script is not None
-    world = {"world": "urban_signals", "traffic": {"vehicles": given.vehicles}}
+    world: dict[str, object] = {"world": "urban_signals", "traffic": {"vehicles": given.vehicles}}
     resolved = resolve(override(scenario.session, environment=world, scenario={"start": None}))
     console, start = assemble(resolved, compiled)
     warm_up(console, start)

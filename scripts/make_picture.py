@@ -7,6 +7,7 @@ console itself uses.
 import argparse
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib import rc_context
@@ -51,7 +52,8 @@ def main() -> None:
         drive = drive_of(table.vectors, table.columns, table.tick_hz, int(table.ticks[0]))
         course = None if resolved.world is None else open_world(resolved.world).route
         way = track(drive, course)
-        with rc_context({**STYLE, "axes.grid": False}):
+        style: dict[Any, Any] = STYLE | {"axes.grid": False}
+        with rc_context(style):
             figure = Figure(figsize=MAP_INCH, dpi=200, layout="constrained")
             FigureCanvasAgg(figure)
             draw_map(figure, drive, way, mode_changes(drive, way), course)

@@ -115,7 +115,8 @@ def page(
         row[0] += 1
         row[1] += results[name]["killed"]
         if not results[name]["killed"]:
-            survivors.append(tuple(mutants[name][key] for key in ("function", "before", "after")))
+            mutant = mutants[name]
+            survivors.append((mutant["function"], mutant["before"], mutant["after"]))
     count, killed = (sum(row[at] for row in table.values()) for at in (0, 1))
     known = reasons()
     lines = [HEAD.format(budget_calls=budget_calls)]
@@ -126,7 +127,7 @@ def page(
     lines += ["|---|---|---|---|"]
     for survivor in sorted(set(survivors)):
         cells = " | ".join(f"`{cell}`" for cell in (text.replace("|", r"\|") for text in survivor))
-        lines.append(f"| {cells} | {known.get(survivor, UNEXPLAINED)} |")  # type: ignore[arg-type]
+        lines.append(f"| {cells} | {known.get(survivor, UNEXPLAINED)} |")
     explained = all(known.get(survivor, UNEXPLAINED) != UNEXPLAINED for survivor in survivors)
     return "\n".join((*lines, "")), 100.0 * killed / count >= BAR_PERCENT and explained
 

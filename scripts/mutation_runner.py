@@ -12,8 +12,9 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 import pytest
 from _pytest.runner import runtestprotocol
@@ -59,7 +60,8 @@ def switch(mutants: dict[str, Function]) -> Callable[[Function], Function]:
     return decorate
 
 
-class Reach(NamedTuple):
+@dataclass(frozen=True, order=True)
+class Reach:
     """A test that reaches a function; they sort by what will most likely and soonest kill a mutant.
 
     What a test costs is counted in calls of the functions under test, and so the same on any machine under any load.

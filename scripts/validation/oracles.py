@@ -174,7 +174,13 @@ def mirror() -> dict[str, float]:
         angle = 0.12 * math.sin(0.004 * index) + 0.03
         (a,) = left.hold(0.004, substeps=4, automatic=1.0, gear=1.0, throttle=0.5, road_wheel_rad=angle)
         (b,) = right.hold(0.004, substeps=4, automatic=1.0, gear=1.0, throttle=0.5, road_wheel_rad=-angle)
-        pairs = ((a.x_m, b.x_m), (a.y_m, -b.y_m), (a.yaw_rad, -b.yaw_rad), (a.vx_mps, b.vx_mps), (a.vy_mps, -b.vy_mps))
+        pairs: tuple[tuple[float, float], ...] = (
+            (a.x_m, b.x_m),
+            (a.y_m, -b.y_m),
+            (a.yaw_rad, -b.yaw_rad),
+            (a.vx_mps, b.vx_mps),
+            (a.vy_mps, -b.vy_mps),
+        )
         pairs += (
             (a.roll_rad, -b.roll_rad),
             (a.hand_wheel_torque_nm, -b.hand_wheel_torque_nm),
