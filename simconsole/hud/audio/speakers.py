@@ -4,7 +4,7 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Final, Protocol
+from typing import Any, Final, Protocol
 
 import numpy as np
 
@@ -40,8 +40,7 @@ class Speakers:
         Raises:
             WorkerError: there is none, or none of this name.
         """
-        import pygame
-
+        pygame = _library()
         self.starved = 0
         self._begun = False
         try:
@@ -87,6 +86,13 @@ class Speakers:
         pygame.mixer.quit()
 
 
+def _library() -> Any:
+    os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")  # standard output belongs to --json
+    import pygame
+
+    return pygame
+
+
 @contextmanager
 def _quiet() -> Iterator[None]:
     """Leave out what sound libraries write to standard error about devices that are not there: the error says it."""
@@ -110,7 +116,7 @@ def _columns() -> int:
 
 def device_names() -> list[str]:
     """Return what sound devices there are, by name."""
-    import pygame
+    pygame = _library()
     from pygame._sdl2 import audio
 
     try:

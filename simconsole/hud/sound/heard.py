@@ -1,7 +1,7 @@
 """What there is to hear at a tick, and what one must know of the car to tell."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from enum import IntEnum
 from typing import Final, NamedTuple
 
@@ -145,9 +145,10 @@ def squeal(snapshot: Snapshot, settings: SoundSettings) -> tuple[float, float]:
     steer_rad = vehicle.road_wheel_rad if vehicle.vx_mps >= 0.0 else -vehicle.road_wheel_rad
     slip_front = abs(math.atan2(side_front, ahead_mps) - steer_rad)
     slip_rear = abs(math.atan2(vehicle.vy_mps, ahead_mps))
-    sideways: Callable[[float], float] = lambda slip_rad: _grows(slip_rad, SQUEAL_FROM_RAD, SQUEAL_FULL_RAD)  # noqa: E731
-    along_front, along_rear = _slip_along(snapshot, settings)
-    return moving * max(sideways(slip_front), along_front), moving * max(sideways(slip_rear), along_rear)
+    along = _slip_along(snapshot, settings)
+    sideways = (_grows(slip_rad, SQUEAL_FROM_RAD, SQUEAL_FULL_RAD) for slip_rad in (slip_front, slip_rear))
+    front, rear = (moving * max(pair) for pair in zip(sideways, along, strict=True))
+    return front, rear
 
 
 def _slip_along(snapshot: Snapshot, settings: SoundSettings) -> tuple[float, float]:
@@ -156,7 +157,8 @@ def _slip_along(snapshot: Snapshot, settings: SoundSettings) -> tuple[float, flo
     vx_mps = snapshot.vehicle.vx_mps
     rims_mps = (settings.wheel_radius_m * float(snapshot.vector[column]) for column in settings.wheels)
     slips = [abs(rim - vx_mps) / max(abs(rim), abs(vx_mps), 1.0) for rim in rims_mps]
-    return tuple(_grows(max(pair), SQUEAL_FROM_SLIP, SQUEAL_FULL_SLIP) for pair in (slips[:2], slips[2:]))  # type: ignore[return-value]
+    front, rear = (_grows(max(pair), SQUEAL_FROM_SLIP, SQUEAL_FULL_SLIP) for pair in (slips[:2], slips[2:]))
+    return front, rear
 
 
 def _grows(value: float, start: float, full: float) -> float:
