@@ -1,4 +1,4 @@
-"""`simconsole devices list | check | calibrate | feel | identify | accept | record`: the cockpit before a drive."""
+"""`simconsole devices list | check | calibrate | feel | identify | accept | record | speakers`: before a drive."""
 
 import sys
 from argparse import Namespace
@@ -22,6 +22,8 @@ def devices(options: Namespace) -> Outcome:
         DeviceError: a device is missing or in a mode that cannot drive, or a step of a calibration failed.
         ProfileError: the cockpit's profile cannot be used.
     """
+    if options.action == "speakers":
+        return _speakers(options.device)
     cockpit = load("devices", options.cockpit, CockpitProfile)
     if options.action == "list":
         results = list_devices(cockpit, say=print, virtual=options.virtual)
@@ -72,6 +74,25 @@ def devices(options: Namespace) -> Outcome:
         virtual=options.virtual,
     )
     return Outcome(0, results)
+
+
+def _speakers(device: str | None) -> Outcome:
+    """Name the sound devices and play a tone on each loudspeaker of one."""
+    import time
+
+    from simconsole.hud.audio.speaker_test import play_tones
+    from simconsole.hud.audio.speakers import Speakers, device_names
+    from simconsole.profiles.view import SoundProfile
+
+    found = device_names()
+    _say("devices: " + (", ".join(found) or "none by name"))
+    speakers = Speakers(SoundProfile(device=device))
+    try:
+        _say(f"{speakers.channels} loudspeakers" + ("" if speakers.channels > 2 else ": four are folded into two"))
+        results = play_tones(speakers, _say, time.sleep)
+    finally:
+        speakers.close()
+    return Outcome(0, {"devices": found, "columns": speakers.channels, **results})
 
 
 def _identified(options: Namespace, cockpit: CockpitProfile) -> Outcome:

@@ -283,7 +283,9 @@ def _can(commands: Any) -> None:
 
 def _tools(commands: Any) -> None:
     devices = _command(commands, "devices", "devices:devices", "the cockpit: accept a new one, or one step of it")
-    devices.add_argument("action", choices=("list", "check", "calibrate", "feel", "identify", "accept", "record"))
+    devices.add_argument(
+        "action", choices=("list", "check", "calibrate", "feel", "identify", "accept", "record", "speakers")
+    )
     devices.add_argument("--cockpit", default="t500rs_th8rs", metavar="PROFILE", help="a name, or a .yaml file")
     devices.add_argument("--virtual", action="store_true", help="attach the cockpit's devices as virtual ones first")
     devices.add_argument(
@@ -297,6 +299,7 @@ def _tools(commands: Any) -> None:
     devices.add_argument("--strength", type=int, metavar="PERCENT", help="feel, identify: of the motor's torque")
     devices.add_argument("--weight", type=float, metavar="KG", help="identify, accept: on the rim, gives the scale")
     devices.add_argument("--radius", type=float, default=0.14, metavar="M", help="... so far from the hub (0.14)")
+    devices.add_argument("--device", metavar="NAME", help="speakers: a sound device by name (default: the system's)")
     devices.add_argument("--out", metavar="FILE", help="record: trace.csv; accept: its folder; else the new profile")
 
     world = _command(commands, "world", "world:world", "worlds to drive in: list, show what one holds, import a map")

@@ -14,6 +14,7 @@ from simconsole.values.errors import RecordingError
 
 if TYPE_CHECKING:
     from simconsole.evaluation.video.drive_pictures import DrivePictures
+    from simconsole.evaluation.video.drive_sound import DriveSound
     from simconsole.evaluation.video.moments import Moment
 
 SMALLEST_PX: Final = 320
@@ -30,15 +31,17 @@ def video(options: Namespace) -> Outcome:
         print(f"{pictures.renderer} draws, no graphics card: no mirrors, no shadows (--rich: slowly)", file=sys.stderr)
     if options.png is not None:
         return _png(bundle, pictures, *options.png)
-    from simconsole.evaluation.video.encoder import write_video
+    from simconsole.evaluation.video.encoder import Frame, write_video
     from simconsole.evaluation.video.moments import moments
 
     path = Path(options.out) if options.out else folder.with_name(f"{folder.resolve().name}.mp4")
     end_s = _end_s(bundle) if options.to_s is None else options.to_s
+    sound = _sound(bundle, options.fps)
     with Progress("drawing") as progress:
         found = moments(bundle.log, options.from_s, options.to_s, options.fps)
         told = _told(found, progress, options.from_s, end_s)
-        frames = write_video(path, pictures.draw_all(told), options.fps)
+        seen = (Frame(pictures.draw(moment), sound.frame(moment)) for moment in told)
+        frames = write_video(path, seen, options.fps)
     results = {"video": str(path), "frames": frames, "fps": options.fps, "bytes": path.stat().st_size}
     return _judged(bundle, results, f"{path}: {frames} frames, {frames / options.fps:.1f} s")
 
@@ -82,6 +85,13 @@ def _pictures(bundle: Bundle, options: Namespace) -> "DrivePictures":
     width, height = _size(options.size)
     wanted = Wanted(width, height, options.camera, night=options.night, rich=options.rich)
     return DrivePictures(recorded_session(bundle), wanted)
+
+
+def _sound(bundle: Bundle, fps: int) -> "DriveSound":
+    from simconsole.evaluation.video.drive_sound import DriveSound
+    from simconsole.recording.bundles.replay_bundle import recorded_session
+
+    return DriveSound(recorded_session(bundle), fps)
 
 
 def _end_s(bundle: Bundle) -> float:

@@ -31,6 +31,7 @@ KEY_CODES: Final[dict[str, Key]] = {
     "K_y": Key.SHARED,
     "K_f": Key.FAULT,
     "K_END": Key.END,
+    "K_b": Key.HORN,
 }
 """Names of pygame's key constants: the library itself is loaded when a window opens."""
 

@@ -21,6 +21,8 @@ ButtonLabel: TypeAlias = Annotated[str, Meta(min_length=1, max_length=16)]
 
 MAX_BUTTONS = 128
 """As many as Windows tells of one device (DIJOYSTATE2)."""
+MOST_MEANINGS = 24
+"""Buttons of one device that may have a meaning: a state vector holds so many of each."""
 MIN_TRAVEL_RAW = 0.2
 """A pedal whose ends lie closer together than this cannot be distinguished from its noise."""
 
@@ -196,6 +198,7 @@ class Buttons(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     fault: ButtonBinding | None = None
     hazard: ButtonBinding | None = None
     handbrake_button: ButtonBinding | None = None  # a handbrake that is one: pulled fully while held
+    horn: ButtonBinding | None = None
 
 
 class Limits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -245,6 +248,7 @@ class CockpitProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
             raise ValueError("shifter.gears and shifter.reverse must be different buttons")
         if self.shifter.pattern == "h" and not self.shifter.gears:
             raise ValueError("shifter.gears must name at least one button where shifter.pattern is h")
+        _check_count(self)
         for binding in self.roles:
             _check_indices(binding, self)
             if any(binding.key[:2] == other.key[:2] and not binding.port and other.port for other in self.roles):
@@ -268,6 +272,17 @@ class CockpitProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         """Return the role on whose device this pedal is: a handbrake may have one of its own."""
         own = pedal == "handbrake" and any(binding.role == "handbrake" for binding in self.roles)
         return "handbrake" if own else "pedals"
+
+
+def _check_count(profile: CockpitProfile) -> None:
+    for role in ("wheel", "shifter"):
+        bound = (getattr(profile.buttons, name) for name in Buttons.__struct_fields__)
+        used = {button.button for button in bound if button is not None and button.on == role}
+        if profile.shifter.on == role:
+            used |= {*profile.shifter.gears, profile.shifter.reverse}
+        count = len(used - {None})
+        if count > MOST_MEANINGS:
+            raise ValueError(f"buttons: {count} of the {role} have a meaning, must be at most {MOST_MEANINGS}")
 
 
 def _check_indices(binding: RoleBinding, profile: CockpitProfile) -> None:
@@ -308,6 +323,7 @@ ButtonName: TypeAlias = Literal[
     "fault",
     "hazard",
     "handbrake_button",
+    "horn",
 ]
 
 

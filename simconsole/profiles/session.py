@@ -10,7 +10,7 @@ from simconsole.profiles.control import ControlProfile
 from simconsole.profiles.faults import Faults
 from simconsole.profiles.person import PersonPlan
 from simconsole.profiles.traffic import TrafficProfile
-from simconsole.profiles.view import HudProfile, SceneProfile
+from simconsole.profiles.view import HudProfile, SceneProfile, SoundProfile
 
 PROFILE_FILES: Final = (".yaml", ".yml")
 ProfileName = Annotated[str, Meta(pattern=r"^([A-Za-z0-9][A-Za-z0-9_-]{0,63}|.{1,1000}\.ya?ml)$")]
@@ -95,6 +95,8 @@ class Outputs(Section, frozen=True, kw_only=True):
     can: CanProfile | None = None
     hud: HudProfile | None = HudProfile()
     scene: SceneProfile | None = SceneProfile()
+    sound: SoundProfile | None = SoundProfile()
+    """In a paced drive with a window."""
     report: bool = True
 
 

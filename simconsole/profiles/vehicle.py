@@ -144,6 +144,7 @@ class EngineProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
     fire_rpm: Annotated[float, msgspec.Meta(ge=60.0, le=2500.0)]
     starter_nm: Torque
     limit_rpm: Annotated[float, msgspec.Meta(ge=1000.0, le=20000.0)]
+    cylinders: Annotated[int, msgspec.Meta(ge=1, le=16)] = 4  # of a four-stroke engine; only to be heard
 
     def __post_init__(self) -> None:
         """Refuse speeds out of order.

@@ -57,6 +57,25 @@ class HudProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The road above the instruments; without it the instruments have the whole screen."""
 
 
+Gain = Annotated[float, Meta(ge=0.0, le=2.0)]
+
+
+class SoundProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What the driver hears. Shares of full loudness; warnings do not hang on `volume` and cannot be silenced."""
+
+    device: Annotated[str, Meta(max_length=200)] | None = None
+    """A device by its name (`simconsole devices speakers`), None: the system's."""
+    speakers: Literal[2, 6] = 6
+    """Six as in 5.1; where the device has two only, the other four are folded in."""
+    volume: Share = 0.8
+    warnings: Annotated[float, Meta(ge=0.2, le=1.0)] = 0.9
+    engine: Gain = 1.0
+    road: Gain = 1.0
+    others: Gain = 1.0
+    gains: tuple[Gain, Gain, Gain, Gain, Gain, Gain] = (1.0,) * 6
+    """Of each loudspeaker: front left, front right, centre, low frequencies, surround left, surround right."""
+
+
 class SceneProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The operators' recording in rerun."""
 

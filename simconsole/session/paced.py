@@ -221,6 +221,13 @@ def worker_specs(
             has_bridge=has_bridge,
             has_traffic=has_traffic,
         )
+    if outputs.hud is not None and outputs.sound is not None:
+        from simconsole.session.sound_worker import SoundWorker, sound_settings
+
+        settings = sound_settings(resolved, console)
+        workers["sound"] = SoundWorker(
+            profile=outputs.sound, settings=settings, tick_hz=tick_hz, has_traffic=has_traffic
+        )
     if outputs.scene is not None:
         from simconsole.scene.viewer.job import save_job
 

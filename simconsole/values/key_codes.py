@@ -31,3 +31,4 @@ class Key(IntFlag):
     SHARED = 524288
     FAULT = 1048576
     END = 2097152  # ends the drive, as closing the window does
+    HORN = 4194304

@@ -123,6 +123,19 @@ def test_role_bound_twice_is_refused(t500: CockpitProfile) -> None:
         parse(changed(t500, "roles.1", twice), CockpitProfile, "cockpit.yaml")
 
 
+def test_more_meanings_than_a_state_vector_holds_are_refused(t500: CockpitProfile) -> None:
+    plain = msgspec.to_builtins(t500)
+    for role in plain["roles"]:
+        role["buttons"] = 40
+    names = list(plain["buttons"])
+    plain["shifter"] |= {"on": "wheel", "gears": list(range(17, 24)), "reverse": 24}
+    plain["buttons"] = {name: {"button": at} for at, name in enumerate(names)}
+    with pytest.raises(ProfileError, match=r"buttons: 25 of the wheel have a meaning, must be at most 24"):
+        parse(to_text(plain), CockpitProfile, "cockpit.yaml")
+    del plain["buttons"][names[0]]
+    parse(to_text(plain), CockpitProfile, "cockpit.yaml")
+
+
 def test_script_whose_time_goes_back_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "script.yaml"
     path.write_text("points:\n- {time_s: 1.0, throttle: 0}\n- {time_s: 0.5, throttle: 1}\n")

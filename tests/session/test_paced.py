@@ -28,7 +28,7 @@ from tests.patience import Stopwatch, wait_until
 from tests.samples import Measured
 
 TICK_HZ = 250
-WORKERS = {"bridge", "hud", "scene"}
+WORKERS = {"bridge", "hud", "scene", "sound"}
 SESSION = """\
 schema: 1
 title: Every worker
@@ -184,6 +184,7 @@ def disturbed(tmp_path_factory: pytest.TempPathFactory) -> Disturbed:
         driven.kill_worker("bridge")
         driven.kill_worker("hud")
         driven.kill_worker("scene")
+        driven.kill_worker("sound")
         wait_until(lambda: driven.mode() == Mode.STOPPED, "the safe stop")
         family |= driven.family()
         driven.running.interrupt_group()
@@ -238,7 +239,7 @@ def test_the_bundle_tells_the_latency_of_each_hop_in_all_processes(disturbed: Di
 
 
 def test_nothing_outlives_a_drive_that_was_interrupted(disturbed: Disturbed) -> None:
-    assert len(disturbed.family) >= 5, "supervisor, three workers, autopilot"
+    assert len(disturbed.family) >= 6, "supervisor, four workers, autopilot"
     wait_until(lambda: not disturbed.family & set(processes()), "the end of every process")
     assert not disturbed.folder.exists()
 

@@ -73,6 +73,7 @@ class CockpitSettings(NamedTuple):
     fault_mask: float
     hazard_mask: float
     handbrake_button_mask: float
+    horn_mask: float
 
 
 NOBODY: Final = DriverInput(*(0.0,) * len(DriverInput._fields))
@@ -113,7 +114,7 @@ def button_bits(profile: CockpitProfile, on: str) -> dict[int, int]:
     """Return which bit of a device's mask in a sample holds which of its buttons, by the button's number.
 
     A mask has SHIFTER_SHIFT bits. Button n is bit n; one beyond takes the bit of the last button without a meaning.
-    There always is one: a profile gives meaning to 24 buttons at most.
+    There always is one: a profile gives meaning to 24 buttons of a device at most.
 
     Args:
         profile: The cockpit.

@@ -59,6 +59,7 @@ def held_roles(wheel_buttons: float, shifter_buttons: float, hat: int, settings:
         settings.fault_mask,
         settings.hazard_mask,
         settings.handbrake_button_mask,
+        settings.horn_mask,
     ):
         if held & int(mask) != 0:
             roles |= bit

@@ -42,6 +42,7 @@ _BUTTONS: Final = (
     (Key.TAKEOVER, Button.TAKEOVER),
     (Key.SHARED, Button.SHARED),
     (Key.FAULT, Button.FAULT),
+    (Key.HORN, Button.HORN),
 )
 
 

@@ -3,23 +3,33 @@
 import io
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from simconsole.hud.sound.directions import Samples
+from simconsole.hud.sound.loops import RATE_HZ
 from simconsole.values.errors import RecordingError
 from simconsole.values.host.files import replaced, write_atomically
 
 Pixels = NDArray[np.uint8]
+
+
+class Frame(NamedTuple):
+    """A picture, uint8 [height, width, 3], and what is heard while it is seen, float32 [samples, 2]."""
+
+    pixels: Pixels
+    sound: Samples
+
 
 THREADS: Final = 2
 """Fixed: the same pictures give the same bytes on every machine."""
 OPTIONS: Final = {"preset": "veryfast", "crf": "23"}
 
 
-def write_video(path: Path, frames: Iterable[Pixels], fps: int) -> int:
-    """Write frames, uint8 [height, width, 3] of one even size, as a video; return how many. An error leaves no file.
+def write_video(path: Path, frames: Iterable[Frame], fps: int) -> int:
+    """Write frames of one even size as a video; return how many. An error leaves no file.
 
     Raises:
         RecordingError: the encoder is not installed, or the file cannot be written.
@@ -34,15 +44,32 @@ def write_video(path: Path, frames: Iterable[Pixels], fps: int) -> int:
             stream = file.add_stream("libx264", rate=fps, options=OPTIONS)
             stream.pix_fmt = "yuv420p"
             stream.codec_context.thread_count = THREADS
-            for pixels in frames:
+            voice = _sound_stream(file)
+            for pixels, sound in frames:
                 if count == 0:
                     stream.height, stream.width = pixels.shape[:2]
                 file.mux(stream.encode(av.VideoFrame.from_ndarray(pixels, format="rgb24")))
+                file.mux(voice.encode(_heard(sound)))
                 count += 1
             file.mux(stream.encode(None))
+            file.mux(voice.encode(None))
     except (OSError, av.FFmpegError) as problem:
         raise RecordingError(f"{path}: cannot be written: {getattr(problem, 'strerror', None) or problem}") from None
     return count
+
+
+def _sound_stream(file: Any) -> Any:
+    voice = file.add_stream("aac", rate=RATE_HZ, layout="stereo")
+    voice.codec_context.thread_count = 1
+    return voice
+
+
+def _heard(sound: Samples) -> Any:
+    import av
+
+    frame = av.AudioFrame.from_ndarray(np.ascontiguousarray(sound.T), format="fltp", layout="stereo")
+    frame.sample_rate = RATE_HZ
+    return frame
 
 
 def write_png(path: Path, pixels: Pixels) -> None:

@@ -166,6 +166,7 @@ class Button(IntFlag):
     FAULT = 8192
     HAZARD = 16384
     HANDBRAKE_BUTTON = 32768  # pulled fully while held
+    HORN = 65536
 
 
 class GearFault(IntFlag):

@@ -9,7 +9,9 @@ import numpy as np
 import pygame
 import pytest
 
-from simconsole.evaluation.video.encoder import Pixels, write_png, write_video
+from simconsole.evaluation.video.encoder import Frame, Pixels, write_png, write_video
+from simconsole.hud.sound.directions import Samples
+from simconsole.hud.sound.loops import RATE_HZ
 from simconsole.values.errors import RecordingError
 
 
@@ -20,8 +22,13 @@ def ramp(index: int) -> Pixels:
     return picture
 
 
-def frames(count: int = 12) -> Iterator[Pixels]:
-    return (ramp(index) for index in range(count))
+def tone(index: int, fps: int) -> Samples:
+    times_s = np.arange(index * RATE_HZ // fps, (index + 1) * RATE_HZ // fps) / RATE_HZ
+    return np.stack([0.5 * np.sin(2.0 * np.pi * hz * times_s) for hz in (400.0, 900.0)], axis=1).astype(np.float32)
+
+
+def frames(count: int = 12, fps: int = 25) -> Iterator[Frame]:
+    return (Frame(ramp(index % 12), tone(index, fps)) for index in range(count))
 
 
 def test_what_went_in_comes_out(tmp_path: Path) -> None:
@@ -37,6 +44,19 @@ def test_what_went_in_comes_out(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["a.mp4"]
 
 
+def test_sound_goes_with_the_pictures(tmp_path: Path) -> None:
+    path = tmp_path / "a.mp4"
+    write_video(path, frames(50), 25)
+    with av.open(str(path)) as file:
+        voice = file.streams.audio[0]
+        assert (voice.codec_context.name, voice.rate, voice.channels) == ("aac", RATE_HZ, 2)
+        decoded = np.concatenate([frame.to_ndarray() for frame in file.decode(voice)], axis=1)
+    assert decoded.shape[1] / RATE_HZ == pytest.approx(2.0, abs=0.05)
+    for column, hz in zip(decoded, (400.0, 900.0), strict=True):
+        middle = column[RATE_HZ // 2 : 3 * RATE_HZ // 2]
+        assert np.abs(np.fft.rfft(middle)).argmax() == pytest.approx(hz, abs=2.0)
+
+
 def test_the_same_pictures_give_the_same_bytes(tmp_path: Path) -> None:
     for name in ("a.mp4", "b.mp4"):
         write_video(tmp_path / name, frames(), 30)
@@ -44,7 +64,7 @@ def test_the_same_pictures_give_the_same_bytes(tmp_path: Path) -> None:
 
 
 def test_an_error_leaves_no_file(tmp_path: Path) -> None:
-    def broken() -> Iterator[Pixels]:
+    def broken() -> Iterator[Frame]:
         yield from frames(3)
         raise RecordingError("the log ends here")
 

@@ -1,0 +1,1 @@
+"""The sound card: blocks of samples to loudspeakers."""
