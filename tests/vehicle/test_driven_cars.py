@@ -9,6 +9,7 @@ import pytest
 
 from tests.paths import ROOT
 
+
 @pytest.fixture
 def script(monkeypatch: pytest.MonkeyPatch) -> Any:
     monkeypatch.syspath_prepend(ROOT / "scripts")
