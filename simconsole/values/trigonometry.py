@@ -20,6 +20,7 @@ HALF_PI: Final = 1.5707963267948966
 _HALF_PI_TAIL: Final = 6.123233995736766e-17  # pi/2 = HALF_PI + this, to 106 bits
 
 _TWO_OVER_PI: Final = 0.6366197723675814
+_FIRST_EIGHTH: Final = 0.785  # less than an eighth of a turn
 _PART_1: Final = 1.5707963267341256  # first 33 bits of pi/2
 _PART_2: Final = 6.077100506303966e-11  # next 33 bits
 _PART_3: Final = 2.0222662487959506e-21  # the rest, rounded
@@ -89,9 +90,12 @@ class Direction(NamedTuple):
 @kernel
 def direction(angle_rad: float) -> Direction:
     """Return cosine and sine of an angle in rad, faster than one after the other: the same bits as `cos` and `sin`."""
-    turns = nearest(angle_rad * _TWO_OVER_PI)
-    rest = ((angle_rad - turns * _PART_1) - turns * _PART_2) - turns * _PART_3
-    quarter = turns - 4.0 * nearest(0.25 * turns)
+    rest = angle_rad
+    quarter = 0.0
+    if abs(angle_rad) > _FIRST_EIGHTH:  # elsewhere there is no turn to take off
+        turns = nearest(angle_rad * _TWO_OVER_PI)
+        rest = ((angle_rad - turns * _PART_1) - turns * _PART_2) - turns * _PART_3
+        quarter = turns - 4.0 * nearest(0.25 * turns)
     s = _sine_series(rest)
     c = _cosine_series(rest)
     if quarter == 0.0:

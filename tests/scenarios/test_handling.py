@@ -33,7 +33,7 @@ KINDS = {
         "clutch_protection",
     ),
     *("hill_van_20", "hill_van_25", "hill_slippery", "launch_slippery"),
-    *("straight_braking_30", "straight_braking_60"),
+    *("straight_braking_30", "straight_braking_60", "dive", "bend_braking", "bend_braking_van", "lift_off"),
 }
 
 

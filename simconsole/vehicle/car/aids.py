@@ -108,7 +108,11 @@ def traction(
     load = left.load_n + right.load_n + 1.0  # never 0
     peak = slip_at_peak(axle, force, abs(ground))
     least = LEAST_SLIP_MPS * load
-    left_over = clip(1.0 - abs(rim_mps - ground) * load / (peak if peak > least else least), -2.0, 1.0)
+    bound = peak if peak > least else least
+    slipping = abs(rim_mps - ground) * load
+    if kept == 1.0 and slipping <= bound:  # nothing to take back: the same result without the division
+        return Throttle(1.0, 1.0)
+    left_over = clip(1.0 - slipping / bound, -2.0, 1.0)
     now = clip(kept + TRACTION_PER_S * step_s * left_over, 0.0, 1.0)
     return Throttle(clip(now + TRACTION_GAIN * left_over, 0.0, 1.0), now)
 
@@ -198,12 +202,15 @@ def brake_torques(car: Car, p: CarParameters, request: Request, axles: Axles, ai
     pedal = request.brake
     if aids.hold_left_s > 0.0 and aids.hold_brake > pedal:
         pedal = aids.hold_brake
+    turn = aids.stability_nm
+    in_force = car.fl.brake_nm + car.fr.brake_nm + car.rl.brake_nm + car.rr.brake_nm
+    if pedal == 0.0 and turn == 0.0 and in_force == 0.0:
+        return Brakes(0.0, 0.0, 0.0, 0.0)
     front = p.front
     rear = p.rear
     fl = FREE_PER_S
     fr = FREE_PER_S
     low = FREE_PER_S
-    turn = aids.stability_nm
     to_left = turn if turn > 0.0 else 0.0
     to_right = -turn if turn < 0.0 else 0.0
     inwards = turn * car.body.yaw_rate_radps > 0.0  # it turns too little

@@ -37,11 +37,10 @@ class Motion(NamedTuple):
 @kernel
 def stopped(rate: float, place: float, most: float) -> float:
     """Return the rate of something at `place`: 0 at the end of its travel, where it keeps no speed."""
-    if place >= most and rate > 0.0:
-        return 0.0
-    if place <= -most and rate < 0.0:
-        return 0.0
-    return rate
+    if abs(place) < most:  # nearly always
+        return rate
+    outwards = rate > 0.0 if place > 0.0 else rate < 0.0
+    return 0.0 if outwards else rate
 
 
 @kernel

@@ -65,4 +65,5 @@ def test_forecasts_stay_on_what_the_ground_holds_and_feel_the_hill() -> None:
     share = CAR.body.mass_kg / CAR.body.moving_kg
     for steep, flat in zip(up, level, strict=True):
         assert steep - flat == pytest.approx(-0.2 * CAR.body.gravity_plane_mps2 * share, rel=0.05)
-    assert -level.full_brake_mps2 <= 2.0 * (CAR.front.static_n + CAR.rear.static_n) / CAR.body.mass_kg
+    held_n = 2.0 * (CAR.front.friction_left * CAR.front.static_n + CAR.rear.friction_left * CAR.rear.static_n)
+    assert -level.full_brake_mps2 <= held_n / CAR.body.mass_kg

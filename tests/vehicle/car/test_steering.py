@@ -39,7 +39,7 @@ def test_it_turns_the_wheel_back_to_the_middle_and_is_mirrored(speed_mps: float)
 def test_it_falls_before_the_front_tyres_have_given_all_they_have() -> None:
     drive = rolling(20.0, stability_control=False)
     torques, forces = [], []
-    for tick in range(round(8.0 / TICK_S)):
+    for tick in range(round(10.0 / TICK_S)):  # all is given after 9.5 s
         drive.hold(TICK_S, automatic=1, gear=1, throttle=0.35, road_wheel_rad=0.02 * tick * TICK_S)
         torques.append(abs(drive.seen.hand_wheel_torque_nm))
         forces.append(abs(drive.seen.ay_mps2))
@@ -170,7 +170,7 @@ def test_on_the_spot_the_moment_grows_to_that_of_gough_and_keeps_its_side_until_
     there = [0.01 * n for n in range(40)]
     moments = turned_on_the_spot(there + there[::-1])
     load, inflation = 0.5 * 0.6 * 1300.0 * 9.80665, 220e3
-    gough = 2.0 * load**1.5 / (3.0 * math.sqrt(inflation))
+    gough = 2.0 * HATCHBACK.front.friction * load**1.5 / (3.0 * math.sqrt(inflation))
     assert moments[39] == pytest.approx(-gough, rel=0.02)
     assert moments[-1] == pytest.approx(gough, rel=0.02), "back at the centre it pushes the other way: hysteresis"
     assert all(after <= before for before, after in pairwise(moments[:40]))
