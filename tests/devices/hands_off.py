@@ -152,7 +152,7 @@ class Released(NamedTuple):
     torque_nm: np.ndarray
     share: float
     swings_deg: list[float]  # from extreme to extreme
-    friction_band_deg: float  # at which friction holds it
+    friction_band_deg: float  # up to which friction holds it; without trail, wherever it was let go of
 
 
 def let_go(vehicle: str, start: Bend, true: ForceFeedback, found: ForceFeedback, seconds: float = 6.0) -> Released:
@@ -180,7 +180,8 @@ def let_go(vehicle: str, start: Bend, true: ForceFeedback, found: ForceFeedback,
     assert isinstance(session.vehicle, CarProfile)
     trail_m = session.vehicle.steering.caster_trail_m + session.vehicle.steering.pneumatic_trail_m
     stiff = rim_stiffness(session.vehicle).at_12mps * found.car_share * share
-    band = math.degrees(dry_nm / stiff) if trail_m and stiff else math.inf  # tyres without trail pull it nowhere
+    # Tyres without trail pull the wheel nowhere: it rests where it was let go of, and no further out.
+    band = math.degrees(dry_nm / stiff) if trail_m and stiff else math.degrees(abs(start.hand_rad))
     return Released(np.array(rads), np.array(torques), share, swings(np.degrees(rads)), band)
 
 
