@@ -68,18 +68,6 @@ def true_force(shipped: ForceFeedback, draw: Draw) -> ForceFeedback:
     return msgspec.structs.replace(shipped, motor=motor, max_torque_nm=shipped.max_torque_nm * draw.torque)
 
 
-def found_force(shipped: ForceFeedback, draw: Draw) -> ForceFeedback:
-    """Return the profile as an identification without a weight leaves it: ratios and delay right, scale believed."""
-    motor = msgspec.structs.replace(
-        shipped.motor,
-        inertia_kgm2=shipped.motor.inertia_kgm2 * draw.inertia / draw.torque,
-        damping_nms=shipped.motor.damping_nms / draw.torque,
-        friction_nm=draw.friction_nm / draw.torque,
-        delay_s=draw.delay_ms / 1000.0 + 0.002,
-    )
-    return msgspec.structs.replace(shipped, motor=motor)
-
-
 @cache
 def session_of(vehicle: str) -> ResolvedSession:
     session = load_scenario(str(ROOT / "profiles/scenarios/handling/step_steer.yaml"))[0].session

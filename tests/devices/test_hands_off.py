@@ -10,6 +10,7 @@ import pytest
 from simconsole.devices.force_feedback.simulated_wheel import HANDS_OFF, Arm
 from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.values.signals import Mode, Reason
+from tests.devices.benched_wheel import found_force
 from tests.devices.closed_loop import Loop
 from tests.devices.hands_off import (
     ENDS,
@@ -18,7 +19,6 @@ from tests.devices.hands_off import (
     Released,
     bend,
     draws,
-    found_force,
     let_go,
     session_of,
     swings,
