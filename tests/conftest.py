@@ -9,7 +9,6 @@ and writes docs/long-run.md.
 import datetime
 import os
 import signal
-from pathlib import Path
 
 import pytest
 
@@ -26,27 +25,18 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
-HARDWARE = Path(__file__).parent / "hardware"
-
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add the option without which the tests that need a real wheel and a person are not even collected."""
+    """Add the options of long runs and of the tables that tests write."""
     parser.addoption("--long", action="store_true", help="run random and long checks only, at their full size, anew")
     parser.addoption("--seed", type=int, help="replay: the seed that a run has told")
     parser.addoption("--write-long-run", action="store_true", help="write what --long saw into docs/long-run.md")
     parser.addoption("--write-faults", action="store_true", help="write what was measured into docs/faults.md")
-    parser.addoption("--hardware", metavar="COCKPIT", help="also test this cockpit's real devices (docs/hardware.md)")
 
 
 def pytest_configure(config: pytest.Config) -> None:
     """Settle the seed of the run: processes that run tests get the options as they are after this."""
     draw_seed(config)
-
-
-def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
-    """Leave tests/hardware out unless asked for."""
-    wanted = config.getoption("--hardware") is not None
-    return True if collection_path.is_relative_to(HARDWARE) and not wanted else None
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

@@ -38,7 +38,6 @@ def devices(options: Namespace) -> Outcome:
 
         path = Path(options.out or "cockpit.yaml")
         with KeyWatch() as keys:
-            hands_free = keys.is_terminal and not options.virtual
             results = calibrate_devices(
                 cockpit,
                 path,
@@ -46,7 +45,7 @@ def devices(options: Namespace) -> Outcome:
                 ask=keys.ask,
                 virtual=cockpit if options.virtual else None,
                 known=[load("devices", name, CockpitProfile) for name in names("devices")],
-                typed=keys.typed if hands_free else None,
+                typed=keys.typed if keys.is_terminal else None,
             )
         return Outcome(0, results)
     if options.action == "feel":

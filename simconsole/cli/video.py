@@ -4,6 +4,7 @@ import math
 import sys
 from argparse import Namespace
 from collections.abc import Iterator
+from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
 SMALLEST_PX: Final = 320
 LARGEST_PX: Final = 4096
+EARLIER_FPS: Final = 10
 
 
 def video(options: Namespace) -> Outcome:
@@ -38,6 +40,7 @@ def video(options: Namespace) -> Outcome:
     end_s = _end_s(bundle) if options.to_s is None else options.to_s
     sound = _sound(bundle, options.fps)
     with Progress("drawing") as progress:
+        _pass_over(bundle, pictures, options.from_s)
         found = moments(bundle.log, options.from_s, options.to_s, options.fps)
         told = _told(found, progress, options.from_s, end_s)
         seen = (Frame(pictures.draw(moment), sound.frame(moment)) for moment in told)
@@ -55,8 +58,18 @@ def _png(bundle: Bundle, pictures: "DrivePictures", at: str, name: str) -> Outco
     except ValueError:
         raise RecordingError(f"--png: value {at!r}: a time in s") from None
     moment = next(moments(bundle.log, at_s, None, 1))
+    _pass_over(bundle, pictures, moment.t_s)
     write_png(Path(name), pictures.draw(moment))
     return Outcome(0, {"picture": name, "t_s": moment.t_s, "tick": moment.snapshot.tick}, name)
+
+
+def _pass_over(bundle: Bundle, pictures: "DrivePictures", until_s: float) -> None:
+    """Show the instruments the drive up to a time in s, as often as they change."""
+    from simconsole.evaluation.video.moments import moments
+
+    if until_s > 0.0:
+        before = moments(bundle.log, 0.0, None, EARLIER_FPS)
+        pictures.pass_over(takewhile(lambda moment: moment.t_s < until_s, before))
 
 
 def _check(options: Namespace) -> None:

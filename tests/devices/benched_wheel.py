@@ -2,11 +2,14 @@
 
 import math
 from collections import deque
+from functools import cache
 
+from simconsole.devices.force_feedback.identification import identify
 from simconsole.devices.force_feedback.rim import Rim, turn
+from simconsole.devices.setup.identify_dialogue import identified_profile
 from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.values.kernels import approach
-from tests.devices.hands_off import Draw, true_force
+from tests.devices.hands_off import Draw, session_of, true_force
 
 TICK_HZ = 250
 LAG_S = 0.002
@@ -39,3 +42,12 @@ class BenchedWheel:
             self.furthest_rad = max(self.furthest_rad, abs(self.rim.rad))
             self.fastest_radps = max(self.fastest_radps, abs(self.rim.radps))
         return seen
+
+
+@cache
+def found_force(shipped: ForceFeedback, draw: Draw) -> ForceFeedback:
+    """Return the profile as the identification of that wheel leaves it, without a weight: the scale is believed."""
+    found = identify(BenchedWheel(shipped, draw).turn, shipped, 0.4, TICK_HZ)
+    force = identified_profile(session_of("hatchback").cockpit, shipped, found, 1.0, None).force_feedback
+    assert force is not None
+    return force

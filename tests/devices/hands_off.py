@@ -68,18 +68,6 @@ def true_force(shipped: ForceFeedback, draw: Draw) -> ForceFeedback:
     return msgspec.structs.replace(shipped, motor=motor, max_torque_nm=shipped.max_torque_nm * draw.torque)
 
 
-def found_force(shipped: ForceFeedback, draw: Draw) -> ForceFeedback:
-    """Return the profile as an identification without a weight leaves it: ratios and delay right, scale believed."""
-    motor = msgspec.structs.replace(
-        shipped.motor,
-        inertia_kgm2=shipped.motor.inertia_kgm2 * draw.inertia / draw.torque,
-        damping_nms=shipped.motor.damping_nms / draw.torque,
-        friction_nm=draw.friction_nm / draw.torque,
-        delay_s=draw.delay_ms / 1000.0 + 0.002,
-    )
-    return msgspec.structs.replace(shipped, motor=motor)
-
-
 @cache
 def session_of(vehicle: str) -> ResolvedSession:
     session = load_scenario(str(ROOT / "profiles/scenarios/handling/step_steer.yaml"))[0].session
@@ -152,7 +140,7 @@ class Released(NamedTuple):
     torque_nm: np.ndarray
     share: float
     swings_deg: list[float]  # from extreme to extreme
-    friction_band_deg: float  # at which friction holds it
+    friction_band_deg: float  # up to which friction holds it; without trail, wherever it was let go of
 
 
 def let_go(vehicle: str, start: Bend, true: ForceFeedback, found: ForceFeedback, seconds: float = 6.0) -> Released:
@@ -180,7 +168,8 @@ def let_go(vehicle: str, start: Bend, true: ForceFeedback, found: ForceFeedback,
     assert isinstance(session.vehicle, CarProfile)
     trail_m = session.vehicle.steering.caster_trail_m + session.vehicle.steering.pneumatic_trail_m
     stiff = rim_stiffness(session.vehicle).at_12mps * found.car_share * share
-    band = math.degrees(dry_nm / stiff) if trail_m and stiff else math.inf  # tyres without trail pull it nowhere
+    # Tyres without trail pull the wheel nowhere: it rests where it was let go of, and no further out.
+    band = math.degrees(dry_nm / stiff) if trail_m and stiff else math.degrees(abs(start.hand_rad))
     return Released(np.array(rads), np.array(torques), share, swings(np.degrees(rads)), band)
 
 

@@ -153,6 +153,7 @@ def identified_profile(
     date = time.strftime("%Y-%m-%d")
     source = f"simconsole devices identify, {date}; "
     sources = {
+        "force_feedback.level_pushes": Provenance(status="captured", source=source + "it turned the way it was asked"),
         "force_feedback.motor": Provenance(status="captured", source=source + f"scale by {_scale_words(weight)}"),
         "force_feedback.motor.level_steps": cockpit.provenance.get(
             "force_feedback.motor.level_steps", Provenance(status="unverified", source="not measured")

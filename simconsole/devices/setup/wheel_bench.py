@@ -64,6 +64,7 @@ class WheelBench:
         self._tick_hz = tick_hz
         self._pace = pace
         self._pressed = pressed
+        self._say = say
         self._begin()
         self._settings = cockpit_settings(cockpit, tick_hz)
         self._identity = next((at.vendor_id, at.product_id) for at in cockpit.roles if at.role == "wheel")
@@ -153,6 +154,7 @@ class WheelBench:
             row = np.zeros(PLATFORM_AT)
             row[LAYOUT.torque.slice] = NO_TORQUE
             self.motor.publish(Snapshot(self._ticks, self._tick_hz, row))
+            self._say("A key was pressed: the wheel is let go, and that was all.")
             raise KeyboardInterrupt
 
     def _look(self) -> None:

@@ -59,6 +59,11 @@ class DrivePictures:
         self._target = context.simple_framebuffer((wanted.width_px, wanted.height_px), components=RGB)
         self._memory = DisplayMemory(display_settings(resolved))
 
+    def pass_over(self, earlier: Iterator[Moment]) -> None:
+        """Let the instruments see moments that are not drawn: what they show depends on what was before."""
+        for moment in earlier:
+            self._memory.content(moment.snapshot, moment.t_s, None, None)
+
     def draw(self, moment: Moment) -> Pixels:
         """Return one frame as red, green and blue, uint8 [height, width, 3] from the top."""
         content = self._memory.content(moment.snapshot, moment.t_s, None, None)

@@ -49,7 +49,7 @@ def test_check_of_a_good_cockpit_finds_everything(t500: CockpitProfile) -> None:
     results = check_devices(t500, say=Paper(), duration_s=10.0, virtual=True, pace=at_once)
     assert results["ok"]
     assert results["problems"] == results["notes"] == []
-    assert len(results["buttons"]) == 15
+    assert len(results["buttons"]) == 16
     assert results["gears"] == [-1, 0, 1, 2, 3, 4, 5, 6, 7]
     assert results["pedals"]["clutch"]["most"] == pytest.approx(1.0, abs=0.02)
     assert results["wheel_deg"]["most"] == pytest.approx(90.0, abs=2.0)

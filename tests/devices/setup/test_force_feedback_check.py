@@ -111,9 +111,13 @@ def test_any_key_ends_it_at_once_without_a_force(t500: CockpitProfile, monkeypat
         write(port, level)
 
     monkeypatch.setattr(SimulatedWheelPort, "write", noted)
+    said: list[str] = []
     with pytest.raises(KeyboardInterrupt):
-        check_force_feedback(t500, say=quiet, ask=Person(), virtual=True, pace=at_once, pressed=lambda: any(levels))
+        check_force_feedback(
+            t500, say=said.append, ask=Person(), virtual=True, pace=at_once, pressed=lambda: any(levels)
+        )
     assert levels[-2] != 0.0 == levels[-1]
+    assert said[-1] == "A key was pressed: the wheel is let go, and that was all."
 
 
 def test_a_wheel_that_runs_away_is_let_go(t500: CockpitProfile, monkeypatch: pytest.MonkeyPatch) -> None:

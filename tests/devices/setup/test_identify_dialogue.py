@@ -37,6 +37,7 @@ def test_figures_come_into_a_profile_with_their_source(t500: CockpitProfile, tmp
     source = learnt.provenance["force_feedback.motor"]
     assert source.status == "captured"
     assert "nobody measured" in source.source
+    assert learnt.provenance["force_feedback.level_pushes"].status == "captured"
 
 
 def test_weight_gives_the_scale_and_the_report_says_so(t500: CockpitProfile) -> None:

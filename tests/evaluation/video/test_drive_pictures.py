@@ -11,6 +11,9 @@ from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.replay_bundle import recorded_session
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import ProfileError
+from simconsole.values.kernels import put
+from simconsole.values.signals import Mode, Reason
+from simconsole.values.state_vector import LAYOUT
 
 SIZE = (640, 480)
 
@@ -48,6 +51,22 @@ def test_each_camera_sees_something_else(resolved: ResolvedSession, found: list[
     road = slice(0, 240)
     assert (seen["driver"][road] != seen["chase"][road]).any()
     assert (seen["chase"][road] != seen["bird"][road]).any()
+
+
+def test_the_instruments_remember_what_is_passed_over(resolved: ResolvedSession, found: list[Moment]) -> None:
+    """Why the car was stopped: STOPPED itself only says that it stands."""
+
+    def in_mode(moment: Moment, mode: Mode, reason: Reason) -> Moment:
+        vector = moment.snapshot.vector.copy()
+        arbitration = moment.snapshot.arbitration._replace(mode=float(mode), reason=float(reason))
+        put(vector, LAYOUT.arbitration.start, arbitration)
+        return moment._replace(snapshot=moment.snapshot._replace(vector=vector))
+
+    stopping = in_mode(found[0], Mode.MINIMAL_RISK, Reason.DEVICE_LOST)
+    stands = in_mode(found[0], Mode.STOPPED, Reason.STANDSTILL)
+    told = DrivePictures(resolved, Wanted(*SIZE))
+    told.pass_over(iter([stopping]))
+    assert (told.draw(stands) != DrivePictures(resolved, Wanted(*SIZE)).draw(stands)).any()
 
 
 def test_a_size_that_cannot_be_read_is_refused(resolved: ResolvedSession) -> None:
