@@ -101,7 +101,7 @@ class ConsoleBridge:
         tick = self._tell(snapshot, broken, now_ns)
         for output in self._schedule.due(snapshot, odometry=odometry):
             topic = self._topics[output.name]
-            if topic.is_wanted:
+            if topic.subscribers or topic.latch:
                 tick = tick or self._out.published_tick(snapshot)
                 self.router.topic_registry.distribute(topic, output.build(tick), now_ns)
 
