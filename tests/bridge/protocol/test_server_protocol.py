@@ -8,7 +8,6 @@ import pytest
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.messages import standard_registry
-from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.message_decoding import Binary
 from simconsole.bridge.protocol.server_protocol import Router
 from simconsole.profiles.bridge import BridgeLimits
@@ -237,7 +236,6 @@ class Commanded:
     def __init__(self) -> None:
         self.refused = 0
         self.taken: list[float] = []
-        self.plain: dict[str, Any] | None = {}
         self.fresh = 0
         self.router = Router(standard_registry(), BridgeLimits(), 500 * MS, self.count)
         self.router.on_new_commander = self.begin
@@ -254,40 +252,10 @@ class Commanded:
         if message.data > 10.0:
             raise RemoteProtocolError("too much - at `$.data`")
         self.taken.append(message.data)
-        self.plain = plain
 
     def send(self, session: Any, data: str, now_ns: int = 0, topic: str = "/cmd") -> str:
         text = f'{{"op":"publish","topic":"{topic}","msg":{{"data":{data}}}}}'
         return self.router.receive(session, text.encode(), now_ns).kind
-
-
-@pytest.mark.parametrize("space", ["", " "])
-def test_a_command_in_full_and_one_in_any_other_form_are_treated_alike(space: str) -> None:
-    """Without a space it is just what its message encodes to, and read at once."""
-    console = Commanded()
-    first, second = console.router.connect("1"), console.router.connect("2")
-
-    def send(session: Any, data: str, topic: str = "/cmd") -> Any:
-        text = f'{{"op":"publish","topic":"{topic}","msg":{{"data":{space}{data}}}}}'
-        return console.router.receive(session, text.encode(), 0)
-
-    assert send(first, "2.5") == ("command", "/cmd", "")
-    assert console.plain == (None if space == "" else {"data": 2.5})
-    assert send(first, "11.0") == ("refused", "/cmd", "too much - at `$.data`")
-    assert console.refused == 1
-    assert send(second, "1.0") == ("refused", "/cmd", "another client commands the console")
-    assert send(second, "1.0", "/ask").kind == "command"
-    second.role = Role.PUBLISH
-    assert "needs the role control" in send(second, "1.0", "/ask").text
-    burst = [send(first, "1.0").kind for _ in range(round(BridgeLimits().commands_hz or 0.0) + 1)]
-    assert (burst[0], burst[-1]) == ("command", "throttled")
-
-
-@pytest.mark.parametrize("data", ['1.0,"data":1.0', "NaN", "1e999", '"1.0"', "[1.0]", "null", ""])
-def test_what_is_no_command_in_full_is_refused_as_before(data: str) -> None:
-    console = Commanded()
-    assert console.send(console.router.connect("1"), data) == "refused"
-    assert console.taken == []
 
 
 def test_one_commander_at_a_time() -> None:
