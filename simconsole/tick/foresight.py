@@ -12,13 +12,18 @@ import numpy as np
 from simconsole.tick.advance import Console, ConsoleState, advance_block
 from simconsole.values.kernels import Row
 from simconsole.values.latency import LatencyStatistics
-from simconsole.values.protocols import Output
+from simconsole.values.protocols import NobodyCommands, NobodySeated, Output
 from simconsole.values.signals import AheadInput, Button, Event
 from simconsole.values.state_vector import LAYOUT
 
 BLOCK_TICKS: Final = 64
 """At most so many ticks are made at once: more would save next to nothing, and a killed program loses them."""
 
+_SAMPLE: Final = LAYOUT.sample.slice
+_ROS: Final = LAYOUT.ros.slice
+_EVENTS: Final = LAYOUT.events.slice
+_ECU: Final = LAYOUT.ecu.slice
+_AHEAD: Final = LAYOUT.ahead.slice
 _EDGES_AT: Final = LAYOUT.driver.at("edges")
 _BUTTON_PAUSE: Final = int(Button.PAUSE)
 _PAUSE: Final = int(Event.PAUSE)
@@ -84,6 +89,11 @@ class Foresight:
         self._parts = parts
         self._latencies = latencies
         self._rows = np.zeros((BLOCK_TICKS, console.width))
+        # Who is not there says the same for ever: it is written once, for a tick changes no input.
+        self._seated = not isinstance(parts.devices, NobodySeated)
+        self._wired = not isinstance(parts.ecu, NobodyCommands)
+        parts.devices.foresee(1, self._rows[:, _SAMPLE])
+        parts.ecu.foresee(1, self._rows[:, _ECU])
 
     @classmethod
     def of(
@@ -122,13 +132,14 @@ class Foresight:
         if count < 1:
             return state, 0
         rows = self._rows[:count]
-        rows[:, LAYOUT.events.slice] = 0.0
-        rows[:, LAYOUT.ahead.slice] = self._parts.ahead()  # the same until the last tick's outputs have looked
+        rows[:, _EVENTS] = 0.0
+        rows[:, _AHEAD] = self._parts.ahead()  # the same until the last tick's outputs have looked
         advance_block(state.vector, rows, self._console)
-        count = _up_to_pause(rows)
+        if self._seated:
+            count = _up_to_pause(rows)
         kept, events = self._parts.recorder.write_block(state.tick + 1, rows[:count])
         last = rows[kept - 1].copy()
-        if int(last[_EDGES_AT]) & _BUTTON_PAUSE:
+        if self._seated and int(last[_EDGES_AT]) & _BUTTON_PAUSE:
             events |= _PAUSE
         return ConsoleState(state.tick + kept, last), events
 
@@ -140,12 +151,12 @@ class Foresight:
             count = min(count, self._latencies.unseen(tick))
         for output in parts.outputs:
             count = min(count, output.unseen(tick) + 1)  # the last tick of a block is published
+        if count > 0 and self._seated:
+            count = parts.devices.foresee(tick, rows[:count, _SAMPLE])
         if count > 0:
-            count = parts.devices.foresee(tick, rows[:count, LAYOUT.sample.slice])
-        if count > 0:
-            count = parts.ros.foresee(tick, rows[:count, LAYOUT.ros.slice])
-        if count > 0:
-            count = parts.ecu.foresee(tick, rows[:count, LAYOUT.ecu.slice])
+            count = parts.ros.foresee(tick, rows[:count, _ROS])
+        if count > 0 and self._wired:
+            count = parts.ecu.foresee(tick, rows[:count, _ECU])
         return count
 
 

@@ -72,9 +72,10 @@ def test_noise_and_100_ms(sample: Sample, tmp_path: Path, vehicle: str) -> None:
     judge(drives(sample, sample.of(1, 50), vehicle, link, tmp_path), 3.0, 20.0, f"{vehicle}, 100 ms")
 
 
-def test_drift_is_followed(sample: Sample, tmp_path: Path) -> None:
+@pytest.mark.parametrize("vehicle", [car for car, _, _ in CARS])
+def test_drift_is_followed(sample: Sample, tmp_path: Path, vehicle: str) -> None:
     link = f"delay_ms: 40, localisation: {{{NOISE}, {DRIFT}}}"
-    judge(drives(sample, sample.of(1, 50), "hatchback", link, tmp_path), 3.0, 12.0, "hatchback, 40 ms, drift")
+    judge(drives(sample, sample.of(1, 50), vehicle, link, tmp_path), 3.0, 12.0, f"{vehicle}, 40 ms, drift")
 
 
 def test_jitter_and_loss_besides(sample: Sample, tmp_path: Path) -> None:

@@ -19,6 +19,8 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import Any, Final, Literal, Self
 
+import msgspec
+
 from simconsole.bridge.client.client_connection import ABNORMAL, ClientConnection
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.protocol.backoff import CAP_S, DEAD_AFTER_S, FIRST_S, Backoff, Liveness
@@ -182,9 +184,10 @@ class BridgeClient:
         callback: Callback | None = None,
         throttle_rate: int = 0,
         queue_length: int = 0,
+        reads: type[msgspec.Struct] | None = None,
     ) -> None:
         """Ask for a topic; arguments as `ClientProtocol.subscribe`."""
-        self._register(self.protocol.subscribe(topic, type_name, callback, throttle_rate, queue_length))
+        self._register(self.protocol.subscribe(topic, type_name, callback, throttle_rate, queue_length, reads))
 
     def unsubscribe(self, topic: str) -> None:
         """End a subscription."""

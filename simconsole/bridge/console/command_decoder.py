@@ -108,7 +108,7 @@ class CommandDecoder:
         """Begin a new order of stamps: another commander may have another clock."""
         self._last_stamps.clear()
 
-    def _control(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
+    def _control(self, plain: dict[str, Any] | None, message: Any, now_ns: int) -> None:
         _require(plain, "lateral.steering_tire_angle", "longitudinal.acceleration")
         lateral, longitudinal, limits = message.lateral, message.longitudinal, self._limits
         command = NO_COMMAND._replace(
@@ -123,7 +123,7 @@ class CommandDecoder:
         )
         self._inputs.accept(command, self._order(CONTROL, message.stamp), now_ns)
 
-    def _ackermann(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
+    def _ackermann(self, plain: dict[str, Any] | None, message: Any, now_ns: int) -> None:
         _require(plain, "drive.steering_angle", "drive.speed")
         _in_frame(message.header, _BODY_FRAMES)
         drive, limits = message.drive, self._limits
@@ -140,7 +140,7 @@ class CommandDecoder:
         )
         self._inputs.accept(command, self._order(ACKERMANN, message.header.stamp), now_ns)
 
-    def _actuation(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
+    def _actuation(self, plain: dict[str, Any] | None, message: Any, now_ns: int) -> None:
         """Take pedals 0 to 1 and, as raw_vehicle_cmd_converter passes it on unconverted, the road-wheel angle."""
         _require(plain, "actuation.accel_cmd", "actuation.brake_cmd", "actuation.steer_cmd")
         _in_frame(message.header, _BODY_FRAMES)
@@ -154,11 +154,11 @@ class CommandDecoder:
         )
         self._inputs.accept(command, self._order(ACTUATION, message.header.stamp), now_ns)
 
-    def _twist(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
+    def _twist(self, plain: dict[str, Any] | None, message: Any, now_ns: int) -> None:
         _require(plain, "linear.x", "angular.z")
         self._move(message, "", None, now_ns)
 
-    def _twist_stamped(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
+    def _twist_stamped(self, plain: dict[str, Any] | None, message: Any, now_ns: int) -> None:
         _require(plain, "twist.linear.x", "twist.angular.z")
         _in_frame(message.header, _BODY_FRAMES)
         self._move(message.twist, "twist.", (TWIST_STAMPED, message.header.stamp), now_ns)
@@ -173,7 +173,7 @@ class CommandDecoder:
         )
         self._inputs.accept(command, self._order(*stamp) if stamp is not None else None, now_ns)
 
-    def _ball_pose(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
+    def _ball_pose(self, plain: dict[str, Any] | None, message: Any, now_ns: int) -> None:
         _require(plain, "pose.position.x", "pose.position.y")
         _in_frame(message.header, self._world_frames)
         position, turn = message.pose.position, message.pose.orientation
@@ -191,14 +191,14 @@ class CommandDecoder:
         )
         self._inputs.accept(command, self._order(BALL_POSE, message.header.stamp), now_ns)
 
-    def _ball_speed(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
+    def _ball_speed(self, plain: dict[str, Any] | None, message: Any, now_ns: int) -> None:
         _require(plain, "data")
         self._ball_speed_mps = _within("data", message.data, self._limits.speed_mps)
         command = self._inputs.command
         if command.kind == RemoteKind.POSE:
             self._inputs.accept(command._replace(speed_mps=self._ball_speed_mps), self._inputs.stamp_ns, now_ns)
 
-    def _gear(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
+    def _gear(self, plain: dict[str, Any] | None, message: Any, now_ns: int) -> None:
         _require(plain, "command")
         direction = DIRECTIONS.get(message.command)
         if direction is None:
@@ -206,19 +206,19 @@ class CommandDecoder:
         self._order(GEAR, message.stamp)
         self._inputs.keep(direction=direction)
 
-    def _turn_indicators(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
+    def _turn_indicators(self, plain: dict[str, Any] | None, message: Any, now_ns: int) -> None:
         shown = _setting(plain, message.command, INDICATORS, "a turn indicator")
         self._order(TURN_INDICATORS, message.stamp)
         if shown is not None:
             self._inputs.keep(turn_indicators=shown)
 
-    def _hazard_lights(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
+    def _hazard_lights(self, plain: dict[str, Any] | None, message: Any, now_ns: int) -> None:
         shown = _setting(plain, message.command, HAZARDS, "a state of hazard lights")
         self._order(HAZARD_LIGHTS, message.stamp)
         if shown is not None:
             self._inputs.keep(hazard_lights=shown)
 
-    def _request(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
+    def _request(self, plain: dict[str, Any] | None, message: Any, now_ns: int) -> None:
         event = REQUESTS.get(message.data)
         if event is None:
             raise RemoteProtocolError(f"not one of {', '.join(REQUESTS)} - at `$.data`")
@@ -241,8 +241,10 @@ class CommandDecoder:
         return stamp_ns
 
 
-def _require(plain: dict[str, Any], *paths: str) -> None:
+def _require(plain: dict[str, Any] | None, *paths: str) -> None:
     """Refuse a message in which a field was left to its default: a command is never 0 by omission."""
+    if plain is None:  # it was given in full
+        return
     for path in paths:
         value: Any = plain
         for key in path.split("."):
@@ -251,7 +253,7 @@ def _require(plain: dict[str, Any], *paths: str) -> None:
             raise RemoteProtocolError(f"required in a command - at `$.{path}`")
 
 
-def _setting(plain: dict[str, Any], command: int, settings: dict[int, float], name: str) -> float | None:
+def _setting(plain: dict[str, Any] | None, command: int, settings: dict[int, float], name: str) -> float | None:
     """Return what one of Autoware's command numbers means; None for its NO_COMMAND."""
     _require(plain, "command")
     if command != 0 and command not in settings:

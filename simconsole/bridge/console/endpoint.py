@@ -1,6 +1,6 @@
 """The console's side of the bridge: snapshots out, commands in, names as the profile wants them. No socket."""
 
-from typing import Any
+from typing import Any, Final
 
 from simconsole.bridge.console.command_decoder import CommandDecoder
 from simconsole.bridge.console.counters import bridge_status, total_counts
@@ -22,7 +22,9 @@ from simconsole.control.requests.refusals import broken_limit
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.labels import arbitration_label, eased_label, is_eased
 from simconsole.values.signals import Event
-from simconsole.values.state_vector import Snapshot
+from simconsole.values.state_vector import LAYOUT, Snapshot
+
+_IMPLAUSIBLE_AT: Final = LAYOUT.ros_link.at("implausible")
 
 
 class ConsoleBridge:
@@ -99,7 +101,7 @@ class ConsoleBridge:
         tick = self._tell(snapshot, broken, now_ns)
         for output in self._schedule.due(snapshot, odometry=odometry):
             topic = self._topics[output.name]
-            if topic.is_wanted:
+            if topic.subscribers or topic.latch:
                 tick = tick or self._out.published_tick(snapshot)
                 self.router.topic_registry.distribute(topic, output.build(tick), now_ns)
 
@@ -125,7 +127,7 @@ class ConsoleBridge:
         """Return why the arbiter has refused the ROS side's newest command since the last tick; empty: it has not."""
         if self._steering is None:
             return ""
-        before, self._implausible = self._implausible, snapshot.ros_link.implausible
+        before, self._implausible = self._implausible, float(snapshot.vector[_IMPLAUSIBLE_AT])
         if self._implausible <= before:
             return ""
         return broken_limit(snapshot.ros, snapshot.vehicle, self._steering)

@@ -1,13 +1,15 @@
 """Which output topics are due in which tick, under the names and at the rates of a bridge's profile."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Final
 
 from simconsole.bridge.console.published_tick import ONCE, OutputTopic, PublishedTick
 from simconsole.bridge.console.topics import GLOBAL_TOPICS, ODOMETRY, is_due
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.state_vector import Snapshot
+
+_OFTEN_TICKS: Final = 16
 
 
 class ScheduledOutput:
@@ -41,12 +43,15 @@ class OutputSchedule:
         self._together: dict[tuple[bool, ...], tuple[ScheduledOutput, ...]] = {}
         """The topics that are due by these rates and changes, found once: a drive has a handful of such sets."""
         self._last_tick: int | None = None  # that was asked about
+        self._repeats = all(rate_hz % 1.0 == 0.0 for rate_hz in self._rates_hz)  # what is due, each second
+        self._due_rates: dict[tuple[int, int], tuple[bool, ...]] = {}
+        """Which rates are due, by a tick's place in its second and how many ticks after the one before it comes."""
 
     def due(self, snapshot: Snapshot, *, odometry: bool = False) -> tuple[ScheduledOutput, ...]:
         """Return the topics that are due in this tick, in the table's order; with `odometry`, that in any case."""
         tick, last, tick_hz = snapshot.tick, self._last_tick, snapshot.tick_hz
         self._last_tick = tick
-        rates = [is_due(tick, last, tick_hz, rate_hz) for rate_hz in self._rates_hz]
+        rates = self._rates_due(tick, last, tick_hz)
         values: list[float | None] = [float(snapshot.vector[column]) for column in self._watched]
         changes = [now != before for now, before in zip(values, self._seen, strict=True)]
         self._seen = values
@@ -56,7 +61,18 @@ class OutputSchedule:
             found = self._together[which] = self._due_by(odometry, rates, changes)
         return found
 
-    def _due_by(self, odometry: bool, rates: list[bool], changes: list[bool]) -> tuple[ScheduledOutput, ...]:
+    def _rates_due(self, tick: int, last: int | None, tick_hz: int) -> tuple[bool, ...]:
+        """Return which rates are due in a tick; of ticks that come as often as before this is looked up."""
+        repeats = self._repeats and last is not None and 0 < tick - last < _OFTEN_TICKS
+        key = (tick % tick_hz, tick - (last or 0))
+        found = self._due_rates.get(key) if repeats else None
+        if found is None:
+            found = tuple(is_due(tick, last, tick_hz, rate_hz) for rate_hz in self._rates_hz)
+            if repeats:
+                self._due_rates[key] = found
+        return found
+
+    def _due_by(self, odometry: bool, rates: tuple[bool, ...], changes: list[bool]) -> tuple[ScheduledOutput, ...]:
         """Return the topics that are due if these of the rates are, and these of the watched columns have changed."""
         rates_hz = {rate_hz for rate_hz, due in zip(self._rates_hz, rates, strict=True) if due}
         changed = {column for column, due in zip(self._watched, changes, strict=True) if due}

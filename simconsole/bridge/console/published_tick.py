@@ -1,12 +1,12 @@
 """One finished tick as its messages share it: stamp, headers, attitude; and what a row of the output table is."""
 
+import math
 from collections.abc import Callable
 from typing import Any, Final, NamedTuple
 
 from simconsole.bridge.link.localisation import Localisation
 from simconsole.values.signals import VehicleState
 from simconsole.values.state_vector import Snapshot
-from simconsole.values.trigonometry import direction
 from simconsole.values.units import NS_PER_S
 
 ONCE: Final = -1.0
@@ -61,9 +61,9 @@ class PublishedTick:
 
 def quaternion(roll_rad: float, pitch_rad: float, yaw_rad: float) -> tuple[float, float, float, float]:
     """Return x, y, z, w of the rotation by yaw about z, then pitch about the new y, then roll about the new x."""
-    cr, sr = direction(0.5 * roll_rad)
-    cp, sp = direction(0.5 * pitch_rad)
-    cy, sy = direction(0.5 * yaw_rad)
+    cr, sr = math.cos(0.5 * roll_rad), math.sin(0.5 * roll_rad)
+    cp, sp = math.cos(0.5 * pitch_rad), math.sin(0.5 * pitch_rad)
+    cy, sy = math.cos(0.5 * yaw_rad), math.sin(0.5 * yaw_rad)
     return (
         sr * cp * cy - cr * sp * sy,
         cr * sp * cy + sr * cp * sy,

@@ -30,13 +30,12 @@ from simconsole.bridge.protocol.operations import (
     SendActionGoal,
     ServiceResponse,
     Status,
-    publish_head,
     read_operation,
+    read_published,
     write_publish,
 )
 from simconsole.values.errors import BridgeError, LocalProtocolError, RemoteProtocolError
 
-_PUBLISHED, _, _MESSAGE = publish_head("\0").partition(orjson.dumps("\0")[1:-1])
 MAX_STATUS: Final = 100
 MAX_WHOLE: Final = 16_777_216
 MAX_PIECES: Final = 65_536
@@ -169,6 +168,7 @@ class ClientProtocol:
         callback: Callback | None = None,
         throttle_rate: int = 0,
         queue_length: int = 0,
+        reads: type[msgspec.Struct] | None = None,
     ) -> bytes:
         """Return the text that asks for a topic.
 
@@ -178,13 +178,14 @@ class ClientProtocol:
             callback: called with (topic, message) by `receive`; without one the message is returned.
             throttle_rate: at most one message per so many milliseconds.
             queue_length: messages the server keeps for a slow client; 0 is the topic's own default.
+            reads: a type with those of the message's fields that are wanted; others may be left out of it.
 
         Raises:
             BridgeError: the type is not known.
         """
         full = self.registry.resolve(type_name)
         self._subscriptions[topic] = _Subscription(full, callback)
-        self._readers[topic.encode()] = (topic, msgspec.json.Decoder(self.registry.struct(full)))
+        self._readers[topic.encode()] = (topic, msgspec.json.Decoder(reads or self.registry.struct(full)))
         asked = {"throttle_rate": throttle_rate, "queue_length": queue_length}
         more = {name: value for name, value in asked.items() if value}
         return self._register("subscribe", topic=topic, type=two_parts(full), **more)
@@ -274,17 +275,15 @@ class ClientProtocol:
     def _published(self, text: bytes) -> tuple[str, Any] | None:
         """Return topic and message of a text that is what servers nearly always send, None of any other.
 
-        That is a subscribed topic's message, complete and in its type, behind the operation as `publish_head` writes
-        it: decoded at once, without a table of its fields in between. What does not fit goes the long way.
+        That is a subscribed topic's message in its type: decoded at once, without a table of its fields in between.
+        What does not fit goes the long way.
         """
-        if self.dialect is None or not text.startswith(_PUBLISHED) or isinstance(text, Binary):
-            return None
-        end = text.find(b'"', len(_PUBLISHED))
-        reader = self._readers.get(text[len(_PUBLISHED) : end])
-        if reader is None or not text.startswith(_MESSAGE, end) or not text.endswith(b"}"):
+        published = None if self.dialect is None or isinstance(text, Binary) else read_published(text)
+        reader = None if published is None else self._readers.get(published[0])
+        if published is None or reader is None:
             return None
         try:
-            return reader[0], reader[1].decode(memoryview(text)[end + len(_MESSAGE) : -1])
+            return reader[0], reader[1].decode(published[1])
         except msgspec.DecodeError:
             return None
 

@@ -122,6 +122,11 @@ class FrameWriter:
         """Start between two messages."""
         self._rest: Iterator[bytes] | None = None
 
+    @property
+    def is_inside(self) -> bool:
+        """Whether a message has begun of which frames are left."""
+        return self._rest is not None
+
     def batch(self, take: Callable[[], bytes | None], enough_bytes: int) -> bytes:
         """Return frames of the messages that `take` gives until it gives None or they are `enough_bytes`."""
         parts: list[bytes] = []

@@ -7,9 +7,11 @@ import struct
 from typing import Any, Final, NamedTuple, NoReturn
 
 import cbor2
+import msgspec
 import orjson
 
 from simconsole.values.errors import RemoteProtocolError
+from simconsole.values.kernels import is_finite
 
 LENIENT_BYTES: Final = 65_536
 MAX_DEPTH: Final = 32
@@ -144,6 +146,27 @@ def has_duplicate_keys(text: bytes, fields: dict[str, Any]) -> bool:
     except _DuplicateKeyError:
         return True
     return False
+
+
+def read_complete(text: bytes, reader: msgspec.json.Decoder[Any]) -> Any:
+    """Return the message that encodes to just this text, None where there is none.
+
+    Such a text gives every field once and no number that JSON does not have: only what it means is left to be checked.
+    """
+    try:
+        message = reader.decode(text)
+    except msgspec.DecodeError:
+        return None
+    return message if msgspec.json.encode(message) == text else None
+
+
+def all_finite(value: Any) -> bool:
+    """Return whether no number in decoded CBOR is NaN or infinite; JSON cannot express them."""
+    if isinstance(value, dict):
+        return all(map(all_finite, value.values()))
+    if isinstance(value, list):
+        return all(map(all_finite, value))
+    return not isinstance(value, float) or is_finite(value)
 
 
 class _DuplicateKeyError(Exception):

@@ -342,6 +342,17 @@ def publish_head(topic: str) -> bytes:
     return b'{"op":"publish","topic":' + orjson.dumps(topic) + b',"msg":'
 
 
+_HEAD, _, _NECK = publish_head("\0").partition(orjson.dumps("\0")[1:-1])
+
+
+def read_published(text: bytes) -> tuple[bytes, bytes] | None:
+    """Return topic and message, not decoded, of a text as `write_publish` writes it; None of any other."""
+    end = text.find(b'"', len(_HEAD))
+    if not text.startswith(_HEAD) or not text.startswith(_NECK, end) or not text.endswith(b"}"):
+        return None
+    return text[len(_HEAD) : end], text[end + len(_NECK) : -1]
+
+
 def write_publish(topic: str, message: Any) -> bytes:
     """Return a publish operation. NaN and infinities become null, so that the result is always JSON."""
     return publish_head(topic) + msgspec.json.encode(message) + b"}"

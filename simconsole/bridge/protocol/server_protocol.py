@@ -7,13 +7,22 @@ nothing a client sends raises: it is answered with a status and counted.
 from collections.abc import Callable
 from typing import Any, Final, Literal, NamedTuple
 
+import msgspec
+
 from simconsole.bridge.messages import Registry, is_stamped
 from simconsole.bridge.protocol.access import OPEN, Role, message_limit
 from simconsole.bridge.protocol.calls import Calls
 from simconsole.bridge.protocol.client_session import ClientSession, MessageCounts, resolve_topic
 from simconsole.bridge.protocol.fragments import FragmentAssembler
 from simconsole.bridge.protocol.lease import Lease
-from simconsole.bridge.protocol.message_decoding import Binary, DecodedMessage, decode, has_duplicate_keys
+from simconsole.bridge.protocol.message_decoding import (
+    Binary,
+    DecodedMessage,
+    all_finite,
+    decode,
+    has_duplicate_keys,
+    read_complete,
+)
 from simconsole.bridge.protocol.message_encoding import Dialect
 from simconsole.bridge.protocol.operations import (
     Advertise,
@@ -30,6 +39,7 @@ from simconsole.bridge.protocol.operations import (
     Unsubscribe,
     id_of,
     read_operation,
+    read_published,
 )
 from simconsole.bridge.protocol.rate_limiter import RateLimiter
 from simconsole.bridge.protocol.rosapi_graph import NO_GRAPH
@@ -37,7 +47,6 @@ from simconsole.bridge.protocol.subscription_queue import SendBudget
 from simconsole.bridge.protocol.topic_registry import RELAY_DEPTH, Accept, Command, Origin, Topic, TopicRegistry
 from simconsole.profiles.bridge import BridgeLimits
 from simconsole.values.errors import BridgeError, RemoteProtocolError
-from simconsole.values.kernels import is_finite
 from simconsole.values.units import NS_PER_S
 
 WRONG_TOKENS: Final = 5
@@ -50,6 +59,14 @@ class Outcome(NamedTuple):
     kind: Literal["done", "command", "refused", "remark", "throttled"]
     topic: str
     text: str  # why refused, or what the client remarked
+
+
+class _CommandReader(NamedTuple):
+    """A topic of commands, and what reads its messages."""
+
+    topic: Topic
+    command: Command
+    reader: msgspec.json.Decoder[Any]
 
 
 class Router:
@@ -66,6 +83,7 @@ class Router:
         """Called when a command comes while nobody holds the lease, before it is checked."""
         self._limits = limits
         self._on_refused = on_refused
+        self._commands: dict[bytes, _CommandReader] = {}
         self._sessions: dict[int, ClientSession] = {}
         self._numbers = 0
         self._past_counts = MessageCounts()
@@ -126,7 +144,10 @@ class Router:
     def add_command(self, name: str, type_name: str, accept: Accept, leased: bool = True) -> None:
         """Add a topic by which clients command the console."""
         topic_type, command = self.registry.resolve(type_name), Command(accept, leased)
-        self.topic_registry.add(Topic(name, topic_type, RELAY_DEPTH, owned=True, command=command))
+        topic = Topic(name, topic_type, RELAY_DEPTH, owned=True, command=command)
+        self.topic_registry.add(topic)
+        reader = msgspec.json.Decoder(self.registry.struct(topic_type))
+        self._commands[name.encode()] = _CommandReader(topic, command, reader)
 
     def connect(
         self,
@@ -183,6 +204,11 @@ class Router:
     def _receive(self, session: ClientSession, text: bytes, now_ns: int, assembled: bool) -> Outcome:
         fields: dict[str, Any] = {}
         try:
+            if not isinstance(text, Binary) and (published := read_published(text)) is not None:
+                known = self._commands.get(published[0])
+                if known is not None and (message := read_complete(published[1], known.reader)) is not None:
+                    fields = {"op": "publish", "topic": known.topic.name}
+                    return self._command(session, known.topic, known.command, lambda: (None, message), now_ns)
             decoded = decode(text)
             fields = decoded.fields
             operation = read_operation(fields)
@@ -300,7 +326,10 @@ class Router:
         if not isinstance(operation.msg, dict):
             raise RemoteProtocolError("msg must be an object")
         if topic.command is not None:
-            return self._command(session, topic, topic.command, operation, decoded, text, now_ns)
+            command, plain = topic.command, operation.msg
+            return self._command(
+                session, topic, command, lambda: (plain, self._read_command(topic, plain, decoded, text)), now_ns
+            )
         if topic.owned:
             raise RemoteProtocolError("only the console publishes this topic")
         message = self.registry.from_plain(topic.type, operation.msg, now_ns=self.ros_time_ns)
@@ -323,28 +352,31 @@ class Router:
         session: ClientSession,
         topic: Topic,
         command: Command,
-        operation: Publish,
-        decoded: DecodedMessage,
-        text: bytes,
+        read: Callable[[], tuple[dict[str, Any] | None, Any]],
         now_ns: int,
     ) -> Outcome:
+        """Follow a command; `read` returns it as `Accept` takes it, and is called once it may be followed."""
         self._require(session, Role.CONTROL)
         if command.leased and not session.rate_limiter.allows(now_ns):
             return self._throttle(session, topic.name, now_ns)
-        if decoded.literals or (isinstance(text, Binary) and not _is_finite(operation.msg)):
-            raise RemoteProtocolError("NaN and Infinity are not JSON and no command")
-        if text and has_duplicate_keys(text, decoded.fields):
-            raise RemoteProtocolError("a key is given twice")
         if command.leased and not self.lease.is_open_to(session.number, now_ns):
             raise RemoteProtocolError("another client commands the console")
-        message = self.registry.from_plain(topic.type, operation.msg, gaps=False, now_ns=self.ros_time_ns)
+        plain, message = read()
         if command.leased and self.lease.holder(now_ns) is None:
             self.on_new_commander()
-        command.accept(operation.msg, message, now_ns)
+        command.accept(plain, message, now_ns)
         if command.leased:
             self.lease.renew(session.number, now_ns)
         self.topic_registry.distribute(topic, message, now_ns)
         return Outcome("command", topic.name, "")
+
+    def _read_command(self, topic: Topic, plain: Any, decoded: DecodedMessage, text: bytes) -> Any:
+        """Return the typed message of a command that came in any form."""
+        if decoded.literals or (isinstance(text, Binary) and not all_finite(plain)):
+            raise RemoteProtocolError("NaN and Infinity are not JSON and no command")
+        if text and has_duplicate_keys(text, decoded.fields):
+            raise RemoteProtocolError("a key is given twice")
+        return self.registry.from_plain(topic.type, plain, gaps=False, now_ns=self.ros_time_ns)
 
     def _throttle(self, session: ClientSession, name: str, now_ns: int) -> Outcome:
         """Drop a command above the rate limit: a newer one is on its way, and it counts as no refusal."""
@@ -359,12 +391,3 @@ class Router:
             return
         if is_stamped(self.registry.definition(type_name)):
             message.header.stamp.sec, message.header.stamp.nanosec = divmod(self.ros_time_ns, NS_PER_S)
-
-
-def _is_finite(value: Any) -> bool:
-    """Return whether no number in decoded CBOR is NaN or infinite; JSON cannot express them."""
-    if isinstance(value, dict):
-        return all(map(_is_finite, value.values()))
-    if isinstance(value, list):
-        return all(map(_is_finite, value))
-    return not isinstance(value, float) or is_finite(value)

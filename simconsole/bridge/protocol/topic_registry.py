@@ -16,8 +16,9 @@ RELAY_DEPTH: Final = 100
 
 _UINT32: Final = 0xFFFFFFFF
 
-Accept = Callable[[dict[str, Any], Any, int], None]
-"""Takes a command as decoded, typed, and the time; raises RemoteProtocolError to refuse it."""
+Accept = Callable[[dict[str, Any] | None, Any, int], None]
+"""Takes a command as decoded (None: every field was given), typed, and the time; raises RemoteProtocolError to refuse
+it."""
 
 
 class Command(NamedTuple):

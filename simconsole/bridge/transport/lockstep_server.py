@@ -256,10 +256,10 @@ class LockstepBridge:
             if mask & selectors.EVENT_READ:
                 connection.read()
             self._send_waiting(connection)
-        for connection in list(self._connections):
-            # A message that one client published may wait for another client.
-            if connection.session is not None and connection.session.due_ns() is not None:
-                self._send_waiting(connection)
+        if len(self._connections) > 1:  # a message that one client published may wait for another client
+            for connection in list(self._connections):
+                if connection.session is not None and connection.session.due_ns() is not None:
+                    self._send_waiting(connection)
 
     def _record(self) -> None:
         if self._recorder is not None:

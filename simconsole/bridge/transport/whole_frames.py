@@ -8,7 +8,7 @@ import os
 from typing import Final, NamedTuple
 
 from websockets.frames import apply_mask  # type: ignore[attr-defined]  # its compiled form where there is one
-from websockets.protocol import Protocol, State
+from websockets.protocol import Protocol, Side, State
 
 from simconsole.bridge.protocol.frames import BINARY, TEXT
 from simconsole.bridge.protocol.message_decoding import Binary
@@ -36,7 +36,7 @@ def take_whole(web: Protocol, data: bytes) -> tuple[list[WholeFrame], bytes]:
     frames: list[WholeFrame] = []
     if web.state is not State.OPEN or web.current_size is not None or web.reader.buffer:
         return frames, data
-    masked = not web.side.value  # what a server gets is masked
+    masked = web.side is Side.SERVER  # what a server gets is masked
     longest = min(_LONGEST, web.max_message_size or _LONGEST)
     at, size = 0, len(data)
     while at + 2 <= size:

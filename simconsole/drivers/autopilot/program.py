@@ -6,7 +6,6 @@ must know is logged: why it gives no commands (`answers`), and why the console r
 """
 
 import logging
-import math
 import time
 from collections.abc import Callable, Mapping
 from typing import Any, Final, NamedTuple
@@ -15,10 +14,10 @@ from simconsole.bridge.client.bridge_client import BridgeClient
 from simconsole.bridge.protocol.backoff import DEAD_AFTER_S
 from simconsole.drivers.autopilot.answers import Answers, make_tracker
 from simconsole.drivers.autopilot.lights import SIGNALS, SIGNALS_TYPE, lights_of, signal_stops
+from simconsole.drivers.autopilot.motion import Odometry, motion_of
 from simconsole.drivers.autopilot.others import ROAD_USERS, ROAD_USERS_TYPE, Others, road_users_of
 from simconsole.drivers.autopilot.remarks import Remarks
 from simconsole.drivers.path_tracker.car_model import car_model
-from simconsole.drivers.path_tracker.state_estimator import VehicleMotion
 from simconsole.drivers.path_tracker.tracker import TrackerCommand
 from simconsole.drivers.path_tracker.tracker_settings import TIMING, TRACKERS
 from simconsole.profiles.files.vehicle_files import load_vehicle
@@ -100,7 +99,7 @@ def run(
             (rename or {}).get(topic, namespace + topic) for topic in (ODOMETRY, MODE, COMMAND, SIGNALS, ROAD_USERS)
         )
         client.advertise(command, CONTROL)
-        client.subscribe(odometry, "nav_msgs/Odometry")
+        client.subscribe(odometry, "nav_msgs/Odometry", reads=Odometry)
         client.subscribe(mode, "std_msgs/String")
         if lights is not None:
             client.subscribe(signals, SIGNALS_TYPE)
@@ -166,22 +165,6 @@ def _answer(
             fill_command(command, stamp, answer)
             client.publish(topics.command, command)
     return "stopped"
-
-
-def motion_of(odometry: Any) -> VehicleMotion | None:
-    """Return what a nav_msgs/Odometry says of base_link, None if a value is not finite."""
-    pose, twist = odometry.pose.pose, odometry.twist.twist
-    q = pose.orientation
-    yaw = math.atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z))
-    seen = VehicleMotion(
-        x_m=pose.position.x,
-        y_m=pose.position.y,
-        yaw_rad=yaw,
-        vx_mps=twist.linear.x,
-        vy_mps=twist.linear.y,
-        yaw_rate_radps=twist.angular.z,
-    )
-    return seen if all(map(math.isfinite, seen)) else None
 
 
 def fill_command(command: Any, stamp: Any, answer: TrackerCommand) -> None:

@@ -40,8 +40,8 @@ class SpeedProfile(NamedTuple):
             here, there = index % count, (index + 1) % count
         else:
             here, there = min(max(index, 0), count - 1), min(max(index + 1, 0), count - 1)
-        speed = float(self.speed_mps[here]) * (1.0 - share) + float(self.speed_mps[there]) * share
-        accel = float(self.accel_mps2[here]) * (1.0 - share) + float(self.accel_mps2[there]) * share
+        speed = self.speed_mps.item(here) * (1.0 - share) + self.speed_mps.item(there) * share
+        accel = self.accel_mps2.item(here) * (1.0 - share) + self.accel_mps2.item(there) * share
         if self.end_m is None:
             return speed, accel
         return min((speed, accel), stopping(self.end_m - s_m))

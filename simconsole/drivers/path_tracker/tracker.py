@@ -10,7 +10,6 @@ beside the path, or is pushed off it, is led back along a smooth line (approach.
 """
 
 import math
-from bisect import bisect_right
 from copy import copy
 from typing import Final, Literal, NamedTuple
 
@@ -38,6 +37,7 @@ from simconsole.world.route import Route
 Array = NDArray[np.float64]
 
 _SPEEDS_MPS: Final = (1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5, 8.5, 10.0, 11.5, 13.0, 14.5, 17.0, 20.0, 24.0, 29.0, 36.0)
+_SPEED_STEP_MPS: Final = 0.02
 _STATES: Final = 6
 _CURVATURE_STEP_M: Final = 0.1
 _PUSHED_OFF_M: Final = 0.3
@@ -73,12 +73,11 @@ class Tracker:
         self.heading_error_rad = 0.0
         self._car, self._timing = car, timing
         self.along = SpeedControl(course, comfort, timing.period_s)
-        designs = [_design(car, timing, weights, speed) for speed in _SPEEDS_MPS]
-        self._gains = np.array([[*gains.feedback, *gains.preview] for gains in designs])
-        self._more = np.diff(self._gains, axis=0)  # from one speed's gains to the next one's
-        self._ahead_s = (np.arange(timing.preview_steps) + 0.5) * timing.period_s
-        self._half_square_s2 = 0.5 * self._ahead_s * self._ahead_s
+        self._feedback, self._preview = _gains_by_speed(car, timing, weights)
         self._curvature_step_m, self._curvature = _curvatures(course)
+        ahead_s = (np.arange(timing.preview_steps) + 0.5) * timing.period_s
+        moved = np.column_stack((np.ones_like(ahead_s), ahead_s, 0.5 * ahead_s * ahead_s))
+        self._steps = moved / self._curvature_step_m  # where the car will be, of its place, speed and acceleration
         self._beyond: Literal["wrap", "clip"] = "wrap" if course.closed else "clip"
         self._command = 0.0  # the last command, as the tangent of the road-wheel angle
         self._wheel = 0.0  # where the wheels will be when the next command takes effect, by the model; a tangent too
@@ -128,13 +127,12 @@ class Tracker:
     def _change(self, seen: VehicleMotion, s_m: float, lateral_m: float, heading_rad: float) -> float:
         """Return by how much the command's tangent should change in the coming period."""
         speed = seen.vx_mps
-        index, share = _between(speed)
-        gains = self._gains[index] + share * self._more[index]
-        way = s_m + speed * self._ahead_s + self.along.accel_mps2 * self._half_square_s2
-        ahead = self._curvature.take((way / self._curvature_step_m).astype(np.int64), mode=self._beyond)
+        row = min(max(int((speed - _SPEEDS_MPS[0]) / _SPEED_STEP_MPS + 0.5), 0), len(self._feedback) - 1)
+        steps = self._steps.dot((s_m, speed, self.along.accel_mps2))
+        ahead = self._curvature.take(steps.astype(np.int64), mode=self._beyond)
         if not self._line.is_over(s_m):
-            ahead += self._line.curvature(way)
-        offset, heading, across, turning, wheel, command = gains[:_STATES].tolist()
+            ahead += self._line.curvature(steps * self._curvature_step_m)
+        offset, heading, across, turning, wheel, command = self._feedback[row]
         fed_back: float = (
             offset * lateral_m
             + heading * heading_rad
@@ -143,7 +141,7 @@ class Tracker:
             + wheel * self._wheel
             + command * self._command
         )
-        return -fed_back - float(gains[_STATES:].dot(ahead))
+        return -fed_back - float(self._preview[row].dot(ahead))
 
     def _limited(self, change: float, speed: float, engaged: bool) -> float:
         """Return the command after a change, as far as steering and gate go; while not engaged no gate holds it."""
@@ -172,10 +170,16 @@ def _curvatures(course: Route) -> tuple[float, Array]:
     return step, np.array([course.curvature_at((i + 0.5) * step) for i in range(count + (not course.closed))])
 
 
-def _between(speed: float) -> tuple[int, float]:
-    index = min(max(bisect_right(_SPEEDS_MPS, speed) - 1, 0), len(_SPEEDS_MPS) - 2)
-    low, high = _SPEEDS_MPS[index], _SPEEDS_MPS[index + 1]
-    return index, clip((speed - low) / (high - low), 0.0, 1.0)
+def _gains_by_speed(car: CarModel, timing: Timing, weights: Weights) -> tuple[list[list[float]], Array]:
+    """Return the gains of feedback and of preview [N, steps], one row for each _SPEED_STEP_MPS from the slowest speed.
+
+    They are designed for a few speeds and linear between them.
+    """
+    designs = [_design(car, timing, weights, speed) for speed in _SPEEDS_MPS]
+    designed = np.array([[*gains.feedback, *gains.preview] for gains in designs])
+    speeds = np.arange(_SPEEDS_MPS[0], _SPEEDS_MPS[-1] + 0.5 * _SPEED_STEP_MPS, _SPEED_STEP_MPS)
+    gains = np.array([np.interp(speeds, _SPEEDS_MPS, column) for column in designed.T]).T
+    return gains[:, :_STATES].tolist(), np.ascontiguousarray(gains[:, _STATES:])
 
 
 def _design(car: CarModel, timing: Timing, weights: Weights, speed: float) -> Gains:

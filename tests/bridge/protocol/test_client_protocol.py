@@ -2,6 +2,7 @@ import json
 import math
 from typing import Any
 
+import msgspec
 import pytest
 
 from simconsole.bridge.protocol.client_protocol import MAX_STATUS, ClientProtocol, Goal
@@ -241,3 +242,16 @@ def test_answers_find_who_asked_and_nobody_waits_for_ever() -> None:
     client.end_calls()
     assert heard[-1] == ("the connection has ended", False)
     assert (kept.cancelled, client.goals) == (True, {})
+
+
+def test_a_program_may_read_the_fields_that_it_wants() -> None:
+    class Wanted(msgspec.Struct):
+        y: float
+
+    client = ClientProtocol(dialect="ros2")
+    client.subscribe("/p", "geometry_msgs/Point", reads=Wanted)
+    received = client.receive(write_publish("/p", {"x": 1.0, "y": 2.0, "z": 3.0}))
+    assert received == ("/p", Wanted(2.0))
+    long_way = client.receive(b'{"op": "publish", "topic": "/p", "msg": {"x": 1.0, "y": 2.5, "z": 3.0}}')
+    assert long_way is not None
+    assert long_way.message.y == 2.5

@@ -172,9 +172,11 @@ def test_long_message_goes_out_in_several_frames_a_batch_at_a_time(kind: type[by
     message = kind(bytes(range(97, 123)) * (2 * FRAME_BYTES // 26 + 1))
     given = iter([b"{}", message, b"[]"])
     writer = FrameWriter()
-    batches = []
+    batches, inside = [], []
     while batch := writer.batch(lambda: next(given, None), 1000):
         batches.append(batch)
+        inside.append(writer.is_inside)
+    assert (inside[0], inside[-1]) == (True, False)
     assert max(map(len, batches)) <= FRAME_BYTES + 14
     protocol = Protocol(Side.CLIENT, max_size=None)
     protocol.receive_data(b"".join(batches))

@@ -2,9 +2,19 @@ import itertools
 import struct
 
 import cbor2
+import msgspec
 import pytest
 
-from simconsole.bridge.protocol.message_decoding import LENIENT_BYTES, TYPED_ARRAYS, Binary, decode, has_duplicate_keys
+from simconsole.bridge.messages import standard_registry
+from simconsole.bridge.protocol.message_decoding import (
+    LENIENT_BYTES,
+    TYPED_ARRAYS,
+    Binary,
+    all_finite,
+    decode,
+    has_duplicate_keys,
+    read_complete,
+)
 from simconsole.values.errors import RemoteProtocolError
 
 
@@ -153,3 +163,29 @@ def test_no_other_tag_is_read_whatever_the_library_makes_of_it() -> None:
             continue
         allowed.add(number)
     assert allowed == set(TYPED_ARRAYS)
+
+
+def test_only_what_a_message_encodes_to_is_complete() -> None:
+    point = standard_registry().struct("geometry_msgs/Point")
+    reader = msgspec.json.Decoder(point)
+    assert read_complete(b'{"x":1.0,"y":-2.5,"z":0.0}', reader) == point(1.0, -2.5, 0.0)
+    for text in (
+        b'{"x":1.0,"y":-2.5}',
+        b'{"y":-2.5,"x":1.0,"z":0.0}',
+        b'{"x":1.0,"y":-2.5,"z":0.0,"z":0.0}',
+        b'{"x":1.0,"x":1.0,"y":-2.5}',
+        b'{"x":1,"y":-2.5,"z":0.0}',
+        b'{"x":1.0, "y":-2.5,"z":0.0}',
+        b'{"x":NaN,"y":-2.5,"z":0.0}',
+        b'{"x":null,"y":-2.5,"z":0.0}',
+        b'{"x":1.0,"y":-2.5,"z":0.0,"w":0.0}',
+        b'{"x":1.0,"y":-2.5,"z":0.0}}',
+        b"",
+    ):
+        assert read_complete(text, reader) is None, text
+
+
+def test_numbers_that_json_has_no_word_for_are_found_wherever_they_are() -> None:
+    assert all_finite({"a": [1, 2.0, {"b": "nan"}], "c": None})
+    assert not all_finite({"a": [1, {"b": [float("nan")]}]})
+    assert not all_finite(float("-inf"))

@@ -15,6 +15,7 @@ from simconsole.bridge.protocol.operations import (
     Unadvertise,
     Unsubscribe,
     read_operation,
+    read_published,
     write_publish,
     write_status,
 )
@@ -90,3 +91,9 @@ def test_status_carries_the_id_it_answers() -> None:
     assert json.loads(write_status("error", "m", "i7")) == {"op": "status", "level": "error", "msg": "m", "id": "i7"}
     assert "id" not in json.loads(write_status("error", "m"))
     assert len(json.loads(write_status("error", "m" * 5000))["msg"]) == 1000
+
+
+def test_a_published_text_is_taken_apart_as_it_was_written() -> None:
+    assert read_published(write_publish("/a", {"data": 1})) == (b"/a", b'{"data":1}')
+    for text in (b'{"op":"publish", "topic":"/a","msg":{}}', b'{"op":"publish","topic":"/a"}', b"", b"{}"):
+        assert read_published(text) is None

@@ -248,7 +248,7 @@ class Commanded:
     def count(self) -> None:
         self.refused += 1
 
-    def accept(self, plain: dict[str, Any], message: Any, now_ns: int) -> None:
+    def accept(self, plain: dict[str, Any] | None, message: Any, now_ns: int) -> None:
         if message.data > 10.0:
             raise RemoteProtocolError("too much - at `$.data`")
         self.taken.append(message.data)
