@@ -2,7 +2,7 @@
 
 from typing import Final, NamedTuple
 
-from simconsole.hud.key_names import key_label
+from simconsole.hud.key_names import help_rows, key_label
 from simconsole.hud.words import next_step, other_side
 from simconsole.profiles.control import ControlProfile
 from simconsole.profiles.device import CockpitProfile
@@ -39,6 +39,7 @@ class HudSettings(NamedTuple):
     top_gear: int = 6
     manual_button: str = ""  # label of the button that asks for manual control; empty: there is none
     reset_button: str = ""
+    help_rows: tuple[tuple[str, str], ...] = ()  # what each key or button does (`key_names.help_rows`)
 
 
 class HudMemory(NamedTuple):
@@ -133,6 +134,7 @@ def settings_of(
         top_gear=len(vehicle.gearbox.forward) if isinstance(vehicle, CarProfile) else 0,
         manual_button=key_label(Key.MANUAL) if by_keyboard else cockpit.button_label("manual"),
         reset_button=key_label(Key.RESET) if by_keyboard else cockpit.button_label("reset"),
+        help_rows=help_rows(cockpit, by_keyboard=by_keyboard),
     )
 
 

@@ -160,7 +160,9 @@ class HudWorker(Worker, frozen=True, kw_only=True):
     def run(self, folder: Path, stop: Callable[[], bool]) -> None:
         """Draw until `stop`."""
         from simconsole.hud.gl.view_window import open_window
-        from simconsole.hud.window.pygame_window import Motion, Ports, run
+        from simconsole.hud.window.habits import STATE_FILE, HabitsFile, state_folder
+        from simconsole.hud.window.ports import Motion, Ports
+        from simconsole.hud.window.window_loop import run
 
         ring = Ring.open(folder / SNAPSHOTS)
         keys = Ring.open(folder / KEY_CODES, writable=True)
@@ -189,7 +191,8 @@ class HudWorker(Worker, frozen=True, kw_only=True):
         link = LinkWatch(folder / LINK_STATUS, time.time, time.monotonic) if self.has_bridge else lambda: None
         ports = Ports(latest, report_keys, stop, can_up=can, drawn=receipts.drawn, link=link, motion=motion)
         scene = _view_scene(folder) if self.profile.view is not None else None
-        run(ports, self.profile, self.settings, partial(open_window, scene=scene))
+        memory = HabitsFile(state_folder() / STATE_FILE)
+        run(ports, self.profile, self.settings, partial(open_window, scene=scene), memory)
 
 
 class SceneWorker(Worker, frozen=True, kw_only=True):
