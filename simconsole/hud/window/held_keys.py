@@ -3,6 +3,7 @@
 from typing import Final
 
 from simconsole.hud.key_names import KEY_CODES
+from simconsole.values.key_codes import Key
 
 KEPT_S: Final = 2.0
 """How long keys count as held after the window lost the keyboard.
@@ -31,6 +32,13 @@ class HeldKeys:
             self._kept, self._focused_s = pressed, now_s
             return pressed
         return pressed | (self._kept if now_s - self._focused_s <= KEPT_S else 0)
+
+
+def meaning_of(code: int) -> Key:
+    """Return what a key of pygame's code means to the drive; nothing: `Key(0)`."""
+    import pygame
+
+    return next((key for name, key in KEY_CODES.items() if getattr(pygame, name) == code), Key(0))
 
 
 def pressed_keys() -> int:

@@ -15,7 +15,7 @@ from simconsole.hud.key_names import WindowKey
 from simconsole.hud.view import HudSettings
 from simconsole.hud.window.display_memory import Freshness
 from simconsole.hud.window.habits import Habits, HabitsFile, habits_of
-from simconsole.hud.window.held_keys import HeldKeys, pressed_keys
+from simconsole.hud.window.held_keys import HeldKeys, meaning_of, pressed_keys
 from simconsole.hud.window.ports import DriverWindow, Ports
 from simconsole.hud.window.pygame_window import open_cluster
 from simconsole.profiles.view import HudProfile
@@ -67,7 +67,7 @@ class _Loop:
         self._habits = habits_of(profile) if memory is None else memory.load(profile)
         self.window = opened(profile, settings, self._habits)
         self._keys, self._end = HeldKeys(), Key(0)
-        self._mask = 0
+        self._tapped, self._mask = Key(0), 0
         self._help = self._shows_times = False
         self._times, self._freshness = FrameTimes(self.window.drawer), Freshness()
         self._drawn_s = time.monotonic()
@@ -77,10 +77,11 @@ class _Loop:
         import pygame
 
         ports = self._ports
+        self._tapped = Key(0)
         for event in pygame.event.get():
             self._take(event)
         now_s = time.monotonic()
-        self._mask = self._keys.mask(pressed_keys(), pygame.key.get_focused(), now_s) | self._end
+        self._mask = self._keys.mask(pressed_keys() | self._tapped, pygame.key.get_focused(), now_s) | self._end
         ports.report_keys(self._mask)
         snapshot = ports.latest()
         age_s = None if snapshot is None else self._freshness.age_s(snapshot.tick, now_s)
@@ -102,6 +103,7 @@ class _Loop:
         elif event.type == pygame.WINDOWSIZECHANGED:
             self._resize(event.x, event.y)
         elif event.type == pygame.KEYDOWN:
+            self._tapped |= meaning_of(event.key)  # it may be up again before a slow frame is over
             self._press(event.key)
 
     def _press(self, code: int) -> None:

@@ -119,7 +119,7 @@ def test_the_window_runs_reports_keys_and_ends() -> None:
     [
         (pygame.event.Event(pygame.QUIT), True),
         (pygame.event.Event(pygame.KEYDOWN, key=pygame.K_END), True),
-        (pygame.event.Event(pygame.KEYDOWN, key=pygame.K_HOME), False),
+        (pygame.event.Event(pygame.KEYDOWN, key=pygame.K_F2), False),
     ],
 )
 def test_closing_the_window_asks_for_the_end_until_it_comes(event: pygame.event.Event, asks: bool) -> None:
@@ -134,6 +134,11 @@ def test_closing_the_window_asks_for_the_end_until_it_comes(event: pygame.event.
     ends = stop_after(5)
     run(Ports(latest, keys.append, lambda: next(ends)), PROFILE, HudSettings())
     assert keys == [0, *[int(Key.END) if asks else 0] * 4, 0]
+
+
+def test_a_tap_shorter_than_a_frame_is_told_once(watched: type[Watched]) -> None:
+    keys = drive(watched, None, None, lambda: press("K_e"), None)
+    assert keys == [0, int(Key.GEAR_UP), 0, 0]
 
 
 def test_keys_are_released_when_the_ring_breaks() -> None:
