@@ -79,6 +79,7 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
         from simconsole.bridge.console.view_topics import NO_VIEW
         from simconsole.bridge.transport.server import serve
         from simconsole.bridge.transport.sockets import address_url
+        from simconsole.session.camera_worker import CameraReader
         from simconsole.session.external_view import external_view
         from simconsole.session.view_job import load_view_job
         from simconsole.world.kinds.worlds import road_signals, route_points
@@ -93,6 +94,7 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
         around = Surroundings(
             route=route_points(self.world),
             signals=road_signals(self.world, self.tick_hz),
+            camera=CameraReader(folder).newest if profile.camera is not None else None,
             road_users=RoadUsersRing(folder).newest if self.has_traffic else None,
             view=NO_VIEW if self.display is None else external_view(load_view_job(folder / VIEW_JOB), self.display),
             steering=self.steering,
