@@ -76,6 +76,7 @@ _BUTTON_WORDS: Final = {
     "indicator_left": "indicate left",
     "indicator_right": "indicate right",
     "hazard": "hazard lights",
+    "horn": "horn",
     "mark": "mark this moment",
     "pause": "pause, go on",
     "restart": "start again",
