@@ -12,6 +12,7 @@ from simconsole.hud.driver_view.vehicle_body import Size
 from simconsole.hud.gl.context import is_software, renderer_name
 from simconsole.hud.gl.view_window import ViewWindow, open_window
 from simconsole.hud.view import HudSettings
+from simconsole.hud.window.habits import Habits
 from simconsole.hud.window.ports import Motion, Ports
 from simconsole.hud.window.pygame_window import Window
 from simconsole.hud.window.window_loop import run
@@ -116,15 +117,16 @@ def test_without_opengl_the_instruments_are_there_and_why_is_said(
 def test_a_window_of_another_shape_has_bars_and_the_same_picture() -> None:
     """Three screens in one picture keep their shape; what is beside them is black."""
     triple = replace(PROFILE, width_px=1920, height_px=480, screen_width_m=4.8)
-    window = open_window(triple, HudSettings(), scene=SCENE)
+    window = open_window(triple, HudSettings(), Habits(size_px=(800, 480)), scene=SCENE)
     assert isinstance(window, ViewWindow)
-    window.resized(800, 480)
-    window.frame(snapshot(1), 1.0)
-    picture = np.frombuffer(window._target.read(components=3), np.uint8).reshape(480, 800, 3)
-    height = 800 * 480 // 1920
-    assert not picture[: (480 - height) // 2 - 1].any()
-    assert not picture[(480 + height) // 2 + 1 :].any()
-    assert picture[240].any(axis=1).all()
+    for width, height in ((800, 480), (640, 300)):
+        window.resized(width, height)
+        window.frame(snapshot(1), 1.0)
+        picture = np.frombuffer(window._target.read(components=3), np.uint8).reshape(height, width, 3)
+        bar = (height - width * 480 // 1920) // 2
+        assert not picture[: bar - 1].any()
+        assert not picture[height - bar + 1 :].any()
+        assert picture[height // 2].any(axis=1).all()
     window.close()
 
 
