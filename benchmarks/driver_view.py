@@ -17,7 +17,7 @@ from simconsole.hud.driver_view.motion import ShownVehicle
 from simconsole.hud.driver_view.scene import view_scene
 from simconsole.hud.gl.cockpit_picture import CockpitPicture
 from simconsole.hud.gl.context import renderer_name, windowless_context
-from simconsole.hud.screen import Screen
+from simconsole.hud.screen import Screen, fit
 from simconsole.hud.view import HudView
 from simconsole.profiles.view import DriverViewProfile
 from simconsole.session.resolution import load_session, resolve
@@ -60,7 +60,7 @@ def measured(size: tuple[int, int], frames: int, *, rich: bool, mirrors: bool) -
         context,
         view_scene(job.drawing, job.limit_kmh, job.size),
         profile,
-        Screen(*size, 1.6, 2.2, has_view=True),
+        fit(Screen(*size, 1.6, 2.2, has_view=True), *size),
         job.steering_ratio,
     )
     target = context.simple_framebuffer(size, components=3)

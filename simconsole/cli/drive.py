@@ -15,6 +15,8 @@ from simconsole.profiles.session import SessionProfile
 from simconsole.recording.bundles.provenance import Given
 from simconsole.session.lifecycle import drive as drive_session
 from simconsole.session.resolution import load_session, override, resolve
+from simconsole.session.seat import look_for_devices
+from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import DeviceNotFound, ProfileError
 from simconsole.world.kinds.worlds import route_length_m
 
@@ -23,15 +25,38 @@ def drive(options: Namespace) -> Outcome:
     """Drive the named session with the options of the command line laid over it."""
     session = _with_options(load_session(options.session), options)
     resolved = resolve(session, options.cockpit)
+    if options.choose or session.devices.driver == "sdl":
+        asks = not (options.json or options.headless)
+        resolved = _with_a_cockpit(resolved, choose=options.choose, asks=asks)
     given = Given(participant=options.participant, trial=options.trial, notes=tuple(options.note)).checked()
     folder = Path(options.out) if options.out else Path("out") / time.strftime("drive-%Y%m%d-%H%M%S")
     with Progress("driving", route_length_m(resolved.world)) as progress:
-        try:
-            result = drive_session(resolved, folder, progress.watch, given=given)
-        except DeviceNotFound as error:
-            raise DeviceNotFound(f"{error}; without it: --driver keyboard, or simconsole demo") from None
-    outputs = session.outputs
+        result = drive_session(resolved, folder, progress.watch, given=given)
+    outputs = resolved.session.outputs
     return finish(result, report=outputs.report, scene=outputs.scene is not None, packed=not options.no_pack)
+
+
+def _with_a_cockpit(resolved: ResolvedSession, *, choose: bool, asks: bool) -> ResolvedSession:
+    """Return the session with a cockpit that is there: a person is asked where its own is not.
+
+    Raises:
+        DeviceNotFound: it is not, and nobody can be asked, or they want no other.
+        DeviceError: it is there and cannot drive.
+    """
+    missing = DeviceNotFound("nothing was chosen")
+    try:
+        look_for_devices(resolved)
+        if not choose:
+            return resolved
+    except DeviceNotFound as error:
+        missing = DeviceNotFound(f"{error}; without it: --driver keyboard, or simconsole demo")
+    from simconsole.cli.start import ask, somebody_can_be_asked
+
+    message = "" if choose else str(missing)
+    session = ask(resolved.session, message) if asks and somebody_can_be_asked() else None
+    if session is None:
+        raise missing from None
+    return resolve(session)
 
 
 def _with_options(session: SessionProfile, options: Namespace) -> SessionProfile:

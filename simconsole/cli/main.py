@@ -127,6 +127,7 @@ def _driving(commands: Any) -> None:
         "session", nargs="?", default="seated", metavar="SESSION", help="by name, or a .yaml file (default: seated)"
     )
     drive.add_argument("--headless", action="store_true", help="no window, as fast as it goes")
+    drive.add_argument("--choose", action="store_true", help="ask what to drive with, and where")
     drive.add_argument("--driver", metavar="D", help="sdl | virtual | trace:F | script:F | keyboard | none")
     drive.add_argument("--person", type=int, metavar="SEED", help="with the driver virtual: which simulated person")
     drive.add_argument("--commands", metavar="C", help="bag:FILE[:TOPIC]: recorded commands in place of a controller's")

@@ -37,13 +37,14 @@ def world(options: Namespace) -> Outcome:
 
 
 def _list() -> Outcome:
-    found = {name: load_world(name) for name in _worlds()}
+    found = {name: load_world(name) for name in world_names()}
     rows = [(name, f"{_kind(profile):<7} {profile.title}") for name, profile in found.items()]
     worlds = [{"name": name, "kind": _kind(profile), "title": profile.title} for name, profile in found.items()]
     return Outcome(0, {"worlds": worlds}, table(rows))
 
 
-def _worlds() -> list[str]:
+def world_names() -> list[str]:
+    """Return the names of the shipped worlds."""
     return [name for name in names("worlds") if not name.endswith(".plan")]
 
 

@@ -19,6 +19,7 @@ from simconsole.hud.draw import (
     Rect,
     Text,
     at_clock,
+    fit_cap_px,
 )
 from simconsole.hud.screen import DRIVING_ARCMIN, SECONDARY_ARCMIN, SPEED_ARCMIN
 from simconsole.hud.view import HudView
@@ -42,6 +43,7 @@ def dial(view: HudView, box: Box) -> list[DrawItem]:
         *_scale(view, cx, cy, radius),
         *_speed(view, cx, cy, radius),
         *_gear(view, cx, cy, radius),
+        *limit_sign(view, cx - 0.335 * radius, cy + 0.575 * radius, 0.135 * radius),
         *indicator_arrows(view, cx, cy - 0.86 * radius, 0.84 * radius, 0.16 * radius),
     ]
 
@@ -243,6 +245,18 @@ def _shift_up(box: Box) -> list[DrawItem]:
         arcmin=DRIVING_ARCMIN,
     )
     return [Polygon(arrow, CAUTION, "shift.arrow"), label]
+
+
+def limit_sign(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]:
+    """Return the speed limit as its road sign, a number in a ring; nothing where there is none, or no data."""
+    if view.stale or view.limit_kmh <= 0:
+        return []
+    text = f"{view.limit_kmh}"
+    ring = Arc(
+        cx, cy, outer=radius, inner=0.84 * radius, start_deg=0.0, end_deg=360.0, colour=WARNING_LINE, role="limit.ring"
+    )
+    cap = fit_cap_px(text, 0.8 * radius, 1.35 * radius)
+    return [ring, Text(cx, cy, text, cap_px=cap, colour=TEXT, role="limit", arcmin=DRIVING_ARCMIN)]
 
 
 def indicator_arrows(view: HudView, cx: float, y: float, apart: float, reach: float) -> list[DrawItem]:

@@ -145,7 +145,9 @@ def check_screen(screen: Screen, name: str) -> None:
 
 def sample_views() -> list[HudView]:
     """Return a view of every mode, reason, take-over stage and of stale data, with the widest numbers."""
-    wide = HudView(shown_kmh=288, rpm=6500.0, engine_running=True, gear="6", automatic=True, distance_m=123456.0)
+    wide = HudView(
+        shown_kmh=288, limit_kmh=130, rpm=6500.0, engine_running=True, gear="6", automatic=True, distance_m=123456.0
+    )
     wide = wide._replace(t_s=36000.0, link_age_s=0.9, remote_lateral=1.0, throttle=1.0, brake=1.0, clutch=1.0)
     views = [wide._replace(mode=float(mode), mode_label=mode_label(mode)) for mode in Mode]
     for reason in Reason:

@@ -14,6 +14,10 @@ SPEED_ARCMIN: Final = 60.0
 """Cap height of the speed digits (rule 1)."""
 BORDER: Final = 0.05
 """Part of each side that stays empty: a beamer's keystone may cut it (rule 15)."""
+NARROWEST_ASPECT: Final = 4.0 / 3.0
+WIDEST_ASPECT: Final = 7.0 / 3.0
+TITLE_BAR: Final = 0.08
+"""Part of a display's height that a window's title and a panel of the desktop may take."""
 TRIPLE_ASPECT: Final = 2.4
 """From this aspect ratio on, the picture is three screens side by side and the driver sits before the middle one."""
 
@@ -60,6 +64,59 @@ class Screen(NamedTuple):
         """Return where the cluster stands: before the driver."""
         panels = self.panels()
         return panels[len(panels) // 2]
+
+
+class Fitted(NamedTuple):
+    """A screen's picture in a window of another size: as large as goes, in the middle, bars beside it where need be."""
+
+    screen: Screen
+    window_width_px: int
+    window_height_px: int
+
+    @property
+    def left_px(self) -> int:
+        """Width of the bar on the left."""
+        return (self.window_width_px - self.screen.width_px) // 2
+
+    @property
+    def top_px(self) -> int:
+        """Height of the bar at the top."""
+        return (self.window_height_px - self.screen.height_px) // 2
+
+    @property
+    def has_bars(self) -> bool:
+        """Whether the window is larger than the picture."""
+        return (self.screen.width_px, self.screen.height_px) != (self.window_width_px, self.window_height_px)
+
+
+def fit(screen: Screen, width_px: int, height_px: int) -> Fitted:
+    """Return `screen` in a window of this size.
+
+    One screen takes any shape between its own, 4:3 and 21:9; of three side by side the seams must stay where they are.
+    Characters keep their share of what is smaller, width or height.
+    """
+    own = screen.width_px / screen.height_px
+    narrowest, widest = (own, own) if screen.is_triple else (min(own, NARROWEST_ASPECT), max(own, WIDEST_ASPECT))
+    aspect = min(widest, max(narrowest, width_px / height_px))
+    width = max(1, min(width_px, round(height_px * aspect)))
+    height = max(1, min(height_px, round(width_px / aspect)))
+    share = min(width / screen.width_px, height / screen.height_px)
+    width_m = screen.screen_width_m * width / screen.width_px / share
+    return Fitted(screen._replace(width_px=width, height_px=height, screen_width_m=width_m), width_px, height_px)
+
+
+def window_size(screen: Screen, display: tuple[int, int]) -> tuple[int, int]:
+    """Return the largest window of the screen's shape that a display holds with a title bar, never above the screen's.
+
+    Args:
+        screen: What the profile asks for.
+        display: Width and height of the display in pixels.
+    """
+    width, height = display
+    share = min(1.0, width / screen.width_px, height / screen.height_px)
+    if share < 1.0:
+        share = min(width / screen.width_px, (1.0 - TITLE_BAR) * height / screen.height_px)
+    return int(screen.width_px * share), int(screen.height_px * share)
 
 
 def screen_of(profile: HudProfile) -> Screen:

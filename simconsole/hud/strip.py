@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from simconsole.hud.dial import indicator_arrows, is_over_red
+from simconsole.hud.dial import indicator_arrows, is_over_red, limit_sign
 from simconsole.hud.draw import CAUTION, LINE, MUTED, PANEL, TEXT, WARNING_LINE, Box, DrawItem, Rect, Text, fit_cap_px
 from simconsole.hud.panels import Lamp, lamp_cell, lamps, share
 from simconsole.hud.screen import DRIVING_ARCMIN, SECONDARY_ARCMIN, SPEED_ARCMIN
@@ -19,7 +19,8 @@ def strip(view: HudView, box: Box) -> list[DrawItem]:
     sides = inside.column(0.52, 0.72)
     return [
         Rect(box, PANEL, "strip", 0.12 * box.h),
-        *_speed(view, inside.column(0.0, 0.22)),
+        *_speed(view, inside.column(0.0, 0.165)),
+        *limit_sign(view, inside.x + 0.197 * inside.w, inside.y + 0.42 * inside.h, 0.36 * inside.h),
         *_gear(view, inside.column(0.23, 0.31)),
         *_engine(view, inside.column(0.33, 0.49)),
         *share(view, Box(sides.x, box.y, sides.w, box.h)),

@@ -2,7 +2,7 @@
 
 from typing import Final, NamedTuple
 
-from simconsole.hud.key_names import key_label
+from simconsole.hud.key_names import help_rows, key_label
 from simconsole.hud.words import next_step, other_side
 from simconsole.profiles.control import ControlProfile
 from simconsole.profiles.device import CockpitProfile
@@ -11,7 +11,7 @@ from simconsole.profiles.view import HudProfile
 from simconsole.values.key_codes import Key
 from simconsole.values.labels import commander_label, gear_label, is_eased, mode_label, notice_label, reason_label
 from simconsole.values.layout import read
-from simconsole.values.signals import NEVER_TICKS, Event, GateLimit, Mode
+from simconsole.values.signals import FAR, NEVER_TICKS, Event, GateLimit, Mode
 from simconsole.values.state_vector import LAYOUT, Snapshot
 from simconsole.values.units import DEG_PER_RAD, KMH_PER_MPS, RPM_PER_RADPS
 from simconsole.values.validity import is_trusted
@@ -39,6 +39,8 @@ class HudSettings(NamedTuple):
     top_gear: int = 6
     manual_button: str = ""  # label of the button that asks for manual control; empty: there is none
     reset_button: str = ""
+    limit_kmh: float = 0.0  # speed limit of a road without lanes of its own; 0: none, or it changes on the way
+    help_rows: tuple[tuple[str, str], ...] = ()  # what each key or button does (`key_names.help_rows`)
 
 
 class HudMemory(NamedTuple):
@@ -59,6 +61,7 @@ class HudView(NamedTuple):
     t_s: float = 0.0
     stale: bool = False
     shown_kmh: int = 0
+    limit_kmh: int = 0  # speed limit here; 0: none
     rpm: float = 0.0
     engine_running: bool = False
     gear: str = "N"
@@ -133,6 +136,7 @@ def settings_of(
         top_gear=len(vehicle.gearbox.forward) if isinstance(vehicle, CarProfile) else 0,
         manual_button=key_label(Key.MANUAL) if by_keyboard else cockpit.button_label("manual"),
         reset_button=key_label(Key.RESET) if by_keyboard else cockpit.button_label("reset"),
+        help_rows=help_rows(cockpit, by_keyboard=by_keyboard),
     )
 
 
@@ -179,6 +183,7 @@ def view(
         t_s=snapshot.t_s,
         stale=age_s > STALE_S and not paused,
         shown_kmh=kmh,
+        limit_kmh=_limit_kmh(snapshot, settings),
         rpm=max(0.0, vehicle.engine_radps * RPM_PER_RADPS),
         engine_running=vehicle.engine_running != 0.0,
         gear=gear_label(vehicle.gear),
@@ -225,6 +230,14 @@ def view(
         stop_reason=stop_reason,
         eased=force == "eased",
     )
+
+
+def _limit_kmh(snapshot: Snapshot, settings: HudSettings) -> int:
+    """Return the speed limit of the lane that the vehicle is in, or of the whole road; 0: none."""
+    situation = snapshot.situation
+    if situation.lane < 0.0:
+        return round(settings.limit_kmh)
+    return 0 if situation.speed_limit_mps >= FAR else round(situation.speed_limit_mps * KMH_PER_MPS)
 
 
 def _stop_reason(mode: float, reason: float, memory: HudMemory) -> float | None:

@@ -1,5 +1,6 @@
 """The bridge section of a session profile: where rosbridge listens, what its topics are called, what it refuses."""
 
+from math import radians, tan
 from typing import Annotated, Literal
 
 from msgspec import Meta, Struct, field
@@ -77,6 +78,29 @@ class UpstreamProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     """What the other server's ROS is: how times and headers are spelled for it."""
 
 
+class CameraProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A camera on the vehicle whose pictures the bridge publishes. Place and angles are those of base_link."""
+
+    rate_hz: Annotated[float, Meta(gt=0.0, le=60.0)] = 10.0
+    width_px: Annotated[int, Meta(ge=64, le=4096)] = 640
+    height_px: Annotated[int, Meta(ge=48, le=4096)] = 480
+    horizontal_fov_deg: Annotated[float, Meta(ge=10.0, le=150.0)] = 70.0
+    x_m: Annotated[float, Meta(ge=-20.0, le=20.0)] = 1.8
+    """Forwards; the default place is behind the windscreen of a car."""
+    y_m: Annotated[float, Meta(ge=-20.0, le=20.0)] = 0.0
+    z_m: Annotated[float, Meta(ge=0.05, le=50.0)] = 1.3
+    yaw_deg: Annotated[float, Meta(ge=-180.0, le=180.0)] = 0.0
+    """Left-positive."""
+    pitch_deg: Annotated[float, Meta(ge=-90.0, le=90.0)] = 0.0
+    """Down-positive."""
+    night: bool = False
+
+    @property
+    def focal_px(self) -> float:
+        """Focal length in pixels: that of a pinhole, without distortion."""
+        return 0.5 * self.width_px / tan(radians(0.5 * self.horizontal_fov_deg))
+
+
 class BridgeProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """One rosbridge server.
 
@@ -130,6 +154,8 @@ class BridgeProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """A client that is connected but reads nothing for so long is disconnected."""
     external_view: bool = False
     """Publish what a renderer of another program needs to be the driver's eyes, the car's true pose included."""
+    camera: CameraProfile | None = None
+    """Publish what a camera on the vehicle sees."""
     link: LinkProfile = LinkProfile()
     """Errors, delays and losses on purpose, between the car and whoever commands it here."""
     limits: BridgeLimits = BridgeLimits()

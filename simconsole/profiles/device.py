@@ -87,6 +87,16 @@ class BootMode(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     cure: Title
 
 
+class SteeringAssistance(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """For keys and sticks: full deflection turns the hand wheel less and slower the faster the car is."""
+
+    half_at_mps: Annotated[float, Meta(gt=0.0, le=100.0)] = 5.6
+    """At this speed full deflection is half of the angle at standstill. 5.6 with 900 degrees from lock to lock keeps a
+    passenger car below 6 m/s2 of side force at any speed."""
+    full_s: Annotated[float, Meta(ge=0.1, le=5.0)] = 1.0
+    """From the middle to what the speed allows."""
+
+
 class WheelAxis(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The hand wheel."""
 
@@ -97,6 +107,7 @@ class WheelAxis(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     dead_zone: Annotated[float, Meta(ge=0.0, le=0.1)] = 0.0
     curve: Curve = 1.0  # for sticks: the angle of a wheel is an angle
     rate_filter_s: Annotated[float, Meta(ge=0.0, le=0.5)] = 0.02
+    assistance: SteeringAssistance | None = None  # none: the angle is the hand's own
 
 
 class PedalAxis(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -239,6 +250,8 @@ class CockpitProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         """
         names = [binding.role for binding in self.roles]
         own_handbrake = "handbrake" in names
+        if self.wheel.assistance is not None and self.force_feedback is not None:
+            raise ValueError("wheel.assistance must not be given where force_feedback is: the motor moves a real wheel")
         if names and sorted(names) != [*(["handbrake"] if own_handbrake else []), "pedals", "shifter", "wheel"]:
             raise ValueError("roles must bind wheel, pedals and shifter once each (handbrake may follow), or none")
         if own_handbrake and self.pedals.handbrake is None:

@@ -49,7 +49,11 @@ class HudProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     height_px: Annotated[int, Meta(ge=240, le=8192)] = 1050
     screen_width_m: Annotated[float, Meta(gt=0.0, le=20.0)] = 1.6
     eye_distance_m: Annotated[float, Meta(gt=0.0, le=20.0)] = 2.2
+    display: Annotated[int, Meta(ge=0, le=15)] = 0
+    """Which display the window opens on. This, `fullscreen` and `vsync` can be changed by key, which is remembered."""
     fullscreen: bool = False
+    vsync: bool = True
+    """The road is shown in step with the display; the instruments alone never are."""
     rate_hz: Annotated[int, Meta(ge=1, le=240)] = 60
     rpm_max: Annotated[float, Meta(ge=1000.0, le=20000.0)] = 7000.0
     rpm_red: Annotated[float, Meta(ge=500.0, le=20000.0)] = 6000.0

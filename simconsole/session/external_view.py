@@ -9,9 +9,10 @@ from simconsole.hud.driver_view.vehicle_body import vehicle_meshes
 from simconsole.hud.reading import HudReading
 from simconsole.hud.view import HudSettings, settings_of
 from simconsole.profiles.view import HudProfile
-from simconsole.session.view_job import ViewJob
+from simconsole.session.view_job import ViewJob, limit_kmh
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.state_vector import Snapshot
+from simconsole.world.kinds.worlds import open_world
 
 
 def external_view(job: ViewJob, settings: HudSettings) -> ExternalView:
@@ -45,4 +46,4 @@ def display_settings(resolved: ResolvedSession) -> HudSettings:
         resolved.cockpit,
         resolved.vehicle,
         by_keyboard=session.devices.driver == "keyboard",
-    )
+    )._replace(limit_kmh=0.0 if resolved.world is None else limit_kmh(open_world(resolved.world).route))

@@ -268,7 +268,12 @@ def _await_workers(
 def _check_links(session: SessionProfile) -> None:
     """Refuse links that a drive without a bridge would leave out in silence."""
     bridge = session.outputs.bridge
-    if session.mode.pacing == "lockstep" or bridge is None:
+    if bridge is None:
+        return
+    if bridge.camera is not None:
+        pacing = session.mode.pacing
+        raise ProfileError(f"mode.pacing: value {pacing}: realtime, where outputs.bridge.camera is to be drawn")
+    if session.mode.pacing == "lockstep":
         return
     if bridge.upstream is not None:
         raise ProfileError("mode.pacing: value free: realtime, where outputs.bridge.upstream is to be connected to")

@@ -11,6 +11,7 @@ from simconsole.bridge.console.operator_acts import ACT_BYTES, ACTS_MAX
 from simconsole.control.requests.refusals import steering_limit
 from simconsole.processes.shared_memory import EventCounters, Ring, TextQueue
 from simconsole.processes.worker import Worker, WorkerSpec
+from simconsole.session.camera_worker import CameraWorker, make_camera_slot
 from simconsole.session.external_view import display_settings
 from simconsole.session.scene_job import LIVE_SCENE, scene_job
 from simconsole.session.traffic_source import TrafficSource
@@ -210,8 +211,12 @@ def worker_specs(
             profile=outputs.can, tick_hz=tick_hz, wheels=wheel_columns(console.columns), bundle=str(bundle.absolute())
         )
     has_view = outputs.hud is not None and outputs.hud.view is not None
-    if has_view or (outputs.bridge is not None and outputs.bridge.external_view):
+    bridge = outputs.bridge
+    if has_view or (bridge is not None and (bridge.external_view or bridge.camera is not None)):
         save_view_job(folder / VIEW_JOB, view_job(resolved))
+    if bridge is not None and bridge.camera is not None:
+        make_camera_slot(folder, bridge.camera)
+        workers["camera"] = CameraWorker(profile=bridge.camera, tick_hz=tick_hz, has_traffic=has_traffic)
     if outputs.hud is not None:
         workers["hud"] = HudWorker(
             profile=outputs.hud,

@@ -72,14 +72,24 @@ def open_seating(
         return _open_person(resolved, console, stack)
     if driver == "keyboard" and keys is None:
         raise ProfileError("devices.driver: value keyboard: needs a window, so not with --headless or hud: false")
+    from simconsole.devices.calibration.cockpit_settings import cockpit_settings
     from simconsole.devices.sources.sdl_source import SdlSource
     from simconsole.devices.sources.source_registry import open_source
+    from simconsole.devices.synthetic.keyboard import KeyboardSource
+    from simconsole.devices.synthetic.steering_assistance import AssistedSource, assistance_of
 
     devices = open_source(driver, resolved.cockpit, tick_hz=console.tick_hz, keys=keys)
     stack.callback(devices.close)
+    if isinstance(devices, KeyboardSource):
+        return Seating(devices, outputs=(devices,))
     if not isinstance(devices, SdlSource):
         return Seating(devices)
     identities = devices.identities()
+    assistance = assistance_of(resolved.cockpit.wheel)
+    if assistance is not None:
+        settings = cockpit_settings(resolved.cockpit, console.tick_hz)
+        assisted = AssistedSource(devices, settings, assistance, tick_hz=console.tick_hz)
+        return Seating(assisted, outputs=(assisted,), identities=identities)
     if resolved.cockpit.force_feedback is None:
         _say(f"no force feedback: {resolved.cockpit.title} has none; everything else works")
         return Seating(devices, identities=identities)

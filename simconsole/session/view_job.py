@@ -32,7 +32,7 @@ def view_job(resolved: ResolvedSession) -> ViewJob:
     world = None if resolved.world is None else open_world(resolved.world)
     return ViewJob(
         drawing=None if world is None else world.drawing,
-        limit_kmh=0.0 if world is None else _limit_kmh(world.route),
+        limit_kmh=0.0 if world is None else limit_kmh(world.route),
         size=Size(
             length_m=platform.length_m,
             width_m=platform.width_m,
@@ -44,7 +44,7 @@ def view_job(resolved: ResolvedSession) -> ViewJob:
     )
 
 
-def _limit_kmh(route: Route) -> float:
+def limit_kmh(route: Route) -> float:
     """Return the limit that holds all along a route, 0 where it changes on the way."""
     return route.speed_limit_mps * KMH_PER_MPS if bool((route.limit == route.limit[0]).all()) else 0.0
 

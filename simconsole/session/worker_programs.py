@@ -79,6 +79,7 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
         from simconsole.bridge.console.view_topics import NO_VIEW
         from simconsole.bridge.transport.server import serve
         from simconsole.bridge.transport.sockets import address_url
+        from simconsole.session.camera_worker import CameraReader
         from simconsole.session.external_view import external_view
         from simconsole.session.view_job import load_view_job
         from simconsole.world.kinds.worlds import road_signals, route_points
@@ -93,6 +94,7 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
         around = Surroundings(
             route=route_points(self.world),
             signals=road_signals(self.world, self.tick_hz),
+            camera=CameraReader(folder).newest if profile.camera is not None else None,
             road_users=RoadUsersRing(folder).newest if self.has_traffic else None,
             view=NO_VIEW if self.display is None else external_view(load_view_job(folder / VIEW_JOB), self.display),
             steering=self.steering,
@@ -160,7 +162,9 @@ class HudWorker(Worker, frozen=True, kw_only=True):
     def run(self, folder: Path, stop: Callable[[], bool]) -> None:
         """Draw until `stop`."""
         from simconsole.hud.gl.view_window import open_window
-        from simconsole.hud.window.pygame_window import Motion, Ports, run
+        from simconsole.hud.window.habits import STATE_FILE, HabitsFile, state_folder
+        from simconsole.hud.window.ports import Motion, Ports
+        from simconsole.hud.window.window_loop import run
 
         ring = Ring.open(folder / SNAPSHOTS)
         keys = Ring.open(folder / KEY_CODES, writable=True)
@@ -189,7 +193,8 @@ class HudWorker(Worker, frozen=True, kw_only=True):
         link = LinkWatch(folder / LINK_STATUS, time.time, time.monotonic) if self.has_bridge else lambda: None
         ports = Ports(latest, report_keys, stop, can_up=can, drawn=receipts.drawn, link=link, motion=motion)
         scene = _view_scene(folder) if self.profile.view is not None else None
-        run(ports, self.profile, self.settings, partial(open_window, scene=scene))
+        memory = HabitsFile(state_folder() / STATE_FILE)
+        run(ports, self.profile, self.settings, partial(open_window, scene=scene), memory)
 
 
 class SceneWorker(Worker, frozen=True, kw_only=True):

@@ -1,6 +1,7 @@
 import pytest
 
-from simconsole.hud.screen import Screen, screen_of
+from simconsole.hud.layout import check_screen
+from simconsole.hud.screen import Screen, fit, screen_of, window_size
 from simconsole.profiles.view import HudProfile
 from tests.hud.pictures import SCREEN, SCREENS
 
@@ -39,3 +40,36 @@ def test_a_wide_single_screen_is_not_three() -> None:
 def test_nearer_eyes_need_fewer_pixels() -> None:
     assert Screen(1400, 1050, 1.6, 1.1).px_per_arcmin == pytest.approx(0.5 * SCREEN.px_per_arcmin)
     assert screen_of(HudProfile(width_px=800, height_px=600)).width_px == 800
+
+
+@pytest.mark.parametrize(
+    ("display", "size"), [((1366, 768), (942, 706)), ((1000, 2000), (1000, 750)), ((9000, 9000), (1400, 1050))]
+)
+def test_a_window_is_never_larger_than_its_display_less_a_title_bar(
+    display: tuple[int, int], size: tuple[int, int]
+) -> None:
+    assert window_size(SCREEN, display) == size
+
+
+@pytest.mark.parametrize("has_view", [False, True])
+@pytest.mark.parametrize(
+    "size", [(1366, 768), (1366, 706), (1280, 800), (1920, 1080), (3440, 1440), (640, 480), (400, 900), (2000, 300)]
+)
+def test_a_window_of_any_shape_has_a_legible_picture_in_its_middle(size: tuple[int, int], has_view: bool) -> None:
+    fitted = fit(SCREEN._replace(has_view=has_view), *size)
+    screen = fitted.screen
+    check_screen(screen, "hud")
+    assert not screen.is_triple
+    assert abs(2 * fitted.left_px + screen.width_px - size[0]) <= 1
+    assert abs(2 * fitted.top_px + screen.height_px - size[1]) <= 1
+    assert screen.width_px == size[0] or screen.height_px == size[1]
+    share = min(screen.width_px / SCREEN.width_px, screen.height_px / SCREEN.height_px)
+    assert screen.px_per_arcmin == pytest.approx(share * SCREEN.px_per_arcmin)
+
+
+def test_the_seams_of_three_screens_stay_where_they_are() -> None:
+    fitted = fit(SCREENS["triple"], 1920, 1080)
+    assert (fitted.screen.width_px, fitted.screen.height_px, fitted.top_px) == (1920, 480, 300)
+    assert fitted.screen.is_triple
+    assert fitted.has_bars
+    assert not fit(SCREEN, 1400, 1050).has_bars

@@ -1,6 +1,6 @@
 import pytest
 
-from simconsole.hud.draw import bounds
+from simconsole.hud.draw import Text, bounds
 from simconsole.hud.layout import check_screen, layout, panels_over_view, sample_views
 from simconsole.hud.screen import Screen
 from simconsole.hud.view import HudView
@@ -47,6 +47,18 @@ def test_speed_gear_and_engine_speed_are_told() -> None:
     assert {"52", "km/h", "4", "2300 rpm"} <= words(WELL)
     slot, bar = (bounds(by_role(layout(WELL, SCREEN), f"rpm.{part}")[0]) for part in ("slot", "bar"))
     assert bar.w == pytest.approx(2310.0 / 7000.0 * slot.w)
+
+
+def test_the_speed_limit_is_shown_as_its_sign_where_there_is_one() -> None:
+    assert not by_role(layout(WELL, SCREEN), "limit.ring")
+    items = layout(WELL._replace(limit_kmh=50), SCREEN)
+    (ring,), (text,) = by_role(items, "limit.ring"), by_role(items, "limit")
+    assert isinstance(text, Text)
+    assert text.text == "50"
+    outer, inner = bounds(ring), bounds(text)
+    assert outer.x < inner.x
+    assert inner.right < outer.right
+    assert not by_role(layout(WELL._replace(limit_kmh=50, stale=True), SCREEN), "limit")
 
 
 def test_lamps_tell_what_is_wrong_and_nothing_else() -> None:

@@ -12,8 +12,8 @@ from simconsole.profiles.files.loader import load
 from simconsole.profiles.files.vehicle_files import load_vehicle
 from simconsole.profiles.view import HudProfile
 from simconsole.values.platform import Pose
-from simconsole.values.signals import NEVER_TICKS, GateLimit, Mode, Reason
-from simconsole.values.state_vector import PLATFORM_AT, Snapshot, columns
+from simconsole.values.signals import FAR, NEVER_TICKS, GateLimit, Mode, Reason
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT, Snapshot, columns
 from simconsole.values.units import MPS_PER_KMH
 
 TICK_HZ = 250
@@ -211,3 +211,14 @@ def test_what_is_wrong_with_the_lever_is_said(fields: dict[str, Any], words: str
     """D08: the gear is kept, and the driver is told why."""
     shown, _ = view(snapshot(**fields), 0.0, HudMemory(), HudSettings())
     assert shown.lever_label == words
+
+
+@pytest.mark.parametrize(
+    ("lane", "limit_mps", "shown"), [(3.0, 13.889, 50), (3.0, FAR, 0), (-1.0, FAR, 70), (-1.0, 13.889, 70)]
+)
+def test_the_limit_is_that_of_the_lane_or_of_the_road_without_lanes(lane: float, limit_mps: float, shown: int) -> None:
+    vector = np.zeros(PLATFORM_AT)
+    for name, value in (("lane", lane), ("speed_limit_mps", limit_mps)):
+        vector[LAYOUT.situation.at(name)] = value
+    told, _ = view(Snapshot(1, 250, vector), 0.0, HudMemory(), HudSettings(limit_kmh=70.0))
+    assert told.limit_kmh == shown

@@ -5,8 +5,9 @@ from typing import Any
 
 import msgspec
 import pytest
+from msgspec.structs import replace
 
-from simconsole.profiles.device import CockpitProfile, ScriptProfile
+from simconsole.profiles.device import CockpitProfile, ScriptProfile, SteeringAssistance
 from simconsole.profiles.files.loader import load, parse, profiles_folder, to_text
 from simconsole.values.errors import ProfileError
 
@@ -141,3 +142,8 @@ def test_script_whose_time_goes_back_is_refused(tmp_path: Path) -> None:
     path.write_text("points:\n- {time_s: 1.0, throttle: 0}\n- {time_s: 0.5, throttle: 1}\n")
     with pytest.raises(ProfileError, match=r"points\[1\].time_s 0.5 must be above 1.0"):
         load("devices", str(path), ScriptProfile)
+
+
+def test_a_wheel_with_a_motor_is_not_assisted(t500: CockpitProfile) -> None:
+    with pytest.raises(ValueError, match=r"wheel\.assistance must not be given"):
+        replace(t500, wheel=replace(t500.wheel, assistance=SteeringAssistance()))

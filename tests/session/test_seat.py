@@ -16,6 +16,7 @@ from simconsole.session.seat import look_for_devices, open_seating
 from simconsole.tick.assembly import ResolvedSession, assemble
 from simconsole.values.errors import DeviceError
 from simconsole.values.host.jit import plain
+from simconsole.values.key_codes import Key
 from tests.drives.console import complaint, simconsole
 
 
@@ -50,6 +51,21 @@ def test_cockpit_without_the_section_has_no_motor_worker() -> None:
         assert seating.outputs == ()
         assert console.force_feedback is None
         assert "044f:b65e" in [device.usb_id for device in seating.identities]
+
+
+@pytest.mark.parametrize(("driver", "cockpit"), [("sdl", "gamepad"), ("keyboard", "keyboard")])
+def test_keys_and_sticks_are_told_the_speed(driver: str, cockpit: str) -> None:
+    """They steer a fast car less: the source is an output of the drive as well."""
+    demo = load_session("demo")
+    devices = msgspec.structs.replace(demo.devices, driver=driver, cockpit=cockpit, person=None)
+    resolved = resolve(msgspec.structs.replace(demo, devices=devices))
+    with ExitStack() as stack:
+        if driver == "sdl":
+            stack.callback(VirtualCockpit(resolved.cockpit).close)
+        console, _ = assemble(resolved, plain)
+        seating = open_seating(resolved, console, stack, lambda: (int(Key.STEER_LEFT), 0))
+        assert seating.outputs == (seating.devices,)
+        assert seating.devices.poll(1).wheel_age_ticks == 0.0
 
 
 def test_simulated_person_sits_at_a_wheel_with_a_motor() -> None:

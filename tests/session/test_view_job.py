@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from simconsole.session.resolution import load_session, override, resolve
-from simconsole.session.view_job import _limit_kmh, load_view_job, save_view_job, view_job
+from simconsole.session.view_job import limit_kmh, load_view_job, save_view_job, view_job
 from simconsole.values.errors import WorkerError
 from simconsole.world.kinds.worlds import open_world
 
@@ -47,4 +47,4 @@ def test_a_limit_that_changes_on_the_way_is_on_no_sign() -> None:
     assert view_job(resolved).limit_kmh == pytest.approx(80.0, abs=0.1)
     route = copy(open_world(resolved.world).route)
     route.limit = np.append(route.limit, 10.0)
-    assert _limit_kmh(route) == 0.0
+    assert limit_kmh(route) == 0.0

@@ -2,6 +2,7 @@
 
 from typing import Any, Final
 
+from simconsole.bridge.console.camera_topics import CameraTopics
 from simconsole.bridge.console.command_decoder import CommandDecoder
 from simconsole.bridge.console.counters import bridge_status, total_counts
 from simconsole.bridge.console.input_slots import BridgeInputs, OnCommand, OnEvents
@@ -78,6 +79,8 @@ class ConsoleBridge:
         commands = self._command_decoder.topics()
         if around.road_users is not None:
             outputs = (*RoadUserTopics(self.router.registry, around.road_users).topics(), *outputs)
+        if profile.camera is not None and around.camera is not None:
+            outputs = (*outputs, *CameraTopics(self.router.registry, profile.camera, around.camera).topics())
         self.names = topic_names(profile, [*(topic.name for topic in outputs), *(topic.name for topic in commands)])
         self._schedule = OutputSchedule(outputs, self.names, profile)
         self._topics = {
@@ -103,7 +106,9 @@ class ConsoleBridge:
             topic = self._topics[output.name]
             if topic.subscribers or topic.latch:
                 tick = tick or self._out.published_tick(snapshot)
-                self.router.topic_registry.distribute(topic, output.build(tick), now_ns)
+                message = output.build(tick)
+                if message is not None:
+                    self.router.topic_registry.distribute(topic, message, now_ns)
 
     def keep_time(self, snapshot: Snapshot, now_ns: int) -> None:
         """Take what time it is from a finished tick, without publishing anything."""

@@ -20,6 +20,7 @@ class OutputTopic(NamedTuple):
     type: str
     rate_hz: float
     build: Callable[["PublishedTick"], Any]
+    """Returns the message; None: nothing is to be told now."""
     watched: int | None = None
     """A column of the state vector: the topic is latched, and due with each change of it, too."""
 

@@ -2,6 +2,7 @@
 
 from typing import Final, NamedTuple
 
+from simconsole.bridge.console.camera_topics import ReadCamera
 from simconsole.bridge.console.road_user_topics import ReadRoadUsers
 from simconsole.bridge.console.topics import Route
 from simconsole.bridge.console.view_topics import NO_VIEW, ExternalView
@@ -10,11 +11,12 @@ from simconsole.world.rules.road_signals import RoadSignals
 
 
 class Surroundings(NamedTuple):
-    """World, traffic, view and limits of a drive."""
+    """World, traffic, camera, view and limits of a drive."""
 
     route: Route = ()  # what /route shows
     signals: RoadSignals | None = None  # the traffic lights of the world; None where it has none
     road_users: ReadRoadUsers | None = None  # returns the newest; None: they have no topics
+    camera: ReadCamera | None = None  # returns the newest picture; None: there is no camera
     view: ExternalView = NO_VIEW  # what the topics of `external_view` show
     steering: SteeringLimit | None = None  # beyond it the arbiter refuses a command, and its sender is told so
 

@@ -5,8 +5,10 @@ not drift, so map and odom coincide.
 """
 
 from collections.abc import Callable, Sequence
+from math import radians
 from typing import Any, Final
 
+from simconsole.bridge.console.camera_topics import OPTICAL_FRAME, optical
 from simconsole.bridge.console.published_tick import MAP_FRAME, ONCE, OutputTopic, PublishedTick, quaternion
 from simconsole.bridge.console.signal_topics import SignalTopics
 from simconsole.bridge.link.localisation import Localisation, covariances
@@ -103,6 +105,7 @@ class Outputs:
         self._signals = SignalTopics(registry, signals)
         self._counts = counts
         self._odometry_frame = profile.odometry_frame
+        self._camera = profile.camera
         self._localisation = Localisation(profile.link)
         self._pose_covariance, self._twist_covariance = covariances(profile.link.localisation)
         self._shows_truth = self._localisation.is_perfect or profile.link.ground_truth
@@ -201,7 +204,13 @@ class Outputs:
 
     def _tf_static(self, tick: PublishedTick) -> Any:
         nowhere, unturned = self._types["Vector3"](), self._types["Quaternion"]()
-        return self._transform(tick, MAP_FRAME, self._odometry_frame, nowhere, unturned)
+        message = self._transform(tick, MAP_FRAME, self._odometry_frame, nowhere, unturned)
+        camera = self._camera
+        if camera is not None:
+            place = self._types["Vector3"](camera.x_m, camera.y_m, camera.z_m)
+            turn = self._types["Quaternion"](*optical(radians(camera.yaw_deg), radians(camera.pitch_deg)))
+            message.transforms += self._transform(tick, BASE_FRAME, OPTICAL_FRAME, place, turn).transforms
+        return message
 
     def _route(self, tick: PublishedTick) -> Any:
         types, header = self._types, tick.header(MAP_FRAME)

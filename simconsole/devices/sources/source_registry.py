@@ -5,6 +5,7 @@ from pathlib import Path
 from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.synthetic.keyboard import KeyboardSource, Keys
 from simconsole.devices.synthetic.script import ScriptSource
+from simconsole.devices.synthetic.steering_assistance import assistance_of
 from simconsole.profiles.device import CockpitProfile, ScriptProfile
 from simconsole.profiles.files.loader import find, load
 from simconsole.values.errors import ProfileError
@@ -42,5 +43,8 @@ def open_source(driver: str, cockpit: CockpitProfile, *, tick_hz: int, keys: Key
     if kind == "keyboard" and not name:
         if keys is None:
             raise ProfileError("driver: value keyboard: a drive with a window, which owns the keyboard")
-        return KeyboardSource(keys, cockpit_settings(cockpit, tick_hz), tick_hz=tick_hz)
+        assistance = assistance_of(cockpit.wheel)
+        if assistance is None:
+            raise ProfileError(f"{cockpit.title}: wheel.assistance: value missing: given, where keys steer")
+        return KeyboardSource(keys, cockpit_settings(cockpit, tick_hz), assistance, tick_hz=tick_hz)
     raise ProfileError(f"driver: value {driver!r}: {DRIVERS}")

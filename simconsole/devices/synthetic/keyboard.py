@@ -8,17 +8,13 @@ from typing import Final
 
 from simconsole.devices.calibration.cockpit_settings import CockpitSettings
 from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
+from simconsole.devices.synthetic.steering_assistance import Assistance, turned
 from simconsole.values.key_codes import Key
 from simconsole.values.signals import Button, DeviceSample
-from simconsole.values.units import RAD_PER_DEG
+from simconsole.values.state_vector import Snapshot
 
 Keys = Callable[[], tuple[int, int]]
 """Returns (mask of `Key` held now, its age in whole ticks)."""
-
-STEER_MAX_RAD: Final = 200.0 * RAD_PER_DEG
-STEER_RADPS: Final = 220.0 * RAD_PER_DEG
-CENTRE_RADPS: Final = 400.0 * RAD_PER_DEG
-"""The wheel centres faster than the hands turn it, as under the self-aligning torque."""
 
 # (rising, falling) share per s of each pedal: half a second for a full throttle, a second for the clutch to come up
 THROTTLE_PER_S: Final = (2.0, 5.0)
@@ -55,13 +51,19 @@ A slow frame, of a computer without a graphics card or under load, takes 0.1 s a
 class KeyboardSource:
     """Turns held keys into raw samples. A gear key also works the clutch for as long as it is held."""
 
-    def __init__(self, keys: Keys, settings: CockpitSettings, *, tick_hz: int) -> None:
-        """Take a source of keys; `settings` are those of a sequential cockpit (profile `keyboard`)."""
+    def __init__(self, keys: Keys, settings: CockpitSettings, assistance: Assistance, *, tick_hz: int) -> None:
+        """Take a source of keys; `settings` and `assistance` are those of a sequential cockpit (profile `keyboard`)."""
         self._keys = keys
         self._settings = settings
+        self._assistance = assistance
+        self._speed_mps = 0.0
         self._tick_s = 1.0 / tick_hz
         self._fresh_ticks = round(FRESH_S * tick_hz)
         self._intent = Intent()
+
+    def publish(self, snapshot: Snapshot) -> None:
+        """Note the car's speed: keys steer a fast car less."""
+        self._speed_mps = snapshot.vehicle.vx_mps
 
     def poll(self, tick: int) -> DeviceSample:
         """Return the cockpit one tick on. While the window is silent nothing moves; the growing age says so."""
@@ -84,7 +86,7 @@ class KeyboardSource:
             if held & key:
                 pressed |= int(button)
         return Intent(
-            hand_wheel_rad=_steered(now.hand_wheel_rad, held, step),
+            hand_wheel_rad=turned(now.hand_wheel_rad, _side(held), self._speed_mps, self._assistance, step),
             throttle=_pedal(now.throttle, held & Key.THROTTLE, THROTTLE_PER_S, step),
             brake=_pedal(now.brake, held & Key.BRAKE, BRAKE_PER_S, step),
             clutch=_pedal(now.clutch, clutch, CLUTCH_PER_S, step),
@@ -98,9 +100,5 @@ def _pedal(pressed: float, key: Key, per_s: tuple[float, float], step_s: float) 
     return min(1.0, pressed + rising * step_s) if key else max(0.0, pressed - falling * step_s)
 
 
-def _steered(angle_rad: float, held: Key, step_s: float) -> float:
-    side = bool(held & Key.STEER_LEFT) - bool(held & Key.STEER_RIGHT)
-    if side:
-        return min(STEER_MAX_RAD, max(-STEER_MAX_RAD, angle_rad + side * STEER_RADPS * step_s))
-    back = CENTRE_RADPS * step_s
-    return 0.0 if abs(angle_rad) <= back else angle_rad - (back if angle_rad > 0.0 else -back)
+def _side(held: Key) -> float:
+    return float(bool(held & Key.STEER_LEFT) - bool(held & Key.STEER_RIGHT))

@@ -12,7 +12,7 @@ from simconsole.hud.driver_view.scene import view_scene
 from simconsole.hud.gl.cockpit_picture import CockpitPicture
 from simconsole.hud.gl.context import renderer_name, windowless_context
 from simconsole.hud.layout import check_screen
-from simconsole.hud.screen import Screen
+from simconsole.hud.screen import Screen, fit
 from simconsole.hud.window.display_memory import DisplayMemory
 from simconsole.profiles.view import DriverViewProfile, HudProfile
 from simconsole.session.external_view import display_settings
@@ -54,7 +54,9 @@ class DrivePictures:
         context = windowless_context()
         self.renderer = renderer_name(context)
         scene = view_scene(job.drawing, job.limit_kmh, job.size)
-        self._picture = CockpitPicture(context, scene, profile, self._screen, job.steering_ratio)
+        self._picture = CockpitPicture(
+            context, scene, profile, fit(self._screen, wanted.width_px, wanted.height_px), job.steering_ratio
+        )
         self.is_cheap = self._picture.is_cheap
         self._target = context.simple_framebuffer((wanted.width_px, wanted.height_px), components=RGB)
         self._memory = DisplayMemory(display_settings(resolved))

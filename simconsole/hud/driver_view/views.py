@@ -33,6 +33,29 @@ class Look(NamedTuple):
     viewport: Viewport
     from_seat: bool  # the driver's own eyes: bonnet and hand wheel instead of the car's outside
     is_mirror: bool = False
+    shows_vehicle: bool = True
+
+
+def mounted(
+    shown: ShownVehicle,
+    place_m: tuple[float, float, float],
+    turn_rad: tuple[float, float],
+    horizontal_fov_rad: float,
+    aspect: float,
+) -> Look:
+    """Return what a camera on the vehicle sees, which does not see the vehicle itself.
+
+    Args:
+        shown: The vehicle now.
+        place_m: Of the camera, from base_link.
+        turn_rad: Its yaw and then its pitch from the vehicle's axes.
+        horizontal_fov_rad: Angle that it sees from side to side.
+        aspect: Width to height of its picture.
+    """
+    axes = rotation(shown.yaw_rad, shown.pitch_rad, shown.roll_rad)
+    eye = np.array((shown.x_m, shown.y_m, shown.z_m)) + axes @ np.array(place_m)
+    camera = Camera(eye, axes @ rotation(*turn_rad))
+    return Look(camera, Lens(horizontal_fov_rad, aspect), Viewport(), from_seat=True, shows_vehicle=False)
 
 
 def looks(

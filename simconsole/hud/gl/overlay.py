@@ -53,3 +53,7 @@ class Overlay:
                 target.scissor = (left, height - bottom, right - left, bottom - top)
                 self._whole.render(vertices=3)
         target.scissor = (0, 0, width, height)
+
+    def release(self) -> None:
+        """Give its memory on the card back."""
+        self._texture.release()

@@ -144,7 +144,7 @@ class Renderer:
         self._draw_runs(self._solids, self._scene.solids, view_projection, reach, camera)
         self._draw_others(shown, camera, reach)
         if look.from_seat:
-            if not look.is_mirror:
+            if look.shows_vehicle and not look.is_mirror:
                 self._draw_inside(shown, pose)
         else:
             self._draw_outside(shown, pose)

@@ -2,35 +2,51 @@
 
 import os
 import sys
+from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
+from simconsole.hud.aids import NO_AIDS, Aids
 from simconsole.hud.driver_view.motion import ShownVehicle, moved, shown_vehicle
 from simconsole.hud.driver_view.other_vehicles import at_moment
 from simconsole.hud.driver_view.scene import ViewScene
 from simconsole.hud.gl.cockpit_picture import CockpitPicture
 from simconsole.hud.gl.context import context_of_window, renderer_name
 from simconsole.hud.layout import check_screen
-from simconsole.hud.screen import Screen, screen_of
+from simconsole.hud.screen import fit, screen_of
 from simconsole.hud.view import HudSettings
 from simconsole.hud.window.display_memory import DisplayMemory
-from simconsole.hud.window.pygame_window import DriverWindow, Motion, Window
+from simconsole.hud.window.habits import Habits, habits_of
+from simconsole.hud.window.ports import DriverWindow, Motion
+from simconsole.hud.window.pygame_window import Window, dress_window, placed
 from simconsole.profiles.view import DriverViewProfile, HudProfile
-from simconsole.values.errors import ProfileError, WorkerError
+from simconsole.values.errors import WorkerError
 from simconsole.values.state_vector import Snapshot
+
+if TYPE_CHECKING:
+    import moderngl
 
 
 class ViewWindow:
     """One window with the road and the instruments, no larger than the display."""
 
-    def __init__(self, profile: HudProfile, view: DriverViewProfile, settings: HudSettings, scene: ViewScene) -> None:
-        """Open the window.
+    def __init__(
+        self,
+        profile: HudProfile,
+        view: DriverViewProfile,
+        settings: HudSettings,
+        scene: ViewScene,
+        habits: Habits | None = None,
+    ) -> None:
+        """Open the window, as `habits` say or as the profile does.
 
         Raises:
             ProfileError: the screen is too small or too far away to be read.
             WorkerError: no OpenGL window can be opened here.
         """
         self._memory = DisplayMemory(settings)
+        self._whole = screen_of(profile)
+        check_screen(self._whole, "hud")
         if sys.platform == "linux" and not any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY")):
             os.environ.setdefault("SDL_VIDEODRIVER", "offscreen")
         import pygame
@@ -38,31 +54,16 @@ class ViewWindow:
         try:
             pygame.display.quit()  # one that this process opened before, for joysticks, may be of a kind without OpenGL
             pygame.display.init()
-            self._screen = _fitting(screen_of(profile), pygame.display.get_desktop_sizes())
-            check_screen(self._screen, "hud")
-            for name, value in (
-                (pygame.GL_CONTEXT_MAJOR_VERSION, 3),
-                (pygame.GL_CONTEXT_MINOR_VERSION, 3),
-                (pygame.GL_CONTEXT_PROFILE_MASK, pygame.GL_CONTEXT_PROFILE_CORE),
-                (pygame.GL_DEPTH_SIZE, 24),
-            ):
-                pygame.display.gl_set_attribute(name, value)
-            flags = pygame.OPENGL | pygame.DOUBLEBUF | (pygame.FULLSCREEN if profile.fullscreen else 0)
-            pygame.display.set_mode((self._screen.width_px, self._screen.height_px), flags)
-            context = context_of_window()
-        except ProfileError:
-            pygame.display.quit()
-            raise
+            self._context = _open(profile, habits or habits_of(profile))
         except Exception as problem:  # noqa: BLE001 SDL's and moderngl's own, and glcontext's bare Exception
             pygame.display.quit()
             raise WorkerError(f"driver's view: no OpenGL window can be opened: {problem}") from None
-        pygame.display.set_caption("simconsole")
-        pygame.mouse.set_visible(not profile.fullscreen)
-        self._context = context
-        self._picture = CockpitPicture(context, scene, view, self._screen, settings.hand_wheel_per_road_wheel)
+        self._target = self._context.screen
+        fitted = fit(self._whole, *pygame.display.get_window_size())
+        self._picture = CockpitPicture(self._context, scene, view, fitted, settings.hand_wheel_per_road_wheel)
+        self.drawer = renderer_name(self._context)
         if self._picture.is_cheap:
-            drawer = renderer_name(context)
-            print(f"driver's view: {drawer} draws, no graphics card: no mirrors, no shadows", file=sys.stderr)
+            print(f"driver's view: {self.drawer} draws, no graphics card: no mirrors, no shadows", file=sys.stderr)
         self._shown = ShownVehicle()
 
     def frame(
@@ -72,6 +73,7 @@ class ViewWindow:
         can_up: bool | None = None,
         link: str | None = None,
         motion: Motion | None = None,
+        aids: Aids = NO_AIDS,
     ) -> None:
         """Draw one frame: the vehicle between the two newest ticks, everything else of the newest one."""
         import pygame
@@ -84,8 +86,15 @@ class ViewWindow:
                 self._shown = self._shown._replace(others=others)
         elif snapshot is not None:
             self._shown = shown_vehicle(snapshot)
-        self._picture.draw(self._context.screen, self._shown, content)
+        self._picture.draw(self._target, self._shown, content, aids)
         pygame.display.flip()
+
+    def resized(self, width_px: int, height_px: int) -> None:
+        """Draw as large as the window is now."""
+        self._target.use()
+        self._target.viewport = self._target.scissor = (0, 0, width_px, height_px)
+        self._target = context_of_window().screen  # moderngl measures a window by its scissor, once for each context
+        self._picture.resize(fit(self._whole, width_px, height_px))
 
     def close(self) -> None:
         """Close the window."""
@@ -95,14 +104,32 @@ class ViewWindow:
         pygame.display.quit()
 
 
-def _fitting(screen: Screen, displays: list[tuple[int, int]]) -> Screen:
-    """Return the largest screen of the same shape that fits the first display."""
-    width, height = displays[0] if displays else (screen.width_px, screen.height_px)
-    share = min(1.0, width / screen.width_px, height / screen.height_px)
-    return screen._replace(width_px=int(screen.width_px * share), height_px=int(screen.height_px * share))
+def _open(profile: HudProfile, habits: Habits) -> "moderngl.Context":
+    """Open an OpenGL window, in step with the display where that is wanted and can be had."""
+    import pygame
+
+    for name, value in (
+        (pygame.GL_CONTEXT_MAJOR_VERSION, 3),
+        (pygame.GL_CONTEXT_MINOR_VERSION, 3),
+        (pygame.GL_CONTEXT_PROFILE_MASK, pygame.GL_CONTEXT_PROFILE_CORE),
+        (pygame.GL_DEPTH_SIZE, 24),
+    ):
+        pygame.display.gl_set_attribute(name, value)
+    size, options = placed(profile, habits)
+    options["flags"] |= pygame.OPENGL | pygame.DOUBLEBUF
+    try:
+        pygame.display.set_mode(size, **options, vsync=int(habits.vsync))
+    except pygame.error:
+        if not habits.vsync:
+            raise
+        pygame.display.set_mode(size, **options)
+    dress_window(fullscreen=habits.fullscreen)
+    return context_of_window()
 
 
-def open_window(profile: HudProfile, settings: HudSettings, scene: ViewScene | None) -> DriverWindow:
+def open_window(
+    profile: HudProfile, settings: HudSettings, habits: Habits | None = None, *, scene: ViewScene | None
+) -> DriverWindow:
     """Return the road above the instruments; the cluster alone where none is asked for or no OpenGL is to be had.
 
     Raises:
@@ -110,9 +137,9 @@ def open_window(profile: HudProfile, settings: HudSettings, scene: ViewScene | N
         WorkerError: no window can be opened here.
     """
     if profile.view is None or scene is None:
-        return Window(profile, settings)
+        return Window(profile, settings, habits)
     try:
-        return ViewWindow(profile, profile.view, settings, scene)
+        return ViewWindow(profile, profile.view, settings, scene, habits)
     except WorkerError as problem:
         print(f"{problem}; the instruments are shown without the road", file=sys.stderr)
-        return Window(replace(profile, view=None), settings)
+        return Window(replace(profile, view=None), settings, habits)

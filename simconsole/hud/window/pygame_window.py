@@ -1,94 +1,58 @@
-"""The cluster in a window, in a process of its own: reads the newest snapshot, draws, reports the keys held.
-
-Everything from outside comes in as callables (`Ports`), so the loop runs the same on shared memory and in a test.
-"""
+"""The cluster in a window that the processor draws."""
 
 import os
 import sys
-import time
-from collections.abc import Callable
-from typing import Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING
 
+from simconsole.hud.aids import NO_AIDS, Aids, aid_panels
 from simconsole.hud.draw import DrawItem
-from simconsole.hud.key_names import KEY_CODES
 from simconsole.hud.layout import check_screen, layout, sample_views
-from simconsole.hud.screen import Screen, screen_of
+from simconsole.hud.screen import fit, screen_of, window_size
 from simconsole.hud.view import HudSettings
 from simconsole.hud.window.display_memory import DisplayMemory
+from simconsole.hud.window.habits import Habits, habits_of
+from simconsole.hud.window.ports import Motion
 from simconsole.hud.window.raster import Painter
 from simconsole.profiles.view import HudProfile
 from simconsole.values.errors import WorkerError
-from simconsole.values.key_codes import Key
 from simconsole.values.state_vector import Snapshot
-from simconsole.world.traffic.road_users import RoadUsersAt
 
-
-class Motion(NamedTuple):
-    """The two newest ticks, and how long ago the newer one was published."""
-
-    older: Snapshot
-    newer: Snapshot
-    age_s: float
-    road_users: RoadUsersAt | None = None  # of the newest step of traffic; None: there is none
-
-
-class Ports(NamedTuple):
-    """What the window needs of the world outside."""
-
-    latest: Callable[[], Snapshot | None]  # the newest tick, None before the first
-    report_keys: Callable[[int], None]  # takes a `Key` mask at every frame: its silence means the keyboard is gone
-    stop: Callable[[], bool]  # True ends the window
-    can_up: Callable[[], bool | None] = lambda: None  # whether the CAN bus is up; None where there is none
-    drawn: Callable[[], None] = lambda: None  # told after every frame
-    link: Callable[[], str | None] = lambda: None  # how the rosbridge link stands; None where there is no bridge
-    motion: Callable[[], Motion | None] = lambda: None  # for a picture that moves between two ticks
-
-
-class DriverWindow(Protocol):
-    """A window in front of the driver."""
-
-    def frame(
-        self,
-        snapshot: Snapshot | None,
-        now_s: float,
-        can_up: bool | None = None,
-        link: str | None = None,
-        motion: Motion | None = None,
-    ) -> None:
-        """Draw one frame. `can_up`, `link`: None without CAN bus or bridge."""
-
-    def close(self) -> None:
-        """Close the window."""
+if TYPE_CHECKING:
+    pass
 
 
 class Window:
     """One window with one cluster."""
 
-    def __init__(self, profile: HudProfile, settings: HudSettings) -> None:
-        """Open the window.
+    drawer = "processor, no OpenGL"
+
+    def __init__(self, profile: HudProfile, settings: HudSettings, habits: Habits | None = None) -> None:
+        """Open the window, as `habits` say or as the profile does.
 
         Raises:
             ProfileError: the screen is too small or too far away to be read.
             WorkerError: no window can be opened here.
         """
-        self._screen: Screen = screen_of(profile)
-        check_screen(self._screen, "hud")
+        self._whole = screen_of(profile)
+        check_screen(self._whole, "hud")
         self._memory = DisplayMemory(settings)
         self._painter = Painter()
         self._drawn: list[DrawItem] = []
         choose_display()
         import pygame
 
-        flags = pygame.FULLSCREEN | pygame.SCALED if profile.fullscreen else 0
         try:
             pygame.display.init()
-            self._surface = pygame.display.set_mode((self._screen.width_px, self._screen.height_px), flags)
+            if pygame.display.get_driver() == "x11":
+                # SDL would send each frame through OpenGL: 130 against 600 frames a second where a processor draws.
+                os.environ.setdefault("SDL_FRAMEBUFFER_ACCELERATION", "0")
+            size, options = placed(profile, habits or habits_of(profile))
+            pygame.display.set_mode(size, **options)
         except pygame.error as problem:
             raise WorkerError(f"hud: no window can be opened: {problem}") from None
-        pygame.display.set_caption("simconsole")
-        if profile.fullscreen:
-            pygame.mouse.set_visible(False)
+        dress_window(fullscreen=bool(options["flags"] & pygame.FULLSCREEN))
         # Never shown. They load the fonts, which takes longer than a keyboard may be silent before it counts as lost.
+        self._take_size()
         before: list[DrawItem] = []
         for sample in sample_views():
             after = layout(sample, self._screen)
@@ -102,21 +66,73 @@ class Window:
         can_up: bool | None = None,
         link: str | None = None,
         motion: Motion | None = None,
+        aids: Aids = NO_AIDS,
     ) -> None:
         """Draw one frame; one equal to the last costs nothing."""
         import pygame
 
         items = layout(self._memory.content(snapshot, now_s, can_up, link), self._screen)
+        for panel in aid_panels(aids, self._screen):
+            items += panel.items
         if items == self._drawn:
             return
-        pygame.display.update(self._painter.repaint(self._surface, self._drawn, items))
+        areas = self._painter.repaint(self._surface, self._drawn, items)
+        left, top = self._surface.get_offset()
+        pygame.display.update([area.move(left, top) for area in areas])
         self._drawn = items
+
+    def resized(self, width_px: int, height_px: int) -> None:
+        """Draw as large as the window is now."""
+        self._take_size()
 
     def close(self) -> None:
         """Close the window."""
         import pygame
 
         pygame.display.quit()
+
+    def _take_size(self) -> None:
+        import pygame
+
+        whole = pygame.display.get_surface()
+        assert whole is not None
+        fitted = fit(self._whole, *whole.get_size())
+        self._screen, self._drawn = fitted.screen, []
+        whole.fill((0, 0, 0))
+        pygame.display.flip()
+        place = (fitted.left_px, fitted.top_px, fitted.screen.width_px, fitted.screen.height_px)
+        self._surface: pygame.Surface = whole.subsurface(place)
+
+
+def open_cluster(profile: HudProfile, settings: HudSettings, habits: Habits) -> Window:
+    """Open the cluster alone.
+
+    Raises:
+        ProfileError: the screen is too small or too far away to be read.
+        WorkerError: no window can be opened here.
+    """
+    return Window(profile, settings, habits)
+
+
+def placed(profile: HudProfile, habits: Habits) -> "tuple[tuple[int, int], dict[str, int]]":
+    """Return the size of a window and how to open it: never larger than its display, and on one that there is."""
+    import pygame
+
+    displays = pygame.display.get_desktop_sizes()
+    display = habits.display if habits.display < len(displays) else 0
+    width, height = displays[display] if displays else (profile.width_px, profile.height_px)
+    if habits.fullscreen:
+        return (width, height), {"flags": pygame.FULLSCREEN, "display": display}
+    size = habits.size_px or window_size(screen_of(profile), (width, height))
+    return (min(size[0], width), min(size[1], height)), {"flags": pygame.RESIZABLE, "display": display}
+
+
+def dress_window(*, fullscreen: bool) -> None:
+    """Name the open window, and hide the pointer where it only disturbs."""
+    import pygame
+
+    pygame.display.set_caption("simconsole")
+    pygame.mouse.set_visible(not fullscreen)
 
 
 def choose_display() -> None:
@@ -127,52 +143,3 @@ def choose_display() -> None:
     reachable = ("DISPLAY", "WAYLAND_DISPLAY", "XDG_RUNTIME_DIR")
     if sys.platform == "linux" and not any(os.environ.get(name) for name in reachable):
         os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
-
-
-def held_keys() -> int:
-    """Return the mask of all keys held now; call after the events were pumped."""
-    import pygame
-
-    pressed = pygame.key.get_pressed()
-    mask = 0
-    for name, key in KEY_CODES.items():
-        if pressed[getattr(pygame, name)]:
-            mask |= key
-    return mask
-
-
-def _asks_for_end(event: Any) -> bool:
-    import pygame
-
-    if event.type == pygame.KEYDOWN:
-        return bool(event.key == pygame.K_END)
-    return bool(event.type == pygame.QUIT)
-
-
-def run(
-    ports: Ports,
-    profile: HudProfile,
-    settings: HudSettings,
-    opened: Callable[[HudProfile, HudSettings], DriverWindow] = Window,
-) -> None:
-    """Show what `opened` opens, the cluster alone if nothing else is said, until `ports.stop` says so.
-
-    Closing the window, or its key for that, asks for the end of the drive as a key held from then on: whoever drives
-    ends it and stops this window with everything else. A window that ended by itself would be opened again.
-    """
-    window = opened(profile, settings)
-    import pygame
-
-    clock = pygame.time.Clock()
-    end = Key(0)
-    try:
-        while not ports.stop():
-            if any(_asks_for_end(event) for event in pygame.event.get()):
-                end = Key.END
-            ports.report_keys(held_keys() | end)
-            window.frame(ports.latest(), time.monotonic(), ports.can_up(), ports.link(), ports.motion())
-            ports.drawn()
-            clock.tick(profile.rate_hz)
-    finally:
-        ports.report_keys(0)
-        window.close()

@@ -6,6 +6,7 @@ from typing import Any, Final, NamedTuple
 import msgspec
 import numpy as np
 
+from simconsole.bridge.console.camera_topics import CAMERA_TOPICS, CameraTopics
 from simconsole.bridge.console.command_decoder import CommandDecoder
 from simconsole.bridge.console.command_messages import CommandMessages
 from simconsole.bridge.console.input_slots import BridgeInputs
@@ -31,7 +32,7 @@ from simconsole.world.traffic.road_users import NOBODY, RoadUsersAt
 OnTick = Callable[[int], None]
 """Told, now and then, the last tick that was written."""
 
-UNRECORDED: Final = (BRIDGE, *VIEW_TOPICS)
+UNRECORDED: Final = (BRIDGE, *VIEW_TOPICS, *CAMERA_TOPICS)
 """Topics whose content is not in the log: counters of connections, and a view that is made from the world."""
 
 
@@ -71,6 +72,8 @@ class DriveTopics:
             profile = msgspec.structs.replace(profile, rates_hz={**profile.rates_hz, ODOMETRY: odometry_hz})
         self._outputs = Outputs(self.registry, profile, route=route, signals=signals)
         outputs = (*view_topics(self.registry, profile), *self._outputs.topics())
+        if profile.camera is not None:
+            outputs = (*outputs, *CameraTopics(self.registry, profile.camera, lambda: None).topics())
         commands = CommandDecoder(BridgeInputs(), profile).topics()
         self._road_users = RoadUsersAt(0, NOBODY)
         if session.environment.traffic is not None:

@@ -158,6 +158,11 @@ def test_keyboard_needs_its_keys(t500: CockpitProfile) -> None:
         open_source("keyboard", t500, tick_hz=HZ)
 
 
+def test_keys_steer_no_cockpit_without_assistance(t500: CockpitProfile) -> None:
+    with pytest.raises(ProfileError, match=r"wheel\.assistance"):
+        open_source("keyboard", t500, tick_hz=HZ, keys=lambda: (0, 0))
+
+
 def test_real_devices_that_are_not_there_are_named(sdl: None, t500: CockpitProfile) -> None:
     with pytest.raises(DeviceNotFound, match="044f:b65e"):
         open_source("sdl", t500, tick_hz=HZ)

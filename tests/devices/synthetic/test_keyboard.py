@@ -2,14 +2,20 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from simconsole.devices.calibration.cockpit_settings import CockpitSettings
-from simconsole.devices.synthetic.keyboard import STEER_MAX_RAD, KeyboardSource
+from simconsole.devices.synthetic.keyboard import KeyboardSource
+from simconsole.devices.synthetic.steering_assistance import Assistance, limit_rad
 from simconsole.values.key_codes import Key
 from simconsole.values.signals import Button, DriverInput
+from simconsole.values.state_vector import LAYOUT, PLATFORM_AT, Snapshot
+from simconsole.values.units import RAD_PER_DEG
 from simconsole.values.validity import LIVE, STALE
 from tests.devices.calibration_run import CalibrationRun
+
+ASSISTANCE = Assistance(lock_rad=450.0 * RAD_PER_DEG, half_at_mps=5.6, full_s=1.0)
 
 
 class Board:
@@ -18,7 +24,7 @@ class Board:
     def __init__(self, settings: CockpitSettings) -> None:
         self.held = Key(0)
         self.age = 0
-        self.source = KeyboardSource(lambda: (int(self.held), self.age), settings, tick_hz=250)
+        self.source = KeyboardSource(lambda: (int(self.held), self.age), settings, ASSISTANCE, tick_hz=250)
         self.calibration = CalibrationRun(settings)
         self.tick = 0
 
@@ -45,10 +51,17 @@ def test_pedals_ramp_up_and_down(board: Board) -> None:
 
 
 def test_left_is_left_bounded_and_springs_back(board: Board) -> None:
-    assert board.hold(Key.STEER_LEFT, 3.0).hand_wheel_rad == pytest.approx(STEER_MAX_RAD)
+    assert board.hold(Key.STEER_LEFT, 3.0).hand_wheel_rad == pytest.approx(ASSISTANCE.lock_rad)
     assert board.hold(Key.STEER_LEFT | Key.STEER_RIGHT, 1.0).hand_wheel_rad == pytest.approx(0.0)
-    assert board.hold(Key.STEER_RIGHT, 0.2).hand_wheel_rad == pytest.approx(-math.radians(44.0), abs=0.02)
+    assert board.hold(Key.STEER_RIGHT, 0.2).hand_wheel_rad == pytest.approx(-math.radians(90.0), abs=0.04)
     assert board.hold(Key(0), 0.5).hand_wheel_rad == pytest.approx(0.0)
+
+
+def test_a_fast_car_is_steered_less(board: Board) -> None:
+    vector = np.zeros(PLATFORM_AT)
+    vector[LAYOUT.vehicle.start + LAYOUT.vehicle.names.index("vx_mps")] = 25.0
+    board.source.publish(Snapshot(1, 250, vector))
+    assert board.hold(Key.STEER_RIGHT, 3.0).hand_wheel_rad == pytest.approx(-limit_rad(25.0, ASSISTANCE))
 
 
 def test_gear_key_steps_once_and_works_the_clutch(board: Board) -> None:
@@ -88,8 +101,8 @@ def test_a_slow_frame_loses_no_key(board: Board) -> None:
 
 def test_a_window_slower_than_the_tick_does_not_slow_the_hands(keyboard_settings: CockpitSettings) -> None:
     """Keys come at 60 frames a second, ticks at 250: a pedal rises by the clock, not by the frame."""
-    framed = KeyboardSource(lambda: (int(Key.THROTTLE), next(ages)), keyboard_settings, tick_hz=250)
-    every_tick = KeyboardSource(lambda: (int(Key.THROTTLE), 0), keyboard_settings, tick_hz=250)
+    framed = KeyboardSource(lambda: (int(Key.THROTTLE), next(ages)), keyboard_settings, ASSISTANCE, tick_hz=250)
+    every_tick = KeyboardSource(lambda: (int(Key.THROTTLE), 0), keyboard_settings, ASSISTANCE, tick_hz=250)
     ages = iter(tick % 4 for tick in range(60))
     for tick in range(60):
         assert framed.poll(tick).throttle_axis == every_tick.poll(tick).throttle_axis

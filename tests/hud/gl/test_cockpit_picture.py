@@ -8,7 +8,7 @@ from simconsole.hud.driver_view.vehicle_body import Size
 from simconsole.hud.gl.cockpit_picture import CockpitPicture
 from simconsole.hud.gl.context import is_software
 from simconsole.hud.layout import panels_over_view
-from simconsole.hud.screen import Screen
+from simconsole.hud.screen import Screen, fit
 from simconsole.hud.view import HudView
 from simconsole.profiles.view import DriverViewProfile
 from simconsole.values.labels import mode_label
@@ -25,7 +25,9 @@ def screen_of_size(width_px: int, height_px: int) -> Screen:
 
 
 def cockpit(screen: Screen, profile: DriverViewProfile | None = None) -> CockpitPicture:
-    return CockpitPicture(context(), SCENE, profile or DriverViewProfile(), screen, 15.0)
+    return CockpitPicture(
+        context(), SCENE, profile or DriverViewProfile(), fit(screen, screen.width_px, screen.height_px), 15.0
+    )
 
 
 def shown(picture: CockpitPicture, screen: Screen, view: HudView) -> Pixels:

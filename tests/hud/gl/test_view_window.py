@@ -4,15 +4,18 @@ from functools import partial
 import numpy as np
 import pygame
 import pytest
+from msgspec.structs import replace
 
+from simconsole.hud.aids import Aids
 from simconsole.hud.driver_view.scene import view_scene
 from simconsole.hud.driver_view.vehicle_body import Size
-from simconsole.hud.gl import view_window
 from simconsole.hud.gl.context import is_software, renderer_name
 from simconsole.hud.gl.view_window import ViewWindow, open_window
-from simconsole.hud.screen import Screen
 from simconsole.hud.view import HudSettings
-from simconsole.hud.window.pygame_window import Motion, Ports, Window, run
+from simconsole.hud.window.habits import Habits
+from simconsole.hud.window.ports import Motion, Ports
+from simconsole.hud.window.pygame_window import Window
+from simconsole.hud.window.window_loop import run
 from simconsole.profiles.view import DriverViewProfile, HudProfile
 from simconsole.values.key_codes import Key
 from simconsole.values.state_vector import LAYOUT, PLATFORM_AT, Snapshot
@@ -36,7 +39,7 @@ def snapshot(tick: int, x_m: float = 0.0) -> Snapshot:
 
 
 def opened() -> ViewWindow:
-    window = open_window(PROFILE, HudSettings(), SCENE)
+    window = open_window(PROFILE, HudSettings(), scene=SCENE)
     assert isinstance(window, ViewWindow)
     return window
 
@@ -104,16 +107,37 @@ def test_without_opengl_the_instruments_are_there_and_why_is_said(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
-    window = open_window(PROFILE, HudSettings(), SCENE)
+    window = open_window(PROFILE, HudSettings(), scene=SCENE)
     assert isinstance(window, Window)
     window.frame(snapshot(1), 1.0)
     window.close()
     assert "no OpenGL window can be opened" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(
-    ("display", "size"), [((1366, 768), (1024, 768)), ((1000, 2000), (1000, 750)), ((9000, 9000), (1400, 1050))]
-)
-def test_the_window_is_never_larger_than_the_display(display: tuple[int, int], size: tuple[int, int]) -> None:
-    fitting = view_window._fitting(Screen(1400, 1050, 1.6, 2.2, has_view=True), [display])
-    assert (fitting.width_px, fitting.height_px) == size
+def test_a_window_of_another_shape_has_bars_and_the_same_picture() -> None:
+    """Three screens in one picture keep their shape; what is beside them is black."""
+    triple = replace(PROFILE, width_px=1920, height_px=480, screen_width_m=4.8)
+    window = open_window(triple, HudSettings(), Habits(size_px=(800, 480)), scene=SCENE)
+    assert isinstance(window, ViewWindow)
+    for width, height in ((800, 480), (640, 300)):
+        window.resized(width, height)
+        window.frame(snapshot(1), 1.0)
+        picture = np.frombuffer(window._target.read(components=3), np.uint8).reshape(height, width, 3)
+        bar = (height - width * 480 // 1920) // 2
+        assert not picture[: bar - 1].any()
+        assert not picture[height - bar + 1 :].any()
+        assert picture[height // 2].any(axis=1).all()
+    window.close()
+
+
+def test_help_is_laid_over_the_road() -> None:
+    rows = (("Up, W", "throttle"), ("F1", "this help"))
+    window = open_window(PROFILE, HudSettings(), scene=SCENE)
+    assert isinstance(window, ViewWindow)
+    window.frame(snapshot(1), 1.0)
+    plain = seen(window)
+    window.frame(snapshot(1), 1.0, aids=Aids(help=rows, times=("60 frames/s",)))
+    assert seen(window) != plain
+    window.frame(snapshot(1), 1.0)
+    assert seen(window) == plain
+    window.close()

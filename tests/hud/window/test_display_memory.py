@@ -1,4 +1,5 @@
 import numpy as np
+import pytest
 
 from simconsole.hud.view import HudSettings
 from simconsole.hud.window.display_memory import DisplayMemory, Freshness
@@ -28,3 +29,11 @@ def test_nothing_is_shown_as_stale_before_the_first_tick_and_after_half_a_second
 def test_bus_and_link_are_shown_as_told() -> None:
     shown = DisplayMemory(HudSettings()).content(snapshot(1), 0.0, True, "down")
     assert (shown.can_up, shown.link) == (True, "down")
+
+
+def test_a_frozen_tick_ages_and_a_new_one_is_fresh() -> None:
+    freshness = Freshness()
+    assert freshness.age_s(7, 100.0) == 0.0
+    assert freshness.age_s(7, 100.6) == pytest.approx(0.6)
+    assert freshness.age_s(8, 100.7) == 0.0
+    assert freshness.age_s(3, 100.8) == 0.0  # a drive that starts anew

@@ -1,21 +1,17 @@
 import os
 import subprocess
 import sys
-from collections import defaultdict
 from collections.abc import Iterator
 
 import numpy as np
 import pygame
 import pytest
 
-from simconsole.hud.key_names import KEY_CODES
+from simconsole.hud.draw import DrawItem
 from simconsole.hud.view import HudSettings
-from simconsole.hud.window import pygame_window as window
-from simconsole.hud.window.display_memory import Freshness
-from simconsole.hud.window.pygame_window import Ports, Window, choose_display, run
+from simconsole.hud.window.pygame_window import Window, choose_display
 from simconsole.profiles.view import HudProfile
 from simconsole.values.errors import ProfileError
-from simconsole.values.key_codes import Key
 from simconsole.values.state_vector import PLATFORM_AT, Snapshot
 
 PROFILE = HudProfile(width_px=700, height_px=525, screen_width_m=1.6, eye_distance_m=1.1, rate_hz=240)
@@ -32,23 +28,8 @@ def snapshot(tick: int) -> Snapshot:
     return Snapshot(tick, 250, np.zeros(PLATFORM_AT))
 
 
-def stop_after(frames: int) -> Iterator[bool]:
-    yield from (False for _ in range(frames))
-    while True:
-        yield True
-
-
 def picture(opened: Window) -> bytes:
     return pygame.image.tobytes(opened._surface, "RGB")
-
-
-def test_the_window_runs_reports_keys_and_ends() -> None:
-    keys: list[int] = []
-    ticks, ends = iter(range(100)), stop_after(5)
-    run(Ports(lambda: snapshot(next(ticks)), keys.append, lambda: next(ends)), PROFILE, HudSettings())
-    assert keys == [0] * 6  # five frames, and the release at the end
-    assert next(ticks) == 5
-    assert not pygame.display.get_init()
 
 
 def test_an_open_window_has_its_fonts() -> None:
@@ -57,59 +38,6 @@ def test_an_open_window_has_its_fonts() -> None:
     loaded = set(opened._painter._fonts)
     opened.frame(snapshot(1), 1.0)
     assert set(opened._painter._fonts) == loaded != set()
-
-
-@pytest.mark.parametrize(
-    ("event", "asks"),
-    [
-        (pygame.event.Event(pygame.QUIT), True),
-        (pygame.event.Event(pygame.KEYDOWN, key=pygame.K_END), True),
-        (pygame.event.Event(pygame.KEYDOWN, key=pygame.K_HOME), False),
-    ],
-)
-def test_closing_the_window_asks_for_the_end_until_it_comes(event: pygame.event.Event, asks: bool) -> None:
-    """A window that ended by itself was opened again by the supervisor."""
-    posted = iter([True])
-
-    def latest() -> None:
-        if next(posted, False):
-            pygame.event.post(event)
-
-    keys: list[int] = []
-    ends = stop_after(5)
-    run(Ports(latest, keys.append, lambda: next(ends)), PROFILE, HudSettings())
-    assert keys == [0, *[int(Key.END) if asks else 0] * 4, 0]
-
-
-def test_keys_are_released_when_the_ring_breaks() -> None:
-    keys: list[int] = []
-
-    def broken() -> Snapshot:
-        raise OSError
-
-    with pytest.raises(OSError):  # noqa: PT011 - any failure of the ring will do
-        run(Ports(broken, keys.append, lambda: False), PROFILE, HudSettings())
-    assert keys[-1] == 0
-    assert not pygame.display.get_init()
-
-
-def test_held_keys_become_one_mask(monkeypatch: pytest.MonkeyPatch) -> None:
-    held = defaultdict(bool, {pygame.K_LEFT: True, pygame.K_w: True, pygame.K_ESCAPE: True, pygame.K_z: True})
-    monkeypatch.setattr(pygame.key, "get_pressed", lambda: held)
-    assert window.held_keys() == Key.STEER_LEFT | Key.THROTTLE | Key.EMERGENCY_STOP
-
-
-def test_every_meaning_has_a_key_and_fits_a_float() -> None:
-    assert set(KEY_CODES.values()) == set(Key)
-    assert int(float(sum(Key))) == sum(Key)
-
-
-def test_a_frozen_tick_ages_and_a_new_one_is_fresh() -> None:
-    freshness = Freshness()
-    assert freshness.age_s(7, 100.0) == 0.0
-    assert freshness.age_s(7, 100.6) == pytest.approx(0.6)
-    assert freshness.age_s(8, 100.7) == 0.0
-    assert freshness.age_s(3, 100.8) == 0.0  # a drive that starts anew
 
 
 def test_a_ring_that_freezes_shows_no_data_and_recovers() -> None:
@@ -130,8 +58,13 @@ def test_an_equal_picture_is_not_drawn_again(monkeypatch: pytest.MonkeyPatch) ->
     opened = Window(PROFILE, HudSettings())
     opened.frame(snapshot(1), 1.0)
     painted: list[int] = []
+
+    def repaint(surface: pygame.Surface, before: list[DrawItem], after: list[DrawItem]) -> list[pygame.Rect]:
+        painted.append(len(after))
+        return []
+
     monkeypatch.setattr(pygame.display, "update", lambda areas: None)
-    monkeypatch.setattr(opened._painter, "repaint", lambda surface, before, after: painted.append(len(after)))
+    monkeypatch.setattr(opened._painter, "repaint", repaint)
     opened.frame(snapshot(2), 1.1)
     assert painted == []
     opened.frame(None, 1.2)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from simconsole.bridge.messages.cdr import deserialize
-from simconsole.profiles.bridge import BridgeProfile
+from simconsole.profiles.bridge import BridgeProfile, CameraProfile
 from simconsole.profiles.session import SessionProfile
 from simconsole.recording.exports.drive_topics import DriveTopics, TopicMessage, empty_vector, snapshots
 from simconsole.recording.framing import Message
@@ -42,6 +42,12 @@ def test_a_view_of_another_program_is_not_exported_though_it_may_be_rated_and_re
     session = with_bridge(external_view=True, rates_hz={"/view/poses": 10.0}, rename={"/view/hud": "/hud"})
     found = counts(DriveTopics(session).messages(recording))
     assert {"/view/scene", "/view/poses", "/view/hud", "/hud"}.isdisjoint(found)
+    assert found == counts(DriveTopics(with_bridge()).messages(recording))
+
+
+def test_pictures_of_a_camera_are_not_exported_but_where_it_is(recording: MadeRecording) -> None:
+    session = with_bridge(camera=CameraProfile(rate_hz=5.0), rename={"/camera/camera_info": "/info"})
+    found = counts(DriveTopics(session).messages(recording))
     assert found == counts(DriveTopics(with_bridge()).messages(recording))
 
 

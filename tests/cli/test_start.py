@@ -1,0 +1,134 @@
+"""Without the wheel a person is asked: on a display by a page, in a terminal by lines; nobody is as before."""
+
+import io
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from simconsole.cli.start import ask, chosen, offered
+from simconsole.recording.bundles.bundle import LOG, open_bundle
+from simconsole.recording.bundles.replay_bundle import recorded_session
+from simconsole.session.resolution import load_session, resolve
+from tests.hud.window.x_server import hands, x_server
+from tests.patience import wait_until
+
+SEATED = load_session("seated")
+NO_DISPLAY = ("DISPLAY", "WAYLAND_DISPLAY")
+
+
+SESSION = """\
+schema: 1
+title: To be driven by keys
+environment: {world: urban}
+scenario: {vehicle: hatchback}
+outputs: {hud: {width_px: 800, height_px: 600}, scene: null, report: false}
+devices: {driver: sdl, cockpit: t500rs_th8rs}
+mode: {pacing: realtime}
+"""
+
+
+@pytest.fixture
+def no_display(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in NO_DISPLAY:
+        monkeypatch.delenv(name, raising=False)
+
+
+def test_the_page_says_what_is_connected_and_what_can_be_driven(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("DISPLAY", ":0")
+    monkeypatch.delenv("SDL_VIDEODRIVER", raising=False)
+    found = offered(SEATED, "no wheel")
+    by_name = dict(zip(found.cockpits, found.page.cockpits, strict=True))
+    assert set(by_name) == {"keyboard", "gamepad", "g29", "t300rs_th8a", "t500rs_th8rs", "virtual"}
+    assert found.cockpits[0] == "keyboard"
+    assert by_name["keyboard"].possible
+    assert (by_name["g29"].note, by_name["g29"].possible) == ("not connected", False)
+    assert {"", "urban", "country", "motorway"} <= set(found.places)
+    assert len(found.places) == len(found.page.places)
+
+
+def test_keys_need_a_display(no_display: None) -> None:
+    found = offered(SEATED, "")
+    keyboard = found.page.cockpits[found.cockpits.index("keyboard")]
+    assert (keyboard.note, keyboard.possible) == ("needs a display", False)
+
+
+@pytest.mark.parametrize("world", ["", "country"])
+@pytest.mark.parametrize("cockpit", ["keyboard", "gamepad", "virtual"])
+def test_every_choice_is_a_session_that_resolves(cockpit: str, world: str) -> None:
+    session = chosen(SEATED, cockpit, world)
+    resolve(session)
+    assert session.environment.world == (world or SEATED.environment.world)
+    assert session.devices.driver == {"gamepad": "sdl"}.get(cockpit, cockpit)
+    assert session.features.control.manual_automatic == (cockpit == "keyboard")
+
+
+@pytest.mark.parametrize(
+    ("typed", "driver", "world"),
+    [
+        ("\n\n", "virtual", "urban"),
+        ("6\n2\n", "virtual", "country"),
+        ("1\n", None, None),
+        ("q\n", None, None),
+        ("", None, None),
+    ],
+)
+def test_a_terminal_is_asked_line_by_line(
+    typed: str,
+    driver: str | None,
+    world: str | None,
+    no_display: None,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setattr(sys, "stdin", io.StringIO(typed))
+    session = ask(SEATED, "no wheel")
+    assert (session and session.devices.driver, session and session.environment.world) == (driver, world)
+    told = capsys.readouterr().err
+    assert "no wheel" in told
+    assert " -  Keyboard (needs a display)" in told
+
+
+def test_without_a_wheel_a_display_offers_the_keyboard_and_drives(tmp_path: Path) -> None:
+    """The whole way, by a person's hands on a real X server: Return, into gear, the throttle held, End."""
+    bundle = tmp_path / "bundle"
+    session = tmp_path / "session.yaml"
+    session.write_text(SESSION)
+    with x_server() as display:
+        kept = {name: value for name, value in os.environ.items() if name not in (*NO_DISPLAY, "SDL_VIDEODRIVER")}
+        environment = {**kept, "DISPLAY": display, "XDG_STATE_HOME": str(tmp_path)}
+        command = [sys.executable, "-m", "simconsole", "drive", str(session), "--out", str(bundle), "--no-pack"]
+        program = subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True)
+        try:
+            page = window(display)
+            hands(display, "windowfocus", "--sync", page, "key", "Return")
+            recorded(bundle, 0)
+            driving = window(display)
+            hands(display, "windowfocus", "--sync", driving)
+            recorded(bundle, 1_500_000)  # the keyboard is heard by then: a key held from the start on is no press
+            hands(display, "key", "e", "keydown", "w")
+            recorded(bundle, 4_500_000)
+            hands(display, "keyup", "w", "key", "End")
+            _, told = program.communicate(timeout=60.0)
+        finally:
+            program.kill()
+    assert program.returncode == 0, told
+    driven = open_bundle(bundle)
+    assert recorded_session(driven).session.devices.driver == "keyboard"
+    assert driven.log.table().column("driver.throttle").max() == 1.0
+    assert driven.log.table().column("vehicle.distance_m")[-1] > 1.0
+
+
+def recorded(bundle: Path, size_bytes: int) -> None:
+    """Wait until the drive's log is longer than it is now by as much."""
+    log = bundle / LOG
+    wait_until(log.exists, "a log")
+    before = log.stat().st_size
+    wait_until(lambda: log.stat().st_size > before + size_bytes, f"{size_bytes} bytes more of log")
+
+
+def window(display: str) -> str:
+    """Wait for a window; return it."""
+    return hands(display, "search", "--sync", "--onlyvisible", "--class", ".").split()[-1]

@@ -1,0 +1,34 @@
+"""A real X server without a screen (Xvfb), and a person's hands on its keyboard (xdotool)."""
+
+import os
+import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Final
+
+SIZE: Final = (1366, 768)
+
+
+@contextmanager
+def x_server(size: tuple[int, int] = SIZE) -> Iterator[str]:
+    """Run a server with one display of this size; yield its name for DISPLAY."""
+    reading, writing = os.pipe()
+    command = ["Xvfb", "-displayfd", str(writing), "-screen", "0", f"{size[0]}x{size[1]}x24", "-nolisten", "tcp"]
+    server = subprocess.Popen(command, pass_fds=[writing], stderr=subprocess.DEVNULL)
+    os.close(writing)
+    try:
+        with os.fdopen(reading) as file:
+            number = file.readline().strip()
+        assert number, "Xvfb did not start"
+        yield f":{number}"
+    finally:
+        server.terminate()
+        server.wait(20.0)
+
+
+def hands(display: str, *words: str) -> str:
+    """Do something at the keyboard, as xdotool calls it; return what it prints."""
+    environment = {**os.environ, "DISPLAY": display}
+    return subprocess.run(
+        ["xdotool", *words], env=environment, capture_output=True, text=True, check=True, timeout=20.0
+    ).stdout
