@@ -8,6 +8,7 @@ room behind the junction. So two vehicles of traffic never meet inside one.
 from typing import Final, NamedTuple
 
 from simconsole.values.kernels import Row, kernel
+from simconsole.world.people.yielding import Crossed
 from simconsole.world.traffic.columns import (
     ALONG,
     CONNECTIONS,
@@ -49,6 +50,8 @@ class Turn(NamedTuple):
     lines: Row  # float64 [vehicles, LINE]
     granted: Row  # int64 [connections]
     lights: Row  # int64 [connections]
+    kept_free: Row  # int64 [connections]: 1: for somebody who is not traffic and has waited long
+    crossed: Crossed
 
 
 @kernel

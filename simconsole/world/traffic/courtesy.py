@@ -1,0 +1,35 @@
+"""Who has waited long for others is let in: nobody waits at a junction without end."""
+
+from typing import Final
+
+from simconsole.world.roads.road_map import Array
+from simconsole.world.traffic import columns as at
+from simconsole.world.traffic.junctions import GIVE_WAY
+from simconsole.world.traffic.network import Network, Numbers
+
+WAITED_S: Final = 12.0
+"""After so long others keep the ways of who waits free, in turns: nobody knows whether they want to drive on at all."""
+KEPT_S: Final = 8.0
+_STANDS_MPS: Final = 0.3
+_AT_LINE_M: Final = 6.0
+
+
+class Courtesy:
+    """Watches a vehicle that is not traffic, and keeps its ways over the next junction free when it has waited."""
+
+    def __init__(self, net: Network, lights: Numbers, kept_free: Numbers) -> None:
+        """Write 1 into `kept_free` [connections] for each way that is kept free, else 0; `lights` may close one."""
+        self._net, self._lights, self._kept_free = net, lights, kept_free
+        self._stood_s = 0.0
+
+    def step(self, box: Array, period_s: float) -> None:
+        """Look at the vehicle's box, float64 [BOX], once in a period."""
+        self._kept_free[:] = 0
+        lane = int(box[at.LANE])
+        waits = box[at.LENGTH] > 0.0 and lane >= 0 and abs(box[at.SPEED]) < _STANDS_MPS
+        if waits:
+            left_m = self._net.lengths_m[lane] - box[at.ALONG] - 0.5 * box[at.LENGTH]
+            waits = bool(left_m < _AT_LINE_M)
+        self._stood_s = self._stood_s + period_s if waits else 0.0
+        if self._stood_s % (WAITED_S + KEPT_S) >= WAITED_S:
+            self._kept_free[(self._net.origins == lane) & (self._lights <= GIVE_WAY)] = 1
