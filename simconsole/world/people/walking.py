@@ -88,10 +88,10 @@ def _walk(ways: Footways, person: Row, crowd: Crowd, others: Others, period_s: f
     if s > ways.ons_m[way] - 0.5 * SIZE_M - 0.3:
         for place in range(ways.strip_starts[way], ways.strip_starts[way + 1]):
             before = ways.lows_m[place] - 0.5 * SIZE_M - _BEFORE_M
-            if s <= before + 0.05 and before - s < stopping + 0.3:
-                if not _free(ways, ways.strips[place], others, 0.0, _HARDEST_MPS2, 0.0):
-                    stop = before
-                    break
+            near = s <= before + 0.05 and before - s < stopping + 0.3
+            if near and not _free(ways, ways.strips[place], others, 0.0, _HARDEST_MPS2, 0.0):
+                stop = before
+                break
     wanted = person[PACE]
     left = stop - s
     if left < 0.0:
