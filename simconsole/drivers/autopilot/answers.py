@@ -39,7 +39,7 @@ class Answers:
         others: Others | None = None,
         yields: Yields | None = None,
     ) -> None:
-        """Ask `tracker`, tell people by `say`, obey `lights`, keep behind `others` and let them pass as `yields` says."""
+        """Ask `tracker`, tell people by `say`, obey `lights` and `yields`, and keep behind `others`."""
         self._tracker, self._say, self._lights, self._others, self._yields = tracker, say, lights, others, yields
         self.statistics = TrackingStatistics()
         self._withholds = False
