@@ -34,7 +34,7 @@ _AT_KERB_M: Final = 0.06  # nearer to the carriageway than who waits
 _CLEAR_M: Final = 0.5
 _BESIDE_M: Final = 1.5  # further from a lane's centre line nobody is on it
 _ALIGNED: Final = 0.6
-_SPEEDS_UP_MPS2: Final = 1.0
+_SETS_OFF_MPS: Final = 2.5  # who is slower than this may speed up
 _INSIDE_S: Final = 3.0  # who is inside the junction and reaches the common place later than this is passed
 _SLOWEST_MPS: Final = 3.0
 _STOPS: Final = (
@@ -161,7 +161,7 @@ def _vehicle_first(
         if held or not (goes_first or inside):
             continue
         left = float(way.to_m[place]) - half
-        comes_s = (np.sqrt(speed * speed + 2.0 * _SPEEDS_UP_MPS2 * max(left, 0.0)) - speed) / _SPEEDS_UP_MPS2
+        comes_s = max(left, 0.0) / max(speed, _SETS_OFF_MPS)
         leaves_s = (float(way.past_m[place]) + half) / max(speed, 1.0)
         if leaves_s > reaches_s and comes_s < reaches_s + (entry.critical_s if goes_first else _INSIDE_S):
             in_way_s = max(left, 0.0) / max(speed, 0.1) if goes_first else FAR
