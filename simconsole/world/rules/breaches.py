@@ -7,7 +7,7 @@ is one breach, not a hundred.
 from typing import Final, NamedTuple
 
 from simconsole.values.kernels import kernel
-from simconsole.values.signals import Rules, SignalState, Situation
+from simconsole.values.signals import FAR, Rules, SignalState, Situation
 
 RED_LIGHT_S: Final = 3.0
 """So long a red light that was passed is shown, and a duty to yield that was not met."""
@@ -99,7 +99,7 @@ def passed_red(was: Situation, now: Situation) -> bool:
 @kernel
 def failed_to_yield(was: Situation, now: Situation) -> bool:
     """Return whether the vehicle's front has passed a line before which somebody who goes first would be hindered."""
-    return was.yield_m > 0.0 and now.yield_m <= 0.0 and now.yield_s < HINDERED_S
+    return 0.0 < was.yield_m < FAR and now.yield_m <= 0.0 and now.yield_s < HINDERED_S
 
 
 @kernel
