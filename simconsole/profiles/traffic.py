@@ -6,6 +6,7 @@ from msgspec import Meta, Struct
 
 MOST_VEHICLES: Final = 60
 MOST_PARKED: Final = 30
+MOST_PEDESTRIANS: Final = 30
 
 
 class TrafficSection(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -33,6 +34,8 @@ class TrafficProfile(TrafficSection, frozen=True, kw_only=True):
 
     vehicles: Annotated[int, Meta(ge=0, le=MOST_VEHICLES)] = 30
     parked: Annotated[int, Meta(ge=0, le=MOST_PARKED)] = 8
+    pedestrians: Annotated[int, Meta(ge=0, le=MOST_PEDESTRIANS)] = 0
+    """People who walk over the crossings of the map; nobody on a map that has none."""
     seed: Annotated[int, Meta(ge=0, le=2**53)] = 1
     period_ms: Annotated[int, Meta(ge=10, le=200)] = 40
     """From one step of traffic to the next: a whole number of ticks."""

@@ -15,7 +15,9 @@ from simconsole.values.signals import AheadInput, Event, VehicleState
 from simconsole.values.state_vector import Snapshot
 from simconsole.values.trigonometry import direction
 from simconsole.world.kinds.worlds import open_map, open_world
+from simconsole.world.roads.road_world import roads_of
 from simconsole.world.route import Route
+from simconsole.world.rules.owing import Owing
 from simconsole.world.traffic.collisions import struck
 from simconsole.world.traffic.leader import leader
 from simconsole.world.traffic.road_users import Box, RoadUsersAt, to_bytes
@@ -32,14 +34,22 @@ class TrafficSource:
 
     hop = Hop.OTHERS
 
-    def __init__(self, traffic: Traffic, platform: Platform, period_ticks: int, route: Route | None = None) -> None:
-        """Take what the vehicle follows as `route`; without one it goes straight on."""
+    def __init__(
+        self,
+        traffic: Traffic,
+        platform: Platform,
+        period_ticks: int,
+        route: Route | None = None,
+        owing: Owing | None = None,
+    ) -> None:
+        """Take what the vehicle follows as `route`; without one it goes straight on, and `owing` tells nothing."""
         self._traffic = traffic
         self._route = route
         self._platform = platform
         self._period_ticks = period_ticks
+        self._owing = owing
         self._newest = RoadUsersAt(0, traffic.road_users())
-        self._ahead = self._leader(ego_box(platform.initial_vehicle, platform))
+        self._ahead = self._look(ego_box(platform.initial_vehicle, platform), 0)
         self._fresh = True
         self._touched: frozenset[float] = frozenset()
         self._events = 0
@@ -62,7 +72,7 @@ class TrafficSource:
         ego = ego_box(snapshot.vehicle, self._platform)
         self._newest = RoadUsersAt(snapshot.tick, self._traffic.step(ego))
         self._fresh = True
-        self._ahead = self._leader(ego)
+        self._ahead = self._look(ego, snapshot.tick)
         touched = frozenset(user.id for user in struck(ego, self._newest.users))
         if touched - self._touched:
             self._events |= int(Event.COLLISION)
@@ -72,11 +82,15 @@ class TrafficSource:
             show(self._newest)
 
     def ahead(self) -> AheadInput:
-        """Return whom the vehicle follows, as of the last step."""
+        """Return whom the vehicle follows and lets pass, as of the last step."""
         return self._ahead
 
-    def _leader(self, ego: Box) -> AheadInput:
-        return leader(self._route, ego, self._newest.users)
+    def _look(self, ego: Box, tick: int) -> AheadInput:
+        found = leader(self._route, ego, self._newest.users)
+        if self._owing is None:
+            return found
+        owed = self._owing.owed(ego, self._newest.users, tick)
+        return found._replace(yield_m=owed.yield_m, yield_s=owed.yield_s)
 
     def unseen(self, tick: int) -> int:
         """Return how many ticks, from `tick` on, do not end a period."""
@@ -113,7 +127,8 @@ def open_traffic(resolved: ResolvedSession, console: Console) -> TrafficSource |
             f"environment.traffic.period_ms: value {profile.period_ms}: a whole number of ticks"
             f" of {1000.0 / console.tick_hz:g} ms"
         )
-    platform, route = console.platform, open_world(resolved.world).route
+    platform, world = console.platform, open_world(resolved.world)
+    route, roads = world.route, roads_of(world)
     traffic = Traffic(
         open_map(resolved.world),
         profile,
@@ -121,7 +136,8 @@ def open_traffic(resolved: ResolvedSession, console: Console) -> TrafficSource |
         route=route,
         ego=ego_box(platform.initial_vehicle, platform),
     )
-    return TrafficSource(traffic, platform, profile.period_ms * console.tick_hz // 1000, route)
+    owing = None if roads is None else Owing(roads.road_map, roads.legs, route, console.tick_hz)
+    return TrafficSource(traffic, platform, profile.period_ms * console.tick_hz // 1000, route, owing)
 
 
 def ego_box(vehicle: VehicleState, platform: Platform) -> Box:

@@ -70,6 +70,7 @@ _NOTICES: Final[dict[float, str]] = {
     Notice.WRONG_WAY: "wrong way: traffic comes towards you",
     Notice.OFF_ROAD: "off the road",
     Notice.SPEEDING: "faster than the speed limit",
+    Notice.FAILING_TO_YIELD: "failed to yield",
 }
 
 EASED_BELOW: Final = 0.995

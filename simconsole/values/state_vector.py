@@ -69,7 +69,7 @@ _RECORDING_FAILED: Final = int(Event.RECORDING_FAILED)
 _NOTICE_AT: Final = LAYOUT.arbitration.at("notice")
 _MODE_AT: Final = LAYOUT.arbitration.at("mode")
 _RULES_AT: Final = LAYOUT.rules.start
-_RULES: Final = (Notice.RED_LIGHT, Notice.WRONG_WAY, Notice.OFF_ROAD, Notice.SPEEDING)
+_RULES: Final = (Notice.RED_LIGHT, Notice.WRONG_WAY, Notice.OFF_ROAD, Notice.SPEEDING, Notice.FAILING_TO_YIELD)
 """The notices of the first columns of `Rules`, in their order."""
 
 

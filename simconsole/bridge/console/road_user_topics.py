@@ -17,6 +17,9 @@ ROAD_USERS: Final = "/road_users"
 DETECTIONS: Final = "/road_users/detections"
 RATE_HZ: Final = 20.0
 
+CLASSES: Final = {RoadUserKind.CAR: "car", RoadUserKind.VAN: "van", RoadUserKind.PEDESTRIAN: "person"}
+"""What detectors call them."""
+
 ReadRoadUsers = Callable[[], RoadUsersAt]
 """Returns where the road users are after the newest step of traffic."""
 
@@ -65,7 +68,7 @@ class RoadUserTopics:
         told = []
         for user in measured(tick, at):
             pose = self._pose(user, 0.5 * user.height_m)
-            hypothesis = types["ObjectHypothesis"](RoadUserKind(int(user.kind)).name.lower(), 1.0)
+            hypothesis = types["ObjectHypothesis"](CLASSES[RoadUserKind(int(user.kind))], 1.0)
             result = types["ObjectHypothesisWithPose"](hypothesis, types["PoseWithCovariance"](pose))
             size = types["Vector3"](user.length_m, user.width_m, user.height_m)
             told.append(

@@ -4,9 +4,11 @@ from collections.abc import Callable, Mapping
 from typing import Final
 
 from simconsole.drivers.autopilot.others import Others
+from simconsole.drivers.autopilot.yields import Yields
 from simconsole.drivers.path_tracker.approach import why_not
 from simconsole.drivers.path_tracker.geometric import GeometricTracker, pure_pursuit, stanley
 from simconsole.drivers.path_tracker.signal_stops import Light, SignalStops
+from simconsole.drivers.path_tracker.speed_profile import Stop
 from simconsole.drivers.path_tracker.state_estimator import VehicleMotion
 from simconsole.drivers.path_tracker.tracker import Tracker, TrackerCommand
 from simconsole.drivers.path_tracker.tracker_settings import TIMING, CarModel
@@ -35,17 +37,18 @@ class Answers:
         say: Callable[[str], None],
         lights: SignalStops | None = None,
         others: Others | None = None,
+        yields: Yields | None = None,
     ) -> None:
-        """Ask `tracker`, tell people by `say`, obey `lights` and keep behind `others`."""
-        self._tracker, self._say, self._lights, self._others = tracker, say, lights, others
+        """Ask `tracker`, tell people by `say`, obey `lights` and `yields`, and keep behind `others`."""
+        self._tracker, self._say, self._lights, self._others, self._yields = tracker, say, lights, others, yields
         self.statistics = TrackingStatistics()
         self._withholds = False
 
     def answer(self, seen: VehicleMotion, engaged: bool, stamp_s: float) -> TrackerCommand | None:
         """Return the command that answers what was seen at `stamp_s`; None: none is given."""
         tracker, statistics = self._tracker, self.statistics
-        if self._lights is not None and tracker.s_m is not None:
-            tracker.along.stop = self._lights.stop(tracker.s_m, seen.vx_mps, tracker.along.profile, stamp_s)
+        if tracker.s_m is not None:
+            tracker.along.stop = self._stop(tracker.s_m, seen.vx_mps, stamp_s)
         if self._others is not None:
             tracker.along.leader = self._others.leader(seen, stamp_s)
         command = tracker.step(seen, engaged, stamp_s)
@@ -64,6 +67,14 @@ class Answers:
         self._look_for_the_end(s_m, engaged and abs(seen.vx_mps) < _STANDING_MPS)
         return command
 
+    def _stop(self, s_m: float, speed_mps: float, stamp_s: float) -> Stop | None:
+        """Return the first stop that lights or others ask for."""
+        stops = (
+            None if self._lights is None else self._lights.stop(s_m, speed_mps, self._tracker.along.profile, stamp_s),
+            None if self._yields is None else self._yields.stop(s_m, speed_mps, stamp_s),
+        )
+        return min((stop for stop in stops if stop is not None), default=None)
+
     def see(self, lights: Mapping[tuple[str, int], Light]) -> None:
         """Take what traffic lights show (`lights.lights_of`)."""
         if self._lights is not None:
@@ -73,6 +84,8 @@ class Answers:
         """Take where other road users were at `stamp_s` (`others.road_users_of`)."""
         if self._others is not None:
             self._others.see(users, stamp_s)
+        if self._yields is not None:
+            self._yields.see(users, stamp_s)
 
     def _look_for_the_end(self, s_m: float, stands: bool) -> None:
         course = self._tracker.course

@@ -17,6 +17,7 @@ from simconsole.drivers.autopilot.lights import SIGNALS, SIGNALS_TYPE, lights_of
 from simconsole.drivers.autopilot.motion import Odometry, motion_of
 from simconsole.drivers.autopilot.others import ROAD_USERS, ROAD_USERS_TYPE, Others, road_users_of
 from simconsole.drivers.autopilot.remarks import Remarks
+from simconsole.drivers.autopilot.yields import yields
 from simconsole.drivers.path_tracker.car_model import car_model
 from simconsole.drivers.path_tracker.tracker import TrackerCommand
 from simconsole.drivers.path_tracker.tracker_settings import TIMING, TRACKERS
@@ -91,7 +92,9 @@ def run(
     world, car = open_world(load_world(course_name)), load_vehicle(vehicle)
     lights = signal_stops(world, car)
     others = None if roads_of(world) is None else Others(world.route, car)
-    answers = Answers(make_tracker(tracker, world.route, car_model(car), delay_s), _say, lights, others)
+    answers = Answers(
+        make_tracker(tracker, world.route, car_model(car), delay_s), _say, lights, others, yields(world, car, lights)
+    )
     with BridgeClient(
         url, token=token, certificate=certificate, drive=drive, until_good_bye=True, dead_after_s=dead_after_s
     ) as client:

@@ -66,6 +66,11 @@ class SignalStops:
         """Take what lights show, by the signal's name and link."""
         self._shown.update(lights)
 
+    def state(self, signal: int, link: int) -> int:
+        """Return what a link was told to show last, by the places of signal and link in the map; red if nothing was."""
+        light = self._shown.get((self._ids[signal], link))
+        return SignalState.STOP_AND_REMAIN if light is None else light.state
+
     def stop(self, s_m: float, speed_mps: float, plan: SpeedProfile, now_s: float) -> Stop | None:
         """Return where base_link is to stop, None to drive on, while it is at `s_m` and follows `plan`."""
         front_m = s_m + self._front_m

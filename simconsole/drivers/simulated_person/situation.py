@@ -50,6 +50,7 @@ def ahead_in(snapshot: Snapshot) -> Situation:
         lead_speed_mps=seen.lead_speed_mps,
         light=_light(seen.signal_state) if is_ahead else float(Light.NONE),
         line_m=seen.signal_distance_m if is_ahead else math.inf,
+        yield_m=seen.yield_m if _PASSED_M < seen.yield_m < _FAR_M else math.inf,
     )
 
 

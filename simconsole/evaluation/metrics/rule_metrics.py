@@ -14,6 +14,7 @@ RULES: Final = {
     "wrong_way": "wrong way",
     "off_road": "off the road",
     "speeding": "speed limit exceeded",
+    "failing_to_yield": "failed to yield",
 }
 """What people call the rules; their names are those of the state vector's columns."""
 

@@ -10,6 +10,7 @@ from simconsole.hud.driver_view.camera import Camera, rotation
 from simconsole.hud.driver_view.light import Light, reach_m, shadow_matrix
 from simconsole.hud.driver_view.mesh import Vertices
 from simconsole.hud.driver_view.motion import ShownVehicle
+from simconsole.hud.driver_view.other_people import person, person_model
 from simconsole.hud.driver_view.other_vehicles import meshes, model
 from simconsole.hud.driver_view.scene import Pieces, ViewScene, in_sight
 from simconsole.hud.driver_view.vehicle_body import WHEEL_RADIUS_M
@@ -23,6 +24,7 @@ from simconsole.hud.gl.programs import (
     SURFACE_VERTEX,
     variant,
 )
+from simconsole.world.traffic.road_users import RoadUserKind
 
 if TYPE_CHECKING:
     import moderngl
@@ -100,6 +102,7 @@ class Renderer:
             self._put(other.wheel),
             other.wheel_places,
         )
+        self._person = self._put(person())
         self._map: moderngl.Framebuffer | None = None
         if quality.shadows:
             depth = context.depth_texture((SHADOW_PX, SHADOW_PX))
@@ -180,6 +183,9 @@ class Renderer:
         for user in shown.others:
             away = math.hypot(user.x_m - camera.eye[0], user.y_m - camera.eye[1])
             if away > reach:
+                continue
+            if user.kind == RoadUserKind.PEDESTRIAN:
+                self._draw_mesh(self._person, person_model(user))
                 continue
             place = model(user)
             self._draw_mesh(self._other_body, place)

@@ -81,6 +81,7 @@ class Notice(IntEnum):
     WRONG_WAY = 8
     OFF_ROAD = 9
     SPEEDING = 10
+    FAILING_TO_YIELD = 11
 
 
 class SignalState(IntEnum):

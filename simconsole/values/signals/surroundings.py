@@ -11,9 +11,11 @@ class AheadInput(NamedTuple):
 
     lead_gap_m: float  # from the vehicle's front, along its way; FAR: nobody
     lead_speed_mps: float  # along the vehicle's way
+    yield_m: float  # from the vehicle's front to the line before which it lets others pass; FAR: nobody
+    yield_s: float  # until who goes first is in its way; FAR: nobody would be hindered
 
 
-NO_AHEAD: Final = AheadInput(lead_gap_m=FAR, lead_speed_mps=0.0)
+NO_AHEAD: Final = AheadInput(lead_gap_m=FAR, lead_speed_mps=0.0, yield_m=FAR, yield_s=FAR)
 """An empty road."""
 
 
@@ -32,6 +34,8 @@ class Situation(NamedTuple):
     lead_gap_m: float  # to the road user ahead, as of traffic's last step; FAR: nobody
     lead_speed_mps: float
     time_to_collision_s: float  # FAR: never
+    yield_m: float  # to the line before which others go first, as of traffic's last step; FAR: nobody does
+    yield_s: float  # until they are in the way; FAR: nobody would be hindered
 
 
 NO_SITUATION: Final = Situation(
@@ -47,6 +51,8 @@ NO_SITUATION: Final = Situation(
     lead_gap_m=FAR,
     lead_speed_mps=0.0,
     time_to_collision_s=FAR,
+    yield_m=FAR,
+    yield_s=FAR,
 )
 """A world without rules."""
 
@@ -61,10 +67,12 @@ class Rules(NamedTuple):
     wrong_way: float
     off_road: float
     speeding: float
+    failing_to_yield: float  # its front has passed a line before which it had to let others pass; shown for a while
     red_light_s: float  # since it was passed
     wrong_way_s: float
     off_road_s: float
     speeding_s: float
+    failing_to_yield_s: float  # since then
 
 
 NO_RULES_BROKEN: Final = Rules(*(0.0,) * len(Rules._fields))

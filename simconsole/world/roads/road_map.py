@@ -41,6 +41,8 @@ class Edge(NamedTuple):
     type: str
     lanes: tuple[int, ...]  # from the right
     crossed: tuple[int, ...] = ()  # of a crossing: the edges that it leads over
+    signal: int = -1  # of a crossing: the signal that controls it
+    link: int = -1  # and its place in that signal's states
 
 
 class Connection(NamedTuple):

@@ -1,4 +1,4 @@
-"""Which rules of the road the vehicle breaks: red light, wrong way, off the road, speed limit. Kernels.
+"""Which rules of the road the vehicle breaks: red light, wrong way, off the road, speed limit, yielding. Kernels.
 
 A breach is told once it has lasted, and is over once it has been over for a while: a speed that wavers about the limit
 is one breach, not a hundred.
@@ -7,10 +7,12 @@ is one breach, not a hundred.
 from typing import Final, NamedTuple
 
 from simconsole.values.kernels import kernel
-from simconsole.values.signals import Rules, SignalState, Situation
+from simconsole.values.signals import FAR, Rules, SignalState, Situation
 
 RED_LIGHT_S: Final = 3.0
-"""So long a red light that was passed is shown."""
+"""So long a red light that was passed is shown, and a duty to yield that was not met."""
+HINDERED_S: Final = 2.0
+"""Who has the right of way and is there sooner than this has to brake hard, or to swerve."""
 SPEEDING_MPS: Final = 1.4
 """So much above the limit is a breach: 5 km/h, what a speedometer may show wrongly; it ends at the limit."""
 SPEEDING_S: Final = 0.5
@@ -52,6 +54,11 @@ def judged(before: Rules, was: Situation, now: Situation, place: Place, tick_s: 
         red, red_s = 1.0, 0.0
     if red == 0.0 or red_s >= RED_LIGHT_S:
         red, red_s = 0.0, 0.0
+    failing, failing_s = before.failing_to_yield, before.failing_to_yield_s + tick_s
+    if failed_to_yield(was, now):
+        failing, failing_s = 1.0, 0.0
+    if failing == 0.0 or failing_s >= RED_LIGHT_S:
+        failing, failing_s = 0.0, 0.0
     room_m = JUNCTION_M * place.in_junction
     against = place.along < WRONG_WAY and place.in_junction == 0.0 and place.speed_mps > _MOVING_MPS
     wrong_way = held(before.wrong_way, before.wrong_way_s, against, place.along > 0.0, WRONG_WAY_S, tick_s)
@@ -72,10 +79,12 @@ def judged(before: Rules, was: Situation, now: Situation, place: Place, tick_s: 
         wrong_way=wrong_way.is_broken,
         off_road=off.is_broken,
         speeding=speeding.is_broken,
+        failing_to_yield=failing,
         red_light_s=red_s,
         wrong_way_s=wrong_way.against_s,
         off_road_s=off.against_s,
         speeding_s=speeding.against_s,
+        failing_to_yield_s=failing_s,
     )
 
 
@@ -85,6 +94,12 @@ def passed_red(was: Situation, now: Situation) -> bool:
     red = now.signal_state == _RED or now.signal_state == _RED_YELLOW
     same = was.lane == now.lane
     return red and same and was.signal_distance_m > 0.0 and now.signal_distance_m <= 0.0
+
+
+@kernel
+def failed_to_yield(was: Situation, now: Situation) -> bool:
+    """Return whether the vehicle's front has passed a line before which somebody who goes first would be hindered."""
+    return 0.0 < was.yield_m < FAR and now.yield_m <= 0.0 and now.yield_s < HINDERED_S
 
 
 @kernel

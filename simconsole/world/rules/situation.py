@@ -34,11 +34,13 @@ LEAST_CLOSING_MPS: Final = 0.1
 
 
 class Lead(NamedTuple):
-    """The road user ahead."""
+    """The road user ahead, and what is owed to others."""
 
     gap_m: float
     speed_mps: float
     contact_s: float  # time to collision
+    yield_m: float
+    yield_s: float
 
 
 @kernel
@@ -69,7 +71,13 @@ def look_around(previous: Row, row: Row, rules: RoadRules, tick_s: float) -> Non
         HEADING_M,
     )
     ahead = read(row, LAYOUT.ahead)
-    lead = Lead(ahead.lead_gap_m, ahead.lead_speed_mps, time_to_collision(ahead, vehicle.vx_mps))
+    lead = Lead(
+        gap_m=ahead.lead_gap_m,
+        speed_mps=ahead.lead_speed_mps,
+        contact_s=time_to_collision(ahead, vehicle.vx_mps),
+        yield_m=ahead.yield_m,
+        yield_s=ahead.yield_s,
+    )
     situation = situation_at(found, before.tick + 1.0, rules, lead, tick_s)
     place = place_of(found, heading, vehicle, rules)
     write(row, LAYOUT.situation, situation)
@@ -110,6 +118,8 @@ def situation_at(found: Found, tick: float, rules: RoadRules, lead: Lead, tick_s
         lead_gap_m=lead.gap_m,
         lead_speed_mps=lead.speed_mps,
         time_to_collision_s=lead.contact_s,
+        yield_m=lead.yield_m,
+        yield_s=lead.yield_s,
     )
 
 

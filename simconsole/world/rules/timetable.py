@@ -67,6 +67,10 @@ class Signals:
         """Return what the links of a signal show, a letter of SUMO's each."""
         return active(self.signals[signal]).phases[self.phase(signal, tick)[0]].state
 
+    def state(self, signal: int, link: int, tick: int) -> SignalState:
+        """Return what a link of a signal shows."""
+        return _state(self.letters(signal, tick), link)
+
     def link(self, signal: int, link: int, tick: int) -> LinkState:
         """Return what a link of a signal shows, what it will show, and when."""
         phase, left = self.phase(signal, tick)

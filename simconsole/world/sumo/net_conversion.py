@@ -6,6 +6,7 @@ from typing import Any, Final
 import numpy as np
 
 from simconsole.world.roads.road_map import (
+    CROSSING,
     ROAD,
     Array,
     Connection,
@@ -40,6 +41,7 @@ def road_map(net: Any, crossed: Mapping[str, tuple[str, ...]], report: MapReport
     lanes: list[Lane] = []
     lane_places: dict[str, int] = {}
     moved = _moved(net)
+    signals = {signal.getID(): place for place, signal in enumerate(net.getTrafficLights())}
     edges = []
     for place, edge in enumerate(net.getEdges()):
         own = []
@@ -48,8 +50,18 @@ def road_map(net: Any, crossed: Mapping[str, tuple[str, ...]], report: MapReport
             own.append(len(lanes))
             lanes.append(_lane(lane, place, moved))
         over = tuple(places[name] for name in crossed.get(edge.getID(), ()) if name in places)
-        edges.append(Edge(edge.getID(), edge.getFunction() or ROAD, edge.getType(), tuple(own), over))
-    signals = {signal.getID(): place for place, signal in enumerate(net.getTrafficLights())}
+        signal, link = _crossing_signal(edge, signals)
+        edges.append(
+            Edge(
+                id=edge.getID(),
+                function=edge.getFunction() or ROAD,
+                type=edge.getType(),
+                lanes=tuple(own),
+                crossed=over,
+                signal=signal,
+                link=link,
+            )
+        )
     connections = tuple(_connections(net, lane_places, signals))
     rings = [tuple(places[name] for name in ring.getEdges() if name in places) for ring in net.getRoundabouts()]
     found = RoadMap(
@@ -64,6 +76,16 @@ def road_map(net: Any, crossed: Mapping[str, tuple[str, ...]], report: MapReport
         moved_m=(float(moved[0]), float(moved[1])),
     )
     return found._replace(report=report._replace(counts=_counts(found)))
+
+
+def _crossing_signal(edge: Any, signals: Mapping[str, int]) -> tuple[int, int]:
+    """Return the signal and the link that people on foot obey at a crossing, -1 and -1 where they have none."""
+    if edge.getFunction() == CROSSING:
+        for connections in edge.getIncoming().values():
+            for one in connections:
+                if one.getTLSID() in signals:
+                    return signals[one.getTLSID()], one.getTLLinkIndex()
+    return -1, -1
 
 
 def _moved(net: Any) -> Array:

@@ -8,6 +8,7 @@ room behind the junction. So two vehicles of traffic never meet inside one.
 from typing import Final, NamedTuple
 
 from simconsole.values.kernels import Row, kernel
+from simconsole.world.people.yielding import Crossed
 from simconsole.world.traffic.columns import (
     ALONG,
     CONNECTIONS,
@@ -36,6 +37,8 @@ _ROOM_M: Final = 3.0
 _WAITED_S: Final = 2.0  # who has stood so long no longer keeps others waiting: else four would wait for each other
 _STUCK_S: Final = 3.0
 _SOON_S: Final = 2.0
+_SOON_M: Final = 2.5  # who sets off before its line is about to enter
+_SETS_OFF_MPS: Final = 0.3
 
 SLOT: Final = 0
 CONNECTION: Final = 1
@@ -49,6 +52,8 @@ class Turn(NamedTuple):
     lines: Row  # float64 [vehicles, LINE]
     granted: Row  # int64 [connections]
     lights: Row  # int64 [connections]
+    kept_free: Row  # int64 [connections]: 1: for somebody who is not traffic and has waited long
+    crossed: Crossed
 
 
 @kernel
@@ -94,7 +99,7 @@ def count_others(net: Network, boxes: Row, first: int, granted: Row) -> None:
         if boxes[row, LENGTH] <= 0.0 or lane < 0:
             continue
         left_m = net.lengths_m[lane] - boxes[row, ALONG] - 0.5 * boxes[row, LENGTH]
-        enters = boxes[row, SPEED] > 1.0 and left_m < _SOON_S * boxes[row, SPEED]
+        enters = boxes[row, SPEED] > _SETS_OFF_MPS and left_m < _SOON_M + _SOON_S * boxes[row, SPEED]
         for connection in range(len(net.goals)):
             if enters and net.origins[connection] == lane:
                 granted[connection] += 1

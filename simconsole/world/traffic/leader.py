@@ -46,7 +46,7 @@ def leader(route: Route | None, ego: Box, users: Array) -> AheadInput:
     chosen = int(np.flatnonzero(before)[np.argmin(gap[before])])
     gap_m = max(0.0, float(gap[chosen]))
     speed_mps = float(near[chosen, 5] * np.cos(turned[chosen]))
-    return AheadInput(gap_m, speed_mps)
+    return NO_AHEAD._replace(lead_gap_m=gap_m, lead_speed_mps=speed_mps)
 
 
 def _way_ahead(route: Route | None, ego: Box) -> Array:

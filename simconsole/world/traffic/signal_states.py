@@ -50,14 +50,14 @@ class Lights:
     def __init__(self, road_map: RoadMap, states: SignalStates) -> None:
         self._links = [(one.signal, one.link) for one in road_map.connections]
         self._states = states
-        self._shown: Sequence[str] | None = None
+        self.shown: Sequence[str] | None = None
         self._lights: Numbers = np.full(len(self._links), GIVE_WAY, np.int64)
 
     def at(self, time_s: float) -> Numbers:
         """Return GO, GIVE_WAY, STOP_IF_POSSIBLE or STOP for each connection."""
         shown = self._states(time_s)
-        if shown != self._shown:
-            self._shown = shown
+        if shown != self.shown:
+            self.shown = shown
             self._lights[:] = [self._meaning(shown, signal, link) for signal, link in self._links]
         return self._lights
 

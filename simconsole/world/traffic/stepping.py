@@ -5,6 +5,8 @@ from typing import Final
 
 from simconsole.values.kernels import Row, kernel
 from simconsole.values.trigonometry import atan2
+from simconsole.world.people.walking import TALLEST_M
+from simconsole.world.people.yielding import occupied_ahead
 from simconsole.world.traffic.columns import (
     ACCELERATION,
     BOX,
@@ -27,7 +29,7 @@ from simconsole.world.traffic.columns import (
     Y,
 )
 from simconsole.world.traffic.corridor import Body, horizon, near_boxes, nearest_ahead
-from simconsole.world.traffic.following import acceleration
+from simconsole.world.traffic.following import FAR_M, acceleration
 from simconsole.world.traffic.junctions import (
     DISTANCE,
     SLOT,
@@ -47,6 +49,8 @@ VAN_M: Final = 5.2  # longer vehicles are vans
 _CONSIDER_EVERY: Final = 16  # steps; a vehicle's turn comes by its number
 _LOOK_EVERY: Final = 2  # steps: looking ahead is most of the work, and people take longer to react
 _STANDS_MPS: Final = 0.3
+_NEARER_M: Final = 1.0  # to a crossing than to somebody who stands
+_PERSON_M: Final = 1.75
 
 
 @kernel
@@ -66,7 +70,7 @@ def step_traffic(
         period_s: its length.
     """
     count = len(values)
-    turn.granted[:] = 0
+    turn.granted[:] = turn.kept_free
     for own in range(count):
         boxes[own, :BOX] = values[own, :BOX]
         turn.lines[own, SLOT] = -1.0
@@ -109,6 +113,10 @@ def _wish(net: Network, path: Row, values: Row, own: int, boxes: Row, turn: Turn
     if turn.lines[own, SLOT] >= 0.0 and turn.lines[own, DISTANCE] <= asking_m(speed):
         line = acceleration(speed, desired, turn.lines[own, DISTANCE], 0.0, 0.5)
         found = line if line < found else found
+    crossing = occupied_ahead(net.lengths_m, path, s + half, turn.crossed, reach)
+    if crossing < FAR_M:
+        stop = acceleration(speed, desired, crossing + _NEARER_M, 0.0, 0.5)
+        found = stop if stop < found else found
     last = path[COUNT] - 1
     if path[CONNECTIONS + last] < 0 and net.leaves[path[LANES + last]] == 0:
         end = -s - half
@@ -174,13 +182,17 @@ def list_users(boxes: Row, ids: Row, ego: int, rows: Row) -> int:
     for row in range(len(boxes)):
         if row == ego or boxes[row, LENGTH] <= 0.0:
             continue
-        van = boxes[row, LENGTH] > VAN_M
+        kind, height = float(RoadUserKind.CAR), 1.5
+        if boxes[row, LENGTH] > VAN_M:
+            kind, height = float(RoadUserKind.VAN), 2.3
+        elif boxes[row, LENGTH] < TALLEST_M:
+            kind, height = float(RoadUserKind.PEDESTRIAN), _PERSON_M
         rows[count, 0] = ids[row]
-        rows[count, 1] = RoadUserKind.VAN if van else RoadUserKind.CAR
+        rows[count, 1] = kind
         rows[count, 2], rows[count, 3] = boxes[row, X], boxes[row, Y]
         rows[count, 4] = atan2(boxes[row, SINE], boxes[row, COSINE])
         rows[count, 5] = boxes[row, SPEED]
         rows[count, 6], rows[count, 7] = boxes[row, LENGTH], boxes[row, WIDTH]
-        rows[count, 8] = 2.3 if van else 1.5
+        rows[count, 8] = height
         count += 1
     return count

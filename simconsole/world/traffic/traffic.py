@@ -7,10 +7,13 @@ import numpy as np
 
 from simconsole.profiles.traffic import LeadVehicle, TrafficProfile
 from simconsole.values.trigonometry import direction
+from simconsole.world.people.people import People
+from simconsole.world.people.walking import Others
 from simconsole.world.roads.lane_index import LaneIndex, nearest_segment
 from simconsole.world.roads.road_map import Array, RoadMap
 from simconsole.world.route import Route
 from simconsole.world.traffic import columns as at
+from simconsole.world.traffic.courtesy import Courtesy
 from simconsole.world.traffic.junctions import LINE, Turn
 from simconsole.world.traffic.lead_vehicle import LeadDriver
 from simconsole.world.traffic.network import network
@@ -60,23 +63,34 @@ class Traffic:
         self._values = np.zeros((count, at.VALUES))
         self._paths = np.zeros((count, at.PATH), np.int64)
         parked = parked_cars(road_map, profile.parked, self._rng)
-        self._ego, self._lead = count, count + 1
-        self._boxes = np.zeros((count + 2 + len(parked), at.BOX))
+        self._people = People(road_map, profile.pedestrians, profile.seed, execution)
+        self._ego, self._lead, self._first_person = count, count + 1, count + 2 + len(parked)
+        self._boxes = np.zeros((self._first_person + len(self._people.boxes), at.BOX))
         self._boxes[count:, at.LANE] = -1.0
-        self._boxes[count + 2 :] = parked
+        self._boxes[count + 2 : self._first_person] = parked
+        self._boxes[self._first_person :] = self._people.boxes
         self._users = np.zeros((len(self._boxes), FIELDS))
         self._ids = np.zeros(len(self._boxes))
         self._ids[count:] = np.arange(len(self._boxes) - count)  # the ego's is nobody's
         self._next_id = len(self._boxes) - count
         self._driver = _lead_driver(profile.lead, route, ego)
-        granted, lights = (np.zeros(len(road_map.connections), np.int64) for _ in range(2))
-        self._turn = Turn(np.zeros((count, LINE)), granted, lights)
+        granted, lights, kept_free = (np.zeros(len(road_map.connections), np.int64) for _ in range(3))
+        self._turn = Turn(
+            lines=np.zeros((count, LINE)),
+            granted=granted,
+            lights=lights,
+            kept_free=kept_free,
+            crossed=self._people.crossed,
+        )
+        self._courtesy = Courtesy(self._net, lights, kept_free)
         self._near = np.zeros(len(self._boxes), np.int64)
         self._placement = Placement(self._net, self._rng)
         self._see_others(ego, 0.0)
         for row in range(count):
             self._place(row, anywhere=True)
-        self._advance(0)  # nobody moves, but the kernel is compiled or loaded before any clock runs
+        self._turn.lights[:] = self._lights.at(0.0)
+        self._let_people_walk(0.0)  # nobody moves, but the kernels are compiled or loaded before any clock runs
+        self._advance(0)
 
     def step(self, ego: Box | None) -> Array:
         """Move everybody on by one period and return where they are then, a table of road users.
@@ -85,13 +99,15 @@ class Traffic:
         """
         self._turn.lights[:] = self._lights.at(self._steps * self.period_s)
         self._see_others(ego, self.period_s)
+        self._courtesy.step(self._boxes[self._ego], self.period_s)
+        self._let_people_walk(self.period_s)
         self._advance(len(self._values))
         self._steps += 1
         self._let_others_come()
         return self.road_users()
 
     def road_users(self) -> Array:
-        """Return where everybody is, float64 [users, FIELDS] as `RoadUser`: traffic, lead vehicle, parked cars."""
+        """Return where everybody is, float64 [users, FIELDS] as `RoadUser`: vehicles, those parked, people."""
         count = self._list_kernel(self._boxes, self._ids, self._ego, self._users)
         return self._users[: int(count)].copy()
 
@@ -114,6 +130,15 @@ class Traffic:
                 *(box.x_m, box.y_m, heading.cos, heading.sin, box.speed_mps, box.length_m, box.width_m),
                 *((-1.0, 0.0) if lane.lane is None or not lane.on_lane else (float(lane.lane), lane.s_m)),
             )
+
+    def _let_people_walk(self, period_s: float) -> None:
+        """Move those on foot on by a period; who comes anew is somebody else."""
+        vehicles = slice(0, self._first_person)
+        others = Others(self._boxes[vehicles], self._values, self._paths, self._net.lengths_m)
+        for place in self._people.step(self._lights.shown or (), others, period_s):
+            self._ids[self._first_person + place] = self._next_id
+            self._next_id += 1
+        self._boxes[self._first_person :] = self._people.boxes
 
     def _let_others_come(self) -> None:
         """Let others come in the place of who has left the map."""

@@ -12,7 +12,7 @@ FAR = 1e9
 
 
 def told(**situation: float) -> Any:
-    empty = {"lead_gap_m": FAR, "lead_speed_mps": 0.0, "signal_state": 0.0, "signal_distance_m": FAR}
+    empty = {"lead_gap_m": FAR, "lead_speed_mps": 0.0, "signal_state": 0.0, "signal_distance_m": FAR, "yield_m": FAR}
     return SimpleNamespace(situation=SimpleNamespace(**{**empty, **situation}))
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from simconsole.values.signals import NO_RULES_BROKEN, NO_SITUATION, Rules, SignalState, Situation
+from simconsole.values.signals import FAR, NO_RULES_BROKEN, NO_SITUATION, Rules, SignalState, Situation
 from simconsole.world.rules.breaches import (
     JUNCTION_M,
     OFF_ROAD_S,
@@ -12,6 +12,7 @@ from simconsole.world.rules.breaches import (
     WRONG_WAY_S,
     Breach,
     Place,
+    failed_to_yield,
     held,
     judged,
     passed_red,
@@ -103,3 +104,25 @@ def test_patience_counts_the_opposite_only() -> None:
     assert held(0.0, 0.35, True, False, 0.4, 0.1) == Breach(1.0, 0.0)
     assert held(0.0, 0.35, False, True, 0.4, 0.1) == Breach(0.0, 0.0)
     assert held(1.0, 0.35, True, False, 0.4, 0.1) == Breach(1.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("was_m", "now_m", "now_s", "fails"),
+    [
+        (0.5, -0.1, 0.0, True),
+        (0.5, -0.1, 1.9, True),
+        (0.5, -0.1, 4.0, False),  # whoever comes is far enough away
+        (FAR, -0.1, 0.0, False),  # the duty came when the line was passed already
+        (-0.1, -0.6, 0.0, False),
+        (0.5, 0.1, 0.0, False),
+    ],
+)
+def test_who_drives_on_before_somebody_who_goes_first_fails_to_yield(
+    was_m: float, now_m: float, now_s: float, fails: bool
+) -> None:
+    was, now = HERE._replace(yield_m=was_m, yield_s=now_s), HERE._replace(yield_m=now_m, yield_s=now_s)
+    assert failed_to_yield(was, now) == fails
+    judge = Judge()
+    judge.was = was
+    assert judge.after(TICK_S, now=now).failing_to_yield == float(fails)
+    assert judge.after(RED_LIGHT_S + 0.1).failing_to_yield == 0.0

@@ -10,7 +10,7 @@ import pytest
 from simconsole.values.host.jit import compiled, plain
 from simconsole.values.kernels import Row
 from simconsole.values.layout import write
-from simconsole.values.signals import FAR, NO_AHEAD, NO_SITUATION, AheadInput, SignalState, Situation, VehicleState
+from simconsole.values.signals import FAR, NO_AHEAD, NO_SITUATION, SignalState, Situation, VehicleState
 from simconsole.values.state_vector import LAYOUT, PLATFORM_AT, Snapshot
 from simconsole.values.trigonometry import direction
 from simconsole.world.roads.lane_graph import LaneGraph, Leg
@@ -120,7 +120,8 @@ def test_against_the_lanes_is_the_wrong_way() -> None:
 
 def test_kernels_alone_agree() -> None:
     rules = road_rules(straight_map(), (), HZ, FRONT_M)
-    lead = Lead(20.0, 5.0, 4.0)
+    lead = Lead(gap_m=20.0, speed_mps=5.0, contact_s=4.0, yield_m=12.0, yield_s=3.0)
+    assert situation_at(Found(0.0, 1.0, 0.2), 7.0, rules, lead, 0.02)[-2:] == (12.0, 3.0)
     nowhere = Found(-1.0, 0.0, 0.0)
     assert situation_at(nowhere, 7.0, rules, lead, 0.02) == compiled(situation_at)(nowhere, 7.0, rules, lead, 0.02)
     assert isinstance(situation_at(Found(0.0, 1.0, 0.2), 7.0, rules, lead, 0.02), Situation)
@@ -132,5 +133,6 @@ def test_kernels_alone_agree() -> None:
     [(25.0, 10.0, 5.0), (25.0, -10.0, 1.0), (25.0, 15.0, FAR), (25.0, 20.0, FAR), (FAR, 0.0, FAR), (0.0, 10.0, 0.0)],
 )
 def test_time_to_collision_is_that_of_a_gap_that_closes(gap_m: float, lead_mps: float, contact_s: float) -> None:
-    assert time_to_collision(AheadInput(gap_m, lead_mps), 15.0) == contact_s
-    assert compiled(time_to_collision)(AheadInput(gap_m, lead_mps), 15.0) == contact_s
+    ahead = NO_AHEAD._replace(lead_gap_m=gap_m, lead_speed_mps=lead_mps)
+    assert time_to_collision(ahead, 15.0) == contact_s
+    assert compiled(time_to_collision)(ahead, 15.0) == contact_s

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from simconsole.values.host.jit import plain
+from simconsole.world.people.people import People
 from simconsole.world.roads.road_map import Array, RoadMap
 from simconsole.world.traffic import columns as at
 from simconsole.world.traffic.junctions import GIVE_WAY, LINE, Turn
@@ -35,7 +37,9 @@ def vehicle_on(net: Network, path: Numbers, s_m: float, speed_mps: float) -> Arr
 def turn_of(road_map: RoadMap, vehicles: int) -> Turn:
     lines = np.full((vehicles, LINE), -1.0)
     lights = np.full(len(road_map.connections), GIVE_WAY, np.int64)
-    return Turn(lines, np.zeros(len(road_map.connections), np.int64), lights)
+    granted, kept_free = (np.zeros(len(road_map.connections), np.int64) for _ in range(2))
+    crossed = People(road_map, 0, 1, plain).crossed
+    return Turn(lines=lines, granted=granted, lights=lights, kept_free=kept_free, crossed=crossed)
 
 
 def box(x_m: float, y_m: float, yaw_rad: float = 0.0, speed_mps: float = 0.0) -> Box:

@@ -1,0 +1,185 @@
+"""Whom a vehicle on a route has to let pass: people on crossings, and vehicles with the right of way at junctions.
+
+Seen from where others are and how they move: nobody knows where they want to go. Who is on a crossing, or steps onto
+it, is let pass until they are beyond the vehicle's lane. A vehicle with the right of way is let pass if it comes within
+the critical headway (`conflicts.CRITICAL_S`); who is inside the junction is let out. Vehicles that have stood for a
+while before their line let others go.
+"""
+
+from collections.abc import Callable
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from simconsole.values.signals import FAR, SignalState
+from simconsole.world.people.footways import KERB_M
+from simconsole.world.roads.road_map import Array
+from simconsole.world.rules.conflicts import Duties, Entry, Foot, Watched
+from simconsole.world.traffic.road_users import RoadUserKind
+
+LightOf = Callable[[int, int], int]
+"""Returns the `SignalState` that a link of a signal shows; both by their places in the map."""
+
+AHEAD_M: Final = 80.0
+BEHIND_M: Final = 3.0
+"""So far behind a line it is still told that its duty was not met."""
+EXCUSED_MPS2: Final = 3.0
+"""Who would have to brake harder than this when a duty arises has none: as at amber (Gazis, Herman, Maradudin 1960)."""
+_EXCUSED_S: Final = 0.3
+_LASTS_S: Final = 0.4  # so long a duty is kept after it was seen last
+_STOOD_S: Final = 2.0
+_STANDS_MPS: Final = 0.3
+_STEPS_MPS: Final = 0.3
+_AT_KERB_M: Final = 0.06  # nearer to the carriageway than who waits
+_CLEAR_M: Final = 0.5
+_BESIDE_M: Final = 1.5  # further from a lane's centre line nobody is on it
+_ALIGNED: Final = 0.6
+_SETS_OFF_MPS: Final = 2.5  # who is slower than this may speed up
+_INSIDE_S: Final = 3.0  # who is inside the junction and reaches the common place later than this is passed
+_SLOWEST_MPS: Final = 3.0
+_STOPS: Final = (
+    SignalState.STOP_AND_REMAIN,
+    SignalState.PRE_MOVEMENT,
+    SignalState.PERMISSIVE_CLEARANCE,
+    SignalState.PROTECTED_CLEARANCE,
+)
+
+
+class Owed(NamedTuple):
+    """What a vehicle owes others."""
+
+    yield_m: float  # from its front to the line before which it waits, negative just beyond it; FAR: nothing is owed
+    yield_s: float  # until who goes first is in its way; FAR: nobody would be hindered
+
+
+NOTHING_OWED: Final = Owed(FAR, FAR)
+
+
+class Motion(NamedTuple):
+    """The vehicle that owes."""
+
+    front_m: float  # of its front, along the route
+    speed_mps: float
+    time_s: float
+
+
+class RightOfWay:
+    """Looks at others along a route, again and again; it remembers who has stood, and which duties there are."""
+
+    def __init__(self, duties: Duties) -> None:
+        """Take where the route gives way."""
+        lines = [(foot.line_m, foot) for foot in duties.crossings] + [(one.line_m, one) for one in duties.entries]
+        self._lines: list[tuple[float, Foot | Entry]] = sorted(lines, key=lambda line: line[0])
+        self._at = np.array([line for line, _ in self._lines])
+        self._stood: dict[float, float] = {}
+        self._seen: dict[int, float] = {}  # when each duty was seen last
+        self._hindered: dict[int, float] = {}
+        self._excused: set[int] = set()
+
+    def owed(self, own: Motion, users: Array, light: LightOf) -> Owed:
+        """Return what is owed now; `users` are the others, float64 [users, FIELDS of RoadUser]."""
+        first, end = np.searchsorted(self._at, (own.front_m - BEHIND_M, own.front_m + AHEAD_M)).tolist()
+        near = range(first, end)
+        for gone in [line for line in self._seen if line not in near]:
+            self._forget(gone)
+        if first == end:
+            return NOTHING_OWED
+        standing = self._standing(users, own.time_s)
+        for line in near:
+            place, duty = self._lines[line]
+            left_m = place - own.front_m
+            if left_m < 0.0 and line not in self._seen:
+                continue
+            found = _who_goes_first(duty, left_m, own.speed_mps, users, standing, light)
+            if found is not None:
+                self._take(line, left_m, own, found)
+            elif line in self._seen and own.time_s - self._seen[line] > _LASTS_S:
+                self._forget(line)
+            if line in self._seen and (line not in self._excused or isinstance(duty, Foot)):
+                return Owed(left_m, FAR if line in self._excused else self._hindered[line])
+        return NOTHING_OWED
+
+    def _take(self, line: int, left_m: float, own: Motion, hindered_s: float) -> None:
+        needed_m = own.speed_mps * (_EXCUSED_S + own.speed_mps / (2.0 * EXCUSED_MPS2))
+        if line not in self._seen and left_m < needed_m:
+            self._excused.add(line)
+        self._seen[line], self._hindered[line] = own.time_s, hindered_s
+
+    def _forget(self, line: int) -> None:
+        del self._seen[line]
+        self._excused.discard(line)
+
+    def _standing(self, users: Array, now_s: float) -> Array:
+        """Return which users have stood for a while."""
+        stands = users[:, 5] < _STANDS_MPS
+        self._stood = {user: self._stood.get(user, now_s) for user in users[stands, 0].tolist()}
+        return np.array([now_s - self._stood.get(user, now_s) > _STOOD_S for user in users[:, 0].tolist()], np.bool_)
+
+
+def _who_goes_first(
+    duty: Foot | Entry, left_m: float, speed_mps: float, users: Array, standing: Array, light: LightOf
+) -> float | None:
+    """Return in how many seconds who goes first is in the way, FAR: nobody is hindered; None: nobody goes first."""
+    on_foot = users[:, 1] == RoadUserKind.PEDESTRIAN
+    if isinstance(duty, Foot):
+        return 0.0 if len(users) and _somebody_crosses(duty, users[on_foot]) else None
+    return _vehicle_first(duty, left_m, speed_mps, users[~on_foot], standing[~on_foot], light)
+
+
+def _somebody_crosses(foot: Foot, people: Array) -> bool:
+    """Return whether somebody is on a crossing, or steps onto it, and has not passed the vehicle's lane."""
+    (x, y), (to_x, to_y) = foot.crossing.line[[0, -1]].tolist()
+    length = float(np.hypot(to_x - x, to_y - y))
+    cosine, sine = (to_x - x) / length, (to_y - y) / length
+    along = (people[:, 2] - x) * cosine + (people[:, 3] - y) * sine
+    aside = np.abs((people[:, 3] - y) * cosine - (people[:, 2] - x) * sine)
+    forth = np.cos(people[:, 4]) * cosine + np.sin(people[:, 4]) * sine
+    walked = np.where(forth > 0.0, along, length - along)
+    passed = np.where(forth > 0.0, foot.high_m, length - foot.low_m) + _CLEAR_M
+    steps = (people[:, 5] > _STEPS_MPS) & (walked > _AT_KERB_M - KERB_M) & (np.abs(forth) > _ALIGNED)
+    on = (walked > -0.25) & (walked < length)
+    there = (aside < 0.5 * foot.crossing.width_m + _CLEAR_M) & (walked < passed)
+    return bool((there & (steps | on)).any())
+
+
+def _vehicle_first(
+    entry: Entry, left_m: float, speed_mps: float, vehicles: Array, standing: Array, light: LightOf
+) -> float | None:
+    connection = entry.connection
+    own_light = SignalState.UNAVAILABLE if connection.signal < 0 else light(connection.signal, connection.link)
+    if own_light in _STOPS:
+        return None
+    protected = own_light == SignalState.PROTECTED_MOVEMENT_ALLOWED
+    reaches_s = max(left_m, 0.0) / max(speed_mps, _SLOWEST_MPS)
+    hindered_s = None
+    for user, place in _on_ways(entry.watched, vehicles):
+        way = entry.watched
+        speed, half = float(vehicles[user, 5]), 0.5 * float(vehicles[user, 6])
+        inside = way.inside[place] > 0.0
+        goes_first = way.first[place] > 0.0 and not protected
+        held = not inside and (standing[user] or _is_held(way, place, light))
+        if held or not (goes_first or inside):
+            continue
+        left = float(way.to_m[place]) - half
+        comes_s = max(left, 0.0) / max(speed, _SETS_OFF_MPS)
+        leaves_s = (float(way.past_m[place]) + half) / max(speed, 1.0)
+        if leaves_s > reaches_s and comes_s < reaches_s + (entry.critical_s if goes_first else _INSIDE_S):
+            in_way_s = max(left, 0.0) / max(speed, 0.1) if goes_first else FAR
+            hindered_s = in_way_s if hindered_s is None else min(hindered_s, in_way_s)
+    return hindered_s
+
+
+def _on_ways(watched: Watched, vehicles: Array) -> list[list[int]]:
+    """Return (vehicle, point) for each that is on one of the ways: on each way the point that is nearest to it."""
+    dx = vehicles[:, None, 2] - watched.x_m[None, :]
+    dy = vehicles[:, None, 3] - watched.y_m[None, :]
+    along = dx * watched.cosine + dy * watched.sine
+    aside = np.abs(dy * watched.cosine - dx * watched.sine)
+    aligned = np.cos(vehicles[:, None, 4]) * watched.cosine + np.sin(vehicles[:, None, 4]) * watched.sine
+    on = (np.abs(along) <= 0.5) & (aside < _BESIDE_M) & (aligned > _ALIGNED)
+    return np.argwhere(on).tolist()
+
+
+def _is_held(way: Watched, place: int, light: LightOf) -> bool:
+    signal = int(way.signal[place])
+    return signal >= 0 and light(signal, int(way.link[place])) in _STOPS

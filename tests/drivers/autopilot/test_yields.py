@@ -1,0 +1,46 @@
+"""Where the autopilot stops for others, from what it was told."""
+
+import pytest
+
+from simconsole.drivers.autopilot.others import OLD_S
+from simconsole.drivers.autopilot.yields import HARDEST_MPS2, Yields, yields
+from simconsole.drivers.path_tracker.signal_stops import GAP_M, GENTLE_MPS2
+from simconsole.profiles.files.vehicle_files import load_vehicle
+from simconsole.profiles.files.world_files import load_world
+from simconsole.world.kinds.worlds import open_world
+from simconsole.world.traffic.road_users import NOBODY
+from tests.world.rules.test_right_of_way import crossing, somebody, urban
+
+FRONT_M = 3.0
+
+
+def test_stop_lies_before_the_crossing_while_somebody_is_on_it() -> None:
+    foot, others = crossing(), Yields(urban(), FRONT_M, None)
+    s_m = foot.line_m - FRONT_M - 60.0
+    others.see(somebody(foot, 0.5), 10.0)
+    stop = others.stop(s_m, 10.0, 10.05)
+    assert stop == (pytest.approx(foot.line_m - FRONT_M - GAP_M), GENTLE_MPS2)
+    assert others.stop(s_m + 0.2, 10.0, 10.07) == stop, "it is kept until the next message"
+    others.see(NOBODY, 10.1)
+    assert others.stop(s_m + 1.0, 10.0, 10.15) is not None
+    others.see(NOBODY, 10.7)
+    assert others.stop(s_m + 6.0, 10.0, 10.75) is None
+
+
+def test_who_steps_out_late_is_braked_for_hard() -> None:
+    foot, others = crossing(), Yields(urban(), FRONT_M, None)
+    others.see(somebody(foot, 0.5), 10.0)
+    stop = others.stop(foot.line_m - FRONT_M - 12.0, 10.0, 10.0)
+    assert stop is not None
+    assert stop.brake_mps2 == HARDEST_MPS2
+
+
+def test_old_messages_stop_nobody() -> None:
+    foot, others = crossing(), Yields(urban(), FRONT_M, None)
+    others.see(somebody(foot, 0.5), 10.0)
+    assert others.stop(foot.line_m - 60.0, 8.0, 10.0 + 2.0 * OLD_S) is None
+
+
+def test_course_has_nobody_to_yield_to() -> None:
+    assert yields(open_world(load_world("urban")), load_vehicle("hatchback"), None) is None
+    assert yields(open_world(load_world("urban_signals")), load_vehicle("hatchback"), None) is not None

@@ -1,0 +1,57 @@
+"""Where the route of the urban course gives way."""
+
+import numpy as np
+import pytest
+
+from simconsole.profiles.files.world_files import load_world
+from simconsole.world.kinds.worlds import open_world
+from simconsole.world.roads.lane_graph import LaneGraph
+from simconsole.world.roads.road_route import route_over
+from simconsole.world.roads.road_world import Roads, roads_of
+from simconsole.world.route import Route
+from simconsole.world.rules.conflicts import CRITICAL_S, LEFT_FROM_MAJOR_S, ROUNDABOUT_S, SEEN_M, duties
+from tests.world.nets import straight_map
+
+
+def urban() -> tuple[Roads, Route]:
+    world = open_world(load_world("urban_signals"))
+    roads = roads_of(world)
+    assert roads is not None
+    return roads, world.route
+
+
+def test_every_crossing_and_the_roundabout_lie_on_the_route() -> None:
+    roads, route = urban()
+    found = duties(roads.road_map, roads.legs, route)
+    names = [roads.road_map.edges[foot.crossing.edge].id for foot in found.crossings]
+    expected = [":junction0_c3", ":junction0_c1", ":crossing0_c0", ":crossing1_c0", ":crossing2_c0", ":crossing3_c0"]
+    assert names == expected
+    for foot in found.crossings:
+        point = route.at(foot.line_m + 0.5 * foot.crossing.width_m)
+        assert np.hypot(foot.crossing.line - (point.x_m, point.y_m), 0.0).min() < 5.0
+        assert foot.high_m - foot.low_m == pytest.approx(3.5, abs=0.5)
+    edges = [roads.road_map.edges[roads.road_map.lanes[one.connection.to_lane].edge].id for one in found.entries]
+    entry = found.entries[edges.index("ring0in-ring0out")]
+    assert entry.critical_s == ROUNDABOUT_S
+    assert entry.watched.first.any()
+    assert entry.watched.to_m.max() > 60.0, "the ring is seen before the entry, too"
+    assert entry.watched.to_m.max() < SEEN_M
+
+
+def test_green_light_makes_others_wait_but_for_who_is_inside() -> None:
+    roads, route = urban()
+    found = duties(roads.road_map, roads.legs, route)
+    lights = next(one for one in found.entries if one.connection.signal >= 0)
+    assert lights.critical_s == LEFT_FROM_MAJOR_S
+    assert (lights.watched.inside > 0.0).any()
+
+
+def test_critical_headways_of_minor_roads_are_longest_to_the_left() -> None:
+    assert ROUNDABOUT_S < CRITICAL_S["r"] < CRITICAL_S["s"] < CRITICAL_S["l"]
+
+
+def test_road_without_crossings_and_junctions_owes_nothing() -> None:
+    road_map = straight_map()
+    legs = LaneGraph(road_map).drawn(1, 100.0)
+    assert legs is not None
+    assert duties(road_map, legs, route_over(road_map, legs)) == ((), ())
