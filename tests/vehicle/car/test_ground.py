@@ -63,7 +63,9 @@ def load_n(drive: Drive) -> float:
     """Return the load of all tyres, by their deflections."""
     state, front, rear = drive.state, CAR.front, CAR.rear
     lifted = front.carcass_npm * (state.fl_lift_m + state.fr_lift_m)
-    return 2.0 * (front.static_n + rear.static_n) - lifted - rear.carcass_npm * (state.rl_lift_m + state.rr_lift_m)
+    return float(
+        2.0 * (front.static_n + rear.static_n) - lifted - rear.carcass_npm * (state.rl_lift_m + state.rr_lift_m)
+    )
 
 
 @pytest.mark.parametrize("grade", [0.05, -0.1, 0.2])
