@@ -10,11 +10,11 @@ from simconsole.values.height_field import HeightField, spline_at
 
 Array = NDArray[np.float64]
 
-LONGEST_M: Final = 4.0
-"""Edge of a draped triangle: over a vertical curve of 500 m radius the middle of such a chord is 4 mm off."""
+LONGEST_M: Final = 6.0
+"""Edge of a draped triangle: over a vertical curve of 500 m radius the middle of such a chord is 9 mm off."""
 LAYER_M: Final = 0.012
 """Between two layers: more than what two meshes of the same ground differ by."""
-LAND_CELL_M: Final = 8.0
+LAND_CELL_M: Final = 12.0
 SUNK_M: Final = 0.25
 """By how much the land lies below the road's own mesh: its cells are too wide to follow a road to the centimetre."""
 FAR_M: Final = 3000.0
