@@ -33,7 +33,16 @@ class Grid(NamedTuple):
     off_road_share: float  # of the road's friction
 
 
-NO_GRID: Final = Grid(0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+NO_GRID: Final = Grid(
+    from_x_m=0.0,
+    from_y_m=0.0,
+    cell_m=1.0,
+    per_cell_m=1.0,
+    columns=0.0,
+    rows=0.0,
+    kerb_m=0.0,
+    off_road_share=1.0,
+)
 
 
 class HeightField(NamedTuple):

@@ -123,6 +123,18 @@ def _on_patches(car: Car, p: CarParameters, ground: Row, base: Grips) -> Grips:
 
 
 @kernel
+def _axle_ground(twist_m: float, left_mps: float, right_mps: float, up_mps: float, turned_mps: float) -> AxleGround:
+    return AxleGround(
+        left_m=twist_m,
+        right_m=0.0 - twist_m,
+        left_mps=left_mps,
+        right_mps=right_mps,
+        left_up_mps=up_mps + turned_mps,
+        right_up_mps=up_mps - turned_mps,
+    )
+
+
+@kernel
 def on_plane(car: Car, p: CarParameters, ground: Row) -> Lie:
     """Return how a plane lies: everywhere the same, and at rest."""
     plane = read(ground, GROUND.plane)
@@ -137,8 +149,8 @@ def on_plane(car: Car, p: CarParameters, ground: Row) -> Lie:
         cg_up_mps=0.0,
         left_up_radps=0.0,
         nose_down_radps=0.0,
-        front=AxleGround(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        rear=AxleGround(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        front=_axle_ground(0.0, 0.0, 0.0, 0.0, 0.0),
+        rear=_axle_ground(0.0, 0.0, 0.0, 0.0, 0.0),
     )
 
 
@@ -186,18 +198,6 @@ def on_field(car: Car, p: CarParameters, ground: Row) -> Lie:
         nose_down_radps=-nose_up,
         front=_axle_ground(half_front * twist, fl_mps, fr_mps, front_up, half_front * left_up),
         rear=_axle_ground(-half_rear * twist, rl_mps, rr_mps, rear_up, half_rear * left_up),
-    )
-
-
-@kernel
-def _axle_ground(twist_m: float, left_mps: float, right_mps: float, up_mps: float, turned_mps: float) -> AxleGround:
-    return AxleGround(
-        left_m=twist_m,
-        right_m=-twist_m,
-        left_mps=left_mps,
-        right_mps=right_mps,
-        left_up_mps=up_mps + turned_mps,
-        right_up_mps=up_mps - turned_mps,
     )
 
 

@@ -5,8 +5,8 @@ from functools import lru_cache, partial
 from simconsole.profiles.files.world_files import read_map
 from simconsole.profiles.world import CourseProfile, RoadsProfile, WorldProfile
 from simconsole.world.course import Course
+from simconsole.world.course_relief import course_field
 from simconsole.world.drawing import draw
-from simconsole.world.relief.course_relief import course_field
 from simconsole.world.roads.road_map import RoadMap
 from simconsole.world.roads.road_world import road_world, roads_of
 from simconsole.world.rules.road_signals import RoadSignals

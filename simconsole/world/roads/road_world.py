@@ -6,10 +6,10 @@ from typing import Final, NamedTuple
 
 from simconsole.profiles.world import GroundProfile, RandomRoute, RoadsProfile, RouteByEdges
 from simconsole.values.errors import ProfileError
-from simconsole.world.relief.road_relief import road_field
 from simconsole.world.roads.lane_graph import LaneGraph, Leg
 from simconsole.world.roads.road_drawing import draw_roads
 from simconsole.world.roads.road_map import Connection, RoadMap
+from simconsole.world.roads.road_relief import road_field
 from simconsole.world.roads.road_route import MAX_CURVATURE_1PM, route_over, too_tight
 from simconsole.world.route import Route
 from simconsole.world.world import World

@@ -8,7 +8,7 @@ from simconsole.profiles.files.world_files import load_world
 from simconsole.profiles.world import CourseGroundProfile, CourseProfile, GradePoint
 from simconsole.values.height_field import spline_at
 from simconsole.world.course import Course
-from simconsole.world.relief.course_relief import course_field, heights_along
+from simconsole.world.course_relief import course_field, heights_along
 
 GROUND = CourseGroundProfile(
     grades=(
