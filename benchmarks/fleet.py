@@ -107,15 +107,15 @@ def _part(cars: int) -> None:
     rows[:, LAYOUT.command.start : LAYOUT.command.start + commands.shape[1]] = commands
 
     @numba.njit
-    def tick(rows, parameters, substeps):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
+    def tick(rows, parameters, ground, substeps):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
         for index in range(len(rows)):
-            step(rows[index], rows[index], parameters, substeps)
+            step(rows[index], rows[index], parameters, ground, substeps)
 
-    tick(rows, vehicle.parameters, SUBSTEPS)
+    tick(rows, vehicle.parameters, vehicle.ground, SUBSTEPS)
     print("ready", flush=True)
     for _ in sys.stdin:
         for _ in range(TICKS):
-            tick(rows, vehicle.parameters, SUBSTEPS)
+            tick(rows, vehicle.parameters, vehicle.ground, SUBSTEPS)
         print("done", flush=True)
 
 

@@ -99,14 +99,14 @@ def alone(vehicle: Platform, substeps: int) -> Steps:
     row = np.zeros(PLATFORM_AT + len(vehicle.initial_state))
 
     @numba.njit
-    def ticks(row: Any, parameters: Any, substeps: int, count: int) -> None:
+    def ticks(row: Any, parameters: Any, ground: Any, substeps: int, count: int) -> None:
         for _ in range(count):
-            step(row, row, parameters, substeps)
+            step(row, row, parameters, ground, substeps)
 
     def steps(count: int) -> None:
         put(row, PLATFORM_AT, rolling(vehicle))
         put(row, LAYOUT.command.start, command())
-        ticks(row, vehicle.parameters, substeps, count // substeps)
+        ticks(row, vehicle.parameters, vehicle.ground, substeps, count // substeps)
 
     return steps
 

@@ -50,7 +50,7 @@ class Run:
         put(self.row, LAYOUT.command.start, NOTHING._replace(**command))
         states = []
         for _ in range(round(seconds * 1000 / substeps)):
-            self.step(self.row, self.row, self.vehicle.parameters, substeps)
+            self.step(self.row, self.row, self.vehicle.parameters, self.vehicle.ground, substeps)
             states.append(self.state)
         return states
 
@@ -123,10 +123,10 @@ def static_loads(slope: float = 0.1) -> dict[str, float]:
     profile = hatchback()
     ground = Ground(1.0, slope, 0.0)
     end = Run(profile, ground).hold(15.0, substeps=100, brake=0.6)[-1]
-    p = car_parameters(profile, ground)
+    p = car_parameters(profile)
     front = 2.0 * p.front.static_n - p.front.carcass_npm * (end.fl_lift_m + end.fr_lift_m)
     rear = 2.0 * p.rear.static_n - p.rear.carcass_npm * (end.rl_lift_m + end.rr_lift_m)
-    body, plane = profile.body, p.body.gravity_plane_mps2
+    body, plane = profile.body, STANDARD_GRAVITY_MPS2 / math.sqrt(1.0 + slope * slope)
     moved = body.mass_kg * plane * slope * body.cg_height_m / body.wheelbase_m
     wanted = body.mass_kg * plane * body.front_mass_share - moved
     return {
@@ -205,5 +205,5 @@ def _stepped(step_s: float) -> tuple[float, float]:
     with mock.patch.object(car_step, "STEP_S", step_s), mock.patch.object(car_assembly, "STEP_S", step_s):
         run = Run(hatchback(), execution=plain, vx_mps=20.0)
         put(run.row, LAYOUT.command.start, NOTHING._replace(road_wheel_rad=0.04, clutch=1.0))
-        run.step(run.row, run.row, run.vehicle.parameters, round(1.0 / step_s))
+        run.step(run.row, run.row, run.vehicle.parameters, run.vehicle.ground, round(1.0 / step_s))
     return run.state.x_m, run.state.y_m

@@ -116,7 +116,7 @@ def _ours(speed: float, angle: float) -> Way:
     for tick in range(round(DURATION_S / OUR_STEP_S)):
         # A step and a half ahead: the rack follows its command with that lag, their angle has none.
         row[LAYOUT.command.start] = angle * min((tick + 2.5) * OUR_STEP_S / RAMP_S, 1.0)
-        step(row, row, vehicle.parameters, 1)
+        step(row, row, vehicle.parameters, vehicle.ground, 1)
         if (tick + 1) % every == 0:
             samples.append(row[PLATFORM_AT:].copy())
     state = CarState(*np.array(samples).T)

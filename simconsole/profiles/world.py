@@ -56,6 +56,33 @@ class Roundabout(WorldSection, frozen=True, kw_only=True):
     radius_m: Annotated[float, Meta(ge=5.0, le=200.0)]
 
 
+class GradePoint(WorldSection, frozen=True, kw_only=True):
+    """The height of the road's axis at a place; from one to the next the grade is one and the same."""
+
+    s_m: Station
+    height_m: Annotated[float, Meta(ge=-1e3, le=1e4)]
+
+
+class GroundProfile(WorldSection, frozen=True, kw_only=True):
+    """The ground of a world that is not flat: how its roads lie, and what is beside them."""
+
+    vertical_curve_m: Annotated[float, Meta(ge=0.0, le=500.0)] = 40.0
+    """Length of the vertical curve over which a change of grade is spread."""
+    bank_percent: Annotated[float, Meta(ge=0.0, le=12.0)] = 0.0
+    """Of the road into a bend whose radius is `bank_full_radius_m` or less; of a wider one less, by curvature."""
+    bank_full_radius_m: Annotated[float, Meta(ge=20.0, le=2000.0)] = 250.0
+    kerb_m: Annotated[float, Meta(ge=0.0, le=0.2)] = 0.0
+    """By how much the ground beside the road is higher than it."""
+    off_road_friction_share: Annotated[float, Meta(ge=0.05, le=1.5)] = 0.6
+    """Friction beside the road, as a share of the road's."""
+
+
+class CourseGroundProfile(GroundProfile, frozen=True, kw_only=True):
+    """The same of a course, with the heights along it."""
+
+    grades: Annotated[tuple[GradePoint, ...], Meta(max_length=1000)] = ()
+
+
 class CourseProfile(WorldSection, frozen=True, kw_only=True, tag_field="kind", tag="course"):
     """One course, driven on the right; the primitives are the centre of the driven lane.
 
@@ -71,6 +98,8 @@ class CourseProfile(WorldSection, frozen=True, kw_only=True, tag_field="kind", t
     crossings: tuple[Crossing, ...] = ()
     intersections: tuple[Intersection, ...] = ()
     roundabouts: tuple[Roundabout, ...] = ()
+    ground: CourseGroundProfile | None = None
+    """Without it the ground is flat, and the same beside the road as on it."""
 
 
 EdgeId = Annotated[str, Meta(min_length=1, max_length=200)]
@@ -115,6 +144,8 @@ class RoadsProfile(WorldSection, frozen=True, kw_only=True, tag_field="kind", ta
     polygons: MapFile | None = None
     """Of buildings and cones: SUMO's `.poly.xml`."""
     route: RouteByEdges | RouteByPlaces | RandomRoute
+    ground: GroundProfile | None = None
+    """With it the ground is as high as the map's lanes; without it flat, and the same beside the road as on it."""
 
 
 WorldProfile = CourseProfile | RoadsProfile

@@ -5,6 +5,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from simconsole.values.height_field import HeightField, spline_at
 from simconsole.values.signals import Mode
 from simconsole.world.drawing import Drawing
 from simconsole.world.triangles import Indices, triangulate
@@ -41,6 +42,9 @@ DASH_M: Final = 3.0
 GAP_M: Final = 4.0
 LIFT_M: Final = 0.02
 """Height between two layers of paint, so that the nearer one is seen."""
+LAND_CELL_M: Final = 10.0
+LAND_SUNK_M: Final = 0.4
+"""Its cells are too wide to follow a road's hollows: the land must not cover the road."""
 GROUND_MARGIN_M: Final = 400.0
 CAR_LENGTH_M: Final = 4.0
 POST_M: Final = 3.4
@@ -98,6 +102,47 @@ class WorldShapes(NamedTuple):
 def world_shapes(drawing: Drawing) -> WorldShapes:
     """Return the shapes of a course; lines come as [N, 3]."""
     posts, lamps = _lights(np.array([(light.x_m, light.y_m, light.yaw_rad) for light in drawing.lights]).reshape(-1, 3))
+    flat = _flat_shapes(drawing, posts, lamps)
+    return flat if drawing.ground is None else _on_ground(flat, drawing.ground)
+
+
+def _on_ground(flat: WorldShapes, ground: HeightField) -> WorldShapes:
+    """Return the shapes of a flat world as they lie on ground with height."""
+
+    def high(points: Array) -> Array:
+        up = spline_at(ground, 0, points[..., 0], points[..., 1])
+        return points + np.stack((np.zeros_like(up), np.zeros_like(up), up), axis=-1)
+
+    def high_mesh(of: Mesh) -> Mesh:
+        return of._replace(vertices=high(of.vertices))
+
+    return WorldShapes(
+        ground=high_mesh(_land(ground)),
+        surfaces=high_mesh(flat.surfaces),
+        islands=high_mesh(flat.islands),
+        paint=high_mesh(flat.paint),
+        edges=tuple(high(line) for line in flat.edges),
+        centre_dashes=tuple(high(dash) for dash in flat.centre_dashes),
+        light_posts=high(flat.light_posts),
+        light_lamps=high(flat.light_lamps),
+        path=high(flat.path),
+    )
+
+
+def _land(ground: HeightField) -> Mesh:
+    """Return the land of a field in cells of LAND_CELL_M, a little below the roads."""
+    grid = ground.grid
+    x, y = (
+        np.linspace(start, start + grid.cell_m * (count - 1.0), max(2, round(grid.cell_m * count / LAND_CELL_M)))
+        for start, count in ((grid.from_x_m, grid.columns), (grid.from_y_m, grid.rows))
+    )
+    places = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
+    first = (np.arange(len(x) - 1)[:, None] * len(y) + np.arange(len(y) - 1)).ravel()
+    corners = np.stack((first, first + len(y), first + len(y) + 1, first, first + len(y) + 1, first + 1), axis=1)
+    return Mesh(lifted(places, -LAND_SUNK_M), corners.reshape(-1, 3).astype(np.uint32))
+
+
+def _flat_shapes(drawing: Drawing, posts: Array, lamps: Array) -> WorldShapes:
     return WorldShapes(
         ground=mesh((_ground(drawing.path),), -5.0 * LIFT_M),
         surfaces=mesh(drawing.surfaces, 0.0),

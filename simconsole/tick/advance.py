@@ -20,7 +20,7 @@ from simconsole.devices.force_feedback.torque import wheel_torque
 from simconsole.values.kernels import Row, kernel, put
 from simconsole.values.latency import Hop, Mark, unheard
 from simconsole.values.layout import Part, lay_out, read, write
-from simconsole.values.platform import Platform
+from simconsole.values.platform import Platform, Step
 from simconsole.values.signals import NO_AHEAD, NO_COMMAND, NO_RULES_BROKEN, NO_SAMPLE, NO_SITUATION, Commander
 from simconsole.values.state_vector import INPUT_WIDTH, LAYOUT, PLATFORM_AT, Snapshot, TickInputs, columns
 from simconsole.world.rules.road_rules import NO_ROADS, RoadRules
@@ -62,11 +62,11 @@ class Console(NamedTuple):
     platform: Platform
     initial: Row  # the state vector before the first tick
     decide: Callable[[Row, Row, Row, float], None]
-    step: Callable[[Row, Row, Row, int], None]
+    step: Step
     force_feedback: Callable[[Row, Row, Row, float], None] | None  # None: the wheel has no motor
     roads: RoadRules  # NO_ROADS: the world has no rules
     look_around: Callable[[Row, Row, RoadRules, float], None] | None  # None: likewise
-    block: Callable[[Row, Row, Row, Row, Row, RoadRules, float, int], None]  # see `advance_block`
+    block: Callable[[Row, Row, Row, Row, Row, Row, RoadRules, float, int], None]  # see `advance_block`
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -165,10 +165,10 @@ def advance_block(previous: Row, rows: Row, console: Console) -> None:
     console.block(previous, rows, *_constants(console))
 
 
-def _constants(console: Console) -> tuple[Row, Row, Row, RoadRules, float, int]:
+def _constants(console: Console) -> tuple[Row, Row, Row, Row, RoadRules, float, int]:
     """Return what a tick takes beside the state vectors."""
-    parameters = console.platform.parameters
-    return console.settings, parameters, console.initial, console.roads, console.tick_s, console.substeps
+    on = console.platform
+    return console.settings, on.parameters, on.ground, console.initial, console.roads, console.tick_s, console.substeps
 
 
 def in_order(
@@ -186,6 +186,7 @@ def in_order(
         row: Row,
         settings: Row,
         parameters: Row,
+        ground: Row,
         initial: Row,
         roads: RoadRules,
         tick_s: float,
@@ -199,7 +200,7 @@ def in_order(
             row[_RESTARTED_AT] = 1.0
         if mark is not None:
             mark(_DECIDE)
-        step(previous, row, parameters, substeps)
+        step(previous, row, parameters, ground, substeps)
         if look_around is None:
             write(row, LAYOUT.situation, NO_SITUATION)
             write(row, LAYOUT.rules, NO_RULES_BROKEN)
@@ -226,6 +227,7 @@ def _block_of(tick: Stage) -> Stage:
         rows: Row,
         settings: Row,
         parameters: Row,
+        ground: Row,
         initial: Row,
         roads: RoadRules,
         tick_s: float,
@@ -233,7 +235,7 @@ def _block_of(tick: Stage) -> Stage:
     ) -> None:
         for index in range(len(rows)):
             row = rows[index]
-            tick(previous, row, settings, parameters, initial, roads, tick_s, substeps)
+            tick(previous, row, settings, parameters, ground, initial, roads, tick_s, substeps)
             previous = row
 
     return block

@@ -39,7 +39,7 @@ def assemble(resolved: ResolvedSession, execution: Execution) -> tuple[Console, 
     platform = build(
         switched(resolved.vehicle, session.features.aids),
         Pose(start.x_m, start.y_m, start.yaw_deg * RAD_PER_DEG),
-        ground_of(environment),
+        ground_of(environment, resolved.world),
     )
     console = build_console(
         cockpit_settings(resolved.cockpit, tick_hz),
@@ -78,8 +78,12 @@ def rules_of(world: WorldProfile | None, platform: Platform, tick_hz: int) -> Ro
     return road_rules(roads.road_map, roads.legs, tick_hz, platform.length_m - platform.rear_overhang_m)
 
 
-def ground_of(environment: Environment) -> Ground:
-    """Return the ground and the wind of a session."""
+def ground_of(environment: Environment, world: WorldProfile | None = None) -> Ground:
+    """Return the ground and the wind of a session in a world.
+
+    Raises:
+        ProfileError: a file of its map cannot be read.
+    """
     to_rad = environment.wind_to_deg * RAD_PER_DEG
     return Ground(
         friction=environment.friction,
@@ -89,6 +93,7 @@ def ground_of(environment: Environment) -> Ground:
         wind_x_mps=environment.wind_mps * math.cos(to_rad),
         wind_y_mps=environment.wind_mps * math.sin(to_rad),
         patches=tuple(Patch(*structs.astuple(patch)) for patch in environment.friction_patches),
+        field=None if world is None or world.ground is None else open_world(world).ground,
     )
 
 

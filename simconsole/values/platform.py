@@ -3,8 +3,14 @@
 from collections.abc import Callable
 from typing import Any, Final, NamedTuple
 
+from simconsole.values.ground import MOST_PATCHES, Ground, Patch
 from simconsole.values.kernels import Row
 from simconsole.values.signals import VehicleState
+
+__all__ = ["MOST_PATCHES", "NO_STIFFNESS", "Ground", "Patch", "Platform", "Pose", "RimStiffness", "Step"]
+
+Step = Callable[[Row, Row, Row, Row, int], None]
+"""A platform's step: see `Platform`."""
 
 
 class Pose(NamedTuple):
@@ -13,35 +19,6 @@ class Pose(NamedTuple):
     x_m: float
     y_m: float
     yaw_rad: float
-
-
-class Patch(NamedTuple):
-    """A rectangle of `map` with a friction of its own: a share of the ground's. Where two overlap, the later counts."""
-
-    from_x_m: float
-    to_x_m: float
-    from_y_m: float
-    to_y_m: float
-    share: float
-
-
-MOST_PATCHES: Final = 4
-
-
-class Ground(NamedTuple):
-    """The ground under the vehicle: friction coefficient and the slope of its plane along x and y of `map`.
-
-    `right_share` is the share of the friction under the vehicle's right wheels: below 1 on split friction. `patches`,
-    at most MOST_PATCHES, hold for each wheel that stands on them. The wind is where the air moves to, in `map`.
-    """
-
-    friction: float
-    slope_x: float
-    slope_y: float
-    right_share: float = 1.0
-    wind_x_mps: float = 0.0
-    wind_y_mps: float = 0.0
-    patches: tuple[Patch, ...] = ()
 
 
 class RimStiffness(NamedTuple):
@@ -65,9 +42,10 @@ NO_STIFFNESS: Final = RimStiffness(*(0.0,) * len(RimStiffness._fields))
 class Platform(NamedTuple):
     """One vehicle, ready to drive.
 
-    `step(previous, vector, parameters, substeps)` is a kernel: it reads `VehicleCommand` from `vector` at
-    LAYOUT.command and its own state from `previous` at PLATFORM_AT, advances `substeps` steps of 1 ms, and writes
-    `VehicleState` at LAYOUT.vehicle and its state at PLATFORM_AT of `vector` (simconsole.values.state_vector).
+    `step(previous, vector, parameters, ground, substeps)` is a kernel: it reads `VehicleCommand` from `vector` at
+    LAYOUT.command and its own state from `previous` at PLATFORM_AT, advances `substeps` steps of 1 ms on `ground`, and
+    writes `VehicleState` at LAYOUT.vehicle and its state at PLATFORM_AT of `vector` (simconsole.values.state_vector).
+    What it knows of the vehicle is in `parameters`, of the ground in `ground` (simconsole.values.ground).
     """
 
     name: str
@@ -75,7 +53,8 @@ class Platform(NamedTuple):
     initial_state: tuple[float, ...]
     initial_vehicle: VehicleState
     parameters: Row
-    step: Callable[[Row, Row, Row, int], None]
+    ground: Row
+    step: Step
     steering_ratio: float  # hand-wheel angle per road-wheel angle
     max_road_wheel_rad: float
     wheelbase_m: float  # of a ball its diameter: the length that stands in for a wheelbase

@@ -6,10 +6,9 @@ For a way as short as a swing's the steering's own friction is a spring, too; of
 from typing import Final
 
 from simconsole.profiles.vehicle import BallProfile, VehicleProfile
-from simconsole.values.platform import NO_STIFFNESS, Ground, RimStiffness
+from simconsole.values.platform import NO_STIFFNESS, RimStiffness
 from simconsole.values.units import RAD_PER_DEG
 
-LEVEL: Final = Ground(friction=1.0, slope_x=0.0, slope_y=0.0)
 SMALL_RAD: Final = 0.1 * RAD_PER_DEG
 """Angle of the road wheels to either side over which the stiffness is taken."""
 
@@ -24,7 +23,7 @@ def rim_stiffness(profile: VehicleProfile) -> RimStiffness:
     from simconsole.vehicle.car.car_platform import car_parameters
     from simconsole.vehicle.car.steering import hand_wheel_torque
 
-    car = car_parameters(profile, LEVEL)
+    car = car_parameters(profile)
     front, steering = car.front, car.steering
     stiff_n_per_rad = 2.0 * front.stiffness_y_per_m / front.decay_y_per_m * front.static_n
     moment_nm = stiff_n_per_rad * (steering.caster_trail_m + steering.pneumatic_trail_m) * SMALL_RAD

@@ -6,6 +6,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from simconsole.values.height_field import HeightField
 from simconsole.world.course import Course
 from simconsole.world.drawing_layers import STEP_M, Array, DrawingLayers, Light, add_crossing
 from simconsole.world.intersection import add_intersection, clear_m, opening_m
@@ -27,6 +28,7 @@ class Drawing(NamedTuple):
     stop_lines: tuple[Array, ...]  # polygons
     lights: tuple[Light, ...]
     path: Array  # the theoretical path, once round
+    ground: HeightField | None = None  # on which all of it lies; None: flat
 
 
 def draw(course: Course) -> Drawing:

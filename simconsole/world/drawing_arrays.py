@@ -5,6 +5,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from simconsole.values.height_field import Grid, HeightField
 from simconsole.world.drawing import Drawing
 from simconsole.world.drawing_layers import Light
 
@@ -18,6 +19,8 @@ def to_arrays(drawing: Drawing) -> dict[str, Any]:
         lines = getattr(drawing, name)
         content[name] = np.vstack(lines) if lines else np.empty((0, 2))
         content[f"{name}_ends"] = np.cumsum([len(line) for line in lines], dtype=np.int64)
+    if drawing.ground is not None:
+        content["ground_grid"], content["ground_nodes"] = np.array(drawing.ground.grid), drawing.ground.nodes
     return content
 
 
@@ -32,4 +35,7 @@ def from_arrays(content: Mapping[str, Any]) -> Drawing | None:
         return None
     lines = {name: tuple(np.split(content[name], content[f"{name}_ends"])[:-1]) for name in _LINES}
     lights = tuple(Light(*light) for light in content["lights"].tolist())
-    return Drawing(**lines, lights=lights, path=content["path"])
+    ground = None
+    if "ground_nodes" in content:
+        ground = HeightField(Grid(*content["ground_grid"].tolist()), content["ground_nodes"])
+    return Drawing(**lines, lights=lights, path=content["path"], ground=ground)

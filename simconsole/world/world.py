@@ -1,21 +1,35 @@
-"""What every kind of world gives to those who drive in it, draw it or judge a drive: a route and a drawing."""
+"""What every kind of world gives to those who drive in it, draw it or judge a drive: route, drawing and ground."""
 
 from collections.abc import Callable
 from functools import cached_property
 
+from simconsole.values.height_field import HeightField
 from simconsole.world.drawing import Drawing
 from simconsole.world.route import Route
 
 
 class World:
-    """One world, ready for use. The drawing is made when somebody asks for it."""
+    """One world, ready for use. Drawing and ground are made when somebody asks for them."""
 
-    def __init__(self, title: str, route: Route, draw: Callable[[], Drawing]) -> None:
+    def __init__(
+        self,
+        title: str,
+        route: Route,
+        draw: Callable[[], Drawing],
+        raise_ground: Callable[[], HeightField] | None = None,
+    ) -> None:
+        """Take a route, and what makes drawing and ground; without `raise_ground` the ground is flat."""
         self.title = title
         self.route = route
         self._draw = draw
+        self._raise_ground = raise_ground
 
     @cached_property
     def drawing(self) -> Drawing:
         """Everything there is to draw."""
-        return self._draw()
+        return self._draw()._replace(ground=self.ground)
+
+    @cached_property
+    def ground(self) -> HeightField | None:
+        """The heights of the ground; None where it is flat."""
+        return None if self._raise_ground is None else self._raise_ground()

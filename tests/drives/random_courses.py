@@ -135,7 +135,7 @@ def tracked_on(
     settled = driven & (distance > distance[first] + _SETTLED_M)
     drift = _drift(resolved.session.outputs.bridge.link, len(mode), resolved.session.mode.tick_hz)
     x, y = table.column("vehicle.x_m") + drift[:, 0], table.column("vehicle.y_m") + drift[:, 1]
-    _, lateral = route.project_all(x, y, 0.0)
+    place, lateral = route.project_all(x, y, 0.0)
     errors_cm = 100.0 * np.abs(lateral[settled])
     commands = np.flatnonzero(np.diff(table.column("ros.sequence"), prepend=0.0) > 0.0)
     commands = commands[settled[commands]]
@@ -152,7 +152,7 @@ def tracked_on(
         longitudinal_kept=float(gentle.mean()),
         reached=float((missing_rad < _REACHED_RAD).mean()),
         driven_s=float(settled.sum()) / tick_hz,
-        left_m=route.length_m - float(distance[-1]),
+        left_m=route.length_m - float(place[-1]),
     )
 
 

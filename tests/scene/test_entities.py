@@ -7,6 +7,7 @@ import pytest
 from simconsole.scene.entities import (
     DASH_M,
     GAP_M,
+    LAND_SUNK_M,
     MODE_COLOURS,
     Array,
     Dimensions,
@@ -18,9 +19,11 @@ from simconsole.scene.entities import (
     raised,
     world_shapes,
 )
+from simconsole.values.height_field import spline_at
 from simconsole.values.signals import Mode
 from simconsole.world.drawing import Drawing
 from simconsole.world.drawing_layers import Light
+from tests.values.test_height_field import field, places
 
 SQUARE = np.array(((0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (0.0, 3.0)))
 
@@ -135,3 +138,19 @@ def test_the_core_loads_no_rerun() -> None:
         "sys.exit(any(m in sys.modules for m in ('rerun', 'pygame', 'numba', 'matplotlib')))"
     )
     assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0
+
+
+def test_on_ground_with_height_every_shape_lies_on_it() -> None:
+    x, y = places()
+    hill = field(2.0 + 0.1 * x - 0.05 * y)
+    level, raised = world_shapes(drawing()), world_shapes(drawing()._replace(ground=hill))
+    pairs = [(level.surfaces.vertices, raised.surfaces.vertices), (level.path, raised.path)]
+    pairs += [*zip(level.edges, raised.edges, strict=True), (level.light_posts, raised.light_posts)]
+    pairs.append((level.light_lamps.reshape(-1, 3), raised.light_lamps.reshape(-1, 3)))
+    for flat, high in pairs:
+        assert high[:, :2] == pytest.approx(flat[:, :2])
+        assert high[:, 2] - flat[:, 2] == pytest.approx(spline_at(hill, 0, flat[:, 0], flat[:, 1]))
+    land = raised.ground.vertices
+    assert land[:, 2] == pytest.approx(spline_at(hill, 0, land[:, 0], land[:, 1]) - LAND_SUNK_M)
+    corners = land[raised.ground.triangles]
+    assert np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2].min() > 0.0

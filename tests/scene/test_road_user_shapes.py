@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from simconsole.scene.road_user_shapes import CAR, VAN, road_user_shapes
+from simconsole.values.height_field import spline_at
 from simconsole.world.traffic.road_users import NOBODY, RoadUser, RoadUserKind, RoadUsersAt, table
+from tests.values.test_height_field import field, places
 
 
 def user(kind: RoadUserKind, yaw_rad: float) -> RoadUser:
@@ -35,3 +37,12 @@ def test_boxes_stand_on_the_ground_and_look_along_their_heading() -> None:
     assert shapes.quaternions[:2].tolist() == [pytest.approx([0, 0, math.sqrt(0.5), math.sqrt(0.5)]), [0, 0, 0, 1]]
     assert shapes.colours == [CAR, VAN, CAR]
     assert np.isfinite(shapes.centres).all()
+
+
+def test_on_ground_with_height_they_stand_on_it() -> None:
+    x, _ = places()
+    hill = field(5.0 + 0.1 * x)
+    shapes = road_user_shapes([RoadUsersAt(0, table([user(RoadUserKind.CAR, 0.0)]))], 250, hill)
+    assert shapes.centres[0, 2] == pytest.approx(
+        float(spline_at(hill, 0, np.array((3.0,)), np.array((4.0,)))[0]) + 0.75
+    )

@@ -35,7 +35,7 @@ def rolling_car(profile: CarProfile, speed_mps: float, ground: Ground = LEVEL) -
 
 def loads(drive: Drive, profile: CarProfile, ground: Ground = LEVEL) -> dict[str, float]:
     """Return the wheels' loads in N."""
-    p = car_parameters(profile, ground)
+    p = car_parameters(profile)
     state = drive.state
     found = {}
     for wheel in WHEELS:

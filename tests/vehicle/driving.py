@@ -48,7 +48,7 @@ class Drive:
     def tick(self, command: VehicleCommand) -> None:
         row = self.row.copy()
         put(row, LAYOUT.command.start, command)
-        self.step(self.row, row, self.vehicle.parameters, SUBSTEPS)
+        self.step(self.row, row, self.vehicle.parameters, self.vehicle.ground, SUBSTEPS)
         self.row = row
         self.time_s += TICK_S
 

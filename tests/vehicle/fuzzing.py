@@ -104,7 +104,7 @@ class Singles:
     """Cars with the ways of a `Fleet`, stepped one by one: a tyre's code is long, and lanes would compile it anew."""
 
     def __init__(self, platforms: Sequence[Platform]) -> None:
-        self._parameters = [one.parameters for one in platforms]
+        self._constants = [(one.parameters, one.ground) for one in platforms]
         self._step = compiled(platforms[0].step)
         self._rows = np.zeros((len(platforms), PLATFORM_AT + len(AT)))
         self.restore([one.initial_state for one in platforms])
@@ -124,8 +124,8 @@ class Singles:
         self._rows[:, PLATFORM_AT:] = states
 
     def step(self, substeps: int) -> None:
-        for row, parameters in zip(self._rows, self._parameters, strict=True):
-            self._step(row, row, parameters, substeps)
+        for row, constants in zip(self._rows, self._constants, strict=True):
+            self._step(row, row, *constants, substeps)
 
 
 class Subject(NamedTuple):

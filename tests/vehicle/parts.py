@@ -4,9 +4,8 @@ from simconsole.profiles.files.loader import load
 from simconsole.profiles.vehicle import CarProfile
 from simconsole.vehicle.car.car_platform import car_parameters
 from simconsole.vehicle.car.tyre import Tyre, tyre
-from tests.vehicle.driving import LEVEL
 
-CAR = car_parameters(load("vehicles", "hatchback", CarProfile), LEVEL)
+CAR = car_parameters(load("vehicles", "hatchback", CarProfile))
 LOAD_N = CAR.front.static_n
 STEP_S = 0.001
 

@@ -41,24 +41,25 @@ _step = compiled(step)
 
 
 class Cars(NamedTuple):
-    """Rows of cars, and of the parameters of the ground that each stands on."""
+    """Rows of cars, their parameters, and the ground that each stands on."""
 
     rows: NDArray[np.float64]
     parameters: NDArray[np.float64]
+    grounds: NDArray[np.float64]
 
 
 @numba.njit
-def _settle(rows: Any, parameters: Any, ticks: int, substeps: int) -> None:
+def _settle(rows: Any, parameters: Any, grounds: Any, ticks: int, substeps: int) -> None:
     before = np.zeros_like(rows[0])
     for index in range(rows.shape[0]):
         for _ in range(ticks):
             before[:] = rows[index]
-            _step(before, rows[index], parameters[index], substeps)
+            _step(before, rows[index], parameters, grounds[index], substeps)
 
 
 def settle(cars: Cars, seconds: float) -> None:
     """Hold what each car's row commands, at ticks of 0.2 s."""
-    _settle(cars.rows, cars.parameters, round(seconds / 0.2), 200)
+    _settle(cars.rows, cars.parameters, cars.grounds, round(seconds / 0.2), 200)
 
 
 def random_cars(count: int, seed: int, steered_rad: float = 0.0, **command: float) -> Cars:
@@ -78,7 +79,8 @@ def random_cars(count: int, seed: int, steered_rad: float = 0.0, **command: floa
     rows[:, PLATFORM_AT:] = grounds[0].initial_state + sizes * draw.uniform(-1.0, 1.0, (count, len(sizes)))
     for row in rows:
         put(row, LAYOUT.command.start, IDLE._replace(road_wheel_rad=rng.uniform(-steered_rad, steered_rad), **command))
-    return Cars(rows, np.array([grounds[index % len(grounds)].parameters for index in range(count)]))
+    on = np.array([grounds[index % len(grounds)].ground for index in range(count)])
+    return Cars(rows, grounds[0].parameters, on)
 
 
 def speeds_mps(cars: Cars) -> NDArray[np.float64]:

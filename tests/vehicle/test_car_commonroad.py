@@ -49,7 +49,7 @@ def drive_ours(vehicle: Platform, given: Input) -> Path:
     samples = []
     for tick in range(round(DURATION_S / 0.001)):
         other[STEER_AT] = given.rate_radps * min((tick + 2.5) * 0.001, given.ramp_s)
-        step(row, other, vehicle.parameters, 1)
+        step(row, other, vehicle.parameters, vehicle.ground, 1)
         row, other = other, row
         if (tick + 1) % every == 0:
             samples.append(CarState(*row[STATE]))

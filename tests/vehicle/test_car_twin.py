@@ -71,7 +71,7 @@ def rows(
     for command in given:
         row = np.zeros_like(previous)
         put(row, LAYOUT.command.start, command)
-        step(previous, row, vehicle.parameters, substeps)
+        step(previous, row, vehicle.parameters, vehicle.ground, substeps)
         yield row
         previous = row
 

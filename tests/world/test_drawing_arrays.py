@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 
 from simconsole.profiles.files.loader import load
+from simconsole.profiles.files.world_files import load_world
 from simconsole.profiles.world import CourseProfile
 from simconsole.world.course import Course
 from simconsole.world.drawing import draw
 from simconsole.world.drawing_arrays import from_arrays, to_arrays
+from simconsole.world.kinds.worlds import open_world
 
 
 def test_a_drawing_comes_out_of_a_file_as_it_went_in() -> None:
@@ -30,3 +32,13 @@ def test_no_drawing_is_none_and_a_part_of_one_is_an_error() -> None:
     assert from_arrays({}) is None
     with pytest.raises(KeyError):
         from_arrays({"path": np.zeros((2, 2))})
+
+
+def test_the_ground_comes_back_with_the_drawing() -> None:
+    drawing = open_world(load_world("country")).drawing
+    again = from_arrays(to_arrays(drawing))
+    assert drawing.ground is not None
+    assert again is not None
+    assert again.ground is not None
+    assert again.ground.grid == drawing.ground.grid
+    assert again.ground.nodes.tobytes() == drawing.ground.nodes.tobytes()

@@ -5,10 +5,12 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from simconsole.hud.driver_view.hills import LAYER_M, draped, heights, land, lifted
 from simconsole.hud.driver_view.mesh import VERTEX, Box, Colour, Material, Vertices, box, cone, joined, quads
 from simconsole.hud.driver_view.road import MEADOW, occupancy_of, road_meshes
 from simconsole.hud.driver_view.surroundings import surroundings
 from simconsole.hud.driver_view.vehicle_body import Size, VehicleMeshes, vehicle_meshes
+from simconsole.values.height_field import HeightField
 from simconsole.world.drawing import Drawing
 from simconsole.world.drawing_layers import Light
 
@@ -39,6 +41,11 @@ class ViewScene(NamedTuple):
     solids: Pieces
     vehicle: VehicleMeshes
     size: Size
+    ground: HeightField | None = None
+
+    def height_m(self, x_m: float, y_m: float) -> float:
+        """Return the height of the ground at a place."""
+        return 0.0 if self.ground is None else float(heights(self.ground, np.array(((x_m, y_m),)))[0])
 
 
 class Part(NamedTuple):
@@ -56,13 +63,13 @@ def world_parts(drawing: Drawing | None, limit_kmh: float) -> tuple[Part, ...]:
         return Part("land", land, 0), Part("grid", grid, 1)
     taken = occupancy_of(drawing)
     road = road_meshes(drawing, taken)
-    beside = surroundings(drawing.path, limit_kmh, taken)
+    beside = surroundings(drawing.path, limit_kmh, taken, drawing.ground)
     lamps = [
         Part(f"signal_{index}_{name}", _lamp(light, height_m, colour))
         for index, light in enumerate(drawing.lights)
         for name, height_m, colour in zip(LAMP_NAMES, LAMP_HEIGHTS_M, LAMPS, strict=True)
     ]
-    return (
+    parts = (
         Part("land", road.land, 0),
         Part("asphalt", road.asphalt, 1),
         Part("islands", road.islands, 2),
@@ -76,15 +83,26 @@ def world_parts(drawing: Drawing | None, limit_kmh: float) -> tuple[Part, ...]:
         Part("signals", joined([_signal_post(light) for light in drawing.lights])),
         *lamps,
     )
+    return parts if drawing.ground is None else tuple(_on_ground(part, drawing.ground) for part in parts)
+
+
+def _on_ground(part: Part, ground: HeightField) -> Part:
+    """Return a part of a flat world as it lies on ground with height; buildings are there already."""
+    if part.name == "land":
+        return part._replace(mesh=land(ground, MEADOW))
+    if part.layer is not None or part.name == "kerbs":
+        return part._replace(mesh=draped(part.mesh, ground, LAYER_M * (part.layer or 0)))
+    return part if part.name == "buildings" else part._replace(mesh=lifted(part.mesh, ground))
 
 
 def view_scene(drawing: Drawing | None, limit_kmh: float, size: Size) -> ViewScene:
     """Return the scene of a world, or of an empty plain where a session has none, and of a vehicle."""
     parts = world_parts(drawing, limit_kmh)
+    ground = None if drawing is None else drawing.ground
     heights = sorted({part.layer for part in parts if part.layer is not None})
     layers = [joined([part.mesh for part in parts if part.layer == height]) for height in heights]
     solids = joined([part.mesh for part in parts if part.layer is None])
-    return ViewScene(tuple(pieces(layer) for layer in layers), pieces(solids), vehicle_meshes(size), size)
+    return ViewScene(tuple(pieces(layer) for layer in layers), pieces(solids), vehicle_meshes(size), size, ground)
 
 
 def pieces(mesh: Vertices) -> Pieces:

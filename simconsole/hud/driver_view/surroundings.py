@@ -6,8 +6,10 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from simconsole.hud.driver_view.hills import stood
 from simconsole.hud.driver_view.mesh import Box, Colour, Material, Vertices, box, cone, facets, joined, left_of, quads
 from simconsole.hud.driver_view.occupancy import Occupancy
+from simconsole.values.height_field import HeightField
 
 Array = NDArray[np.float64]
 
@@ -41,8 +43,11 @@ class Surroundings(NamedTuple):
     trees: Vertices
 
 
-def surroundings(path: Array, limit_kmh: float, taken: Occupancy) -> Surroundings:
-    """Return houses, trees and signs along a path [N, 2], on ground that is free; takes it. Limit 0: no signs."""
+def surroundings(path: Array, limit_kmh: float, taken: Occupancy, ground: HeightField | None = None) -> Surroundings:
+    """Return houses, trees and signs along a path [N, 2], on ground that is free; takes it. Limit 0: no signs.
+
+    Houses stand upright on the ground's height; what is slender is made for level ground.
+    """
     generator = np.random.Generator(np.random.PCG64(SEED))
     across = left_of(path)
     way = np.concatenate(((0.0,), np.cumsum(np.hypot(*np.diff(path, axis=0).T))))
@@ -53,7 +58,7 @@ def surroundings(path: Array, limit_kmh: float, taken: Occupancy) -> Surrounding
     signs = [_sign(*place, limit_kmh, taken) for place in (places(30.0, SIGN_EVERY_M) if limit_kmh > 0.0 else ())]
     houses = [_house(*place, side, taken, generator) for place in places(10.0, HOUSE_EVERY_M) for side in SIDES_M]
     trees = [_tree(*place, side, taken, generator) for place in places(4.0, TREE_EVERY_M) for side in SIDES_M]
-    return Surroundings(joined(signs), joined(houses), joined(trees))
+    return Surroundings(joined(signs), joined([stood(house, ground) for house in houses]), joined(trees))
 
 
 def _place(path: Array, across: Array, way: Array, s_m: float) -> tuple[Array, Array]:

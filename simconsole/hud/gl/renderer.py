@@ -188,6 +188,7 @@ class Renderer:
                 self._draw_mesh(self._person, person_model(user))
                 continue
             place = model(user)
+            place[2, 3] += self._scene.height_m(user.x_m, user.y_m)
             self._draw_mesh(self._other_body, place)
             for x, y in self._other_wheels if away < WHEELS_M else ():
                 self._draw_mesh(self._other_wheel, place @ _transform(np.eye(3), np.array((x, y, 0.0))))

@@ -40,5 +40,7 @@ def export(job: Job, blocks: Iterable[tuple[Ticks, Array]], path: Path, road_use
                 shown.append(step)
                 step = next(steps, None)
             if shown:
-                view.add_road_users(road_user_shapes(shown, job.tick_hz))
+                view.add_road_users(
+                    road_user_shapes(shown, job.tick_hz, None if job.drawing is None else job.drawing.ground)
+                )
         view.close()

@@ -48,6 +48,7 @@ def follow(ports: Ports, job: Job, path: Path) -> None:
     from simconsole.scene.viewer.rerun_view import RerunView
 
     world = None if job.drawing is None else world_shapes(job.drawing)
+    ground = None if job.drawing is None else job.drawing.ground
     view = RerunView(path, job.profile, job.dimensions, world, index=False)
     memory = Memory()
     waiting: list[Snapshot] = []
@@ -72,7 +73,7 @@ def follow(ports: Ports, job: Job, path: Path) -> None:
             added, memory = piece(vectors, job.columns, ticks, job.tick_hz, job.profile.rate_hz, memory)
             view.add(added._replace(lanes=(*added.lanes, link)))
             if steps:
-                view.add_road_users(road_user_shapes(steps, job.tick_hz))
+                view.add_road_users(road_user_shapes(steps, job.tick_hz, ground))
                 steps.clear()
             view.settle()
             link = Lane(LINK_LANE, [], [])

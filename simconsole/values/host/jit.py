@@ -130,9 +130,10 @@ def compiled_for_each(step: Callable[..., Any]) -> Callable[..., None]:
     """Return the compiled loop that runs a kernel on every row of its tables, on all cores.
 
     Args:
-        step: a kernel of (row before, row after, parameters, an int), as a platform's `step`.
+        step: a kernel of (row before, row after, parameters, ground, an int), as a platform's `step`.
 
-    Returns: a function of (rows before, rows after, parameters, an int), the tables float64 [vehicles, columns].
+    Returns: a function of (rows before, rows after, parameters, grounds, which of them each vehicle is on, an int), the
+        tables float64 [vehicles or grounds, columns].
     """
     namespace = {"__name__": __name__, "step": _inner(step), "prange": _numba().prange}
     twin = types.FunctionType(_for_each.__code__, namespace, "for_each")
@@ -140,9 +141,10 @@ def compiled_for_each(step: Callable[..., Any]) -> Callable[..., None]:
     return _cached(twin, digest(step) + "-each", parallel=True)  # type: ignore[no-any-return]
 
 
-def _for_each(before: Any, after: Any, parameters: Any, count: int) -> None:
+def _for_each(before: Any, after: Any, parameters: Any, grounds: Any, on: Any, count: int) -> None:
     for index in prange(len(after)):  # type: ignore[name-defined]  # noqa: F821  # both names: compiled_for_each
-        step(before[index], after[index], parameters[index], count)  # type: ignore[name-defined]  # noqa: F821
+        ground = grounds[on[index]]
+        step(before[index], after[index], parameters[index], ground, count)  # type: ignore[name-defined]  # noqa: F821
 
 
 @cache

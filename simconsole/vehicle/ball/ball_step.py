@@ -5,22 +5,30 @@ released it coasts to rest. The brake always works. A ball that rolls without sl
 spin, so a slope moves it with 5/7 of gravity.
 """
 
+from collections.abc import Callable
 from math import sqrt
 from typing import Final, NamedTuple
 
+from simconsole.values.ground import GROUND, NODES_AT
+from simconsole.values.height_field import spot_at
 from simconsole.values.kernels import Row, approach, clip, is_finite, kernel
 from simconsole.values.layout import Part, read, write
+from simconsole.values.platform import Step
 from simconsole.values.signals import VehicleCommand, VehicleState
 from simconsole.values.state_vector import LAYOUT, PLATFORM_AT
 from simconsole.values.trigonometry import atan2, cos, sin, wrap_angle
+from simconsole.values.units import STANDARD_GRAVITY_MPS2
 
 STEP_S: Final = 0.001
+ROLLING_SHARE: Final = 5.0 / 7.0
+"""Acceleration of a solid sphere rolling down a slope, as a share of a sliding body's (inertia 2/5 m r2)."""
+
 ROLLING_MPS: Final = 0.05
 """Below this speed the heading stays as it is: the direction of hardly any motion means nothing."""
 
 
 class BallState(NamedTuple):
-    """State after a step of 1 ms, in map; the height follows the plane of the ground."""
+    """State after a step of 1 ms, in map; the height follows the ground."""
 
     x_m: float
     y_m: float
@@ -44,11 +52,20 @@ class BallParameters(NamedTuple):
     approach_s: float
     turn_per_s: float
     max_road_wheel_rad: float
-    slope_x: float
-    slope_y: float
+
+
+class BallGround(NamedTuple):
+    """The ground under the ball: its height, what it can push off and brake with, and where it pulls."""
+
+    height_m: float
+    max_accel_mps2: float
+    brake_mps2: float
     gravity_x_mps2: float
     gravity_y_mps2: float
 
+
+BallGroundModel = Callable[[float, float, BallParameters, Row], BallGround]
+"""A kernel that returns the ground under a place in map: `on_plane` or `on_field`."""
 
 BALL: Final = Part(BallState, PLATFORM_AT)
 PARAMETERS: Final = Part(BallParameters)
@@ -61,19 +78,58 @@ class Velocity(NamedTuple):
     y_mps: float
 
 
+def make_step(ground_of: BallGroundModel) -> Step:
+    """Return the kernel that advances the ball by one tick on such ground: the interface of values/platform.py."""
+
+    @kernel
+    def step(previous: Row, row: Row, parameters: Row, ground: Row, substeps: int) -> None:
+        p = read(parameters, PARAMETERS)
+        command = read(row, LAYOUT.command)
+        state = read(previous, BALL)
+        brake = clip(command.brake, 0.0, 1.0) if is_finite(command.brake) else 0.0
+        following = is_finite(command.target_speed_mps) and command.target_speed_mps > 0.0
+        following = following and is_finite(command.target_x_m) and is_finite(command.target_y_m)
+        for _ in range(substeps):
+            on = ground_of(state.x_m, state.y_m, p, ground)
+            state = follow(state, p, on, command, brake) if following else pushed(state, p, on, command, brake)
+        write(row, BALL, state)
+        on = ground_of(state.x_m, state.y_m, p, ground)
+        write(row, LAYOUT.vehicle, vehicle_state(state, p, on, command.road_wheel_rad))
+
+    return step
+
+
 @kernel
-def step(previous: Row, row: Row, parameters: Row, substeps: int) -> None:
-    """Advance the ball by one tick: the platform interface of values/platform.py."""
-    p = read(parameters, PARAMETERS)
-    command = read(row, LAYOUT.command)
-    state = read(previous, BALL)
-    brake = clip(command.brake, 0.0, 1.0) if is_finite(command.brake) else 0.0
-    following = is_finite(command.target_speed_mps) and command.target_speed_mps > 0.0
-    following = following and is_finite(command.target_x_m) and is_finite(command.target_y_m)
-    for _ in range(substeps):
-        state = follow(state, p, command, brake) if following else pushed(state, p, command, brake)
-    write(row, BALL, state)
-    write(row, LAYOUT.vehicle, vehicle_state(state, p, command.road_wheel_rad))
+def on_plane(x_m: float, y_m: float, p: BallParameters, ground: Row) -> BallGround:
+    """Return the ground of a plane, on which it needs little friction: it limits acceleration and brake."""
+    plane = read(ground, GROUND.plane)
+    gravity = plane.gravity_mps2
+    grip = plane.friction * gravity
+    return BallGround(
+        height_m=plane.slope_x * x_m + plane.slope_y * y_m,
+        max_accel_mps2=grip if grip < p.max_accel_mps2 else p.max_accel_mps2,
+        brake_mps2=grip if grip < p.brake_mps2 else p.brake_mps2,
+        gravity_x_mps2=-ROLLING_SHARE * gravity * plane.slope_x,
+        gravity_y_mps2=-ROLLING_SHARE * gravity * plane.slope_y,
+    )
+
+
+@kernel
+def on_field(x_m: float, y_m: float, p: BallParameters, ground: Row) -> BallGround:
+    """Return the ground of a field of heights."""
+    plane = read(ground, GROUND.plane)
+    spot = spot_at(ground, NODES_AT, read(ground, GROUND.grid), x_m, y_m)
+    slope_x, slope_y = plane.slope_x + spot.slope_x, plane.slope_y + spot.slope_y
+    # In map's own directions: of the pull along the ground the level part moves the ball over the map.
+    level = 1.0 / (1.0 + slope_x * slope_x + slope_y * slope_y)
+    grip = plane.friction * spot.friction_share * STANDARD_GRAVITY_MPS2 * sqrt(level)
+    return BallGround(
+        height_m=spot.height_m + plane.slope_x * x_m + plane.slope_y * y_m,
+        max_accel_mps2=grip if grip < p.max_accel_mps2 else p.max_accel_mps2,
+        brake_mps2=grip if grip < p.brake_mps2 else p.brake_mps2,
+        gravity_x_mps2=-ROLLING_SHARE * STANDARD_GRAVITY_MPS2 * level * slope_x,
+        gravity_y_mps2=-ROLLING_SHARE * STANDARD_GRAVITY_MPS2 * level * slope_y,
+    )
 
 
 @kernel
@@ -88,7 +144,7 @@ def towards(from_x: float, from_y: float, to_x: float, to_y: float, most: float)
 
 
 @kernel
-def desired(s: BallState, p: BallParameters, command: VehicleCommand, brake: float) -> Velocity:
+def desired(s: BallState, p: BallParameters, on: BallGround, command: VehicleCommand, brake: float) -> Velocity:
     """Return the velocity wanted now: the desired speed, less near the target so that the ball can stop there.
 
     sqrt(a * d) needs half of the deceleration a over the distance d, which leaves room to be late; the last part of
@@ -100,7 +156,7 @@ def desired(s: BallState, p: BallParameters, command: VehicleCommand, brake: flo
     if left == 0.0:
         return Velocity(0.0, 0.0)
     speed = command.target_speed_mps * (1.0 - brake)
-    stopping = sqrt(p.max_accel_mps2 * left)
+    stopping = sqrt(on.max_accel_mps2 * left)
     arriving = left / p.approach_s
     if stopping < speed:
         speed = stopping
@@ -110,13 +166,13 @@ def desired(s: BallState, p: BallParameters, command: VehicleCommand, brake: flo
 
 
 @kernel
-def follow(s: BallState, p: BallParameters, command: VehicleCommand, brake: float) -> BallState:
+def follow(s: BallState, p: BallParameters, on: BallGround, command: VehicleCommand, brake: float) -> BallState:
     """Return the ball 1 ms later, driven towards its target; its heading turns to the direction of motion."""
-    wanted = desired(s, p, command, brake)
-    most = STEP_S * (p.max_accel_mps2 + brake * p.brake_mps2)
+    wanted = desired(s, p, on, command, brake)
+    most = STEP_S * (on.max_accel_mps2 + brake * on.brake_mps2)
     v = towards(
-        s.vx_map_mps + STEP_S * p.gravity_x_mps2,
-        s.vy_map_mps + STEP_S * p.gravity_y_mps2,
+        s.vx_map_mps + STEP_S * on.gravity_x_mps2,
+        s.vy_map_mps + STEP_S * on.gravity_y_mps2,
         wanted.x_mps,
         wanted.y_mps,
         most,
@@ -129,19 +185,19 @@ def follow(s: BallState, p: BallParameters, command: VehicleCommand, brake: floa
 
 
 @kernel
-def pushed(s: BallState, p: BallParameters, command: VehicleCommand, brake: float) -> BallState:
+def pushed(s: BallState, p: BallParameters, on: BallGround, command: VehicleCommand, brake: float) -> BallState:
     """Return the ball 1 ms later under the person: throttle pushes along the heading, the wheel turns it."""
     throttle = clip(command.throttle, 0.0, 1.0) if is_finite(command.throttle) else 0.0
     angle = command.road_wheel_rad if is_finite(command.road_wheel_rad) else 0.0
     turn = STEP_S * p.turn_per_s * clip(angle, -p.max_road_wheel_rad, p.max_road_wheel_rad)
     way = -1.0 if command.gear < 0.0 else 1.0
-    push = STEP_S * way * throttle * p.max_accel_mps2
+    push = STEP_S * way * throttle * on.max_accel_mps2
     c = cos(turn)
     d = sin(turn)
     # Turning rotates the velocity, too: a ball has no side grip that could do so.
-    x = s.vx_map_mps * c - s.vy_map_mps * d + STEP_S * p.gravity_x_mps2 + push * cos(s.yaw_rad)
-    y = s.vx_map_mps * d + s.vy_map_mps * c + STEP_S * p.gravity_y_mps2 + push * sin(s.yaw_rad)
-    return rolled(s, p, towards(x, y, 0.0, 0.0, STEP_S * (p.rolling_mps2 + brake * p.brake_mps2)), turn)
+    x = s.vx_map_mps * c - s.vy_map_mps * d + STEP_S * on.gravity_x_mps2 + push * cos(s.yaw_rad)
+    y = s.vx_map_mps * d + s.vy_map_mps * c + STEP_S * on.gravity_y_mps2 + push * sin(s.yaw_rad)
+    return rolled(s, p, towards(x, y, 0.0, 0.0, STEP_S * (p.rolling_mps2 + brake * on.brake_mps2)), turn)
 
 
 @kernel
@@ -163,18 +219,18 @@ def rolled(s: BallState, p: BallParameters, v: Velocity, turn: float) -> BallSta
 
 
 @kernel
-def vehicle_state(s: BallState, p: BallParameters, road_wheel_rad: float) -> VehicleState:
+def vehicle_state(s: BallState, p: BallParameters, on: BallGround, road_wheel_rad: float) -> VehicleState:
     """Return the ball as others see it: its centre, and its spin as pitch."""
     c = cos(s.yaw_rad)
     d = sin(s.yaw_rad)
     vx = s.vx_map_mps * c + s.vy_map_mps * d
-    slope = p.gravity_x_mps2 * c + p.gravity_y_mps2 * d
+    slope = on.gravity_x_mps2 * c + on.gravity_y_mps2 * d
     coast = slope - p.rolling_mps2 * vx / (abs(vx) + ROLLING_MPS)
     angle = clip(road_wheel_rad, -p.max_road_wheel_rad, p.max_road_wheel_rad) if is_finite(road_wheel_rad) else 0.0
     return VehicleState(
         x_m=s.x_m,
         y_m=s.y_m,
-        z_m=p.slope_x * s.x_m + p.slope_y * s.y_m + p.radius_m,
+        z_m=on.height_m + p.radius_m,
         yaw_rad=s.yaw_rad,
         pitch_rad=wrap_angle(s.rolled_rad),
         roll_rad=0.0,
@@ -191,7 +247,14 @@ def vehicle_state(s: BallState, p: BallParameters, road_wheel_rad: float) -> Veh
         clutch=0.0,
         distance_m=s.distance_m,
         coast_accel_mps2=coast,
-        full_throttle_accel_mps2=coast + p.max_accel_mps2,
-        full_brake_accel_mps2=coast - p.brake_mps2,
+        full_throttle_accel_mps2=coast + on.max_accel_mps2,
+        full_brake_accel_mps2=coast - on.brake_mps2,
         gear_fault=0.0,
     )
+
+
+step: Final = make_step(on_plane)
+"""The step of a ball on a plane."""
+
+field_step: Final = make_step(on_field)
+"""The same on a field of heights."""

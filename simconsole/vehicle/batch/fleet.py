@@ -33,6 +33,7 @@ class Fleet:
             raise ValueError("a fleet must have at least one vehicle, and all of one kind")
         self.platforms = tuple(platforms)
         self._parameters = np.array([platform.parameters for platform in platforms])
+        self._grounds, self._on = _grounds(platforms)
         self._rows = np.zeros((len(platforms), PLATFORM_AT + len(platforms[0].initial_state)))
         for row, platform in zip(self._rows, platforms, strict=True):
             put(row, LAYOUT.vehicle.start, platform.initial_vehicle)
@@ -73,7 +74,17 @@ class Fleet:
     def step(self, substeps: int) -> None:
         """Advance every vehicle by `substeps` steps of 1 ms under its command."""
         self._before[...] = self._rows
-        self._step(self._before, self._rows, self._parameters, substeps)
+        self._step(self._before, self._rows, self._parameters, self._grounds, self._on, substeps)
+
+
+def _grounds(platforms: Sequence[Platform]) -> tuple[Table, NDArray[np.int64]]:
+    """Return the different grounds, filled up to one length, and which of them each vehicle is on."""
+    found: dict[bytes, int] = {}
+    on = [found.setdefault(platform.ground.tobytes(), len(found)) for platform in platforms]
+    grounds = np.zeros((len(found), max(len(platform.ground) for platform in platforms)))
+    for place, platform in zip(on, platforms, strict=True):
+        grounds[place, : len(platform.ground)] = platform.ground
+    return grounds, np.array(on)
 
 
 def _write(columns: Table, values: ArrayLike) -> None:

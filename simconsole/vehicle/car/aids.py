@@ -162,7 +162,7 @@ def hill_hold(car: Car, p: CarParameters, request: Request, axles: Axles, ratio:
     s = car.aids
     left = s.hold_left_s
     brake = s.hold_brake
-    steep = abs(p.body.slope_x) + abs(p.body.slope_y) > HOLD_SLOPE
+    steep = axles.slope > HOLD_SLOPE
     # The gears take their loss of it; as much again is the margin by which the drive must be the stronger.
     kept = (1.0 - 2.0 * p.gears.loss_share) * p.gears.per_wheel_radius_m
     drive_n = car.shafts.clutch_impulse_nms * ratio * (kept * (1.0 / step_s))

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Any, Final, NamedTuple
 
 from simconsole.values.kernels import kernel
+from simconsole.vehicle.car.ground import Grips, Lie
 from simconsole.vehicle.car.parameters import AxleParameters, CarParameters, SteeringParameters
 from simconsole.vehicle.car.state import BodyState, Car, Wheel
 from simconsole.vehicle.car.steering import WheelDirections, aligning_moment, patch_twist, turn_slip_moment
@@ -30,15 +31,6 @@ class Contact(NamedTuple):
     force_y_n: float
 
 
-class FrictionShares(NamedTuple):
-    """Share of the ground's friction under each wheel."""
-
-    fl: float
-    fr: float
-    rl: float
-    rr: float
-
-
 class Axles(NamedTuple):
     """Tyres of one step and the sum of their forces on the body."""
 
@@ -52,6 +44,20 @@ class Axles(NamedTuple):
     moment_nm: float  # about the centre of gravity, left-positive
     aligning_nm: float  # about the kingpins, left-positive
     patch_twist_rad: float
+    slope: float  # of the ground under the car, both ways together
+
+
+@kernel
+def standing_on(wheel: Wheel, above_m: float, rising_mps: float) -> Wheel:
+    """Return a wheel with its lift against the ground under it."""
+    return Wheel(
+        radps=wheel.radps,
+        deflection_x_m=wheel.deflection_x_m,
+        deflection_y_m=wheel.deflection_y_m,
+        lift_m=wheel.lift_m - above_m,
+        lift_mps=wheel.lift_mps - rising_mps,
+        brake_nm=wheel.brake_nm,
+    )
 
 
 @kernel
@@ -174,7 +180,8 @@ def inclination(axle: AxleParameters, body: BodyState, left: Wheel, right: Wheel
 def tyre_forces(
     car: Car,
     p: CarParameters,
-    grips: FrictionShares,
+    grips: Grips,
+    lie: Lie,
     points: WheelDirections,
     turned_rad: float,
     step_s: float,
@@ -185,24 +192,26 @@ def tyre_forces(
     body = car.body
     front = p.front
     rear = p.rear
+    left = standing_on(car.fl, lie.front.left_m, lie.front.left_mps)
+    right = standing_on(car.fr, lie.front.right_m, lie.front.right_mps)
     vx = along_speed(front, body, car.fl, car.fr, p.body.cg_height_m)
     vy = side_speed(front, body, car.fl, car.fr)
     side = front.half_track_m * body.yaw_rate_radps
     lean = inclination(front, body, car.fl, car.fr)
-    mu = front.friction_left * grips.fl
     fl = steered_tyre(
-        tyre, front, mu, car.fl, vx - side, vy, points.left_cos, points.left_sin, turned_rad, lean, 1.0, step_s
+        tyre, front, grips.fl, left, vx - side, vy, points.left_cos, points.left_sin, turned_rad, lean, 1.0, step_s
     )
-    mu = front.friction_right * grips.fr
     fr = steered_tyre(
-        tyre, front, mu, car.fr, vx + side, vy, points.right_cos, points.right_sin, turned_rad, lean, -1.0, step_s
+        tyre, front, grips.fr, right, vx + side, vy, points.right_cos, points.right_sin, turned_rad, lean, -1.0, step_s
     )
+    left = standing_on(car.rl, lie.rear.left_m, lie.rear.left_mps)
+    right = standing_on(car.rr, lie.rear.right_m, lie.rear.right_mps)
     vx = along_speed(rear, body, car.rl, car.rr, p.body.cg_height_m)
     vy = side_speed(rear, body, car.rl, car.rr)
     side = rear.half_track_m * body.yaw_rate_radps
     lean = inclination(rear, body, car.rl, car.rr)
-    rl = unsteered_tyre(tyre, rear, rear.friction_left * grips.rl, car.rl, vx - side, vy, lean, 1.0, step_s)
-    rr = unsteered_tyre(tyre, rear, rear.friction_right * grips.rr, car.rr, vx + side, vy, lean, -1.0, step_s)
+    rl = unsteered_tyre(tyre, rear, grips.rl, left, vx - side, vy, lean, 1.0, step_s)
+    rr = unsteered_tyre(tyre, rear, grips.rr, right, vx + side, vy, lean, -1.0, step_s)
     front_y = fl.force_y_n + fr.force_y_n
     rear_y = rl.force_y_n + rr.force_y_n
     steering = p.steering
@@ -211,9 +220,9 @@ def tyre_forces(
     rolled = 0.5 * step_s * abs(left_mps + right_mps)
     twist = patch_twist(car.steering.patch_twist_rad, turned_rad + step_s * body.yaw_rate_radps, rolled)
     aligning = rim_moment(steering, fl.tyre, left_mps) + rim_moment(steering, fr.tyre, right_mps)
-    aligning += turn_slip_moment(
-        steering, twist, front.friction_left * grips.fl * fl.load_n, fl.tyre.demand
-    ) + turn_slip_moment(steering, twist, front.friction_right * grips.fr * fr.load_n, fr.tyre.demand)
+    aligning += turn_slip_moment(steering, twist, grips.fl * fl.load_n, fl.tyre.demand) + turn_slip_moment(
+        steering, twist, grips.fr * fr.load_n, fr.tyre.demand
+    )
     return Axles(
         fl=fl,
         fr=fr,
@@ -226,4 +235,5 @@ def tyre_forces(
         + (front.half_track_m * (fr.force_x_n - fl.force_x_n) + rear.half_track_m * (rr.force_x_n - rl.force_x_n)),
         aligning_nm=aligning,
         patch_twist_rad=twist,
+        slope=abs(lie.slope_x) + abs(lie.slope_y),
     )

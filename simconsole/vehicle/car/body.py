@@ -3,9 +3,11 @@
 from math import sqrt
 from typing import NamedTuple
 
+from simconsole.values.ground import Plane
 from simconsole.values.kernels import clip, kernel
 from simconsole.values.trigonometry import direction, wrap_angle
 from simconsole.vehicle.car.axles import Axles, Contact
+from simconsole.vehicle.car.ground import AxleGround, Lie
 from simconsole.vehicle.car.parameters import AxleParameters, CarParameters
 from simconsole.vehicle.car.state import BodyState, Car, Wheel
 from simconsole.vehicle.car.suspension import Travel, axle_roll, strut, support, travel
@@ -45,7 +47,15 @@ def stopped(rate: float, place: float, most: float) -> float:
 
 @kernel
 def axle_step(
-    axle: AxleParameters, struts: Travel, left: Wheel, right: Wheel, on_left: Contact, on_right: Contact, step_s: float
+    axle: AxleParameters,
+    struts: Travel,
+    left: Wheel,
+    right: Wheel,
+    on_left: Contact,
+    on_right: Contact,
+    under: AxleGround,
+    pressing_mps2: float,
+    step_s: float,
 ) -> AxleMotion:
     """Return the wheels' vertical motion one step later. The links load them with the side force directly."""
     links_n = support(axle, on_left.force_x_n + on_right.force_x_n)
@@ -53,10 +63,11 @@ def axle_step(
     right_n = strut(axle, struts.right_m, struts.right_mps, struts.left_m) + links_n
     lifted = (on_left.force_y_n + on_right.force_y_n) * (axle.link_arm_m * axle.roll_rad_per_m)
     share = step_s * axle.per_wheel_mass_kg
-    left_mps = left.lift_mps + share * (on_left.load_n - axle.static_n - left_n + lifted)
-    right_mps = right.lift_mps + share * (on_right.load_n - axle.static_n - right_n - lifted)
-    left_m = clip(left.lift_m + step_s * left_mps, -MOST_LIFT_M, MOST_LIFT_M)
-    right_m = clip(right.lift_m + step_s * right_mps, -MOST_LIFT_M, MOST_LIFT_M)
+    pressed_mps = step_s * pressing_mps2
+    left_mps = left.lift_mps + share * (on_left.load_n - axle.static_n - left_n + lifted) - pressed_mps
+    right_mps = right.lift_mps + share * (on_right.load_n - axle.static_n - right_n - lifted) - pressed_mps
+    left_m = clip(left.lift_m + step_s * (left_mps - under.left_up_mps), -MOST_LIFT_M, MOST_LIFT_M)
+    right_m = clip(right.lift_m + step_s * (right_mps - under.right_up_mps), -MOST_LIFT_M, MOST_LIFT_M)
     return AxleMotion(
         left_m=left_m,
         left_mps=stopped(left_mps, left_m, MOST_LIFT_M),
@@ -68,25 +79,28 @@ def axle_step(
 
 
 @kernel
-def body_step(car: Car, p: CarParameters, axles: Axles, step_s: float) -> Motion:
+def body_step(car: Car, p: CarParameters, lie: Lie, air: Plane, axles: Axles, step_s: float) -> Motion:
     """Advance the body by one semi-implicit step: velocities from the forces, then the pose from the new velocities."""
     before = car.body
     body = p.body
-    front = axle_step(p.front, travel(p.front, before, car.fl, car.fr), car.fl, car.fr, axles.fl, axles.fr, step_s)
-    rear = axle_step(p.rear, travel(p.rear, before, car.rl, car.rr), car.rl, car.rr, axles.rl, axles.rr, step_s)
+    pressing = lie.pressing_mps2
+    struts = travel(p.front, before, car.fl, car.fr)
+    front = axle_step(p.front, struts, car.fl, car.fr, axles.fl, axles.fr, lie.front, pressing, step_s)
+    struts = travel(p.rear, before, car.rl, car.rr)
+    rear = axle_step(p.rear, struts, car.rl, car.rr, axles.rl, axles.rr, lie.rear, pressing, step_s)
     ahead = direction(before.yaw_rad)
     c = ahead.cos
     s = ahead.sin
-    into_x = before.vx_mps - (body.wind_x_mps * c + body.wind_y_mps * s)
-    into_y = before.vy_mps - (body.wind_y_mps * c - body.wind_x_mps * s)
+    into_x = before.vx_mps - (air.wind_x_mps * c + air.wind_y_mps * s)
+    into_y = before.vy_mps - (air.wind_y_mps * c - air.wind_x_mps * s)
     speed = sqrt(into_x * into_x + into_y * into_y)
-    air = body.drag_n_per_square_mps * speed
-    gravity = body.gravity_plane_mps2
+    drag = body.drag_n_per_square_mps * speed
+    gravity = lie.gravity_mps2
     per_kg = body.per_mass_kg
-    ax = (axles.force_x_n - air * into_x) * per_kg - gravity * (body.slope_x * c + body.slope_y * s)
+    ax = (axles.force_x_n - drag * into_x) * per_kg - gravity * (lie.slope_x * c + lie.slope_y * s)
     side_n = axles.front_y_n + axles.rear_y_n
     beside = body.side_n_per_square_mps * speed
-    ay = (side_n - beside * into_y) * per_kg - gravity * (body.slope_y * c - body.slope_x * s)
+    ay = (side_n - beside * into_y) * per_kg - gravity * (lie.slope_y * c - lie.slope_x * s)
     # One after the other, not both from the old values: turning the body then neither adds nor takes energy.
     vx = before.vx_mps + step_s * (ax + before.yaw_rate_radps * before.vy_mps)
     vy = before.vy_mps + step_s * (ay - before.yaw_rate_radps * vx)
@@ -97,7 +111,7 @@ def body_step(car: Car, p: CarParameters, axles: Axles, step_s: float) -> Motion
     front_lift = body.front_lift_n_per_square_mps * into_x * into_x
     rear_lift = body.rear_lift_n_per_square_mps * into_x * into_x
     lifting = front.force_n + rear.force_n + front_lift + rear_lift
-    heave_mps = before.heave_mps + lifting * (step_s * body.per_sprung_kg)
+    heave_mps = before.heave_mps + lifting * (step_s * body.per_sprung_kg) - step_s * pressing
     rolling = (
         p.front.roll_arm_m * axles.front_y_n
         + p.rear.roll_arm_m * axles.rear_y_n
@@ -115,12 +129,14 @@ def body_step(car: Car, p: CarParameters, axles: Axles, step_s: float) -> Motion
         on_ground_x += p.rear.support_slope * compressed_mps
     rocking = p.rear.roll_arm_m * roll_radps + p.rear.link_arm_m * axle_roll(p.rear, rear.left_mps, rear.right_mps)
     on_ground_y = vy - body.cg_to_rear_m * yaw_rate + rocking
-    heave = clip(before.heave_m + step_s * heave_mps, -MOST_LIFT_M, MOST_LIFT_M)
-    roll = clip(before.roll_rad + step_s * roll_radps, -MOST_LEAN_RAD, MOST_LEAN_RAD)
-    pitch = clip(before.pitch_rad + step_s * pitch_radps, -MOST_LEAN_RAD, MOST_LEAN_RAD)
+    heave = clip(before.heave_m + step_s * (heave_mps - lie.cg_up_mps), -MOST_LIFT_M, MOST_LIFT_M)
+    roll = clip(before.roll_rad + step_s * (roll_radps - lie.left_up_radps), -MOST_LEAN_RAD, MOST_LEAN_RAD)
+    pitch = clip(before.pitch_rad + step_s * (pitch_radps - lie.nose_down_radps), -MOST_LEAN_RAD, MOST_LEAN_RAD)
+    map_x = on_ground_x * lie.ahead_share
+    map_y = on_ground_y * lie.aside_share
     moved = BodyState(
-        x_m=before.x_m + step_s * (on_ground_x * c - on_ground_y * s),
-        y_m=before.y_m + step_s * (on_ground_x * s + on_ground_y * c),
+        x_m=before.x_m + step_s * (map_x * c - map_y * s),
+        y_m=before.y_m + step_s * (map_x * s + map_y * c),
         yaw_rad=wrap_angle(before.yaw_rad + step_s * yaw_rate),
         vx_mps=vx,
         vy_mps=vy,

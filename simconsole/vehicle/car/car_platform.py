@@ -1,8 +1,7 @@
 """From a car's profile to a platform: units, derived figures, and the checks that need more than one value."""
 
 import math
-from collections.abc import Callable
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -14,24 +13,23 @@ from simconsole.profiles.vehicle import (
     GearboxProfile,
 )
 from simconsole.values.errors import ProfileError
-from simconsole.values.kernels import Row
+from simconsole.values.ground import GROUND, Ground, ground_row
 from simconsole.values.layout import Part, read, write
-from simconsole.values.platform import MOST_PATCHES, Ground, Platform, Pose
+from simconsole.values.platform import Platform, Pose, Step
 from simconsole.values.trigonometry import wrap_angle
 from simconsole.values.units import MPS_PER_KMH, RAD_PER_DEG, RADPS_PER_RPM, STANDARD_GRAVITY_MPS2
 from simconsole.vehicle.car.aid_parameters import aid_parameters, slip_stiffness
-from simconsole.vehicle.car.car_step import STEP_S, step
+from simconsole.vehicle.car.car_step import STEP_S, field_step, step
 from simconsole.vehicle.car.gearbox import SHIFT_RAMP_SHARE
+from simconsole.vehicle.car.ground import on_field, on_plane
 from simconsole.vehicle.car.outputs import vehicle_state
 from simconsole.vehicle.car.parameters import (
-    NO_PATCH,
     PARAMETERS,
     AxleParameters,
     BodyParameters,
     CarParameters,
     EngineParameters,
     GearParameters,
-    PatchParameters,
     SteeringParameters,
 )
 from simconsole.vehicle.car.state import CAR, Car, CarState
@@ -39,9 +37,6 @@ from simconsole.vehicle.car.tyre import PEAK_DEMAND
 
 AIR_KGPM3: Final = 1.225
 """Density of air, ISO 2533 standard atmosphere at sea level."""
-
-LEAST_FRICTION: Final = 0.01
-"""Least friction, below that of wet ice: without any a tyre would have a force limit of 0 to divide by."""
 
 TRAIL_END: Final = 1.7
 """Demand at which the pneumatic trail is gone: before the side force has its maximum, as measured tyres show."""
@@ -71,12 +66,20 @@ LIMIT_BAND_RPM: Final = 100.0
 
 def build_car(profile: CarProfile, pose: Pose, ground: Ground) -> Platform:
     """Return the car at rest with its engine idling, in neutral."""
-    car = car_parameters(profile, ground)
+    car = car_parameters(profile)
+    under = ground_row(ground)
+    rest = resting(car, profile, under[GROUND.plane.at("gravity_mps2")])
     initial = CarState(*(0.0,) * CAR.width)._replace(
         x_m=pose.x_m,
         y_m=pose.y_m,
         yaw_rad=wrap_angle(pose.yaw_rad),
         engine_radps=car.engine.idle_radps,
+        heave_m=rest.heave_m,
+        pitch_rad=rest.pitch_rad,
+        fl_lift_m=rest.front_lift_m,
+        fr_lift_m=rest.front_lift_m,
+        rl_lift_m=rest.rear_lift_m,
+        rr_lift_m=rest.rear_lift_m,
         engine_running=1.0,
         lever_adopted=1.0,
         throttle_share=1.0,
@@ -88,9 +91,12 @@ def build_car(profile: CarProfile, pose: Pose, ground: Ground) -> Platform:
         name="car",
         state=CarState,
         initial_state=tuple(initial),
-        initial_vehicle=vehicle_state(read(np.array(initial), Part(Car)), car, 0.0),
+        initial_vehicle=vehicle_state(
+            read(np.array(initial), Part(Car)), car, under, on_plane if ground.field is None else on_field, 0.0
+        ),
         parameters=parameters,
-        step=_step(profile),
+        ground=under,
+        step=_step(profile, ground.field is not None),
         steering_ratio=profile.steering.ratio,
         max_road_wheel_rad=car.steering.max_road_wheel_rad,
         wheelbase_m=body.wheelbase_m,
@@ -101,58 +107,61 @@ def build_car(profile: CarProfile, pose: Pose, ground: Ground) -> Platform:
     )
 
 
-def _step(profile: CarProfile) -> Callable[[Row, Row, Row, int], None]:
-    """Return the step on the tyre of the profile.
+class Resting(NamedTuple):
+    """How a car stands on a slope that takes load off its springs and tyres; all 0 on the level."""
+
+    heave_m: float
+    pitch_rad: float
+    front_lift_m: float
+    rear_lift_m: float
+
+
+def resting(car: CarParameters, profile: CarProfile, gravity_mps2: float) -> Resting:
+    """Return where springs and tyres hold a car at rest, with `gravity_mps2` of gravity normal to the ground."""
+    missing = STANDARD_GRAVITY_MPS2 - gravity_mps2
+    lifts, middles = [], []
+    for axle, unsprung_kg in ((car.front, profile.front.unsprung_kg), (car.rear, profile.rear.unsprung_kg)):
+        lift = axle.static_n * missing / (STANDARD_GRAVITY_MPS2 * axle.carcass_npm)
+        sprung_n = (axle.static_n / STANDARD_GRAVITY_MPS2 - 0.5 * unsprung_kg) * missing
+        lifts.append(lift)
+        middles.append(lift + sprung_n / axle.spring_npm)
+    pitch = (middles[1] - middles[0]) / (car.front.ahead_m - car.rear.ahead_m)
+    return Resting(middles[0] + car.front.ahead_m * pitch, pitch, lifts[0], lifts[1])
+
+
+def _step(profile: CarProfile, uneven: bool) -> Step:
+    """Return the step on the tyre of the profile, over a plane or an uneven field.
 
     Raises:
         ProfileError: the tyre's file has not been read.
     """
     if profile.tyre is None:
-        return step
+        return field_step if uneven else step
     if not profile.tyre.coefficients:
         raise ProfileError(f"vehicle profile: tyre.coefficients: value missing: those of {profile.tyre.tir}")
     from simconsole.vehicle.car.pac2002 import coefficients
     from simconsole.vehicle.car.tir_tyre import step_on
 
-    return step_on(coefficients(profile.tyre.coefficients))
+    return step_on(coefficients(profile.tyre.coefficients), uneven)
 
 
-def car_parameters(profile: CarProfile, ground: Ground) -> CarParameters:
+def car_parameters(profile: CarProfile) -> CarParameters:
     """Return the parameters of the kernels, in SI."""
-    front = _axle(profile, profile.front, ground, True)
-    rear = _axle(profile, profile.rear, ground, False)
+    front = _axle(profile, profile.front, True)
+    rear = _axle(profile, profile.rear, False)
     driven = rear if profile.gearbox.driven == "rear" else front
     return CarParameters(
-        body=_body(profile, ground, front, rear, driven.radius_m),
+        body=_body(profile, front, rear, driven.radius_m),
         steering=_steering(profile),
         engine=_engine(profile.engine),
         gears=_gears(profile.gearbox, profile.automatic, profile.engine, driven),
         aids=aid_parameters(profile, front, rear),
         front=front,
         rear=rear,
-        **_patches(ground),
     )
 
 
-def _patches(ground: Ground) -> dict[str, PatchParameters]:
-    """Return the patches, filled up with empty ones.
-
-    Raises:
-        ValueError: more than MOST_PATCHES.
-    """
-    if len(ground.patches) > MOST_PATCHES:
-        raise ValueError(f"{len(ground.patches)} patches of friction, at most {MOST_PATCHES} are possible")
-    given = [PatchParameters(*patch) for patch in ground.patches]
-    return {f"patch_{n + 1}": given[n] if n < len(given) else NO_PATCH for n in range(MOST_PATCHES)}
-
-
-def _gravity(ground: Ground) -> float:
-    return STANDARD_GRAVITY_MPS2 / math.sqrt(1.0 + ground.slope_x**2 + ground.slope_y**2)
-
-
-def _body(
-    profile: CarProfile, ground: Ground, front: AxleParameters, rear: AxleParameters, driven_radius_m: float
-) -> BodyParameters:
+def _body(profile: CarProfile, front: AxleParameters, rear: AxleParameters, driven_radius_m: float) -> BodyParameters:
     body = profile.body
     sprung = body.mass_kg - profile.front.unsprung_kg - profile.rear.unsprung_kg
     arm = (front.roll_arm_m * rear.ahead_m - rear.roll_arm_m * front.ahead_m) / (rear.ahead_m - front.ahead_m)
@@ -172,21 +181,9 @@ def _body(
         rear_lift_n_per_square_mps=0.5 * AIR_KGPM3 * body.rear_lift_area_m2,
         side_n_per_square_mps=0.5 * AIR_KGPM3 * body.side_area_m2,
         yaw_nm_per_square_mps=0.5 * AIR_KGPM3 * body.yaw_volume_m3,
-        sway_nm_per_rad=body.mass_kg * _gravity(ground) * arm,
-        slope_x=ground.slope_x,
-        slope_y=ground.slope_y,
-        full_brake_n=min(2.0 * (front.brake_nm + rear.brake_nm) / driven_radius_m, _held_n(front) + _held_n(rear)),
-        rise_x=ground.slope_x * _gravity(ground) / STANDARD_GRAVITY_MPS2,
-        rise_y=ground.slope_y * _gravity(ground) / STANDARD_GRAVITY_MPS2,
-        gravity_plane_mps2=_gravity(ground),
-        wind_x_mps=ground.wind_x_mps,
-        wind_y_mps=ground.wind_y_mps,
+        sway_nm_per_rad=body.mass_kg * STANDARD_GRAVITY_MPS2 * arm,
+        full_brake_n=2.0 * (front.brake_nm + rear.brake_nm) / driven_radius_m,
     )
-
-
-def _held_n(axle: AxleParameters) -> float:
-    """Return the force that the ground holds under both wheels of an axle at rest."""
-    return axle.static_n * (axle.friction_left + axle.friction_right)
 
 
 def _steering(profile: CarProfile) -> SteeringParameters:
@@ -217,7 +214,7 @@ def _steering(profile: CarProfile) -> SteeringParameters:
     )
 
 
-def _axle(profile: CarProfile, axle: AxleProfile, ground: Ground, at_front: bool) -> AxleParameters:
+def _axle(profile: CarProfile, axle: AxleProfile, at_front: bool) -> AxleParameters:
     """Return one axle.
 
     The side force at the ground rolls the sprung mass alone, about the roll centre; what the roll centre's links and
@@ -228,9 +225,7 @@ def _axle(profile: CarProfile, axle: AxleProfile, ground: Ground, at_front: bool
     unsprung = profile.front.unsprung_kg + profile.rear.unsprung_kg
     sprung = body.mass_kg - unsprung
     sprung_height = (body.mass_kg * body.cg_height_m - unsprung * axle.wheel_radius_m) / sprung
-    friction = axle.friction * max(ground.friction, LEAST_FRICTION)
-    right = friction * ground.right_share if ground.right_share > LEAST_FRICTION else friction * LEAST_FRICTION
-    static = 0.5 * share * body.mass_kg * _gravity(ground)
+    static = 0.5 * share * body.mass_kg * STANDARD_GRAVITY_MPS2
     return AxleParameters(
         ahead_m=body.wheelbase_m * (1.0 - share) * (1.0 if at_front else -1.0),
         half_track_m=0.5 * axle.track_m,
@@ -248,8 +243,7 @@ def _axle(profile: CarProfile, axle: AxleProfile, ground: Ground, at_front: bool
         decay_y_per_m=1.0 / axle.relaxation_y_m,
         damping_nspm=0.5 * axle.damping_nspm,
         locked_damping_nspm=0.5 * axle.locked_damping_nspm,
-        friction_left=friction,
-        friction_right=right,
+        friction=axle.friction,
         friction_fall=axle.friction_fall,
         stiffness_fall=axle.stiffness_fall,
         slide_demand=2.0 * (1.0 + math.sqrt(1.0 - axle.sliding_share**2)) / axle.sliding_share,
@@ -361,7 +355,6 @@ def _gears(
         per_lock_radps=1.0 / ((auto.lock_to_rpm - auto.lock_from_rpm) * RADPS_PER_RPM),
         clutch_opening_per_s=1.0 / auto.clutch_opening_s,
         clutch_closing_per_s=1.0 / auto.clutch_closing_s,
-        traction_n=_held_n(driven),
         rear_driven=1.0 if box.driven == "rear" else 0.0,
         lock_nm=0.5 * box.lock_nm,
         lock_share=0.5 * box.lock_share,

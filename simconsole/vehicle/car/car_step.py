@@ -3,15 +3,17 @@
 from collections.abc import Callable
 from typing import Final
 
+from simconsole.values.ground import GROUND
 from simconsole.values.kernels import Row, clip, forget, is_finite, kernel
 from simconsole.values.layout import read, write
+from simconsole.values.platform import Step
 from simconsole.values.signals import Request, VehicleCommand
 from simconsole.values.state_vector import LAYOUT
 from simconsole.values.trigonometry import nearest
-from simconsole.vehicle.car.axles import Contact, FrictionShares, KingpinMoment, TyreModel, kingpin_moment, tyre_forces
+from simconsole.vehicle.car.axles import Contact, KingpinMoment, TyreModel, kingpin_moment, tyre_forces
 from simconsole.vehicle.car.body import body_step
 from simconsole.vehicle.car.driveline import driveline_step
-from simconsole.vehicle.car.ground import friction_shares
+from simconsole.vehicle.car.ground import Grips, Lie, field_grips, on_field, on_plane, plane_grips
 from simconsole.vehicle.car.outputs import vehicle_state
 from simconsole.vehicle.car.parameters import PARAMETERS, AidParameters, CarParameters
 from simconsole.vehicle.car.state import CAR, Car, SteeringState, Wheel
@@ -23,6 +25,12 @@ STEP_S: Final = 0.001
 
 MOST_GEARS: Final = 7.0
 
+GripsModel = Callable[[Car, CarParameters, Row], Grips]
+"""A kernel that returns the friction under each wheel: `plane_grips` or `field_grips`."""
+
+LieModel = Callable[[Car, CarParameters, Row], Lie]
+"""A kernel that returns how the ground lies under the car: `on_plane` or `on_field`."""
+
 
 @kernel
 def load_parameters(parameters: Row) -> CarParameters:
@@ -31,20 +39,20 @@ def load_parameters(parameters: Row) -> CarParameters:
     return read(parameters, PARAMETERS)
 
 
-def make_step(tyre: TyreModel, rim_moment: KingpinMoment) -> Callable[[Row, Row, Row, int], None]:
-    """Return the kernel that advances a car on such tyres by one tick: the platform interface of values/platform.py."""
+def make_step(tyre: TyreModel, rim_moment: KingpinMoment, grips_of: GripsModel, lie_of: LieModel) -> Step:
+    """Return the kernel that advances a car on such tyres and ground by one tick, as values/platform.py has it."""
 
     @kernel
-    def step(previous: Row, row: Row, parameters: Row, substeps: int) -> None:
+    def step(previous: Row, row: Row, parameters: Row, ground: Row, substeps: int) -> None:
         command = read(row, LAYOUT.command)
         car = read(previous, CAR)
-        grips = friction_shares(car, load_parameters(parameters))
+        grips = grips_of(car, load_parameters(parameters), ground)
         request = request_of(command, car)
         aids = aids_left_on(load_parameters(parameters).aids, command)
         for _ in range(substeps):
-            car = substep(car, parameters, grips, request, aids, tyre, rim_moment)
+            car = substep(car, parameters, ground, grips, request, aids, tyre, rim_moment, lie_of)
         write(row, CAR, car)
-        write(row, LAYOUT.vehicle, vehicle_state(car, load_parameters(parameters), command.automatic))
+        write(row, LAYOUT.vehicle, vehicle_state(car, load_parameters(parameters), ground, lie_of, command.automatic))
 
     return step
 
@@ -105,10 +113,6 @@ def with_aids(p: CarParameters, aids: AidParameters) -> CarParameters:
         aids=aids,
         front=p.front,
         rear=p.rear,
-        patch_1=p.patch_1,
-        patch_2=p.patch_2,
-        patch_3=p.patch_3,
-        patch_4=p.patch_4,
     )
 
 
@@ -116,20 +120,23 @@ def with_aids(p: CarParameters, aids: AidParameters) -> CarParameters:
 def substep(
     car: Car,
     parameters: Row,
-    grips: FrictionShares,
+    ground: Row,
+    grips: Grips,
     request: Request,
     aids: AidParameters,
     tyre: TyreModel,
     rim_moment: KingpinMoment,
+    lie_of: LieModel,
 ) -> Car:
     """Advance the car by 1 ms: steer, push against the ground, turn the shafts, move."""
     rack = car.steering
     p = load_parameters(parameters)
+    lie = lie_of(car, p, ground)
     # The rack works against the tyres of the last step: their moment is part of the rack's torque.
     mean_rad = rack.road_wheel_rad + STEP_S * rack.road_wheel_radps
     points = wheel_directions(p.steering, mean_rad)
     turned_rad = mean_rad - rack.road_wheel_rad
-    axles = tyre_forces(car, p, grips, points, turned_rad, STEP_S, tyre, rim_moment)
+    axles = tyre_forces(car, p, grips, lie, points, turned_rad, STEP_S, tyre, rim_moment)
     moved = SteeringState(
         road_wheel_rad=mean_rad,
         road_wheel_radps=rack.road_wheel_radps,
@@ -140,7 +147,7 @@ def substep(
     rate = rack_rate(p.steering, moved, request.road_wheel_rad, axles.aligning_nm)
     torque = hand_wheel_torque(p.steering, axles.aligning_nm, rate, car.body.vx_mps, moved.rim_friction_share)
     line = driveline_step(car, with_aids(load_parameters(parameters), aids), request, axles, STEP_S)
-    motion = body_step(car, load_parameters(parameters), axles, STEP_S)
+    motion = body_step(car, load_parameters(parameters), lie, read(ground, GROUND.plane), axles, STEP_S)
     front = motion.front
     rear = motion.rear
     brakes = line.brakes
@@ -176,5 +183,8 @@ def wheel(on_ground: Contact, radps: float, lift_m: float, lift_mps: float, brak
     )
 
 
-step: Final = make_step(tyre, kingpin_moment)
-"""The step of a car whose tyres the profile describes itself."""
+step: Final = make_step(tyre, kingpin_moment, plane_grips, on_plane)
+"""The step of a car on a plane whose tyres the profile describes itself."""
+
+field_step: Final = make_step(tyre, kingpin_moment, field_grips, on_field)
+"""The same on a field of heights."""

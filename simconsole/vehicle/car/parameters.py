@@ -20,7 +20,7 @@ class AxleParameters(NamedTuple):
     spin_radps_per_newton_second: float  # by which a force at the ground changes a wheel's speed: radius over inertia
     per_wheel_mass_kg: float
     radius_m: float
-    static_n: float  # load of one wheel at rest on this ground
+    static_n: float  # load of one wheel at rest on level ground
     per_static_n: float
     stiffness_x_per_m: float  # slip stiffness / relaxation length
     stiffness_y_per_m: float
@@ -28,8 +28,7 @@ class AxleParameters(NamedTuple):
     decay_y_per_m: float
     damping_nspm: float
     locked_damping_nspm: float
-    friction_left: float  # of tyre and ground together, at static load
-    friction_right: float
+    friction: float  # of the tyre on a ground of friction 1, at static load
     friction_fall: float  # share of the friction lost per static load more
     stiffness_fall: float  # share of the stiffness lost per static load more
     slide_demand: float  # demand at which the contact patch slides altogether
@@ -132,14 +131,13 @@ class GearParameters(NamedTuple):
     per_lock_radps: float
     clutch_opening_per_s: float
     clutch_closing_per_s: float
-    traction_n: float  # what the ground holds under the driven wheels
     rear_driven: float  # 1: the rear wheels, 0: the front wheels
     lock_nm: float  # torque that the differential always keeps between its wheels
     lock_share: float  # and its share of the driving torque
 
 
 class BodyParameters(NamedTuple):
-    """Body, aerodynamics and the plane of the ground."""
+    """Body and aerodynamics."""
 
     mass_kg: float
     per_mass_kg: float
@@ -159,14 +157,7 @@ class BodyParameters(NamedTuple):
         float  # moment about the middle of the wheelbase per speeds of the air along and from the side
     )
     sway_nm_per_rad: float  # sprung weight times the mean roll arm, per rad: rolling lets the body down
-    slope_x: float
-    slope_y: float
-    full_brake_n: float  # of all four wheels, at most what the ground holds
-    rise_x: float  # of the plane, per metre along it: x and y lie in it
-    rise_y: float
-    gravity_plane_mps2: float  # gravity / sqrt(1 + slope^2): times slope along, times 1 normal to the plane
-    wind_x_mps: float  # where the air moves to, in map
-    wind_y_mps: float
+    full_brake_n: float  # what the brakes of all four wheels give
 
 
 class SteeringParameters(NamedTuple):
@@ -206,19 +197,6 @@ class AidParameters(NamedTuple):
     stability_most_nm: float
 
 
-class PatchParameters(NamedTuple):
-    """A rectangle of map on which friction is another; without any place where there is none."""
-
-    from_x_m: float
-    to_x_m: float
-    from_y_m: float
-    to_y_m: float
-    share: float
-
-
-NO_PATCH: Final = PatchParameters(1.0, -1.0, 1.0, -1.0, 1.0)
-
-
 class CarParameters(NamedTuple):
     """All of it; the parameter row is these groups one after the other."""
 
@@ -229,10 +207,6 @@ class CarParameters(NamedTuple):
     aids: AidParameters
     front: AxleParameters
     rear: AxleParameters
-    patch_1: PatchParameters
-    patch_2: PatchParameters
-    patch_3: PatchParameters
-    patch_4: PatchParameters
 
 
 PARAMETERS: Final = Part(CarParameters)

@@ -4,14 +4,15 @@ The deflection over its relaxation length is the slip that PAC2002 is asked for:
 standstill. Beyond `slide_demand` (the profile's `sliding_share`) the deflection slides along with the force it has.
 """
 
-from collections.abc import Callable
 from functools import cache
 from math import sqrt
 from typing import Final, NamedTuple
 
-from simconsole.values.kernels import Row, clip, kernel
+from simconsole.values.kernels import clip, kernel
+from simconsole.values.platform import Step
 from simconsole.vehicle.car.axles import TyreModel
 from simconsole.vehicle.car.car_step import make_step
+from simconsole.vehicle.car.ground import field_grips, on_field, on_plane, plane_grips
 from simconsole.vehicle.car.pac2002 import (
     LEAST_LOAD_N,
     Pac2002,
@@ -118,6 +119,7 @@ def tir_kingpin_moment(p: SteeringParameters, tyre_force: TirForce, rolling_mps:
 
 
 @cache
-def step_on(coefficients: Pac2002) -> Callable[[Row, Row, Row, int], None]:
-    """Return the car's step on this tyre. Equal coefficients give the same step: it compiles once."""
-    return make_step(make_tyre(coefficients), tir_kingpin_moment)
+def step_on(coefficients: Pac2002, uneven: bool = False) -> Step:
+    """Return the car's step on this tyre, over a plane or a field. Equal ones give the same: it compiles once."""
+    ground = (field_grips, on_field) if uneven else (plane_grips, on_plane)
+    return make_step(make_tyre(coefficients), tir_kingpin_moment, *ground)

@@ -5,6 +5,7 @@ from functools import lru_cache, partial
 from simconsole.profiles.files.world_files import read_map
 from simconsole.profiles.world import CourseProfile, RoadsProfile, WorldProfile
 from simconsole.world.course import Course
+from simconsole.world.course_relief import course_field
 from simconsole.world.drawing import draw
 from simconsole.world.roads.road_map import RoadMap
 from simconsole.world.roads.road_world import road_world, roads_of
@@ -21,7 +22,8 @@ def open_world(profile: WorldProfile) -> World:
     """
     if isinstance(profile, CourseProfile):
         course = Course(profile)
-        return World(profile.title, course, partial(draw, course))
+        raise_ground = None if profile.ground is None else partial(course_field, course, profile.ground)
+        return World(profile.title, course, partial(draw, course), raise_ground)
     return road_world(profile, open_map(profile))
 
 

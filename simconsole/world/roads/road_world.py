@@ -4,11 +4,12 @@ from collections.abc import Callable
 from functools import partial
 from typing import Final, NamedTuple
 
-from simconsole.profiles.world import RandomRoute, RoadsProfile, RouteByEdges
+from simconsole.profiles.world import GroundProfile, RandomRoute, RoadsProfile, RouteByEdges
 from simconsole.values.errors import ProfileError
 from simconsole.world.roads.lane_graph import LaneGraph, Leg
 from simconsole.world.roads.road_drawing import draw_roads
 from simconsole.world.roads.road_map import Connection, RoadMap
+from simconsole.world.roads.road_relief import road_field
 from simconsole.world.roads.road_route import MAX_CURVATURE_1PM, route_over, too_tight
 from simconsole.world.route import Route
 from simconsole.world.world import World
@@ -24,8 +25,9 @@ class Roads(NamedTuple):
 class RoadWorld(World):
     """The world of a road map."""
 
-    def __init__(self, title: str, roads: Roads, route: Route) -> None:
-        super().__init__(title, route, partial(draw_roads, roads.road_map, route))
+    def __init__(self, title: str, roads: Roads, route: Route, ground: GroundProfile | None = None) -> None:
+        raise_ground = None if ground is None else partial(road_field, roads.road_map, route, ground)
+        super().__init__(title, route, partial(draw_roads, roads.road_map, route), raise_ground)
         self.roads = roads
 
 
@@ -53,7 +55,7 @@ def road_world(profile: RoadsProfile, road_map: RoadMap) -> RoadWorld:
         ProfileError: no route that a car can drive leads over the map as the profile says.
     """
     way = planned(profile, road_map)
-    return RoadWorld(profile.title, Roads(road_map, way.legs), way.route)
+    return RoadWorld(profile.title, Roads(road_map, way.legs), way.route, profile.ground)
 
 
 def planned(profile: RoadsProfile, road_map: RoadMap) -> Way:

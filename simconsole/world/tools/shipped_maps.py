@@ -28,12 +28,13 @@ Point = tuple[float, ...]
 
 
 class Shipped(NamedTuple):
-    """One shipped world: its network, the edges that are driven, and polygons (SUMO's XML) beside it."""
+    """One shipped world: its network, the edges that are driven, polygons (SUMO's XML) beside it, and its ground."""
 
     title: str
     network: PlainNetwork
     edges: tuple[str, ...]
     polygons: str | None = None
+    ground: str | None = None
 
 
 def bent(start: Pose, *bends: tuple[float, float]) -> list[Pose]:
@@ -84,7 +85,7 @@ def motorway() -> Shipped:
 
 
 def country() -> Shipped:
-    """Return 3 km of a country road over hills of 40 m: bends to both sides, grades of up to 8 %."""
+    """Return 3 km of a country road over hills of 40 m: bends to both sides, grades of up to 11 %."""
     bends = ((250.0, 0.0), (260.0, 70.0), (120.0, 0.0), (330.0, -110.0), (200.0, 0.0), (180.0, 60.0), (240.0, -75.0))
     more = ((160.0, 0.0), (420.0, 130.0), (100.0, 0.0), (280.0, -60.0), (300.0, 0.0))
     axis = bent(Pose(0.0, 0.0, 0.3), *bends, *more)
@@ -100,7 +101,8 @@ def country() -> Shipped:
         )
         edges += [there, there._replace(id=f"{other}-{one}", start=other, end=one, line=part[::-1])]
     driven = tuple(f"{one}-{other}" for one, other in pairwise(names))
-    return Shipped("Hilly country road, 3 km", PlainNetwork(nodes, edges), driven)
+    ground = "{bank_percent: 5, bank_full_radius_m: 250, off_road_friction_share: 0.6}"
+    return Shipped("Hilly country road, 3 km", PlainNetwork(nodes, edges), driven, ground=ground)
 
 
 def _hill_m(s_m: float) -> float:
@@ -181,6 +183,7 @@ def write(folder: Path, name: str, shipped: Shipped) -> None:
         f"map: {{name: {name}.net.xml}}",
         *([f"polygons: {{name: {name}.poly.xml}}"] if shipped.polygons else []),
         f"route: {{by: edges, edges: [{quoted}]}}",
+        *([f"ground: {shipped.ground}"] if shipped.ground else []),
         "",
     ]
     net = build(shipped.network, name)

@@ -47,7 +47,7 @@ def test_a_lap_in_the_hatchback_keeps_the_bars(course: Course) -> None:
         after[LAYOUT.command.slice] = NOTHING._replace(
             road_wheel_rad=wheel, throttle=throttle, brake=brake, gear=1.0, automatic=1.0
         )
-        step(row, after, car.parameters, 1000 // TICK_HZ)
+        step(row, after, car.parameters, car.ground, 1000 // TICK_HZ)
         row, tick = after, tick + 1
         assert tick < 300 * TICK_HZ, "the lap takes too long"
     errors = np.array(lateral)

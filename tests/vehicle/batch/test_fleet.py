@@ -56,7 +56,7 @@ def differing(vehicles: list[Platform], seed: int, substeps: int = 3) -> list[tu
         for index, (vehicle, command) in enumerate(zip(vehicles, asked, strict=True)):
             previous = rows[index].copy()
             put(rows[index], LAYOUT.command.start, command)
-            step(previous, rows[index], vehicle.parameters, substeps)
+            step(previous, rows[index], vehicle.parameters, vehicle.ground, substeps)
             alone = rows[index]
             seen = alone[LAYOUT.vehicle.slice].tobytes() == vehicles_now[index].tobytes()
             if not seen or alone[PLATFORM_AT:].tobytes() != states_now[index].tobytes():

@@ -4,10 +4,10 @@ import math
 
 import pytest
 
+from simconsole.values.ground import ground_row
 from simconsole.vehicle.car.axles import (
     LIGHT_SHARE,
     Axles,
-    FrictionShares,
     along_speed,
     inclination,
     kept_share,
@@ -15,15 +15,18 @@ from simconsole.vehicle.car.axles import (
     side_speed,
     tyre_forces,
 )
+from simconsole.vehicle.car.ground import Grips, on_plane
 from simconsole.vehicle.car.state import AidState, BodyState, Car, Gearbox, ShaftState, SteeringState, Wheel
 from simconsole.vehicle.car.steering import wheel_directions
 from simconsole.vehicle.car.suspension import support, wheel_load
 from simconsole.vehicle.car.tyre import tyre
+from tests.vehicle.driving import LEVEL
 from tests.vehicle.parts import CAR, STEP_S
 
 BODY = BodyState(*(0.0,) * 15)
 WHEEL = Wheel(*(0.0,) * 6)
-FULL = FrictionShares(1.0, 1.0, 1.0, 1.0)
+GROUND = ground_row(LEVEL)
+FULL = Grips(CAR.front.friction, CAR.front.friction, CAR.rear.friction, CAR.rear.friction)
 
 
 def forces(body: BodyState, wheel: Wheel, turned_rad: float = 0.0) -> Axles:
@@ -36,7 +39,7 @@ def forces(body: BodyState, wheel: Wheel, turned_rad: float = 0.0) -> Axles:
         aids=AidState(*(0.0,) * 4),
     )
     points = wheel_directions(CAR.steering, turned_rad)
-    return tyre_forces(rest, CAR, FULL, points, 0.0, STEP_S, tyre, kingpin_moment)
+    return tyre_forces(rest, CAR, FULL, on_plane(rest, CAR, GROUND), points, 0.0, STEP_S, tyre, kingpin_moment)
 
 
 def test_a_car_at_rest_is_pushed_nowhere() -> None:

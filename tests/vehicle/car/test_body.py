@@ -55,7 +55,7 @@ def test_wind_from_the_side_turns_the_nose_away_from_it(name: str) -> None:
         drive = Drive(vehicle)
         start = CarState(*vehicle.initial_state)._replace(vx_mps=speed)
         put(drive.row, PLATFORM_AT, start._replace(**dict.fromkeys(SPINS, speed / profile.front.wheel_radius_m)))
-        drive.step(drive.row, drive.row, vehicle.parameters, 1)
+        drive.step(drive.row, drive.row, vehicle.parameters, vehicle.ground, 1)
         accelerations.append((drive.state.ay_mps2, drive.state.yaw_rate_radps / 0.001))
     pressure = 0.5 * 1.225
     side_n = pressure * body.side_area_m2 * math.hypot(speed, wind) * wind
@@ -73,7 +73,7 @@ def test_a_body_in_oblique_air_turns_broadside_also_when_it_comes_from_behind() 
     turned = []
     for wind in (-20.0, 20.0):
         drive = Drive(platform(ground=Ground(1.0, 0.0, 0.0, wind_x_mps=wind, wind_y_mps=-5.0)))
-        drive.step(drive.row, drive.row, drive.vehicle.parameters, 1)
+        drive.step(drive.row, drive.row, drive.vehicle.parameters, drive.vehicle.ground, 1)
         turned.append(drive.state.yaw_rate_radps)
     assert turned[0] < 0.0 < turned[1]
 

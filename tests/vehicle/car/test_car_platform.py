@@ -12,8 +12,9 @@ from simconsole.values.errors import ProfileError
 from simconsole.values.platform import MOST_PATCHES, Ground, Patch
 from simconsole.values.units import STANDARD_GRAVITY_MPS2
 from simconsole.vehicle.car.car_platform import build_car, car_parameters
+from simconsole.vehicle.car.state import CarState
 from tests.vehicle.altered import HATCHBACK, altered, rolling_car
-from tests.vehicle.driving import LEVEL, ORIGIN, platform
+from tests.vehicle.driving import LEVEL, ORIGIN, Drive, platform
 from tests.vehicle.parts import CAR
 
 
@@ -30,21 +31,27 @@ def test_the_sprung_and_the_unsprung_arms_together_are_the_height_of_the_whole_c
     assert arm == pytest.approx(CAR.body.cg_height_m)
 
 
-def test_slopes_take_load_off_the_tyres_and_right_share_takes_grip_off_one_side() -> None:
-    sloped = car_parameters(HATCHBACK, Ground(0.8, 0.3, 0.4, right_share=0.25))
-    assert sloped.front.static_n == pytest.approx(CAR.front.static_n / math.sqrt(1.25))
-    assert sloped.front.friction_left == pytest.approx(0.8 * CAR.front.friction_left)
-    assert sloped.rear.friction_right == pytest.approx(0.25 * sloped.rear.friction_left)
-    ice = car_parameters(HATCHBACK, Ground(0.0, 0.0, 0.0, right_share=0.0))
-    assert ice.front.friction_right > 0.0, "a tyre divides by it"
+def test_a_car_stands_on_a_slope_as_it_will_rest_there() -> None:
+    """The slope takes load off the tyres: the body starts where springs and tyres then hold it."""
+    steep = Drive(build_car(HATCHBACK, ORIGIN, Ground(1.0, 0.0, 0.4)))
+    before = steep.state
+    assert before.heave_m > 0.005
+    steep.hold(0.02, brake=1.0)
+    now = steep.state
+    assert (now.heave_m, now.pitch_rad) == pytest.approx((before.heave_m, before.pitch_rad), abs=2e-4)
+    assert build_car(HATCHBACK, ORIGIN, LEVEL).initial_state[CarState._fields.index("heave_m")] == 0.0
 
 
 def test_full_brake_is_what_brakes_give_or_the_ground_holds() -> None:
     weight_n = HATCHBACK.body.mass_kg * STANDARD_GRAVITY_MPS2
-    on_ice = car_parameters(HATCHBACK, Ground(0.1, 0.0, 0.0))
-    assert on_ice.body.full_brake_n == pytest.approx(0.1 * weight_n, rel=0.1)
-    weak = car_parameters(altered(front={"brake_nm": 100.0}, rear={"brake_nm": 50.0}), LEVEL)
-    assert weak.body.full_brake_n == pytest.approx(150.0 / CAR.front.radius_m)
+
+    def full_brake_n(profile: CarProfile, friction: float) -> float:
+        seen = build_car(profile, ORIGIN, Ground(friction, 0.0, 0.0)).initial_vehicle
+        return -seen.full_brake_accel_mps2 * car_parameters(profile).body.moving_kg
+
+    assert full_brake_n(HATCHBACK, 0.1) == pytest.approx(0.1 * weight_n, rel=0.1)
+    weak = altered(front={"brake_nm": 100.0}, rear={"brake_nm": 50.0})
+    assert full_brake_n(weak, 1.0) == pytest.approx(150.0 / CAR.front.radius_m, rel=0.1)
 
 
 def test_a_tyre_file_that_was_not_read_is_refused_by_key() -> None:

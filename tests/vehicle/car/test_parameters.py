@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from simconsole.values.layout import read, write
-from simconsole.vehicle.car.parameters import NO_PATCH, PARAMETERS, AxleParameters, CarParameters
+from simconsole.vehicle.car.parameters import PARAMETERS, AxleParameters
 from tests.vehicle.parts import CAR
 
 
@@ -23,11 +23,3 @@ def test_reciprocals_are_those_of_what_they_are_named_for(axle: AxleParameters) 
     assert axle.per_static_n * axle.static_n == pytest.approx(1.0)
     assert axle.spin_radps_per_newton_second == pytest.approx(axle.radius_m * axle.per_wheel_inertia_kgm2)
     assert axle.roll_rad_per_m * 2.0 * axle.half_track_m == pytest.approx(1.0)
-
-
-def test_no_place_lies_on_the_patch_that_is_none() -> None:
-    assert NO_PATCH.from_x_m > NO_PATCH.to_x_m
-    assert NO_PATCH.from_y_m > NO_PATCH.to_y_m
-    assert [name for name, kind in CarParameters.__annotations__.items() if kind is type(NO_PATCH)] == [
-        f"patch_{n}" for n in range(1, 5)
-    ]

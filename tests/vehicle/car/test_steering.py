@@ -21,7 +21,7 @@ from simconsole.vehicle.car.steering import (
     wheel_directions,
 )
 from tests.vehicle.altered import HATCHBACK
-from tests.vehicle.driving import LEVEL, TICK_S, Drive, platform
+from tests.vehicle.driving import TICK_S, Drive, platform
 from tests.vehicle.parts import CAR, LOAD_N, STEP_S, settled
 from tests.vehicle.rolling import rolling
 
@@ -137,7 +137,7 @@ def test_torque_at_the_rim_is_odd_and_bends_towards_its_most() -> None:
 
 
 def test_assistance_leaves_more_to_the_hands_at_speed() -> None:
-    p = car_parameters(HATCHBACK, LEVEL).steering
+    p = car_parameters(HATCHBACK).steering
     torques = [abs(hand_wheel_torque(p, -60.0, 0.0, speed / KMH_PER_MPS, 0.0)) for speed in (0.0, 50.0, 100.0)]
     assert torques[0] < torques[1] < torques[2] < HATCHBACK.steering.most_nm
 
@@ -145,7 +145,7 @@ def test_assistance_leaves_more_to_the_hands_at_speed() -> None:
 @pytest.mark.parametrize("speed_mps", [0.0, 28.0])
 def test_about_the_centre_the_assistance_leaves_all_and_of_much_its_share(speed_mps: float) -> None:
     s = HATCHBACK.steering
-    p = car_parameters(HATCHBACK, LEVEL).steering._replace(per_hand_torque_most_nm=0.0)
+    p = car_parameters(HATCHBACK).steering._replace(per_hand_torque_most_nm=0.0)
     slopes = [
         (hand_wheel_torque(p, moment + 1.0, 0.0, speed_mps, 0.0) - hand_wheel_torque(p, moment, 0.0, speed_mps, 0.0))
         * s.ratio
@@ -158,11 +158,11 @@ def test_about_the_centre_the_assistance_leaves_all_and_of_much_its_share(speed_
 
 def turned_on_the_spot(angles_rad: list[float], name: str = "hatchback", friction: float = 1.0) -> list[float]:
     """Return the moment of both front tyres about their kingpins at each angle, wheels held by the brake."""
-    p = car_parameters(load("vehicles", name, CarProfile), Ground(friction, 0.0, 0.0))
+    p = car_parameters(load("vehicles", name, CarProfile))
     moments, twist, before = [], 0.0, 0.0
     for angle in angles_rad:
         twist, before = patch_twist(twist, angle - before, 0.0), angle
-        moments.append(2.0 * turn_slip_moment(p.steering, twist, p.front.friction_left * p.front.static_n, 0.0))
+        moments.append(2.0 * turn_slip_moment(p.steering, twist, friction * p.front.friction * p.front.static_n, 0.0))
     return moments
 
 

@@ -226,7 +226,7 @@ def test_other_coefficients_are_other_code() -> None:
 @pytest.mark.parametrize(("kappa", "tangent"), [(0.1, 0.0), (-0.15, 0.0), (0.0, 0.08), (-0.08, 0.06), (0.05, -0.05)])
 def test_in_steady_motion_the_slip_is_that_of_pac2002(kappa: float, tangent: float, way: float) -> None:
     """Over the speed of travel, in both directions: what was not divided by it comes out as if it were."""
-    axle = car_parameters(load("vehicles", "hatchback", CarProfile), LEVEL).front
+    axle = car_parameters(load("vehicles", "hatchback", CarProfile)).front
     own = make_tyre(coefficients(EXAMPLE))
     speed = 15.0 * way
     spin = speed * (1.0 + way * kappa) / axle.radius_m

@@ -7,7 +7,6 @@ import pytest
 from simconsole.vehicle.car.car_platform import car_parameters
 from simconsole.vehicle.car.tyre import Tyre, tyre
 from tests.vehicle.altered import HATCHBACK
-from tests.vehicle.driving import LEVEL
 from tests.vehicle.parts import CAR, LOAD_N, STEP_S, settled
 
 
@@ -81,7 +80,7 @@ def test_standing_tyre_is_a_spring_that_keeps_its_force() -> None:
 
 
 def test_side_force_builds_up_over_the_relaxation_length_and_falls_under_braking() -> None:
-    axle = car_parameters(HATCHBACK, LEVEL).front
+    axle = car_parameters(HATCHBACK).front
     speed, slip_angle = 10.0, 0.01
 
     def force(metres: float, kappa: float) -> Tyre:

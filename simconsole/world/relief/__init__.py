@@ -1,0 +1,1 @@
+"""The ground of a world as a field of heights: from its roads' lines to a grid."""
