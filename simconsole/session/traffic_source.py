@@ -17,7 +17,7 @@ from simconsole.values.trigonometry import direction
 from simconsole.world.kinds.worlds import open_map, open_world
 from simconsole.world.route import Route
 from simconsole.world.traffic.collisions import struck
-from simconsole.world.traffic.leader import leader
+from simconsole.world.traffic.leader import Leaders
 from simconsole.world.traffic.road_users import Box, RoadUsersAt, to_bytes
 from simconsole.world.traffic.traffic import Traffic
 
@@ -35,7 +35,7 @@ class TrafficSource:
     def __init__(self, traffic: Traffic, platform: Platform, period_ticks: int, route: Route | None = None) -> None:
         """Take what the vehicle follows as `route`; without one it goes straight on."""
         self._traffic = traffic
-        self._route = route
+        self._leaders = Leaders(route, compiled)
         self._platform = platform
         self._period_ticks = period_ticks
         self._newest = RoadUsersAt(0, traffic.road_users())
@@ -76,7 +76,7 @@ class TrafficSource:
         return self._ahead
 
     def _leader(self, ego: Box) -> AheadInput:
-        return leader(self._route, ego, self._newest.users)
+        return self._leaders.find(ego, self._newest.users)
 
     def unseen(self, tick: int) -> int:
         """Return how many ticks, from `tick` on, do not end a period."""
