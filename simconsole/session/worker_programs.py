@@ -81,7 +81,7 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
         from simconsole.bridge.transport.sockets import address_url
         from simconsole.session.external_view import external_view
         from simconsole.session.view_job import load_view_job
-        from simconsole.world.kinds.worlds import road_signals, route_points
+        from simconsole.world.kinds.worlds import road_signals, route_points, shown_map
 
         profile = self.profile
         receipts = Receipts(folder / f"{LATENCY}.bridge.json")
@@ -92,6 +92,7 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
 
         around = Surroundings(
             route=route_points(self.world),
+            shown_map=shown_map(self.world),
             signals=road_signals(self.world, self.tick_hz),
             road_users=RoadUsersRing(folder).newest if self.has_traffic else None,
             view=NO_VIEW if self.display is None else external_view(load_view_job(folder / VIEW_JOB), self.display),

@@ -2,8 +2,10 @@
 
 from collections.abc import Callable
 from functools import cached_property
+from typing import Final, NamedTuple
 
 from simconsole.world.drawing import Drawing
+from simconsole.world.earth import Earth
 from simconsole.world.route import Route
 
 
@@ -19,3 +21,13 @@ class World:
     def drawing(self) -> Drawing:
         """Everything there is to draw."""
         return self._draw()
+
+
+class ShownMap(NamedTuple):
+    """What those outside are told of a world: how it looks, and where on the earth it lies."""
+
+    drawing: Callable[[], Drawing | None] = lambda: None
+    earth: Earth | None = None  # None: nobody knows
+
+
+NO_MAP: Final = ShownMap()

@@ -98,7 +98,8 @@ def _way(route: Route | None, lists: bool) -> Way:
         arrays = [route.x, route.y, np.cos(route.yaw), np.sin(route.yaw), route.s, route.curvature]
     columns: list[Any] = [array.tolist() for array in arrays] if lists else arrays
     length_m, closed = (0.0, False) if route is None else (route.length_m, route.closed)
-    return Way(*columns, length_m, int(closed))
+    x, y, cosine, sine, s, curvature = columns
+    return Way(x, y, cosine, sine, s, curvature, length_m, int(closed))
 
 
 @kernel
