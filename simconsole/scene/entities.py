@@ -97,7 +97,7 @@ class WorldShapes(NamedTuple):
 
 def world_shapes(drawing: Drawing) -> WorldShapes:
     """Return the shapes of a course; lines come as [N, 3]."""
-    posts, lamps = _lights(np.array([(light.x_m, light.y_m, light.yaw_rad) for light in drawing.lights]).reshape(-1, 3))
+    posts, lamps = light_places(drawing)
     return WorldShapes(
         ground=mesh((_ground(drawing.path),), -5.0 * LIFT_M),
         surfaces=mesh(drawing.surfaces, 0.0),
@@ -159,8 +159,9 @@ def _ground(path: Array) -> Array:
     return np.array(((west, south), (east, south), (east, north), (west, north)))
 
 
-def _lights(lights: Array) -> tuple[Array, Array]:
-    """Return post feet [N, 3] and lamps [N, 3, 3] (red, amber, green) of traffic lights [N, (x, y, yaw)]."""
+def light_places(drawing: Drawing) -> tuple[Array, Array]:
+    """Return post feet [N, 3] and lamps [N, 3, 3] (red, amber, green) of the traffic lights of a drawing."""
+    lights = np.array([light[:3] for light in drawing.lights]).reshape(-1, 3)
     posts = np.column_stack((lights[:, :2], np.zeros(len(lights))))
     # A light faces the traffic: its lamps sit on the side from which that traffic comes.
     face = posts - 0.22 * np.column_stack((np.cos(lights[:, 2]), np.sin(lights[:, 2]), np.zeros(len(lights))))

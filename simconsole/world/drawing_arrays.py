@@ -3,17 +3,22 @@
 from collections.abc import Mapping
 from typing import Any, Final
 
+import msgspec
 import numpy as np
 
 from simconsole.world.drawing import Drawing
-from simconsole.world.drawing_layers import Light
+from simconsole.world.drawing_layers import Light, LightProgram
 
 _LINES: Final = ("surfaces", "islands", "edges", "centre_lines", "zebras", "stop_lines")
 
 
 def to_arrays(drawing: Drawing) -> dict[str, Any]:
     """Return the arrays of a drawing: of each kind of lines all points, and where each line ends."""
-    content: dict[str, Any] = {"path": drawing.path, "lights": np.array(drawing.lights).reshape(-1, 3)}
+    content: dict[str, Any] = {
+        "path": drawing.path,
+        "lights": np.array([light[:3] for light in drawing.lights]).reshape(-1, 3),
+        "light_programs": np.frombuffer(msgspec.json.encode([light.program for light in drawing.lights]), np.uint8),
+    }
     for name in _LINES:
         lines = getattr(drawing, name)
         content[name] = np.vstack(lines) if lines else np.empty((0, 2))
@@ -31,5 +36,6 @@ def from_arrays(content: Mapping[str, Any]) -> Drawing | None:
     if "path" not in content:
         return None
     lines = {name: tuple(np.split(content[name], content[f"{name}_ends"])[:-1]) for name in _LINES}
-    lights = tuple(Light(*light) for light in content["lights"].tolist())
+    programs = msgspec.json.decode(content["light_programs"].tobytes(), type=list[LightProgram | None])
+    lights = tuple(Light(*light, program) for light, program in zip(content["lights"].tolist(), programs, strict=True))
     return Drawing(**lines, lights=lights, path=content["path"])

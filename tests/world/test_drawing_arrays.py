@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 
 from simconsole.profiles.files.loader import load
+from simconsole.profiles.files.world_files import load_world
 from simconsole.profiles.world import CourseProfile
 from simconsole.world.course import Course
 from simconsole.world.drawing import draw
 from simconsole.world.drawing_arrays import from_arrays, to_arrays
+from simconsole.world.kinds.worlds import open_world
 
 
 def test_a_drawing_comes_out_of_a_file_as_it_went_in() -> None:
@@ -24,6 +26,18 @@ def test_a_drawing_comes_out_of_a_file_as_it_went_in() -> None:
         lines, wanted = getattr(back, name), getattr(drawing, name)
         assert len(lines) == len(wanted) > 0
         assert all((one == other).all() for one, other in zip(lines, wanted, strict=True))
+
+
+def test_programs_of_lights_come_along() -> None:
+    drawing = open_world(load_world("urban_signals")).drawing
+    assert any(light.program is not None for light in drawing.lights)
+    file = io.BytesIO()
+    np.savez(file, **to_arrays(drawing))
+    file.seek(0)
+    with np.load(file, allow_pickle=False) as content:
+        back = from_arrays(content)
+    assert back is not None
+    assert back.lights == drawing.lights
 
 
 def test_no_drawing_is_none_and_a_part_of_one_is_an_error() -> None:
