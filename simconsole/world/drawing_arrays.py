@@ -37,5 +37,6 @@ def from_arrays(content: Mapping[str, Any]) -> Drawing | None:
         return None
     lines = {name: tuple(np.split(content[name], content[f"{name}_ends"])[:-1]) for name in _LINES}
     programs = msgspec.json.decode(content["light_programs"].tobytes(), type=list[LightProgram | None])
-    lights = tuple(Light(*light, program) for light, program in zip(content["lights"].tolist(), programs, strict=True))
+    places = zip(content["lights"].tolist(), programs, strict=True)
+    lights = tuple(Light(x, y, yaw, program) for (x, y, yaw), program in places)
     return Drawing(**lines, lights=lights, path=content["path"])

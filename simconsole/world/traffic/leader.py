@@ -99,7 +99,9 @@ def _way(route: Route | None, lists: bool) -> Way:
     columns: list[Any] = [array.tolist() for array in arrays] if lists else arrays
     length_m, closed = (0.0, False) if route is None else (route.length_m, route.closed)
     x, y, cosine, sine, s, curvature = columns
-    return Way(x, y, cosine, sine, s, curvature, length_m, int(closed))
+    return Way(
+        x_m=x, y_m=y, cosine=cosine, sine=sine, s_m=s, curvature_1pm=curvature, length_m=length_m, closed=int(closed)
+    )
 
 
 @kernel
