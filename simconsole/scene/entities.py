@@ -101,8 +101,7 @@ class WorldShapes(NamedTuple):
 
 def world_shapes(drawing: Drawing) -> WorldShapes:
     """Return the shapes of a course; lines come as [N, 3]."""
-    posts, lamps = _lights(np.array([(light.x_m, light.y_m, light.yaw_rad) for light in drawing.lights]).reshape(-1, 3))
-    flat = _flat_shapes(drawing, posts, lamps)
+    flat = _flat_shapes(drawing)
     return flat if drawing.ground is None else _on_ground(flat, drawing.ground)
 
 
@@ -123,8 +122,8 @@ def _on_ground(flat: WorldShapes, ground: HeightField) -> WorldShapes:
         paint=high_mesh(flat.paint),
         edges=tuple(high(line) for line in flat.edges),
         centre_dashes=tuple(high(dash) for dash in flat.centre_dashes),
-        light_posts=high(flat.light_posts),
-        light_lamps=high(flat.light_lamps),
+        light_posts=flat.light_posts,
+        light_lamps=flat.light_lamps,
         path=high(flat.path),
     )
 
@@ -142,7 +141,9 @@ def _land(ground: HeightField) -> Mesh:
     return Mesh(lifted(places, -LAND_SUNK_M), corners.reshape(-1, 3).astype(np.uint32))
 
 
-def _flat_shapes(drawing: Drawing, posts: Array, lamps: Array) -> WorldShapes:
+def _flat_shapes(drawing: Drawing) -> WorldShapes:
+    """Return the shapes as they lie on the plane; lights stand on the ground as it is."""
+    posts, lamps = light_places(drawing)
     return WorldShapes(
         ground=mesh((_ground(drawing.path),), -5.0 * LIFT_M),
         surfaces=mesh(drawing.surfaces, 0.0),
@@ -204,9 +205,13 @@ def _ground(path: Array) -> Array:
     return np.array(((west, south), (east, south), (east, north), (west, north)))
 
 
-def _lights(lights: Array) -> tuple[Array, Array]:
-    """Return post feet [N, 3] and lamps [N, 3, 3] (red, amber, green) of traffic lights [N, (x, y, yaw)]."""
-    posts = np.column_stack((lights[:, :2], np.zeros(len(lights))))
+def light_places(drawing: Drawing) -> tuple[Array, Array]:
+    """Return post feet [N, 3] and lamps [N, 3, 3] (red, amber, green) of the traffic lights of a drawing."""
+    lights = np.array([light[:3] for light in drawing.lights]).reshape(-1, 3)
+    up = np.zeros(len(lights))
+    if drawing.ground is not None:
+        up = spline_at(drawing.ground, 0, lights[:, 0], lights[:, 1])
+    posts = np.column_stack((lights[:, :2], up))
     # A light faces the traffic: its lamps sit on the side from which that traffic comes.
     face = posts - 0.22 * np.column_stack((np.cos(lights[:, 2]), np.sin(lights[:, 2]), np.zeros(len(lights))))
     heights = (POST_M + 0.3, POST_M, POST_M - 0.3)

@@ -43,7 +43,7 @@ from simconsole.values.errors import BridgeError, ProfileError
 from simconsole.values.latency import LatencyStatistics
 from simconsole.values.protocols import CommandSource, DeviceIdentity, NobodyCommands, Output
 from simconsole.values.state_vector import Snapshot
-from simconsole.world.kinds.worlds import road_signals, route_points
+from simconsole.world.kinds.worlds import road_signals, route_points, shown_map
 
 LOOKED_AT = 64
 """In a drive that is not paced, hops are timed in each 64th tick."""
@@ -327,6 +327,7 @@ def _open_lockstep(
         drive=drive,
         around=Surroundings(
             route=route_points(resolved.world),
+            shown_map=shown_map(resolved.world),
             signals=road_signals(resolved.world, console.tick_hz),
             road_users=None if traffic is None else traffic.newest,
             view=view,

@@ -38,7 +38,7 @@ class LogRecorder:
     def write(self, snapshot: Snapshot) -> int:
         """Append one tick; an exception, as of a failing disk, goes into the log's `failure` and raises an event."""
         try:
-            self._append(snapshot.tick, snapshot.vector, self._messages())
+            self._log.append(snapshot.tick, snapshot.vector, self._messages())
         except Exception as error:
             self._note(error)
             raise
@@ -47,7 +47,7 @@ class LogRecorder:
     def write_block(self, tick: int, vectors: Row) -> tuple[int, int]:
         """Append the ticks from `tick` on and return as `BlockRecorder`; exceptions as of `write`."""
         try:
-            kept = self._append_block(tick, vectors)
+            kept = self._log.append_block(tick, vectors, self._messages())
         except Exception as error:
             self._note(error)
             raise
@@ -63,18 +63,6 @@ class LogRecorder:
         for act in acts:
             self._summary.add(act)
         return [*((ACTS, act) for act in acts), *(() if self._traffic is None else self._traffic.take_messages())]
-
-    def _append_block(self, tick: int, vectors: Row) -> int:
-        messages = self._messages()
-        if not messages:
-            return self._log.append_block(tick, vectors)
-        self._append(tick, vectors[0], messages)
-        if len(vectors) == 1 or self._log.failure is not None:
-            return 1
-        return 1 + self._log.append_block(tick + 1, vectors[1:])
-
-    def _append(self, tick: int, vector: Row, messages: list[tuple[str, bytes]]) -> None:
-        self._log.append(tick, vector, messages)
 
     def _note(self, error: Exception) -> None:
         self._log.failure = self._log.failure or f"{type(error).__name__}: {error}"

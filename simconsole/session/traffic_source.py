@@ -19,7 +19,7 @@ from simconsole.world.roads.road_world import roads_of
 from simconsole.world.route import Route
 from simconsole.world.rules.owing import Owing
 from simconsole.world.traffic.collisions import struck
-from simconsole.world.traffic.leader import leader
+from simconsole.world.traffic.leader import Leaders
 from simconsole.world.traffic.road_users import Box, RoadUsersAt, to_bytes
 from simconsole.world.traffic.traffic import Traffic
 
@@ -44,7 +44,7 @@ class TrafficSource:
     ) -> None:
         """Take what the vehicle follows as `route`; without one it goes straight on, and `owing` tells nothing."""
         self._traffic = traffic
-        self._route = route
+        self._leaders = Leaders(route, compiled)
         self._platform = platform
         self._period_ticks = period_ticks
         self._owing = owing
@@ -86,7 +86,7 @@ class TrafficSource:
         return self._ahead
 
     def _look(self, ego: Box, tick: int) -> AheadInput:
-        found = leader(self._route, ego, self._newest.users)
+        found = self._leaders.find(ego, self._newest.users)
         if self._owing is None:
             return found
         owed = self._owing.owed(ego, self._newest.users, tick)

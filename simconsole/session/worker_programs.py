@@ -82,7 +82,7 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
         from simconsole.session.camera_worker import CameraReader
         from simconsole.session.external_view import external_view
         from simconsole.session.view_job import load_view_job
-        from simconsole.world.kinds.worlds import road_signals, route_points
+        from simconsole.world.kinds.worlds import road_signals, route_points, shown_map
 
         profile = self.profile
         receipts = Receipts(folder / f"{LATENCY}.bridge.json")
@@ -93,6 +93,7 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
 
         around = Surroundings(
             route=route_points(self.world),
+            shown_map=shown_map(self.world),
             signals=road_signals(self.world, self.tick_hz),
             camera=CameraReader(folder).newest if profile.camera is not None else None,
             road_users=RoadUsersRing(folder).newest if self.has_traffic else None,

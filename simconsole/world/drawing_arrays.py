@@ -3,18 +3,23 @@
 from collections.abc import Mapping
 from typing import Any, Final
 
+import msgspec
 import numpy as np
 
 from simconsole.values.height_field import Grid, HeightField
 from simconsole.world.drawing import Drawing
-from simconsole.world.drawing_layers import Light
+from simconsole.world.drawing_layers import Light, LightProgram
 
 _LINES: Final = ("surfaces", "islands", "edges", "centre_lines", "zebras", "stop_lines")
 
 
 def to_arrays(drawing: Drawing) -> dict[str, Any]:
     """Return the arrays of a drawing: of each kind of lines all points, and where each line ends."""
-    content: dict[str, Any] = {"path": drawing.path, "lights": np.array(drawing.lights).reshape(-1, 3)}
+    content: dict[str, Any] = {
+        "path": drawing.path,
+        "lights": np.array([light[:3] for light in drawing.lights]).reshape(-1, 3),
+        "light_programs": np.frombuffer(msgspec.json.encode([light.program for light in drawing.lights]), np.uint8),
+    }
     for name in _LINES:
         lines = getattr(drawing, name)
         content[name] = np.vstack(lines) if lines else np.empty((0, 2))
@@ -34,7 +39,9 @@ def from_arrays(content: Mapping[str, Any]) -> Drawing | None:
     if "path" not in content:
         return None
     lines = {name: tuple(np.split(content[name], content[f"{name}_ends"])[:-1]) for name in _LINES}
-    lights = tuple(Light(*light) for light in content["lights"].tolist())
+    programs = msgspec.json.decode(content["light_programs"].tobytes(), type=list[LightProgram | None])
+    places = zip(content["lights"].tolist(), programs, strict=True)
+    lights = tuple(Light(x, y, yaw, program) for (x, y, yaw), program in places)
     ground = None
     if "ground_nodes" in content:
         ground = HeightField(Grid(*content["ground_grid"].tolist()), content["ground_nodes"])

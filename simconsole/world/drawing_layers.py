@@ -15,12 +15,23 @@ STEP_M: Final = 1.0
 ZEBRA_STRIPE_M: Final = 0.5  # stripes and the gaps between them
 
 
+class LightProgram(NamedTuple):
+    """What a light shows: phases that follow each other for ever, `offset_s` later than the clock."""
+
+    signal: str  # the map's name of it
+    link: int  # its place in that signal's states
+    offset_s: float
+    durations_s: tuple[float, ...]
+    letters: str  # what it shows in each phase, as SUMO writes it
+
+
 class Light(NamedTuple):
     """A traffic light's post, with the heading of the traffic that it faces."""
 
     x_m: float
     y_m: float
     yaw_rad: float
+    program: LightProgram | None = None  # None: nobody knows
 
 
 @dataclass

@@ -2,9 +2,11 @@
 
 from collections.abc import Callable
 from functools import cached_property
+from typing import Final, NamedTuple
 
 from simconsole.values.height_field import HeightField
 from simconsole.world.drawing import Drawing
+from simconsole.world.earth import Earth
 from simconsole.world.route import Route
 
 
@@ -33,3 +35,13 @@ class World:
     def ground(self) -> HeightField | None:
         """The heights of the ground; None where it is flat."""
         return None if self._raise_ground is None else self._raise_ground()
+
+
+class ShownMap(NamedTuple):
+    """What those outside are told of a world: how it looks, and where on the earth it lies."""
+
+    drawing: Callable[[], Drawing | None] = lambda: None
+    earth: Earth | None = None  # None: nobody knows
+
+
+NO_MAP: Final = ShownMap()

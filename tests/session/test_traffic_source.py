@@ -23,7 +23,7 @@ from simconsole.values.signals import FAR, Event
 from simconsole.values.state_vector import Snapshot
 from simconsole.world.kinds.worlds import open_world
 from simconsole.world.traffic import traffic as modelled
-from simconsole.world.traffic.leader import leader
+from simconsole.world.traffic.leader import Leaders
 from simconsole.world.traffic.road_users import Box, table, users
 from tests.paths import ROOT
 from tests.scene.viewer.test_export import contents
@@ -72,13 +72,13 @@ def test_whom_the_vehicle_follows_is_an_input_from_the_tick_after_each_step_on(t
     bundle = open_bundle(drive(leading, tmp_path / "led").folder)
     assert leading.world is not None
     route, console = open_world(leading.world).route, assemble(leading, compiled)[0]
-    table = bundle.log.table()
+    leaders, table = Leaders(route), bundle.log.table()
     told = np.column_stack([table.column("ahead.lead_gap_m"), table.column("ahead.lead_speed_mps")])
     vectors = {record.tick: np.array(record.vector) for record in bundle.log}
     for at in recorded_road_users(bundle.log):
         if at.tick:
             vehicle = Snapshot(at.tick, console.tick_hz, vectors[at.tick]).vehicle
-            found = leader(route, ego_box(vehicle, console.platform), at.users)
+            found = leaders.find(ego_box(vehicle, console.platform), at.users)
             assert (told[at.tick : at.tick + PERIOD_TICKS] == np.array(found)).all()
     assert (told[:, 0] < FAR).all(), "the leader is there from the first tick on"
     assert (table.column("situation.lead_gap_m") == told[:, 0]).all()

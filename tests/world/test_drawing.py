@@ -7,7 +7,7 @@ from simconsole.world.drawing import Drawing
 
 
 def test_everything_is_finite_pairs(drawn: Drawing) -> None:
-    assert np.isfinite(drawn.lights).all()
+    assert np.isfinite([light[:3] for light in drawn.lights]).all()
     lines_of = {**drawn._asdict(), "path": (drawn.path,)}
     del lines_of["lights"]
     for name, lines in lines_of.items():

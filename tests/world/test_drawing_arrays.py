@@ -28,6 +28,18 @@ def test_a_drawing_comes_out_of_a_file_as_it_went_in() -> None:
         assert all((one == other).all() for one, other in zip(lines, wanted, strict=True))
 
 
+def test_programs_of_lights_come_along() -> None:
+    drawing = open_world(load_world("urban_signals")).drawing
+    assert any(light.program is not None for light in drawing.lights)
+    file = io.BytesIO()
+    np.savez(file, **to_arrays(drawing))
+    file.seek(0)
+    with np.load(file, allow_pickle=False) as content:
+        back = from_arrays(content)
+    assert back is not None
+    assert back.lights == drawing.lights
+
+
 def test_no_drawing_is_none_and_a_part_of_one_is_an_error() -> None:
     assert from_arrays({}) is None
     with pytest.raises(KeyError):

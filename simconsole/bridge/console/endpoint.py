@@ -74,6 +74,7 @@ class ConsoleBridge:
             lambda: bridge_status(self.router, self._now_ns),
             around.route,
             around.signals,
+            around.shown_map,
         )
         outputs = (*view_topics(self.router.registry, profile, around.view), *self._out.topics())
         commands = self._command_decoder.topics()

@@ -8,12 +8,14 @@ from simconsole.bridge.console.topics import Route
 from simconsole.bridge.console.view_topics import NO_VIEW, ExternalView
 from simconsole.control.requests.refusals import SteeringLimit
 from simconsole.world.rules.road_signals import RoadSignals
+from simconsole.world.world import NO_MAP, ShownMap
 
 
 class Surroundings(NamedTuple):
     """World, traffic, camera, view and limits of a drive."""
 
     route: Route = ()  # what /route shows
+    shown_map: ShownMap = NO_MAP
     signals: RoadSignals | None = None  # the traffic lights of the world; None where it has none
     road_users: ReadRoadUsers | None = None  # returns the newest; None: they have no topics
     camera: ReadCamera | None = None  # returns the newest picture; None: there is no camera

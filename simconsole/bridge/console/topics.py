@@ -9,6 +9,7 @@ from math import radians
 from typing import Any, Final
 
 from simconsole.bridge.console.camera_topics import OPTICAL_FRAME, optical
+from simconsole.bridge.console.map_topics import MapTopics
 from simconsole.bridge.console.published_tick import MAP_FRAME, ONCE, OutputTopic, PublishedTick, quaternion
 from simconsole.bridge.console.signal_topics import SignalTopics
 from simconsole.bridge.link.localisation import Localisation, covariances
@@ -18,6 +19,7 @@ from simconsole.values.labels import commander_label, link_label, mode_label, no
 from simconsole.values.signals import NEVER_TICKS, Link, Mode, RemoteCommand, VehicleState
 from simconsole.values.state_vector import LAYOUT, Snapshot
 from simconsole.world.rules.road_signals import RoadSignals
+from simconsole.world.world import NO_MAP, ShownMap
 
 CLOCK: Final = "/clock"
 TF: Final = "/tf"
@@ -96,13 +98,16 @@ class Outputs:
         counts: Callable[[], dict[str, Any]] = dict,
         route: Route = (),
         signals: RoadSignals | None = None,
+        shown_map: ShownMap = NO_MAP,
     ) -> None:
         """Generate the classes of all output topics.
 
-        `counts` fills /console/bridge (`counters.bridge_status`), `route` /route, `signals` those of traffic lights.
+        `counts` fills /console/bridge (`counters.bridge_status`), `route` /route, `signals` those of traffic lights,
+        `shown_map` those of the map.
         """
         self._route_points = route
         self._signals = SignalTopics(registry, signals)
+        self._map = MapTopics(registry, shown_map, profile.link.localisation)
         self._counts = counts
         self._odometry_frame = profile.odometry_frame
         self._camera = profile.camera
@@ -124,6 +129,7 @@ class Outputs:
             OutputTopic(CLOCK, "rosgraph_msgs/Clock", 100.0, self._clock),
             OutputTopic(TF_STATIC, "tf2_msgs/TFMessage", ONCE, self._tf_static),
             OutputTopic(ROUTE, "nav_msgs/Path", ONCE, self._route),
+            *self._map.topics(),
             *self._signals.topics(),
             OutputTopic(TF, "tf2_msgs/TFMessage", 50.0, self._tf),
             OutputTopic(JOY, "sensor_msgs/Joy", 100.0, self._joy),

@@ -10,7 +10,7 @@ from simconsole.values.signals import FAR
 from simconsole.values.units import NS_PER_S
 from simconsole.world.roads.road_map import Array
 from simconsole.world.route import Route
-from simconsole.world.traffic.leader import leader
+from simconsole.world.traffic.leader import Leaders
 from simconsole.world.traffic.road_users import NOBODY, Box, RoadUser, table
 
 ROAD_USERS: Final = "/road_users"
@@ -24,7 +24,7 @@ class Others:
 
     def __init__(self, route: Route, vehicle: VehicleProfile) -> None:
         """Follow `route` in `vehicle`."""
-        self._route = route
+        self._leaders = Leaders(route)
         self._length_m = self._width_m = self._rear_m = 0.0
         if isinstance(vehicle, CarProfile):
             body = vehicle.body
@@ -49,7 +49,7 @@ class Others:
             length_m=self._length_m,
             width_m=self._width_m,
         )
-        found = leader(self._route, ego, self._users)
+        found = self._leaders.find(ego, self._users)
         if found.lead_gap_m >= FAR:
             return None
         late_s = max(0.0, now_s - self._stamp_s)

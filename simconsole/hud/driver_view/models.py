@@ -1,11 +1,11 @@
 """The scene for a renderer of another program: two glTF models, and the frames that move in them."""
 
 import math
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from simconsole.hud.driver_view.gltf import Node, Place, glb
 from simconsole.hud.driver_view.motion import ShownVehicle
-from simconsole.hud.driver_view.scene import world_parts
+from simconsole.hud.driver_view.scene import Part, world_parts
 from simconsole.hud.driver_view.vehicle_body import WHEEL_RADIUS_M, Size, VehicleMeshes, vehicle_meshes
 from simconsole.world.drawing import Drawing
 
@@ -26,11 +26,15 @@ class Frame(NamedTuple):
 
 def world_model(drawing: Drawing | None, limit_kmh: float) -> bytes:
     """Return all that stands still, a node for each kind of thing; flat ones say in which layer they lie."""
-    nodes = [
-        Node(part.name, part.mesh, extras={} if part.layer is None else {"layer": part.layer})
-        for part in world_parts(drawing, limit_kmh)
-    ]
+    nodes = [Node(part.name, part.mesh, extras=_extras(part)) for part in world_parts(drawing, limit_kmh)]
     return glb(MAP, nodes)
+
+
+def _extras(part: Part) -> dict[str, Any]:
+    """Return what a renderer must know of a part beside its shape: its layer, or the link of a signal that it shows."""
+    if part.signal is not None:
+        return {"signal": part.signal[0], "link": part.signal[1]}
+    return {} if part.layer is None else {"layer": part.layer}
 
 
 def vehicle_model(size: Size) -> bytes:

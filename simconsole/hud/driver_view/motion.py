@@ -25,6 +25,8 @@ class ShownVehicle(NamedTuple):
     hazard_lights: float = 0.0
     mode: float = float(Mode.PARKED)
     others: tuple[RoadUser, ...] = ()
+    tick: int = 0  # traffic lights show what they show at it
+    tick_hz: int = 1
 
 
 def shown_vehicle(snapshot: Snapshot) -> ShownVehicle:
@@ -44,6 +46,8 @@ def shown_vehicle(snapshot: Snapshot) -> ShownVehicle:
         turn_indicators=command.turn_indicators,
         hazard_lights=command.hazard_lights,
         mode=snapshot.arbitration.mode,
+        tick=snapshot.tick,
+        tick_hz=snapshot.tick_hz,
     )
 
 

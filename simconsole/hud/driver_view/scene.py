@@ -22,6 +22,8 @@ CASE: Final[Colour] = (22, 24, 26)
 LAMPS: Final[tuple[Colour, ...]] = ((232, 44, 36), (240, 168, 24), (46, 206, 106))
 LAMP_NAMES: Final = ("red", "amber", "green")
 LAMP_HEIGHTS_M: Final = (3.05, 2.75, 2.45)
+_OFF_M: Final = 0.115
+_LIT_OFF_M: Final = 0.125
 
 
 class Pieces(NamedTuple):
@@ -42,6 +44,7 @@ class ViewScene(NamedTuple):
     vehicle: VehicleMeshes
     size: Size
     ground: HeightField | None = None
+    lights: tuple[Light, ...] = ()
 
     def height_m(self, x_m: float, y_m: float) -> float:
         """Return the height of the ground at a place."""
@@ -54,6 +57,7 @@ class Part(NamedTuple):
     name: str
     mesh: Vertices
     layer: int | None = None  # None: it has height
+    signal: tuple[str, int] | None = None  # of a lamp: which link of which signal it shows
 
 
 def world_parts(drawing: Drawing | None, limit_kmh: float) -> tuple[Part, ...]:
@@ -65,7 +69,7 @@ def world_parts(drawing: Drawing | None, limit_kmh: float) -> tuple[Part, ...]:
     road = road_meshes(drawing, taken)
     beside = surroundings(drawing.path, limit_kmh, taken, drawing.ground)
     lamps = [
-        Part(f"signal_{index}_{name}", _lamp(light, height_m, colour))
+        Part(f"signal_{index}_{name}", _lamp(light, height_m, _unlit(colour)), signal=_told(light))
         for index, light in enumerate(drawing.lights)
         for name, height_m, colour in zip(LAMP_NAMES, LAMP_HEIGHTS_M, LAMPS, strict=True)
     ]
@@ -102,7 +106,14 @@ def view_scene(drawing: Drawing | None, limit_kmh: float, size: Size) -> ViewSce
     heights = sorted({part.layer for part in parts if part.layer is not None})
     layers = [joined([part.mesh for part in parts if part.layer == height]) for height in heights]
     solids = joined([part.mesh for part in parts if part.layer is None])
-    return ViewScene(tuple(pieces(layer) for layer in layers), pieces(solids), vehicle_meshes(size), size, ground)
+    return ViewScene(
+        layers=tuple(pieces(layer) for layer in layers),
+        solids=pieces(solids),
+        vehicle=vehicle_meshes(size),
+        size=size,
+        ground=ground,
+        lights=() if drawing is None else drawing.lights,
+    )
 
 
 def pieces(mesh: Vertices) -> Pieces:
@@ -163,15 +174,34 @@ def _signal_post(light: Light) -> Vertices:
     return joined([cone(light.x_m, light.y_m, (0.0, 2.3), (0.06, 0.05), POST), box(place, CASE)])
 
 
-def _lamp(light: Light, height_m: float, colour: Colour) -> Vertices:
-    """Return one of its lamps, unlit, facing those who come."""
+def lit_lamps() -> tuple[Vertices, ...]:
+    """Return the lamps that shine, red, amber and green, of a light at the origin of `map` that faces along -x."""
+    here = Light(0.0, 0.0, 0.0)
+    return tuple(
+        _lamp(here, height_m, colour, Material.GLOWING, _LIT_OFF_M)
+        for height_m, colour in zip(LAMP_HEIGHTS_M, LAMPS, strict=True)
+    )
+
+
+def _told(light: Light) -> tuple[str, int] | None:
+    return None if light.program is None else (light.program.signal, light.program.link)
+
+
+def _unlit(colour: Colour) -> Colour:
+    red, green, blue = colour
+    return red // 3, green // 3, blue // 3
+
+
+def _lamp(
+    light: Light, height_m: float, colour: Colour, material: Material = Material.PLAIN, off_m: float = _OFF_M
+) -> Vertices:
+    """Return one of its lamps, facing those who come, `off_m` before the middle of its case."""
     cosine, sine = np.cos(light.yaw_rad), np.sin(light.yaw_rad)
     back, left = np.array((-cosine, -sine, 0.0)), np.array((-sine, cosine, 0.0))
     up = np.array((0.0, 0.0, 1.0))
-    centre = np.array((light.x_m, light.y_m, height_m)) + 0.115 * back
+    centre = np.array((light.x_m, light.y_m, height_m)) + off_m * back
     corners = [0.1 * (a * left + b * up) + centre for a, b in ((1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0))]
-    dim = tuple(channel // 3 for channel in colour)
-    return quads(np.array([corners]), (dim[0], dim[1], dim[2]), Material.PLAIN)
+    return quads(np.array([corners]), colour, material)
 
 
 def _plain() -> tuple[Vertices, Vertices]:

@@ -12,7 +12,7 @@ from simconsole.hud.driver_view.mesh import Vertices
 from simconsole.hud.driver_view.motion import ShownVehicle
 from simconsole.hud.driver_view.other_people import person, person_model
 from simconsole.hud.driver_view.other_vehicles import meshes, model
-from simconsole.hud.driver_view.scene import Pieces, ViewScene, in_sight
+from simconsole.hud.driver_view.scene import Pieces, ViewScene, in_sight, lit_lamps
 from simconsole.hud.driver_view.vehicle_body import WHEEL_RADIUS_M
 from simconsole.hud.driver_view.views import Look
 from simconsole.hud.gl.programs import (
@@ -24,6 +24,7 @@ from simconsole.hud.gl.programs import (
     SURFACE_VERTEX,
     variant,
 )
+from simconsole.world.rules.lamps import Lamps
 from simconsole.world.traffic.road_users import RoadUserKind
 
 if TYPE_CHECKING:
@@ -96,6 +97,8 @@ class Renderer:
         self._bonnet, self._hand_wheel = self._put(vehicle.bonnet), self._put(vehicle.hand_wheel)
         self._brake_lamps = self._put(vehicle.brake_lamps)
         self._indicators = (self._put(vehicle.left_indicators), self._put(vehicle.right_indicators))
+        self._lamps = Lamps(scene.lights)
+        self._lit_lamps = tuple(self._put(lamp) for lamp in lit_lamps())
         other = meshes()
         self._other_body, self._other_wheel, self._other_wheels = (
             self._put(other.body),
@@ -145,6 +148,7 @@ class Renderer:
             self._draw_runs(layer, part, view_projection, reach, camera)
         context.polygon_offset = (0.0, 0.0)
         self._draw_runs(self._solids, self._scene.solids, view_projection, reach, camera)
+        self._draw_lamps(shown, camera, reach)
         self._draw_others(shown, camera, reach)
         if look.from_seat:
             if look.shows_vehicle and not look.is_mirror:
@@ -178,6 +182,14 @@ class Renderer:
             for lamps, side in zip(self._indicators, (1.0, -1.0), strict=True):
                 if shown.hazard_lights > 0.0 or shown.turn_indicators == side:
                     self._draw_mesh(lamps, pose)
+
+    def _draw_lamps(self, shown: ShownVehicle, camera: Camera, reach: float) -> None:
+        """Draw the lamps that shine over those that are there unlit."""
+        for place, lamp in self._lamps.lit(shown.tick, shown.tick_hz):
+            light = self._scene.lights[place]
+            if math.hypot(light.x_m - camera.eye[0], light.y_m - camera.eye[1]) < reach:
+                at = np.array((light.x_m, light.y_m, 0.0))
+                self._draw_mesh(self._lit_lamps[lamp], _transform(rotation(light.yaw_rad), at))
 
     def _draw_others(self, shown: ShownVehicle, camera: Camera, reach: float) -> None:
         for user in shown.others:

@@ -137,35 +137,51 @@ class LogWriter:
             if digests:
                 self._message_digests.update(digests)
 
-    def append_block(self, tick: int, vectors: Row) -> int:
-        """Write ticks in which no message arrived, all at once; return how many, at least one.
+    def append_block(self, tick: int, vectors: Row, messages: Sequence[tuple[str, bytes]] = ()) -> int:
+        """Write ticks of which only the first may have messages, all at once; return how many, at least one.
 
         Where recording fails or has failed these are the ticks up to the failure, as `append` leaves them.
 
         Args:
             tick: the number of the first.
             vectors: their state vectors, float64 [ticks, columns].
+            messages: those that arrived in the first, each with the name of its stream.
 
         Raises:
-            ValueError: state vectors of another width, which is a bug.
+            ValueError: as of `append`, which is a bug.
         """
         if 8 * vectors.shape[1] != self._vector_bytes:
             raise ValueError(f"state vectors of {8 * vectors.shape[1]} bytes in a log of {self._vector_bytes}")
         if self.failure is None:
-            frames, digest = seal_block(self.digest, tick, vectors)
-            problem = self._problem(frames.data.cast("B"))
+            frames, digest, digests = self._sealed_block(tick, vectors, messages)
+            problem = self._problem(frames)
             if problem is None:
                 self.ticks += len(vectors)
                 self.digest = digest
+                self._message_digests.update(digests)
                 return len(vectors)
             if os.fstat(self._fd).st_size != self.size_bytes:  # ticks that cannot be taken back must not come twice
                 self._fail(tick, problem)
                 self._last_ticks = 0
         for count, vector in enumerate(vectors, start=1):  # finds the tick with which it fails
-            self.append(tick + count - 1, vector)
+            self.append(tick + count - 1, vector, messages if count == 1 else ())
             if self.failure is not None:
                 return count
         return len(vectors)
+
+    def _sealed_block(
+        self, tick: int, vectors: Row, messages: Sequence[tuple[str, bytes]]
+    ) -> tuple[bytes | memoryview, bytes, dict[int, bytes]]:
+        """Return the frames of ticks, and the chained hashes of all streams after them."""
+        if not messages:
+            frames, digest = seal_block(self.digest, tick, vectors)
+            return frames.data.cast("B"), digest, {}
+        sealed, digests = self._sealed(tick, messages)
+        first, digest = seal(self.digest, tick, vectors[0].tobytes(), sealed)
+        if len(vectors) == 1:
+            return first, digest, digests
+        frames, digest = seal_block(digest, tick + 1, vectors[1:])
+        return first + frames.tobytes(), digest, digests
 
     def _sealed(self, tick: int, messages: Sequence[tuple[str, bytes]]) -> tuple[bytes, dict[int, bytes]]:
         """Return the messages of a tick as they lie in its frame, and the chained hashes of their streams after it."""

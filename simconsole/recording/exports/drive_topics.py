@@ -28,6 +28,7 @@ from simconsole.values.state_vector import INPUT_WIDTH, LAYOUT, PLATFORM_AT, Sna
 from simconsole.values.units import tick_time_ns
 from simconsole.world.rules.road_signals import RoadSignals
 from simconsole.world.traffic.road_users import NOBODY, RoadUsersAt
+from simconsole.world.world import NO_MAP, ShownMap
 
 OnTick = Callable[[int], None]
 """Told, now and then, the last tick that was written."""
@@ -54,10 +55,16 @@ class TopicMessage(NamedTuple):
 class DriveTopics:
     """Makes the messages of one drive, in the order of their times, by the code that the bridge has."""
 
-    def __init__(self, session: SessionProfile, route: Route = (), signals: RoadSignals | None = None) -> None:
+    def __init__(
+        self,
+        session: SessionProfile,
+        route: Route = (),
+        signals: RoadSignals | None = None,
+        shown: ShownMap = NO_MAP,
+    ) -> None:
         """Take names and rates of the session's bridge, or of a bridge as shipped where it has none.
 
-        `route` is what /route shows, `signals` are the world's traffic lights.
+        `route` is what /route shows, `signals` are the world's traffic lights, `shown` its map.
 
         Raises:
             ProfileError: the session's bridge renames or rates a topic that does not exist.
@@ -70,7 +77,7 @@ class DriveTopics:
             self._step_ticks = session.mode.control_period_ticks
             odometry_hz = session.mode.tick_hz / self._step_ticks
             profile = msgspec.structs.replace(profile, rates_hz={**profile.rates_hz, ODOMETRY: odometry_hz})
-        self._outputs = Outputs(self.registry, profile, route=route, signals=signals)
+        self._outputs = Outputs(self.registry, profile, route=route, signals=signals, shown_map=shown)
         outputs = (*view_topics(self.registry, profile), *self._outputs.topics())
         if profile.camera is not None:
             outputs = (*outputs, *CameraTopics(self.registry, profile.camera, lambda: None).topics())

@@ -16,7 +16,7 @@ from simconsole.recording.exports.drive_topics import DriveTopics, OnTick
 from simconsole.recording.exports.foxglove import foxglove_layout
 from simconsole.recording.reading import Recording
 from simconsole.values.errors import RecordingError
-from simconsole.world.kinds.worlds import road_signals, route_points
+from simconsole.world.kinds.worlds import road_signals, route_points, shown_map
 
 TOPIC_FORMATS: Final = {"mcap": "mcap_file", "rosbag2": "rosbag2_folder"}
 TABLE_FORMATS: Final = {"csv": "csv_file", "parquet": "parquet_file"}
@@ -71,7 +71,7 @@ def export_drive(
     module = import_module(f"simconsole.recording.exports.{FORMATS[format_name]}")
     topics = None
     if of_topics:
-        topics = DriveTopics(session, route_points(world), road_signals(world, session.mode.tick_hz))
+        topics = DriveTopics(session, route_points(world), road_signals(world, session.mode.tick_hz), shown_map(world))
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         # A folder of its own to write in, because rosbag2 names its files after its folder.

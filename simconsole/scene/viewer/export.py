@@ -5,6 +5,7 @@ from pathlib import Path
 
 from simconsole.processes.lifetimes import undone
 from simconsole.scene.entities import Array, world_shapes
+from simconsole.scene.lamp_shapes import LampChanges
 from simconsole.scene.road_user_shapes import road_user_shapes
 from simconsole.scene.timeline import Memory, Ticks, piece
 from simconsole.scene.viewer.job import Job
@@ -29,12 +30,14 @@ def export(job: Job, blocks: Iterable[tuple[Ticks, Array]], path: Path, road_use
     world = None if job.drawing is None else world_shapes(job.drawing)
     with replaced(path) as draft, undone(lambda: draft.unlink(missing_ok=True)):
         view = RerunView(draft, job.profile, job.dimensions, world)
-        memory = Memory()
+        memory, lamps = Memory(), LampChanges(job.drawing, job.tick_hz)
         steps = iter(road_users)
         step = next(steps, None)
         for ticks, vectors in blocks:
             added, memory = piece(vectors, job.columns, ticks, job.tick_hz, job.profile.rate_hz, memory)
             view.add(added)
+            if len(ticks) and (changed := lamps.until(int(ticks[-1]))) is not None:
+                view.add_lamps(changed)
             shown: list[RoadUsersAt] = []
             while step is not None and len(ticks) and step.tick <= ticks[-1]:
                 shown.append(step)

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from simconsole.scene.entities import world_shapes
+from simconsole.scene.lamp_shapes import LampChanges
 from simconsole.scene.road_user_shapes import road_user_shapes
 from simconsole.scene.timeline import Lane, Memory, piece
 from simconsole.scene.viewer.job import Job
@@ -50,7 +51,7 @@ def follow(ports: Ports, job: Job, path: Path) -> None:
     world = None if job.drawing is None else world_shapes(job.drawing)
     ground = None if job.drawing is None else job.drawing.ground
     view = RerunView(path, job.profile, job.dimensions, world, index=False)
-    memory = Memory()
+    memory, lamps = Memory(), LampChanges(job.drawing, job.tick_hz)
     waiting: list[Snapshot] = []
     steps: list[RoadUsersAt] = []
     link, seen = Lane(LINK_LANE, [], []), ""
@@ -72,6 +73,8 @@ def follow(ports: Ports, job: Job, path: Path) -> None:
             ticks = np.array([snapshot.tick for snapshot in waiting], dtype=np.int64)
             added, memory = piece(vectors, job.columns, ticks, job.tick_hz, job.profile.rate_hz, memory)
             view.add(added._replace(lanes=(*added.lanes, link)))
+            if (changed := lamps.until(waiting[-1].tick)) is not None:
+                view.add_lamps(changed)
             if steps:
                 view.add_road_users(road_user_shapes(steps, job.tick_hz, ground))
                 steps.clear()

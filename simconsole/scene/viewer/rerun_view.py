@@ -30,6 +30,7 @@ from simconsole.scene.entities import (
     on_map,
     raised,
 )
+from simconsole.scene.lamp_shapes import LampShapes
 from simconsole.scene.road_user_shapes import RoadUserShapes
 from simconsole.scene.timeline import PLOTS, TAKEOVER_LABELS, Entry, Lane, Piece, Strip, Ticks
 from simconsole.scene.viewer.blueprint import MAP, TIMELINE, blueprint
@@ -115,6 +116,13 @@ class RerunView:
             positions=on_map(shapes.centres), colors=shapes.colours, radii=[-4.0] * len(shapes.centres)
         )
         self._send(f"{MAP}/road_users", shapes.times_ns, spots.partition(shapes.counts))
+
+    def add_lamps(self, shapes: LampShapes) -> None:
+        """Write which lamps of traffic lights shine after some changes."""
+        import rerun as rr
+
+        lamps = rr.Points3D.columns(positions=shapes.centres, colors=shapes.colours, radii=[0.14] * len(shapes.centres))
+        self._send("world/lights/lit", shapes.times_ns, lamps.partition(shapes.counts))
 
     def settle(self) -> None:
         """Wait until all added is in the file: what rerun has queued for a slow disk would grow in memory.

@@ -7,10 +7,11 @@ from simconsole.profiles.world import CourseProfile, RoadsProfile, WorldProfile
 from simconsole.world.course import Course
 from simconsole.world.course_relief import course_field
 from simconsole.world.drawing import draw
+from simconsole.world.earth import earth_of
 from simconsole.world.roads.road_map import RoadMap
 from simconsole.world.roads.road_world import road_world, roads_of
 from simconsole.world.rules.road_signals import RoadSignals
-from simconsole.world.world import World
+from simconsole.world.world import ShownMap, World
 
 
 @lru_cache(maxsize=4)
@@ -50,6 +51,18 @@ def road_signals(profile: WorldProfile | None, tick_hz: int) -> RoadSignals | No
         return None
     roads = roads_of(open_world(profile))
     return None if roads is None else RoadSignals(roads.road_map, tick_hz)
+
+
+def shown_map(profile: WorldProfile | None) -> ShownMap:
+    """Return what those outside are told of a world. Raises as open_world."""
+    if profile is None:
+        return ShownMap(earth=earth_of())
+    world = open_world(profile)
+    roads = roads_of(world)
+    if roads is None:
+        return ShownMap(lambda: world.drawing, earth_of())
+    geo = roads.road_map.geo
+    return ShownMap(lambda: world.drawing, earth_of(geo.projection, (geo.offset_x_m, geo.offset_y_m)))
 
 
 def route_points(profile: WorldProfile | None) -> tuple[tuple[float, float, float], ...]:

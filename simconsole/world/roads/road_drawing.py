@@ -8,8 +8,8 @@ from typing import Final
 import numpy as np
 
 from simconsole.world.drawing import Drawing
-from simconsole.world.drawing_layers import STEP_M, DrawingLayers, Frame, Light, add_zebra, box
-from simconsole.world.roads.road_map import CROSSING, ROAD, Array, Edge, Lane, RoadMap
+from simconsole.world.drawing_layers import STEP_M, DrawingLayers, Frame, Light, LightProgram, add_zebra, box
+from simconsole.world.roads.road_map import CROSSING, ROAD, Array, Connection, Lane, RoadMap, active
 from simconsole.world.route import Route
 
 NEAR_M: Final = 250.0
@@ -18,6 +18,7 @@ _CHUNK_M: Final = 12.0
 _STOP_LINE_M: Final = 0.5
 _POST_M: Final = 0.9
 _SPARSE_M: Final = 20.0
+_STRAIGHT: Final = "s"
 
 
 def draw_roads(road_map: RoadMap, route: Route) -> Drawing:
@@ -35,9 +36,8 @@ def draw_roads(road_map: RoadMap, route: Route) -> Drawing:
     for junction in road_map.junctions:
         if len(junction.outline) > 2 and near.to(junction.outline):
             layers.surfaces.append(junction.outline)
-    for one in road_map.connections:
-        if one.signal >= 0 and road_map.lanes[one.from_lane].drivable:
-            _add_stop(layers, road_map, road_map.edges[road_map.lanes[one.from_lane].edge], one.from_lane, near)
+    for place, link in _signalled(road_map).items():
+        _add_stop(layers, road_map, place, link, near)
     for outline in road_map.obstacles:
         if near.to(outline):
             layers.edges.append(np.vstack((outline, outline[:1])))
@@ -48,7 +48,7 @@ def draw_roads(road_map: RoadMap, route: Route) -> Drawing:
         centre_lines=tuple(layers.centre_lines),
         zebras=tuple(layers.zebras),
         stop_lines=tuple(layers.stop_lines),
-        lights=tuple(dict.fromkeys(layers.lights)),
+        lights=tuple(layers.lights),
         path=route.offset(0.0, 0.0, route.length_m, STEP_M),
     )
 
@@ -114,8 +114,32 @@ def _add_crossing(layers: DrawingLayers, lane: Lane) -> None:
     add_zebra(layers, Frame(x, y, across - 0.5 * math.pi), -half, half, 0.5 * lane.length_m)
 
 
-def _add_stop(layers: DrawingLayers, road_map: RoadMap, edge: Edge, place: int, near: _Near) -> None:
+def _signalled(road_map: RoadMap) -> dict[int, Connection]:
+    """Return the lanes that end before a signal, and of each the movement that its light is for: straight on if any."""
+    found: dict[int, Connection] = {}
+    for one in road_map.connections:
+        if one.signal >= 0 and road_map.lanes[one.from_lane].drivable:
+            known = found.get(one.from_lane)
+            if known is None or (one.direction == _STRAIGHT and known.direction != _STRAIGHT):
+                found[one.from_lane] = one
+    return found
+
+
+def _program(road_map: RoadMap, link: Connection) -> LightProgram:
+    signal = road_map.signals[link.signal]
+    program = active(signal)
+    return LightProgram(
+        signal=signal.id,
+        link=link.link,
+        offset_s=program.offset_s,
+        durations_s=tuple(phase.duration_s for phase in program.phases),
+        letters="".join(phase.state[link.link : link.link + 1] or "O" for phase in program.phases),
+    )
+
+
+def _add_stop(layers: DrawingLayers, road_map: RoadMap, place: int, link: Connection, near: _Near) -> None:
     lane = road_map.lanes[place]
+    edge = road_map.edges[lane.edge]
     end = lane.line[-1, :2]
     if not near.to(end[None, :]):
         return
@@ -125,4 +149,5 @@ def _add_stop(layers: DrawingLayers, road_map: RoadMap, edge: Edge, place: int, 
     layers.stop_lines.append(frame.out(box(-_STOP_LINE_M, 0.0, 0.2 - half, half - 0.2)))
     outer = road_map.lanes[edge.lanes[0]]
     post = frame.out(np.array(((0.0, -0.5 * outer.width_m - _POST_M - half * 2.0 * (lane.number - outer.number)),)))
-    layers.lights.append(Light(round(float(post[0, 0]), 3), round(float(post[0, 1]), 3), yaw))
+    x, y = post[0].round(3).tolist()
+    layers.lights.append(Light(x, y, yaw, _program(road_map, link)))

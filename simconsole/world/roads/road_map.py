@@ -81,6 +81,14 @@ class Signal(NamedTuple):
     programs: tuple[Program, ...]
 
 
+_NO_PROGRAM: Final = Program("", "off", 0.0, (Phase(1.0, ""),))
+
+
+def active(signal: Signal) -> Program:
+    """Return the program that a signal follows; one that has none shows nothing, for ever."""
+    return signal.programs[0] if signal.programs else _NO_PROGRAM
+
+
 class Junction(NamedTuple):
     """Where edges meet; its outline as float64 [N, 2]."""
 

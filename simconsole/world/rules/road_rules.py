@@ -8,11 +8,10 @@ import numpy as np
 from simconsole.values.kernels import Row
 from simconsole.world.roads.lane_graph import Leg
 from simconsole.world.roads.lane_index import LaneArrays, LaneIndex, nearest_segment
-from simconsole.world.roads.road_map import ROAD, GeoReference, MapReport, RoadMap
+from simconsole.world.roads.road_map import ROAD, GeoReference, MapReport, RoadMap, active
 from simconsole.world.rules.approaches import Approach, ahead_of_lanes
 from simconsole.world.rules.timetable import (
     Timetable,
-    active,
     durations_ticks,
     link_states,
     timetable_of,

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import Final, NamedTuple
 
 from simconsole.values.signals import FAR
-from simconsole.world.roads.road_map import Connection, RoadMap
-from simconsole.world.rules.timetable import Signals, active, durations_ticks, link_states, until_change
+from simconsole.world.roads.road_map import Connection, RoadMap, active
+from simconsole.world.rules.timetable import Signals, durations_ticks, link_states, until_change
 
 IN_REACH_M: Final = 300.0
 """Radio and eyes reach no further."""

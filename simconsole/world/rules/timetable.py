@@ -11,7 +11,7 @@ import numpy as np
 
 from simconsole.values.kernels import Row, kernel
 from simconsole.values.signals import FAR, SignalState
-from simconsole.world.roads.road_map import Phase, Program, Signal
+from simconsole.world.roads.road_map import Program, Signal, active
 
 _STATES: Final = {
     "r": SignalState.STOP_AND_REMAIN,
@@ -25,7 +25,6 @@ _STATES: Final = {
     "O": SignalState.DARK,
 }
 """SUMO's letters."""
-_NO_PROGRAM: Final = Program("", "off", 0.0, (Phase(1.0, ""),))
 
 
 class Timetable(NamedTuple):
@@ -90,11 +89,6 @@ def timetable_of(signals: Sequence[Signal], tick_hz: int) -> Timetable:
         rows.append((float(len(ends)), float(len(durations)), float(round(program.offset_s * tick_hz))))
         ends += accumulate(durations)
     return Timetable(np.array(rows, dtype=np.float64).reshape(-1, 3), np.array(ends, dtype=np.float64))
-
-
-def active(signal: Signal) -> Program:
-    """Return the program that a signal follows; one that has none shows nothing, for ever."""
-    return signal.programs[0] if signal.programs else _NO_PROGRAM
 
 
 def durations_ticks(program: Program, tick_hz: int) -> list[int]:

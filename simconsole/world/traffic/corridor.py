@@ -1,5 +1,6 @@
 """What is in a vehicle's way: the first box, of whatever kind, in the corridor that its body sweeps along its path."""
 
+import math
 from typing import Final, NamedTuple
 
 from simconsole.values.kernels import Row, kernel
@@ -56,14 +57,32 @@ def nearest_ahead(
         if start > s_m + horizon_m or start - s_m - body.half_length_m > gap:
             break
         if count > 0 and end > s_m:
+            free = 0.0  # up to here along the lane nobody can be in the way
             for row in range(net.point_starts[lane], net.point_starts[lane + 1] - 1):
-                if start + net.points[row + 1, 2] <= s_m:
+                if start + net.points[row + 1, 2] <= s_m or net.points[row + 1, 2] < free:
+                    continue
+                free = net.points[row, 2] + _room(net.points[row, 0], net.points[row, 1], body, boxes, near, count)
+                if net.points[row + 1, 2] < free:
                     continue
                 found = _on_segment(net, row, s_m - start, body, boxes, near, count)
                 if found.gap_m < gap:
                     gap, speed = found.gap_m, found.speed_mps
         start = end
     return Ahead(gap, speed)
+
+
+@kernel
+def _room(x: float, y: float, body: Body, boxes: Row, near: Row, count: int) -> float:
+    """Return how far (m) a path that begins at a place may go on without coming near a box; less than 0: it is near."""
+    aside = body.high_m if body.high_m > -body.low_m else -body.low_m
+    found = FAR_M
+    for place in range(count):
+        box = near[place]
+        dx, dy = boxes[box, X] - x, boxes[box, Y] - y
+        reach = 0.5 * (boxes[box, LENGTH] + boxes[box, WIDTH]) + body.half_width_m + aside + MARGIN_M
+        room = math.sqrt(dx * dx + dy * dy) - reach
+        found = room if room < found else found
+    return found
 
 
 @kernel

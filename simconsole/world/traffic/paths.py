@@ -110,6 +110,8 @@ def desired_speed(net: Network, path: Row, s_m: float, share: float) -> float:
             limit = net.limits_mps[lane] * share
             ahead = start - s_m
             if ahead > 0.0:
+                if 2.0 * _SLOWDOWN_MPS2 * ahead > found * found:
+                    break  # from here on no limit is felt yet
                 limit = math.sqrt(limit * limit + 2.0 * _SLOWDOWN_MPS2 * ahead)
             if limit < found:
                 found = limit

@@ -97,7 +97,9 @@ def test_what_the_console_wants_in_the_graph(graph: Graph) -> None:
 def test_outputs_are_sent_while_somebody_listens(graph: Graph, snapshot: Any) -> None:
     graph.observe()
     graph.bridge.publish(snapshot(250), 0)
-    assert [operation.name for operation in graph.operations()] == ["/route", "/console/mode"], "they are latched"
+    assert [operation.name for operation in graph.operations()] == ["/route", "/map/markers", "/console/mode"], (
+        "they are latched"
+    )
     graph.observe(listened=frozenset({"/odom"}))
     graph.bridge.publish(snapshot(500, x_m=3.0), 0)
     mode, operation = graph.operations()
@@ -115,7 +117,12 @@ def test_latched_outputs_are_sent_at_once(graph: Graph, snapshot: Any) -> None:
     try:
         graph.bridge.publish(snapshot(1), 0)
         assert graph.observe().publishers["/tf_static"] == GraphPublisher("tf2_msgs/msg/TFMessage", True, 1)
-        assert [operation.name for operation in graph.operations()] == ["/console/mode", "/route", "/tf_static"]
+        assert [operation.name for operation in graph.operations()] == [
+            "/console/mode",
+            "/map/markers",
+            "/route",
+            "/tf_static",
+        ]
     finally:
         NOT_INSTALLED.add("tf2_msgs/msg/TFMessage")
 

@@ -11,6 +11,8 @@ from simconsole.hud.driver_view.scene import Pieces, ViewScene, pieces, view_sce
 from simconsole.hud.driver_view.vehicle_body import Size
 from simconsole.hud.driver_view.views import Look
 from simconsole.hud.gl.renderer import Quality, Renderer
+from simconsole.world.drawing import Drawing
+from simconsole.world.drawing_layers import Light, LightProgram
 from simconsole.world.traffic.road_users import RoadUser
 from tests.hud.gl.pictures import Pixels, context, pixels, target
 from tests.samples import Sample
@@ -166,3 +168,33 @@ def test_other_vehicles_are_seen_where_they_are() -> None:
     wanted = to_pixels(np.array(((25.0, 5.0, 0.75),)), camera, lens, WIDTH_PX, HEIGHT_PX)[0]
     assert np.array((columns.mean(), rows.mean())) == pytest.approx(wanted, abs=12.0)
     assert np.array_equal(alone, far)
+
+
+@pytest.mark.parametrize(("letter", "channel", "others"), [("r", 0, (1, 2)), ("G", 1, (0,))])
+def test_lamp_that_shines_is_seen_by_those_who_come(letter: str, channel: int, others: tuple[int, ...]) -> None:
+    program = LightProgram("one", 0, 0.0, (1.0,), letter)
+    plain = world_parts_of_light(None)
+    lit = drawn(world_parts_of_light(program), TOWARDS_LIGHT, ShownVehicle(x_m=-500.0, tick_hz=100))
+    unlit = drawn(plain, TOWARDS_LIGHT, ShownVehicle(x_m=-500.0, tick_hz=100))
+    changed = (lit != unlit).any(axis=2)
+    assert 20 < np.count_nonzero(changed) < 2000
+    colour = lit[changed].astype(int).mean(axis=0)
+    assert all(colour[channel] > colour[other] + 60 for other in others)
+    assert (unlit[changed].max(axis=1) < 120).mean() > 0.9
+
+
+def world_parts_of_light(program: LightProgram | None) -> ViewScene:
+    """A post at the origin for those who drive along x."""
+    light = Light(0.0, 0.0, 0.0, program)
+    path = np.array(((-50.0, 0.0), (50.0, 0.0)))
+    drawing = Drawing((), (), (), (), (), (), (light,), path)
+    return view_scene(drawing, 0.0, SIZE)
+
+
+TOWARDS_LIGHT = Look(
+    Camera(np.array((-8.0, 0.0, 2.7)), np.eye(3)),
+    Lens(0.5, WIDTH_PX / HEIGHT_PX, 0.5, False),
+    Viewport(),
+    from_seat=False,
+    is_mirror=False,
+)

@@ -128,6 +128,28 @@ def test_ticks_written_at_once_are_one_write_and_the_same_file(
     assert [record.tick for record in LogReader(tmp_path / "at once")] == list(range(1, 51))
 
 
+@pytest.mark.parametrize("count", [1, 2, 9])
+def test_messages_of_the_first_tick_of_a_block_lie_in_the_same_write(
+    tmp_path: Path, header: LogHeader, monkeypatch: pytest.MonkeyPatch, count: int
+) -> None:
+    vectors, write, writes = np.random.default_rng(1).normal(size=(count, 4)), os.write, list[int]()
+
+    def counted(fd: int, data: bytes) -> int:
+        writes.append(len(data))
+        return write(fd, data)
+
+    messages = [("acts", b"one"), ("scans", b"two")]
+    with LogWriter(tmp_path / "one by one", with_messages(header)) as log:
+        for tick, vector in enumerate([*vectors, *vectors], start=1):
+            log.append(tick, vector, messages if tick in (1, count + 1) else ())
+    with LogWriter(tmp_path / "at once", with_messages(header)) as log:
+        monkeypatch.setattr(os, "write", counted)
+        for first in (1, count + 1):
+            assert log.append_block(first, vectors, messages) == count
+    assert len(writes) == 2
+    assert (tmp_path / "at once").read_bytes() == (tmp_path / "one by one").read_bytes()
+
+
 @pytest.mark.fault("P01")
 @pytest.mark.parametrize("cut_fails", [False, True])
 def test_p01_a_block_that_does_not_fit_is_kept_up_to_the_tick_that_does_not(

@@ -135,4 +135,4 @@ def test_a_session_without_a_bridge_is_exported_like_one_with_a_shipped_one(
     recording: MadeRecording, bridge: dict[str, Any] | None
 ) -> None:
     session = SESSION if bridge is None else with_bridge(**bridge)
-    assert sum(counts(DriveTopics(session).messages(recording)).values()) == 3085
+    assert sum(counts(DriveTopics(session).messages(recording)).values()) == 3086

@@ -12,6 +12,7 @@ from simconsole.recording.exports.drive_topics import DriveTopics
 from simconsole.recording.exports.export_formats import FORMATS, TOPIC_FORMATS, export_drive
 from simconsole.recording.reading import Block
 from simconsole.values.errors import RecordingError
+from simconsole.world.kinds.worlds import shown_map
 from tests.recording.made import SESSION, MadeRecording, made_vectors
 
 PATHS = {"mcap": "drive.mcap", "rosbag2": "drive", "csv": "drive.csv", "parquet": "drive.parquet"}
@@ -94,7 +95,7 @@ def test_any_reader_finds_every_topic_with_the_stamps_of_the_log(
 ) -> None:
     export_drive(recording, SESSION, name, path)
     expected: dict[str, list[int]] = {}
-    for message in DriveTopics(SESSION).messages(recording):
+    for message in DriveTopics(SESSION, shown=shown_map(None)).messages(recording):
         expected.setdefault(message.topic, []).append(message.time_ns)
     found: dict[str, list[int]] = {}
     with AnyReader([path]) as reader:

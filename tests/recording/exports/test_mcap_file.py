@@ -22,7 +22,7 @@ def test_the_reader_of_mcap_and_its_decoder_for_ros_2_see_the_drive(recording: M
         assert {schema.encoding for schema in summary.schemas.values()} == {"ros2msg"}
         assert {channel.message_encoding for channel in summary.channels.values()} == {"cdr"}
         latched = {c.topic for c in summary.channels.values() if "durability: 1" in str(c.metadata)}
-        assert latched == {"/console/mode", "/route", "/tf_static", "/traffic_signals/stop_lines"}
+        assert latched == {"/console/mode", "/map/markers", "/route", "/tf_static", "/traffic_signals/stop_lines"}
         seen: Counter[str] = Counter()
         for _, channel, message, decoded in reader.iter_decoded_messages():
             seen[channel.topic] += 1

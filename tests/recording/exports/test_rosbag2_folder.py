@@ -23,7 +23,7 @@ def test_metadata_say_what_is_in_the_folder(recording: MadeRecording, tmp_path: 
         assert (reader.start_time, reader.end_time) == (4_000_000, 4_000_000_001)
         quality: dict[str, Any] = {one.topic: one.ext for one in reader.connections}
     durable = {name for name, ext in quality.items() if _latched(ext)}
-    assert durable == {"/console/mode", "/route", "/tf_static", "/traffic_signals/stop_lines"}
+    assert durable == {"/console/mode", "/map/markers", "/route", "/tf_static", "/traffic_signals/stop_lines"}
     text = (tmp_path / "drive" / "metadata.yaml").read_text()
     assert "storage_identifier: mcap" in text
     assert "RIHS01_692f7a66e93a3c83e71765d033b60349ba68023a8c689a79e48078bcb5c58564" in text, "Clock, as ROS 2 has it"

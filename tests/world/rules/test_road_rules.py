@@ -1,6 +1,7 @@
 """The tables that the tick looks up."""
 
 from simconsole.values.signals import FAR, SignalState
+from simconsole.world.roads.road_map import active
 from simconsole.world.rules.road_rules import (
     APPROACH,
     BEYOND,
@@ -14,7 +15,6 @@ from simconsole.world.rules.road_rules import (
     SIGNAL,
     road_rules,
 )
-from simconsole.world.rules.timetable import active
 from tests.world.nets import CITY, generated_map, straight_map
 
 

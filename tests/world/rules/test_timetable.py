@@ -5,12 +5,11 @@ import pytest
 
 from simconsole.values.host.jit import compiled
 from simconsole.values.signals import FAR, SignalState
-from simconsole.world.roads.road_map import Phase, Program, Signal
+from simconsole.world.roads.road_map import Phase, Program, Signal, active
 from simconsole.world.rules.timetable import (
     PERMISSIVENESS,
     PhaseNow,
     Signals,
-    active,
     durations_ticks,
     link_states,
     phase_now,

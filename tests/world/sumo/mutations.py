@@ -7,6 +7,8 @@ most CPU seconds that one took, and the memory of the process.
 import json
 import random
 import re
+import resource
+import signal
 import sys
 import time
 from collections.abc import Callable
@@ -17,6 +19,8 @@ from simconsole.values.errors import ProfileError
 from simconsole.world.roads.road_world import planned
 from simconsole.world.sumo.net_reader import read_net
 
+CPU_S = 2.0
+MEMORY_BYTES = 500_000_000
 NASTY = (
     *(
         "",
@@ -151,8 +155,20 @@ def judged(content: bytes, seed: int) -> str:
     return "loaded with a report" if found.report.skipped else "loaded"
 
 
+def limit() -> None:
+    """Let this program have as much memory as is promised, and no map more CPU time: the kernel ends a longer one."""
+    _, most = resource.getrlimit(resource.RLIMIT_DATA)
+    resource.setrlimit(resource.RLIMIT_DATA, (MEMORY_BYTES, most))
+    signal.signal(signal.SIGPROF, _too_long)
+
+
+def _too_long(number: int, frame: object) -> None:
+    raise TimeoutError(f"a map took more than {CPU_S:g} s of CPU time")
+
+
 def main(seed: int, count: int, path: str) -> None:
     """Read `count` mutations of the network at `path`."""
+    limit()
     text, rng = Path(path).read_bytes(), random.Random(seed)
     judged(text, 0)
     counts: dict[str, int] = {}
@@ -160,7 +176,9 @@ def main(seed: int, count: int, path: str) -> None:
     for number in range(count):
         content = mutated(text, rng)
         began = time.process_time()
+        signal.setitimer(signal.ITIMER_PROF, CPU_S)
         outcome = judged(content, number)
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
         most_s = max(most_s, time.process_time() - began)
         counts[outcome] = counts.get(outcome, 0) + 1
     # Of this program alone: ru_maxrss begins with what the program that started it had.

@@ -3,12 +3,14 @@ import math
 import numpy as np
 import pytest
 
-from simconsole.values.signals import NO_AHEAD
+from simconsole.values.host.jit import compiled
+from simconsole.values.signals import NO_AHEAD, AheadInput
 from simconsole.world.roads.lane_graph import LaneGraph
 from simconsole.world.roads.road_map import Array
 from simconsole.world.roads.road_route import route_over
-from simconsole.world.traffic.leader import leader
-from simconsole.world.traffic.road_users import NOBODY, RoadUser, table
+from simconsole.world.route import Route
+from simconsole.world.traffic.leader import Leaders
+from simconsole.world.traffic.road_users import NOBODY, Box, RoadUser, table
 from tests.world.nets import TOWN, generated_map
 from tests.world.traffic.made import box
 
@@ -25,6 +27,12 @@ def user(x_m: float, y_m: float, yaw_rad: float = 0.0, speed_mps: float = 0.0) -
         width_m=1.8,
         height_m=1.5,
     )
+
+
+def leader(route: Route | None, ego: Box, users: Array) -> AheadInput:
+    found = Leaders(route).find(ego, users)
+    assert Leaders(route, compiled).find(ego, users) == found
+    return found
 
 
 def test_nobody_is_ahead_of_an_empty_road() -> None:
