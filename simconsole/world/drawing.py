@@ -27,6 +27,7 @@ class Drawing(NamedTuple):
     stop_lines: tuple[Array, ...]  # polygons
     lights: tuple[Light, ...]
     path: Array  # the theoretical path, once round
+    walls: tuple[Array, ...] = ()  # lines [N, 3] of what stands upright: x, y and height of each corner
 
 
 def draw(course: Course) -> Drawing:

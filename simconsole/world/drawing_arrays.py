@@ -18,6 +18,8 @@ def to_arrays(drawing: Drawing) -> dict[str, Any]:
         lines = getattr(drawing, name)
         content[name] = np.vstack(lines) if lines else np.empty((0, 2))
         content[f"{name}_ends"] = np.cumsum([len(line) for line in lines], dtype=np.int64)
+    content["walls"] = np.vstack(drawing.walls) if drawing.walls else np.empty((0, 3))
+    content["walls_ends"] = np.cumsum([len(line) for line in drawing.walls], dtype=np.int64)
     return content
 
 
@@ -30,6 +32,6 @@ def from_arrays(content: Mapping[str, Any]) -> Drawing | None:
     """
     if "path" not in content:
         return None
-    lines = {name: tuple(np.split(content[name], content[f"{name}_ends"])[:-1]) for name in _LINES}
+    lines = {name: tuple(np.split(content[name], content[f"{name}_ends"])[:-1]) for name in (*_LINES, "walls")}
     lights = tuple(Light(*light) for light in content["lights"].tolist())
     return Drawing(**lines, lights=lights, path=content["path"])

@@ -41,6 +41,9 @@ class Surroundings(NamedTuple):
     trees: Vertices
 
 
+NO_SURROUNDINGS: Final = Surroundings(joined([]), joined([]), joined([]))
+
+
 def surroundings(path: Array, limit_kmh: float, taken: Occupancy) -> Surroundings:
     """Return houses, trees and signs along a path [N, 2], on ground that is free; takes it. Limit 0: no signs."""
     generator = np.random.Generator(np.random.PCG64(SEED))

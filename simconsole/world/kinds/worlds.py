@@ -3,7 +3,8 @@
 from functools import lru_cache, partial
 
 from simconsole.profiles.files.world_files import read_map
-from simconsole.profiles.world import CourseProfile, RoadsProfile, WorldProfile
+from simconsole.profiles.world import ArenaProfile, CourseProfile, RoadsProfile, WorldProfile
+from simconsole.world.arena.arena_world import ArenaWorld
 from simconsole.world.course import Course
 from simconsole.world.drawing import draw
 from simconsole.world.roads.road_map import RoadMap
@@ -22,6 +23,8 @@ def open_world(profile: WorldProfile) -> World:
     if isinstance(profile, CourseProfile):
         course = Course(profile)
         return World(profile.title, course, partial(draw, course))
+    if isinstance(profile, ArenaProfile):
+        return ArenaWorld(profile)
     return road_world(profile, open_map(profile))
 
 
