@@ -44,6 +44,16 @@ class Ground(NamedTuple):
     patches: tuple[Patch, ...] = ()
 
 
+class Obstacles(NamedTuple):
+    """What a vehicle may run into, in m of map."""
+
+    segments: tuple[tuple[float, float, float, float], ...] = ()  # straight ones: x, y of both ends
+    circles: tuple[tuple[float, float, float], ...] = ()  # x, y, radius
+
+
+NO_OBSTACLES: Final = Obstacles()
+
+
 class RimStiffness(NamedTuple):
     """What a steering is like about the middle, as far as a wheel's motor must know it.
 
@@ -83,3 +93,4 @@ class Platform(NamedTuple):
     width_m: float
     height_m: float
     rear_overhang_m: float  # from base_link to the rear end
+    turns_in_place: bool = False  # it follows a speed and a yaw rate; a car is steered and driven by pedals
