@@ -42,6 +42,7 @@ class Channel(IntEnum):
     ROBOT_ACCEL_X = 19
     ROBOT_ACCEL_Y = 20
     ROBOT_ACCEL_Z = 21
+    ALLOCATION = 22
 
 
 def _mixed(value: int) -> int:
