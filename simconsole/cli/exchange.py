@@ -20,7 +20,6 @@ def export_bundle(options: Namespace) -> Outcome:
         RecordingError: no bundle, the target exists or cannot be written, or no such column.
         ProfileError: the bundle's session was altered into something that is none.
     """
-    from simconsole.profiles.bridge import BridgeProfile
     from simconsole.recording.exports.export_formats import default_path, export_drive
     from simconsole.session.robots import robot_at_work
 
@@ -37,7 +36,7 @@ def export_bundle(options: Namespace) -> Outcome:
             options.layout,
             lambda tick: progress.count(tick, bundle.manifest.ticks),
             resolved.world,
-            robot_at_work(resolved.vehicle, resolved.world, resolved.session.outputs.bridge or BridgeProfile()),
+            robot_at_work(resolved.vehicle, resolved.world),
         )
     problems = bundle.problems()
     rows = [(name, f"{count}") for name, count in done.counts.items()]

@@ -326,7 +326,14 @@ def _target(
     else:
         pose = _finite_pose(vehicle.x_m, vehicle.y_m, vehicle.yaw_rad, before, settings)
     turn = _turn(remote, driven)
-    return Target(speed, pose.x_m, pose.y_m, pose.yaw_rad, turn.value, active | pose.active | turn.active)
+    return Target(
+        speed_mps=speed,
+        x_m=pose.x_m,
+        y_m=pose.y_m,
+        yaw_rad=pose.yaw_rad,
+        yaw_rate_radps=turn.value,
+        active=active | pose.active | turn.active,
+    )
 
 
 @kernel
@@ -337,7 +344,8 @@ def _turn(remote: RemoteCommand, driven: bool) -> Passed:
     if not is_finite(remote.yaw_rate_radps):
         return Passed(0.0, GateLimit.NON_FINITE)
     ranged = clip(remote.yaw_rate_radps, -_MOST_YAW_RADPS, _MOST_YAW_RADPS)
-    return Passed(ranged, 0 if ranged == remote.yaw_rate_radps else GateLimit.RANGE)
+    active = 0 if ranged == remote.yaw_rate_radps else GateLimit.RANGE
+    return Passed(ranged, active)
 
 
 @kernel
@@ -357,7 +365,7 @@ def _pose_target(
     speed = approach(before_mps, ranged, step)
     if speed != ranged:
         active |= GateLimit.RATE
-    return Target(speed, pose.x_m, pose.y_m, pose.yaw_rad, 0.0, active)
+    return Target(speed_mps=speed, x_m=pose.x_m, y_m=pose.y_m, yaw_rad=pose.yaw_rad, yaw_rate_radps=0.0, active=active)
 
 
 @kernel

@@ -326,7 +326,7 @@ def _open_lockstep(
             signals=road_signals(resolved.world, console.tick_hz),
             road_users=None if traffic is None else traffic.newest,
             view=view,
-            robot=robot_at_work(resolved.vehicle, resolved.world, session.outputs.bridge),
+            robot=robot_at_work(resolved.vehicle, resolved.world),
             steering=steering_limit(session.features.control, console.platform.wheelbase_m),
         ),
     )

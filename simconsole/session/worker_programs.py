@@ -99,7 +99,7 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
             signals=road_signals(self.world, self.tick_hz),
             road_users=RoadUsersRing(folder).newest if self.has_traffic else None,
             view=NO_VIEW if self.display is None else external_view(load_view_job(folder / VIEW_JOB), self.display),
-            robot=robot_at_work(self.vehicle, self.world, profile),
+            robot=robot_at_work(self.vehicle, self.world),
             steering=self.steering,
         )
 

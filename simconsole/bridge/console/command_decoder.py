@@ -7,8 +7,7 @@ is not newer than the last one's. A stamp of 0 is no stamp: such messages are ta
 from typing import Any, Final, NamedTuple
 
 from simconsole.bridge.console.input_slots import BridgeInputs
-from simconsole.bridge.console.published_tick import MAP_FRAME
-from simconsole.bridge.console.robots.robot_topics import robot_frames
+from simconsole.bridge.console.published_tick import MAP_FRAME, ROBOT_FRAMES, prefixed
 from simconsole.bridge.console.topics import BASE_FRAME
 from simconsole.bridge.protocol.topic_registry import Accept
 from simconsole.profiles.bridge import BridgeProfile
@@ -78,7 +77,8 @@ class CommandDecoder:
     def __init__(self, inputs: BridgeInputs, profile: BridgeProfile, *, is_robot: bool = False) -> None:
         """Check against the limits of `profile` and write to `inputs`; a robot takes velocities alone."""
         self._is_robot = is_robot
-        self._body_frames = ("", *robot_frames(profile.namespace)) if is_robot else ("", BASE_FRAME)
+        frames = [prefixed(profile.namespace, frame) for frame in ROBOT_FRAMES] if is_robot else [BASE_FRAME]
+        self._body_frames = ("", *frames)
         self._inputs = inputs
         self._limits = profile.commands
         self._follows_clock = profile.sender_clock == "console"

@@ -2,8 +2,8 @@
 
 from typing import Final, NamedTuple
 
+from simconsole.bridge.console.published_tick import RobotTable
 from simconsole.bridge.console.road_user_topics import ReadRoadUsers
-from simconsole.bridge.console.robots.robot_topics import RobotOutputs
 from simconsole.bridge.console.topics import Route
 from simconsole.bridge.console.view_topics import NO_VIEW, ExternalView
 from simconsole.control.requests.refusals import SteeringLimit
@@ -17,7 +17,7 @@ class Surroundings(NamedTuple):
     signals: RoadSignals | None = None  # the traffic lights of the world; None where it has none
     road_users: ReadRoadUsers | None = None  # returns the newest; None: they have no topics
     view: ExternalView = NO_VIEW  # what the topics of `external_view` show
-    robot: RobotOutputs | None = None  # what is driven, where it is a robot
+    robot: RobotTable | None = None  # makes the topics of what is driven, where it is a robot
     steering: SteeringLimit | None = None  # beyond it the arbiter refuses a command, and its sender is told so
 
 

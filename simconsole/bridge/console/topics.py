@@ -7,8 +7,14 @@ not drift, so map and odom coincide.
 from collections.abc import Callable, Sequence
 from typing import Any, Final
 
-from simconsole.bridge.console.published_tick import MAP_FRAME, ONCE, OutputTopic, PublishedTick, quaternion
-from simconsole.bridge.console.robots.robot_topics import RobotOutputs, RobotTopics
+from simconsole.bridge.console.published_tick import (
+    MAP_FRAME,
+    ONCE,
+    OutputTopic,
+    PublishedTick,
+    RobotTable,
+    quaternion,
+)
 from simconsole.bridge.console.signal_topics import SignalTopics
 from simconsole.bridge.link.localisation import Localisation, covariances
 from simconsole.bridge.messages import Registry
@@ -95,14 +101,14 @@ class Outputs:
         counts: Callable[[], dict[str, Any]] = dict,
         route: Route = (),
         signals: RoadSignals | None = None,
-        robot: RobotOutputs | None = None,
+        robot: RobotTable | None = None,
     ) -> None:
         """Generate the classes of all output topics.
 
         `counts` fills /console/bridge (`counters.bridge_status`), `route` /route, `signals` those of traffic lights;
         a `robot` has topics of its own in place of the car's.
         """
-        self._robot = None if robot is None else RobotTopics(registry, profile, robot)
+        self._robot_topics = () if robot is None else robot(registry, profile)
         self._route_points = route
         self._signals = SignalTopics(registry, signals)
         self._counts = counts
@@ -122,14 +128,17 @@ class Outputs:
             lambda tick: self._odometry(tick, tick.vehicle, MAP_FRAME, _NO_COVARIANCE, _NO_COVARIANCE),
         )
         truths = (truth,) if self._shows_truth else ()
-        if self._robot is not None:
-            return (*self._console_topics(), *truths, *self._robot.topics())
+        clock = OutputTopic(CLOCK, "rosgraph_msgs/Clock", 100.0, self._clock)
+        joy = OutputTopic(JOY, "sensor_msgs/Joy", 100.0, self._joy)
+        if self._robot_topics:
+            return (clock, joy, *self._authority_topics(), *truths, *self._robot_topics)
         return (
-            *self._console_topics(),
+            clock,
             OutputTopic(TF_STATIC, "tf2_msgs/TFMessage", ONCE, self._tf_static),
             OutputTopic(ROUTE, "nav_msgs/Path", ONCE, self._route),
             *self._signals.topics(),
             OutputTopic(TF, "tf2_msgs/TFMessage", 50.0, self._tf),
+            joy,
             OutputTopic(VELOCITY, "autoware_vehicle_msgs/VelocityReport", 30.0, self._velocity),
             OutputTopic(STEERING, "autoware_vehicle_msgs/SteeringReport", 30.0, self._steering),
             OutputTopic(GEAR_STATUS, "autoware_vehicle_msgs/GearReport", 30.0, self._gear),
@@ -138,6 +147,7 @@ class Outputs:
             ),
             OutputTopic(HAZARD_LIGHTS_STATUS, "autoware_vehicle_msgs/HazardLightsReport", 30.0, self._hazard_lights),
             OutputTopic(CONTROL_MODE, "autoware_vehicle_msgs/ControlModeReport", 30.0, self._control_mode),
+            *self._authority_topics(),
             OutputTopic(IMU, "sensor_msgs/Imu", 100.0, self._imu),
             *truths,
             OutputTopic(
@@ -150,11 +160,9 @@ class Outputs:
             ),
         )
 
-    def _console_topics(self) -> tuple[OutputTopic, ...]:
+    def _authority_topics(self) -> tuple[OutputTopic, ...]:
         """Return what the console tells of itself, whatever it drives."""
         return (
-            OutputTopic(CLOCK, "rosgraph_msgs/Clock", 100.0, self._clock),
-            OutputTopic(JOY, "sensor_msgs/Joy", 100.0, self._joy),
             OutputTopic(ARBITRATION, "simconsole_msgs/Arbitration", 50.0, self._arbitration),
             OutputTopic(MODE, "std_msgs/String", 10.0, self._mode, _MODE_AT),
             OutputTopic(LATERAL_AUTHORITY, "std_msgs/Float64", 10.0, self._lateral_authority),

@@ -10,8 +10,8 @@ from simconsole.bridge.console.command_decoder import CommandDecoder
 from simconsole.bridge.console.command_messages import CommandMessages
 from simconsole.bridge.console.input_slots import BridgeInputs
 from simconsole.bridge.console.output_schedule import OutputSchedule, topic_names
+from simconsole.bridge.console.published_tick import RobotTable
 from simconsole.bridge.console.road_user_topics import RoadUserTopics
-from simconsole.bridge.console.robots.robot_topics import RobotOutputs
 from simconsole.bridge.console.topics import BRIDGE, ODOMETRY, Outputs, Route
 from simconsole.bridge.console.view_topics import VIEW_TOPICS, view_topics
 from simconsole.bridge.messages import standard_registry
@@ -60,12 +60,12 @@ class DriveTopics:
         session: SessionProfile,
         route: Route = (),
         signals: RoadSignals | None = None,
-        robot: RobotOutputs | None = None,
+        robot: RobotTable | None = None,
     ) -> None:
         """Take names and rates of the session's bridge, or of a bridge as shipped where it has none.
 
-        `route` is what /route shows, `signals` are the world's traffic lights, `robot` is what was driven
-        if it was one.
+        `route` is what /route shows, `signals` are the world's traffic lights, `robot` makes the
+        topics of what was driven if it was one.
 
         Raises:
             ProfileError: the session's bridge renames or rates a topic that does not exist.

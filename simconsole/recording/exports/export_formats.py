@@ -9,7 +9,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Final, NamedTuple
 
-from simconsole.bridge.console.robots.robot_topics import RobotOutputs
+from simconsole.bridge.console.published_tick import RobotTable
 from simconsole.profiles.session import SessionProfile
 from simconsole.profiles.world import WorldProfile
 from simconsole.recording.exports.column_table import ColumnTable, TableChoice
@@ -43,7 +43,7 @@ def export_drive(
     layout: bool = False,
     on_tick: OnTick = lambda tick: None,
     world: WorldProfile | None = None,
-    robot: RobotOutputs | None = None,
+    robot: RobotTable | None = None,
 ) -> Exported:
     """Write a recorded drive to the new file or folder `path`.
 
@@ -56,7 +56,7 @@ def export_drive(
         layout: write a layout of Foxglove beside the topics.
         on_tick: told now and then how far it is.
         world: where it was driven: the route and the traffic lights.
-        robot: what was driven, where it was a robot.
+        robot: makes the topics of what was driven, where it was a robot.
 
     Raises:
         RecordingError: `path` exists or cannot be written, or the choice does not fit the format or the recording.

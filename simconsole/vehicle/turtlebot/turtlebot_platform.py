@@ -19,7 +19,7 @@ def build_turtlebot(profile: TurtlebotProfile, pose: Pose, ground: Ground, obsta
     """Return the robot at rest. The floor is level; its friction limits what the wheels pass on."""
     parameters = robot_parameters(profile, ground, obstacles)
     yaw = wrap_angle(pose.yaw_rad)
-    here = ScanKnot(pose.x_m, pose.y_m, yaw, 0.0, 0.0, 0.0)
+    here = ScanKnot(*(0.0,) * len(ScanKnot._fields))._replace(x_m=pose.x_m, y_m=pose.y_m, yaw_rad=yaw)
     seed = 1.0 + float(int(even(profile.odometry.seed, Channel.WHEEL_SLIP, 0) * _SEEDS))
     initial = RobotState(
         motion=Motion(*(0.0,) * len(Motion._fields))._replace(x_m=pose.x_m, y_m=pose.y_m, yaw_rad=yaw),

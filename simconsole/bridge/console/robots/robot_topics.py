@@ -3,9 +3,17 @@
 Under a namespace the frames have it as their prefix. The transform from map to odom is left to who localises.
 """
 
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
-from simconsole.bridge.console.published_tick import ONCE, OutputTopic, PublishedTick, quaternion
+from simconsole.bridge.console.published_tick import (
+    FOOTPRINT_FRAME,
+    ONCE,
+    OutputTopic,
+    PublishedTick,
+    RobotTable,
+    prefixed,
+    quaternion,
+)
 from simconsole.bridge.console.robots.laser_scan import Execution, LaserScanner
 from simconsole.bridge.messages import Registry
 from simconsole.profiles.bridge import BridgeProfile
@@ -29,11 +37,8 @@ MAGNETIC_FIELD: Final = "/magnetic_field"
 TF: Final = "/tf"
 TF_STATIC: Final = "/tf_static"
 
-FOOTPRINT: Final = "base_footprint"
 JOINTS: Final = ("wheel_left_joint", "wheel_right_joint")
 WHEEL_LINKS: Final = ("wheel_left_link", "wheel_right_link")
-BODY_FRAMES: Final = (FOOTPRINT, "base_link")
-"""The frames in which a robot takes velocities."""
 EARTH_FIELD_T: Final = (20.9e-6, -43.9e-6)
 """Of the earth's magnetic field, north and up, in central Europe; map's y is taken for north."""
 ENCODER_TICKS: Final = 4096.0
@@ -46,23 +51,18 @@ geometry_msgs/Twist geometry_msgs/TwistWithCovariance std_msgs/Header builtin_in
 """
 
 
-class RobotOutputs(NamedTuple):
-    """What the topics of a robot are made from beside its state."""
-
-    profile: TurtlebotProfile
-    scanner: LaserScanner | None  # None: the world is no arena
-
-
 class RobotTopics:
     """Builds the messages of one robot."""
 
-    def __init__(self, registry: Registry, bridge: BridgeProfile, robot: RobotOutputs) -> None:
-        """Generate the classes of all topics."""
+    def __init__(
+        self, registry: Registry, bridge: BridgeProfile, profile: TurtlebotProfile, scanner: LaserScanner | None
+    ) -> None:
+        """Generate the classes of all topics. Without a `scanner` there is no /scan: the world is no arena."""
         self._types: dict[str, Any] = {name.partition("/")[2]: registry.struct(name) for name in _TYPES.split()}
-        self._profile = robot.profile
-        self._scanner = robot.scanner
+        self._profile = profile
+        self._scanner = scanner
         self._seed = bridge.link.seed
-        self._prefix = bridge.namespace.removeprefix("/") + "/" if bridge.namespace else ""
+        self._namespace = bridge.namespace
         self._odometry_frame = bridge.odometry_frame
 
     def topics(self) -> tuple[OutputTopic, ...]:
@@ -81,7 +81,7 @@ class RobotTopics:
         )
 
     def _frame(self, name: str) -> str:
-        return self._prefix + name
+        return prefixed(self._namespace, name)
 
     def _scan(self, tick: PublishedTick) -> Any:
         lidar = self._profile.lidar
@@ -112,7 +112,7 @@ class RobotTopics:
         twist = types["Twist"](vector(odometry.speed_mps, 0.0, 0.0), vector(0.0, 0.0, odometry.yaw_rate_radps))
         return types["Odometry"](
             tick.header(self._frame(self._odometry_frame)),
-            self._frame(FOOTPRINT),
+            self._frame(FOOTPRINT_FRAME),
             types["PoseWithCovariance"](pose),
             types["TwistWithCovariance"](twist),
         )
@@ -205,13 +205,15 @@ class RobotTopics:
             for link, side, angle in zip(WHEEL_LINKS, (half, -half), turned, strict=True)
         ]
         place = (odometry.x_m, odometry.y_m, 0.0)
-        base = self._transform(tick, self._odometry_frame, FOOTPRINT, place, quaternion(0.0, 0.0, odometry.yaw_rad))
+        base = self._transform(
+            tick, self._odometry_frame, FOOTPRINT_FRAME, place, quaternion(0.0, 0.0, odometry.yaw_rad)
+        )
         return self._types["TFMessage"]([base, *wheels])
 
     def _tf_static(self, tick: PublishedTick) -> Any:
         profile, base_z = self._profile, self._profile.base_link_z_m
         places = (
-            (FOOTPRINT, "base_link", (0.0, 0.0, base_z)),
+            (FOOTPRINT_FRAME, "base_link", (0.0, 0.0, base_z)),
             ("base_link", "base_scan", (profile.lidar.x_m, 0.0, profile.lidar.z_m - base_z)),
             ("base_link", "imu_link", (profile.body_x_m, 0.0, profile.imu.z_m - base_z)),
             ("base_link", "mag_link", (profile.body_x_m, 0.0, profile.imu.z_m - base_z)),
@@ -250,24 +252,22 @@ def _wrapped(count: int) -> int:
     return (count + 2**31) % 2**32 - 2**31
 
 
-def robot_frames(namespace: str) -> tuple[str, ...]:
-    """Return the frames, under a namespace's prefix, in which a robot takes velocities."""
-    prefix = namespace.removeprefix("/") + "/" if namespace else ""
-    return tuple(prefix + frame for frame in BODY_FRAMES)
-
-
-def robot_outputs(
-    vehicle: VehicleProfile | None, arena: ArenaWorld | None, seed: int, execution: Execution
-) -> RobotOutputs | None:
-    """Return what a robot's topics are made from, None where the vehicle is no robot.
+def robot_table(vehicle: VehicleProfile | None, arena: ArenaWorld | None, execution: Execution) -> RobotTable | None:
+    """Return what makes a robot's topics, None where the vehicle is no robot.
 
     Args:
         vehicle: that is driven.
         arena: that it is in; without one its lidar sees nothing, and has no topic.
-        seed: of the lidar's errors.
         execution: how rays are cast, `jit.compiled` or `jit.plain`.
     """
     if not isinstance(vehicle, TurtlebotProfile):
         return None
-    scanner = None if arena is None else LaserScanner(vehicle.lidar, ray_grid(arena.outlines), seed, execution)
-    return RobotOutputs(vehicle, scanner)
+    robot: TurtlebotProfile = vehicle
+
+    def topics(registry: Registry, bridge: BridgeProfile) -> tuple[OutputTopic, ...]:
+        seed, scanner = bridge.link.seed, None
+        if arena is not None:
+            scanner = LaserScanner(robot.lidar, ray_grid(arena.outlines), seed, execution)
+        return RobotTopics(registry, bridge, robot, scanner).topics()
+
+    return topics

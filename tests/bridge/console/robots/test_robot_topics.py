@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
-from simconsole.bridge.console.robots.robot_topics import RobotOutputs, robot_frames, robot_outputs
+from simconsole.bridge.console.published_tick import RobotTable
+from simconsole.bridge.console.robots.robot_topics import robot_table
 from simconsole.bridge.console.surroundings import Surroundings
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.files.loader import load
@@ -31,8 +32,8 @@ BURGER = load("vehicles", "turtlebot3_burger", TurtlebotProfile)
 TICK_HZ = 200
 
 
-def robot() -> RobotOutputs:
-    found = robot_outputs(BURGER, arena_of(open_world(load_world("arena"))), 1, plain)
+def robot() -> RobotTable:
+    found = robot_table(BURGER, arena_of(open_world(load_world("arena"))), plain)
     assert found is not None
     return found
 
@@ -69,11 +70,11 @@ def test_a_robot_has_its_own_topics_in_place_of_the_cars() -> None:
     assert {"/clock", "/console/arbitration", "/console/mode"} <= names
     assert not {name for name in names if name.startswith(("/vehicle/", "/control/", "/ball/"))}
     assert "/imu/data" not in names
-    assert robot_outputs(load_vehicle("hatchback"), None, 1, plain) is None
+    assert robot_table(load_vehicle("hatchback"), None, plain) is None
 
 
 def test_outside_of_an_arena_it_has_no_scan() -> None:
-    blind = robot_outputs(BURGER, None, 1, plain)
+    blind = robot_table(BURGER, None, plain)
     assert "/scan" not in ConsoleBridge(BridgeProfile(port=0), around=Surroundings(robot=blind)).names
 
 
@@ -144,7 +145,8 @@ def test_a_namespace_is_the_prefix_of_topics_and_frames() -> None:
     found = heard(console, snapshot(200), "/tb3_0/odom", "/tf")
     assert found["/tb3_0/odom"]["child_frame_id"] == "tb3_0/base_footprint"
     assert found["/tf"]["transforms"][0]["header"]["frame_id"] == "tb3_0/odom"
-    assert robot_frames("/tb3_0") == ("tb3_0/base_footprint", "tb3_0/base_link")
+    stamped = {"header": {"frame_id": "tb3_0/base_footprint"}, "twist": {"linear": {"x": 0.1}, "angular": {"z": 0.0}}}
+    assert Peer(console).publish("/tb3_0/cmd_vel_stamped", stamped).kind == "command"
 
 
 def test_it_takes_velocities_in_its_own_frames() -> None:
