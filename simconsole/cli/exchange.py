@@ -21,6 +21,7 @@ def export_bundle(options: Namespace) -> Outcome:
         ProfileError: the bundle's session was altered into something that is none.
     """
     from simconsole.recording.exports.export_formats import default_path, export_drive
+    from simconsole.session.robots import robot_at_work
 
     bundle = open_bundle(Path(options.bundle))
     resolved = recorded_session(bundle)
@@ -35,6 +36,7 @@ def export_bundle(options: Namespace) -> Outcome:
             options.layout,
             lambda tick: progress.count(tick, bundle.manifest.ticks),
             resolved.world,
+            robot_at_work(resolved.vehicle, resolved.world),
         )
     problems = bundle.problems()
     rows = [(name, f"{count}") for name, count in done.counts.items()]

@@ -303,15 +303,17 @@ def _tools(commands: Any) -> None:
     devices.add_argument("--device", metavar="NAME", help="speakers: a sound device by name (default: the system's)")
     devices.add_argument("--out", metavar="FILE", help="record: trace.csv; accept: its folder; else the new profile")
 
-    world = _command(commands, "world", "world:world", "worlds to drive in: list, show what one holds, import a map")
-    world.add_argument("action", choices=("list", "show", "import"))
+    world = _command(commands, "world", "world:world", "worlds to drive in: list, show, import or export a map")
+    world.add_argument("action", choices=("list", "show", "import", "export"))
     world.add_argument(
         "name",
         nargs="?",
         metavar="WORLD",
-        help="`show`: by name, a .yaml or .net.xml file; `import`: an .xodr or .osm file (extra `sumo`)",
+        help="`show`: by name, a .yaml or .net.xml file; `import`: an .xodr or .osm file (extra `sumo`), or "
+        "a ROS map's map.yaml; `export`: an arena, as a ROS map",
     )
-    world.add_argument("--out", metavar="DIR", help="where `import` writes map and world (default: here)")
+    world.add_argument("--out", metavar="DIR", help="where `import` and `export` write (default: here)")
+    world.add_argument("--resolution", type=float, default=0.05, metavar="M", help="export: size of a cell (0.05)")
 
     bridge = _command(commands, "bridge", "rosbridge:bridge", "rosbridge: serve it alone, check any server")
     bridge.add_argument("action", choices=("serve", "check", "bench", "cert"))

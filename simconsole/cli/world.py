@@ -1,4 +1,4 @@
-"""`simconsole world list | show | import`: the worlds that can be driven in."""
+"""`simconsole world list | show | import | export`: the worlds that can be driven in."""
 
 from argparse import Namespace
 from pathlib import Path
@@ -7,9 +7,11 @@ from typing import Any
 from simconsole.cli.outcome import Outcome, table
 from simconsole.profiles.files.loader import names, read_bytes
 from simconsole.profiles.files.world_files import MAX_MAP_BYTES, load_world
-from simconsole.profiles.world import CourseProfile, RoadsProfile, WorldProfile
+from simconsole.profiles.session import PROFILE_FILES
+from simconsole.profiles.world import ArenaProfile, RoadsProfile, WorldProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.units import KMH_PER_MPS
+from simconsole.world.arena.outlines import bounds, outlines_of
 from simconsole.world.kinds.worlds import open_map, open_world
 from simconsole.world.roads.road_map import MapReport, RoadMap
 
@@ -33,7 +35,13 @@ def world(options: Namespace) -> Outcome:
         return _list()
     if options.name is None:
         raise ProfileError(f"command line: WORLD: value missing: what to {options.action}")
-    return _show(options.name) if options.action == "show" else _import(Path(options.name), options.out)
+    if options.action == "show":
+        return _show(options.name)
+    out = Path(options.out or ".")
+    if options.action == "export":
+        return _export(options.name, out, options.resolution)
+    source = Path(options.name)
+    return _import_ros_map(source, out) if source.suffix in PROFILE_FILES else _import(source, out)
 
 
 def _list() -> Outcome:
@@ -49,7 +57,7 @@ def world_names() -> list[str]:
 
 
 def _kind(profile: WorldProfile) -> str:
-    return "course" if isinstance(profile, CourseProfile) else "roads"
+    return str(profile.__struct_config__.tag)
 
 
 def _show(name: str) -> Outcome:
@@ -70,7 +78,20 @@ def _show(name: str) -> Outcome:
     }
     if isinstance(profile, RoadsProfile):
         return _told(facts, open_map(profile), [])
+    if isinstance(profile, ArenaProfile):
+        facts = _arena_facts(facts, profile)
     return Outcome(0, {**facts, "length_m": route.length_m}, table(list(facts.items())))
+
+
+def _arena_facts(facts: dict[str, str], profile: ArenaProfile) -> dict[str, str]:
+    west, south, east, north = bounds(outlines_of(profile))
+    return {
+        **{key: facts[key] for key in ("world", "kind", "title", "route")},
+        "size": f"{east - west:.2f} x {north - south:.2f} m",
+        "walls": f"{sum(len(wall.sides) for wall in profile.walls)} straight pieces, {len(profile.pillars)} pillars",
+        "starts": " ".join(spot.name for spot in profile.starts),
+        "targets": " ".join(spot.name for spot in profile.targets) or "none",
+    }
 
 
 def _landmarks(kinds: list[str]) -> str:
@@ -97,17 +118,16 @@ def _not_read(report: MapReport) -> list[str]:
     return [f"  not read: line {part.place}: <{part.element}>: {part.reason}" for part in report.skipped]
 
 
-def _import(source: Path, out: str | None) -> Outcome:
+def _import(source: Path, folder: Path) -> Outcome:
     from simconsole.world.sumo.netconvert import convert
 
     done = convert(read_bytes(source, MAX_MAP_BYTES), str(source))
-    folder = Path(out or ".")
     name = source.name.split(".")[0]
     net, profile = folder / f"{name}.net.xml", folder / f"{name}.yaml"
     for path in (net, profile):
         if path.exists():
             raise ProfileError(f"{path}: file: value taken: a name that is free")
-    title = "".join(letter if letter.isalnum() else " " for letter in name).strip() or "map"
+    title = _title(name)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         net.write_bytes(done.net)
@@ -116,3 +136,40 @@ def _import(source: Path, out: str | None) -> Outcome:
     except OSError as error:
         raise ProfileError(f"{folder}: file: {error.strerror}: a folder that can be written to") from None
     return _told({"world": str(profile), "map": str(net)}, done.road_map, list(done.losses))
+
+
+def _title(name: str) -> str:
+    return "".join(letter if letter.isalnum() else " " for letter in name).strip() or "map"
+
+
+def _import_ros_map(source: Path, folder: Path) -> Outcome:
+    from simconsole.world.tools.ros_maps import arena_text, read_ros_map
+
+    name = source.name.split(".")[0]
+    profile = folder / f"{name}.arena.yaml"
+    if profile.exists():
+        raise ProfileError(f"{profile}: file: value taken: a name that is free")
+    arena = read_ros_map(source, _title(name))
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        profile.write_text(arena_text(arena, ascii(source.name)[1:-1]), encoding="utf-8")
+    except OSError as error:
+        raise ProfileError(f"{folder}: file: {error.strerror}: a folder that can be written to") from None
+    return _show(str(profile))
+
+
+def _export(name: str, folder: Path, resolution_m: float) -> Outcome:
+    from simconsole.world.tools.ros_maps import write_ros_map
+
+    profile = load_world(name)
+    if not isinstance(profile, ArenaProfile):
+        raise ProfileError(f"{name}: kind: value {_kind(profile)}: arena: a road map is no occupancy grid")
+    if not 0.005 <= resolution_m <= 1.0:
+        raise ProfileError(f"command line: --resolution: value {resolution_m:g}: 0.005 to 1")
+    described, image = write_ros_map(profile, folder, _stem(name), resolution_m)
+    facts = {"map": str(described), "image": str(image)}
+    return Outcome(0, facts, table(list(facts.items())))
+
+
+def _stem(name: str) -> str:
+    return Path(name).name.split(".")[0]

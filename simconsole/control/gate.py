@@ -27,6 +27,7 @@ from simconsole.values.signals import (
 _SAFE_BRAKE: Final = 0.3
 """Replaces a brake request that is not finite: slows any car, locks the wheels of none on a dry road."""
 _MOST_YAW_RAD: Final = 1000.0
+_MOST_YAW_RADPS: Final = 20.0
 
 
 class Limits(NamedTuple):
@@ -64,6 +65,7 @@ class Target(NamedTuple):
     x_m: float
     y_m: float
     yaw_rad: float
+    yaw_rate_radps: float
     active: int
 
 
@@ -169,6 +171,7 @@ def gate(
         anti_lock_off=_switched(before.anti_lock_off, events, Event.TOGGLE_ANTI_LOCK),
         traction_off=_switched(before.traction_off, events, Event.TOGGLE_TRACTION),
         stability_off=_switched(before.stability_off, events, Event.TOGGLE_STABILITY),
+        target_yaw_rate_radps=target.yaw_rate_radps,
     )
 
 
@@ -322,7 +325,27 @@ def _target(
         pose = _finite_pose(before.target_x_m, before.target_y_m, before.target_yaw_rad, before, settings)
     else:
         pose = _finite_pose(vehicle.x_m, vehicle.y_m, vehicle.yaw_rad, before, settings)
-    return Target(speed, pose.x_m, pose.y_m, pose.yaw_rad, active | pose.active)
+    turn = _turn(remote, driven)
+    return Target(
+        speed_mps=speed,
+        x_m=pose.x_m,
+        y_m=pose.y_m,
+        yaw_rad=pose.yaw_rad,
+        yaw_rate_radps=turn.value,
+        active=active | pose.active | turn.active,
+    )
+
+
+@kernel
+def _turn(remote: RemoteCommand, driven: bool) -> Passed:
+    """Pass the yaw rate of a twist while the remote side drives; the platform's own acceleration limits smooth it."""
+    if not driven or remote.kind != RemoteKind.TWIST:
+        return Passed(0.0, 0)
+    if not is_finite(remote.yaw_rate_radps):
+        return Passed(0.0, GateLimit.NON_FINITE)
+    ranged = clip(remote.yaw_rate_radps, -_MOST_YAW_RADPS, _MOST_YAW_RADPS)
+    active = 0 if ranged == remote.yaw_rate_radps else GateLimit.RANGE
+    return Passed(ranged, active)
 
 
 @kernel
@@ -342,7 +365,7 @@ def _pose_target(
     speed = approach(before_mps, ranged, step)
     if speed != ranged:
         active |= GateLimit.RATE
-    return Target(speed, pose.x_m, pose.y_m, pose.yaw_rad, active)
+    return Target(speed_mps=speed, x_m=pose.x_m, y_m=pose.y_m, yaw_rad=pose.yaw_rad, yaw_rate_radps=0.0, active=active)
 
 
 @kernel

@@ -277,4 +277,90 @@ class BallProfile(
     max_road_wheel_deg: Annotated[float, msgspec.Meta(ge=5.0, le=60.0)]
 
 
-VehicleProfile: TypeAlias = CarProfile | BallProfile
+class OdometryErrors(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What is wrong with a robot's odometry; without any of it, it is exact."""
+
+    distance_scale: Annotated[float, msgspec.Meta(ge=0.5, le=2.0)] = 1.0  # its figure over the true one
+    turn_scale: Annotated[float, msgspec.Meta(ge=0.5, le=2.0)] = 1.0
+    slip_m_per_root_m: Annotated[float, msgspec.Meta(ge=0.0, le=0.5)] = 0.0  # deviation of each wheel after 1 m
+    seed: Annotated[int, msgspec.Meta(ge=0, le=2**53)] = 1
+
+
+class LidarProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A laser range finder that turns about its upright axis."""
+
+    samples: Annotated[int, msgspec.Meta(ge=8, le=4096)]  # of a whole turn, anticlockwise from straight ahead
+    min_m: Annotated[float, msgspec.Meta(ge=0.0, le=10.0)]
+    max_m: Annotated[float, msgspec.Meta(ge=0.1, le=100.0)]
+    turn_s: Annotated[float, msgspec.Meta(ge=0.02, le=2.0)]
+    noise_m: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)]  # standard deviation of a range
+    x_m: Annotated[float, msgspec.Meta(ge=-1.0, le=1.0)]  # ahead of base_footprint
+    z_m: Annotated[float, msgspec.Meta(ge=0.0, le=2.0)]
+
+    def __post_init__(self) -> None:
+        """Refuse ranges out of order.
+
+        Raises:
+            ValueError: names the key.
+        """
+        require(self.min_m < self.max_m, f"min_m {self.min_m} must be below max_m {self.max_m}")
+
+
+class RobotImuProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Standard deviations of an inertial measurement unit."""
+
+    gyro_noise_radps: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)]
+    accel_noise_mps2: Annotated[float, msgspec.Meta(ge=0.0, le=10.0)]
+    z_m: Annotated[float, msgspec.Meta(ge=0.0, le=2.0)]
+
+
+class BatteryProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A battery whose voltage falls evenly from full to empty."""
+
+    capacity_ah: Annotated[float, msgspec.Meta(ge=0.1, le=100.0)]
+    full_v: Annotated[float, msgspec.Meta(ge=1.0, le=100.0)]
+    empty_v: Annotated[float, msgspec.Meta(ge=1.0, le=100.0)]
+    idle_w: Annotated[float, msgspec.Meta(ge=0.0, le=500.0)]
+    drive_w: Annotated[float, msgspec.Meta(ge=0.0, le=500.0)]  # at full speed, beside `idle_w`
+
+    def __post_init__(self) -> None:
+        """Refuse a voltage that would rise.
+
+        Raises:
+            ValueError: names the key.
+        """
+        require(self.empty_v < self.full_v, f"empty_v {self.empty_v} must be below full_v {self.full_v}")
+
+    @property
+    def energy_j(self) -> float:
+        """What it holds when it is full."""
+        return 0.5 * (self.full_v + self.empty_v) * self.capacity_ah * 3600.0
+
+
+class TurtlebotProfile(
+    msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, tag_field="platform", tag="turtlebot"
+):
+    """A robot with two driven wheels and a round body; its pose is that of base_footprint, between the wheels."""
+
+    wheel_radius_m: Annotated[float, msgspec.Meta(ge=0.01, le=0.5)]
+    wheel_separation_m: Annotated[float, msgspec.Meta(ge=0.05, le=2.0)]
+    max_wheel_radps: Annotated[float, msgspec.Meta(ge=0.1, le=200.0)]
+    max_speed_mps: Annotated[float, msgspec.Meta(ge=0.05, le=5.0)]
+    max_yaw_rate_radps: Annotated[float, msgspec.Meta(ge=0.1, le=20.0)]
+    max_accel_mps2: Annotated[float, msgspec.Meta(ge=0.1, le=20.0)]  # at the rim of a wheel
+    brake_mps2: Annotated[float, msgspec.Meta(ge=0.1, le=20.0)]
+    body_x_m: Annotated[float, msgspec.Meta(ge=-1.0, le=1.0)]  # middle of the body, ahead of base_footprint
+    body_radius_m: Annotated[float, msgspec.Meta(ge=0.03, le=2.0)]
+    length_m: Length
+    width_m: Length
+    height_m: Length
+    base_link_z_m: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)]  # above base_footprint
+    steering_ratio: Annotated[float, msgspec.Meta(ge=1.0, le=30.0)]  # where a person drives it by a wheel
+    max_road_wheel_deg: Annotated[float, msgspec.Meta(ge=5.0, le=60.0)]
+    lidar: LidarProfile
+    imu: RobotImuProfile
+    battery: BatteryProfile
+    odometry: OdometryErrors = OdometryErrors()
+
+
+VehicleProfile: TypeAlias = CarProfile | BallProfile | TurtlebotProfile

@@ -1,9 +1,11 @@
-"""The world profile, of one of two kinds: a course as exact path primitives, or a road map and a route on it.
+"""The world profile, of one of three kinds: a course as exact path primitives, a road map with a route, or an arena.
 
 A course is written by `python -m simconsole.world.tools.generate` from a readable plan (profiles/course_plan.py);
 nothing of it is meant to be edited by hand. Positions along it (`s_m`) count from its start.
 """
 
+import math
+from itertools import pairwise
 from typing import Annotated, Final, Literal
 
 from msgspec import Meta, Struct
@@ -148,6 +150,105 @@ class RoadsProfile(WorldSection, frozen=True, kw_only=True, tag_field="kind", ta
     """With it the ground is as high as the map's lanes; without it flat, and the same beside the road as on it."""
 
 
-WorldProfile = CourseProfile | RoadsProfile
-KINDS: Final = ("course", "roads")
-RESERVED: Final = ("arena",)
+Place = Annotated[float, Meta(ge=-500.0, le=500.0)]
+"""A coordinate of an arena, in m of map."""
+Height = Annotated[float, Meta(ge=0.05, le=5.0)]
+MOST_WALLS: Final = 20_000
+KEEP_OFF_M: Final = 0.1
+"""A place where a robot shall stand is at least so far from every wall and obstacle."""
+
+
+class ArenaPoint(WorldSection, frozen=True, kw_only=True):
+    """A corner, or a place on the way round."""
+
+    x_m: Place
+    y_m: Place
+
+
+class Wall(WorldSection, frozen=True, kw_only=True):
+    """A line of straight walls without thickness, from corner to corner; closed: and back to the first one."""
+
+    points: Annotated[tuple[ArenaPoint, ...], Meta(min_length=2, max_length=1000)]
+    closed: bool = False
+    height_m: Height = 0.5
+
+    @property
+    def sides(self) -> tuple[tuple[ArenaPoint, ArenaPoint], ...]:
+        """Both ends of each straight piece."""
+        return tuple(pairwise((*self.points, self.points[0]) if self.closed else self.points))
+
+
+class Pillar(WorldSection, frozen=True, kw_only=True):
+    """A round obstacle."""
+
+    x_m: Place
+    y_m: Place
+    radius_m: Annotated[float, Meta(ge=0.01, le=20.0)]
+    height_m: Height = 0.5
+
+
+class Spot(WorldSection, frozen=True, kw_only=True):
+    """A place with a heading where a robot shall stand."""
+
+    name: Annotated[str, Meta(pattern=r"^[A-Za-z0-9_-]{1,32}$")]
+    x_m: Place
+    y_m: Place
+    yaw_deg: Annotated[float, Meta(ge=-180.0, le=180.0)] = 0.0
+
+
+class ArenaProfile(WorldSection, frozen=True, kw_only=True, tag_field="kind", tag="arena"):
+    """A flat floor with walls and obstacles, where robots start, and the places of their tasks."""
+
+    schema: Literal[1]
+    title: str
+    walls: Annotated[tuple[Wall, ...], Meta(max_length=MOST_WALLS)] = ()
+    pillars: Annotated[tuple[Pillar, ...], Meta(max_length=1000)] = ()
+    starts: Annotated[tuple[Spot, ...], Meta(min_length=1, max_length=64)]
+    """Where robots stand at first; a session without a start begins at the first one."""
+    targets: Annotated[tuple[Spot, ...], Meta(max_length=64)] = ()
+    """The places of tasks."""
+    round: Annotated[tuple[ArenaPoint, ...], Meta(min_length=2, max_length=1000)] | None = None
+    """A way through the arena that a robot can drive: the world's route."""
+
+    def __post_init__(self) -> None:
+        """Refuse what contradicts itself.
+
+        Raises:
+            ValueError: names key and value.
+        """
+        _require(bool(self.walls or self.pillars), "walls: value []: at least one wall or one of pillars")
+        for place, wall in enumerate(self.walls):
+            apart = all(math.hypot(b.x_m - a.x_m, b.y_m - a.y_m) > 1e-6 for a, b in wall.sides)
+            _require(apart, f"walls[{place}].points: the same point twice in a row: points that differ")
+        for key, spots in (("starts", self.starts), ("targets", self.targets)):
+            names = [spot.name for spot in spots]
+            _require(len(set(names)) == len(names), f"{key}: a name twice in {', '.join(names)}: each one once")
+            for spot in spots:
+                gap_m = self._gap_m(spot.x_m, spot.y_m)
+                _require(
+                    gap_m >= KEEP_OFF_M,
+                    f"{key}: {spot.name} is {gap_m:.3f} m from a wall or a pillar: at least {KEEP_OFF_M} m",
+                )
+
+    def _gap_m(self, x_m: float, y_m: float) -> float:
+        """Return how far a place is from what is next to it; negative inside of a pillar."""
+        round_ones = [math.hypot(x_m - one.x_m, y_m - one.y_m) - one.radius_m for one in self.pillars]
+        straight = [_apart_m(x_m, y_m, a, b) for wall in self.walls for a, b in wall.sides]
+        return min((*round_ones, *straight))
+
+
+def _apart_m(x_m: float, y_m: float, a: ArenaPoint, b: ArenaPoint) -> float:
+    """Return the distance of a place from a straight wall."""
+    along_x, along_y = b.x_m - a.x_m, b.y_m - a.y_m
+    share = ((x_m - a.x_m) * along_x + (y_m - a.y_m) * along_y) / (along_x**2 + along_y**2)
+    share = min(max(share, 0.0), 1.0)
+    return math.hypot(x_m - a.x_m - share * along_x, y_m - a.y_m - share * along_y)
+
+
+def _require(good: bool, what: str) -> None:
+    if not good:
+        raise ValueError(what)
+
+
+WorldProfile = CourseProfile | RoadsProfile | ArenaProfile
+KINDS: Final = ("course", "roads", "arena")

@@ -19,6 +19,7 @@ GREEN: Final[Colour] = (58, 92, 62)
 PAINT: Final[Colour] = (226, 228, 230)
 MAP_EDGE: Final[Colour] = (84, 92, 102)
 THEORETICAL: Final[Colour] = (120, 140, 165)
+WALL: Final[Colour] = (150, 142, 128)
 BODY: Final[Colour] = (214, 126, 44)
 GLASS: Final[Colour] = (60, 70, 84)
 LAMPS: Final[tuple[Colour, ...]] = ((150, 40, 40), (150, 110, 30), (40, 130, 70))
@@ -97,6 +98,8 @@ class WorldShapes(NamedTuple):
     light_posts: Array
     light_lamps: Array
     path: Array
+    walls: Mesh
+    wall_lines: tuple[Array, ...]
 
 
 def world_shapes(drawing: Drawing) -> WorldShapes:
@@ -115,15 +118,13 @@ def _on_ground(flat: WorldShapes, ground: HeightField) -> WorldShapes:
     def high_mesh(of: Mesh) -> Mesh:
         return of._replace(vertices=high(of.vertices))
 
-    return WorldShapes(
+    return flat._replace(
         ground=high_mesh(_land(ground)),
         surfaces=high_mesh(flat.surfaces),
         islands=high_mesh(flat.islands),
         paint=high_mesh(flat.paint),
         edges=tuple(high(line) for line in flat.edges),
         centre_dashes=tuple(high(dash) for dash in flat.centre_dashes),
-        light_posts=flat.light_posts,
-        light_lamps=flat.light_lamps,
         path=high(flat.path),
     )
 
@@ -154,6 +155,8 @@ def _flat_shapes(drawing: Drawing) -> WorldShapes:
         light_posts=posts,
         light_lamps=lamps,
         path=lifted(drawing.path, 3.0 * LIFT_M),
+        walls=upright(drawing.walls),
+        wall_lines=tuple(lifted(line[:, :2], 2.0 * LIFT_M) for line in drawing.walls),
     )
 
 
@@ -184,6 +187,18 @@ def mesh(polygons: tuple[Array, ...], z_m: float) -> Mesh:
     if not vertices:
         return Mesh(np.empty((0, 3)), np.empty((0, 3), np.uint32))
     return Mesh(np.vstack(vertices), np.vstack(triangles))
+
+
+def upright(lines: tuple[Array, ...]) -> Mesh:
+    """Return walls along lines [N, 3] (x, y and height of each corner), two triangles for each piece."""
+    pieces = (
+        np.concatenate([np.stack((line[:-1], line[1:]), axis=1) for line in lines]) if lines else np.empty((0, 2, 3))
+    )
+    feet = pieces * (1.0, 1.0, 0.0)
+    corners = np.stack((feet[:, 0], feet[:, 1], pieces[:, 1], pieces[:, 0]), axis=1).reshape(-1, 3)
+    halves = np.array(((0, 1, 2), (0, 2, 3)), dtype=np.uint32)
+    first = 4 * np.arange(len(pieces), dtype=np.uint32)
+    return Mesh(corners, (first[:, None, None] + halves).reshape(-1, 3))
 
 
 def dashes(line: Array) -> list[Array]:

@@ -309,6 +309,7 @@ def _open_lockstep(
     from simconsole.bridge.console.view_topics import NO_VIEW
     from simconsole.bridge.transport.lockstep_server import LockstepBridge
     from simconsole.session.external_view import display_settings, external_view
+    from simconsole.session.robots import robot_at_work
     from simconsole.session.view_job import view_job
 
     session = resolved.session
@@ -331,6 +332,7 @@ def _open_lockstep(
             signals=road_signals(resolved.world, console.tick_hz),
             road_users=None if traffic is None else traffic.newest,
             view=view,
+            robot=robot_at_work(resolved.vehicle, resolved.world),
             steering=steering_limit(session.features.control, console.platform.wheelbase_m),
         ),
     )

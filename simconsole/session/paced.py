@@ -11,6 +11,7 @@ from simconsole.bridge.console.operator_acts import ACT_BYTES, ACTS_MAX
 from simconsole.control.requests.refusals import steering_limit
 from simconsole.processes.shared_memory import EventCounters, Ring, TextQueue
 from simconsole.processes.worker import Worker, WorkerSpec
+from simconsole.profiles.vehicle import TurtlebotProfile
 from simconsole.session.camera_worker import CameraWorker, make_camera_slot
 from simconsole.session.external_view import display_settings
 from simconsole.session.scene_job import LIVE_SCENE, scene_job
@@ -203,6 +204,7 @@ def worker_specs(
             display=display_settings(resolved) if outputs.bridge.external_view else None,
             has_traffic=has_traffic,
             world=resolved.world,
+            vehicle=resolved.vehicle if isinstance(resolved.vehicle, TurtlebotProfile) else None,
         )
     if outputs.can is not None:
         from simconsole.canbus.messages import wheel_columns

@@ -19,6 +19,7 @@ from simconsole.processes.shared_memory import EventCounters, Record, Ring, Text
 from simconsole.processes.worker import Worker
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.can import CanProfile
+from simconsole.profiles.vehicle import TurtlebotProfile
 from simconsole.profiles.view import HudProfile
 from simconsole.profiles.world import WorldProfile
 from simconsole.values.host.files import write_atomically
@@ -71,6 +72,8 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
     has_traffic: bool = False
     world: WorldProfile | None = None
     """Whose route and traffic lights it tells of."""
+    vehicle: TurtlebotProfile | None = None
+    """The robot that is driven; None: it is none."""
 
     def run(self, folder: Path, stop: Callable[[], bool]) -> None:
         """Serve until `stop`."""
@@ -81,6 +84,7 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
         from simconsole.bridge.transport.sockets import address_url
         from simconsole.session.camera_worker import CameraReader
         from simconsole.session.external_view import external_view
+        from simconsole.session.robots import robot_at_work
         from simconsole.session.view_job import load_view_job
         from simconsole.world.kinds.worlds import road_signals, route_points, shown_map
 
@@ -98,6 +102,7 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
             camera=CameraReader(folder).newest if profile.camera is not None else None,
             road_users=RoadUsersRing(folder).newest if self.has_traffic else None,
             view=NO_VIEW if self.display is None else external_view(load_view_job(folder / VIEW_JOB), self.display),
+            robot=robot_at_work(self.vehicle, self.world),
             steering=self.steering,
         )
 

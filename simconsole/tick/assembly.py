@@ -12,11 +12,12 @@ from simconsole.profiles.session import Aids, Environment, SessionProfile, Start
 from simconsole.profiles.vehicle import CarProfile, VehicleProfile
 from simconsole.profiles.world import WorldProfile
 from simconsole.tick.advance import Console, ConsoleState, Execution, build_console, initial_state
-from simconsole.values.platform import Ground, Patch, Platform, Pose
+from simconsole.values.platform import NO_OBSTACLES, Ground, Obstacles, Patch, Platform, Pose
 from simconsole.values.signals import Commander
 from simconsole.values.units import RAD_PER_DEG
 from simconsole.vehicle.platforms import build
 from simconsole.vehicle.rim_stiffness import rim_stiffness
+from simconsole.world.arena.arena_world import arena_of
 from simconsole.world.kinds.worlds import open_world
 from simconsole.world.roads.road_world import roads_of
 from simconsole.world.rules.road_rules import RoadRules, road_rules
@@ -40,6 +41,7 @@ def assemble(resolved: ResolvedSession, execution: Execution) -> tuple[Console, 
         switched(resolved.vehicle, session.features.aids),
         Pose(start.x_m, start.y_m, start.yaw_deg * RAD_PER_DEG),
         ground_of(environment, resolved.world),
+        obstacles_of(resolved.world),
     )
     console = build_console(
         cockpit_settings(resolved.cockpit, tick_hz),
@@ -50,6 +52,7 @@ def assemble(resolved: ResolvedSession, execution: Execution) -> tuple[Console, 
             platform.wheelbase_m,
             tick_hz,
             Commander.ECU if session.features.commander == "can" else Commander.ROS,
+            platform.turns_in_place,
         ),
         platform,
         tick_hz,
@@ -78,6 +81,15 @@ def rules_of(world: WorldProfile | None, platform: Platform, tick_hz: int) -> Ro
     return road_rules(roads.road_map, roads.legs, tick_hz, platform.length_m - platform.rear_overhang_m)
 
 
+def obstacles_of(world: WorldProfile | None) -> Obstacles:
+    """Return what a robot may run into: the walls and pillars of an arena."""
+    arena = None if world is None else arena_of(open_world(world))
+    if arena is None:
+        return NO_OBSTACLES
+    segments, circles = (map(tuple, part.tolist()) for part in arena.outlines)
+    return Obstacles(tuple(segments), tuple(circles))
+
+
 def ground_of(environment: Environment, world: WorldProfile | None = None) -> Ground:
     """Return the ground and the wind of a session in a world.
 
@@ -93,7 +105,7 @@ def ground_of(environment: Environment, world: WorldProfile | None = None) -> Gr
         wind_x_mps=environment.wind_mps * math.cos(to_rad),
         wind_y_mps=environment.wind_mps * math.sin(to_rad),
         patches=tuple(Patch(*structs.astuple(patch)) for patch in environment.friction_patches),
-        field=None if world is None or world.ground is None else open_world(world).ground,
+        field=None if world is None else open_world(world).ground,
     )
 
 

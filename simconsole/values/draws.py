@@ -8,6 +8,9 @@ from collections.abc import Callable
 from enum import IntEnum
 from typing import Final
 
+import numpy as np
+from numpy.typing import NDArray
+
 _MASK: Final = (1 << 64) - 1
 _SHORT: Final = (1 << 16) - 1
 _STEP: Final = 0x9E3779B97F4A7C15
@@ -33,6 +36,13 @@ class Channel(IntEnum):
     PERSON_AIM = 13
     PERSON_HAND = 14
     PERSON_CARE = 15
+    WHEEL_SLIP = 16
+    LIDAR = 17
+    GYRO = 18
+    ROBOT_ACCEL_X = 19
+    ROBOT_ACCEL_Y = 20
+    ROBOT_ACCEL_Z = 21
+    ALLOCATION = 22
 
 
 def _mixed(value: int) -> int:
@@ -55,6 +65,27 @@ def normal(seed: int, channel: Channel, number: int) -> float:
         total += (bits & _SHORT) + (bits >> 16 & _SHORT) + (bits >> 32 & _SHORT) + (bits >> 48)
         bits = _mixed(bits)
     return (total + 6) * _SCALE - 6.0  # the mean of a sixteen-bit number is half a unit below one half
+
+
+def normals(seed: int, channel: Channel, first: int, count: int) -> NDArray[np.float64]:
+    """Return `count` numbers of `normal`, bit for bit, from the one numbered `first` on."""
+    with np.errstate(over="ignore"):
+        numbers = np.arange(count, dtype=np.uint64) + np.uint64(first & _MASK)
+        bits = _all_mixed(np.uint64(_mixed(_mixed(seed) ^ channel)) ^ numbers)
+        total = np.zeros(count, dtype=np.int64)
+        for _ in range(3):
+            for shift in (0, 16, 32, 48):
+                total += (bits >> np.uint64(shift) & np.uint64(_SHORT)).astype(np.int64)
+            bits = _all_mixed(bits)
+    return np.asarray((total + 6) * _SCALE - 6.0, dtype=np.float64)
+
+
+def _all_mixed(values: NDArray[np.uint64]) -> NDArray[np.uint64]:
+    """Return what `_mixed` makes of each."""
+    values = values + np.uint64(_STEP)
+    values = (values ^ (values >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    values = (values ^ (values >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    return values ^ (values >> np.uint64(31))
 
 
 def bounded(seed: int, channel: Channel, number: int) -> float:

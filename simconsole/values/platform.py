@@ -7,7 +7,18 @@ from simconsole.values.ground import MOST_PATCHES, Ground, Patch
 from simconsole.values.kernels import Row
 from simconsole.values.signals import VehicleState
 
-__all__ = ["MOST_PATCHES", "NO_STIFFNESS", "Ground", "Patch", "Platform", "Pose", "RimStiffness", "Step"]
+__all__ = [
+    "MOST_PATCHES",
+    "NO_OBSTACLES",
+    "NO_STIFFNESS",
+    "Ground",
+    "Obstacles",
+    "Patch",
+    "Platform",
+    "Pose",
+    "RimStiffness",
+    "Step",
+]
 
 Step = Callable[[Row, Row, Row, Row, int], None]
 """A platform's step: see `Platform`."""
@@ -19,6 +30,16 @@ class Pose(NamedTuple):
     x_m: float
     y_m: float
     yaw_rad: float
+
+
+class Obstacles(NamedTuple):
+    """What a vehicle may run into, in m of map."""
+
+    segments: tuple[tuple[float, float, float, float], ...] = ()  # straight ones: x, y of both ends
+    circles: tuple[tuple[float, float, float], ...] = ()  # x, y, radius
+
+
+NO_OBSTACLES: Final = Obstacles()
 
 
 class RimStiffness(NamedTuple):
@@ -62,3 +83,4 @@ class Platform(NamedTuple):
     width_m: float
     height_m: float
     rear_overhang_m: float  # from base_link to the rear end
+    turns_in_place: bool = False  # it follows a speed and a yaw rate; a car is steered and driven by pedals

@@ -1,15 +1,22 @@
 """Vehicles by the platform name of their profile. A platform's modules load when one is built."""
 
-from simconsole.profiles.vehicle import BallProfile, VehicleProfile
-from simconsole.values.platform import Ground, Platform, Pose
+from simconsole.profiles.vehicle import BallProfile, TurtlebotProfile, VehicleProfile
+from simconsole.values.platform import NO_OBSTACLES, Ground, Obstacles, Platform, Pose
 
 
-def build(profile: VehicleProfile, pose: Pose, ground: Ground) -> Platform:
-    """Return the vehicle of `profile`, standing at `pose` (m, rad, of base_link in map) on `ground`."""
+def build(profile: VehicleProfile, pose: Pose, ground: Ground, obstacles: Obstacles = NO_OBSTACLES) -> Platform:
+    """Return the vehicle of `profile`, standing at `pose` (m, rad, of base_link in map) on `ground`.
+
+    Only robots run into `obstacles`.
+    """
     if isinstance(profile, BallProfile):
         from simconsole.vehicle.ball.ball_platform import build_ball
 
         return build_ball(profile, pose, ground)
+    if isinstance(profile, TurtlebotProfile):
+        from simconsole.vehicle.turtlebot.turtlebot_platform import build_turtlebot
+
+        return build_turtlebot(profile, pose, ground, obstacles)
     from simconsole.vehicle.car.car_platform import build_car
 
     return build_car(profile, pose, ground)

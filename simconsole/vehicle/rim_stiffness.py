@@ -5,7 +5,7 @@ For a way as short as a swing's the steering's own friction is a spring, too; of
 
 from typing import Final
 
-from simconsole.profiles.vehicle import BallProfile, VehicleProfile
+from simconsole.profiles.vehicle import CarProfile, VehicleProfile
 from simconsole.values.platform import NO_STIFFNESS, RimStiffness
 from simconsole.values.units import RAD_PER_DEG
 
@@ -18,7 +18,7 @@ def rim_stiffness(profile: VehicleProfile) -> RimStiffness:
 
     It is `NO_STIFFNESS` where the hand wheel feels nothing.
     """
-    if isinstance(profile, BallProfile):
+    if not isinstance(profile, CarProfile):
         return NO_STIFFNESS
     from simconsole.vehicle.car.car_platform import car_parameters
     from simconsole.vehicle.car.steering import hand_wheel_torque

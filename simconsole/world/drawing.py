@@ -29,6 +29,7 @@ class Drawing(NamedTuple):
     lights: tuple[Light, ...]
     path: Array  # the theoretical path, once round
     ground: HeightField | None = None  # on which all of it lies; None: flat
+    walls: tuple[Array, ...] = ()  # lines [N, 3] of what stands upright: x, y and height of each corner
 
 
 def draw(course: Course) -> Drawing:

@@ -26,6 +26,8 @@ def to_arrays(drawing: Drawing) -> dict[str, Any]:
         content[f"{name}_ends"] = np.cumsum([len(line) for line in lines], dtype=np.int64)
     if drawing.ground is not None:
         content["ground_grid"], content["ground_nodes"] = np.array(drawing.ground.grid), drawing.ground.nodes
+    content["walls"] = np.vstack(drawing.walls) if drawing.walls else np.empty((0, 3))
+    content["walls_ends"] = np.cumsum([len(line) for line in drawing.walls], dtype=np.int64)
     return content
 
 
@@ -38,7 +40,7 @@ def from_arrays(content: Mapping[str, Any]) -> Drawing | None:
     """
     if "path" not in content:
         return None
-    lines = {name: tuple(np.split(content[name], content[f"{name}_ends"])[:-1]) for name in _LINES}
+    lines = {name: tuple(np.split(content[name], content[f"{name}_ends"])[:-1]) for name in (*_LINES, "walls")}
     programs = msgspec.json.decode(content["light_programs"].tobytes(), type=list[LightProgram | None])
     places = zip(content["lights"].tolist(), programs, strict=True)
     lights = tuple(Light(x, y, yaw, program) for (x, y, yaw), program in places)

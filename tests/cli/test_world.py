@@ -50,3 +50,25 @@ def test_what_cannot_be_shown_is_one_line(words: tuple[str, ...]) -> None:
     done = simconsole("world", *words)
     assert done.returncode == 2
     assert len(done.stderr.splitlines()) == 1
+
+
+def test_an_arena_is_exported_as_a_ros_map_and_imported_again(tmp_path: Path) -> None:
+    done = simconsole("world", "export", "arena", "--out", str(tmp_path))
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "arena.pgm").stat().st_size > 20_000
+    done = simconsole("world", "import", str(tmp_path / "arena.yaml"), "--out", str(tmp_path))
+    assert done.returncode == 0, done.stderr
+    assert "9.05 x 6.05 m" in done.stdout
+    again = simconsole("world", "import", str(tmp_path / "arena.yaml"), "--out", str(tmp_path))
+    assert again.returncode == 2
+    assert "taken" in again.stderr
+    shown = simconsole("world", "show", "arena")
+    assert "9.00 x 6.00 m" in shown.stdout
+    assert "A B C D E" in shown.stdout
+
+
+@pytest.mark.parametrize(("words", "told"), [(("urban",), "kind: value course"), (("arena", "--resolution", "9"), "9")])
+def test_what_is_no_arena_is_not_exported(words: tuple[str, ...], told: str, tmp_path: Path) -> None:
+    done = simconsole("world", "export", *words, "--out", str(tmp_path))
+    assert done.returncode == 2
+    assert told in done.stderr

@@ -307,3 +307,24 @@ def test_events_switch_a_driver_aid_off_and_on_again_and_a_reset_on(
     assert getattr(passed(control, before=off), field) == 1.0, "it stays off"
     assert getattr(passed(control, before=off, events=event), field) == 0.0
     assert getattr(passed(control, before=off, events=Event.RESET), field) == 0.0
+
+
+def twisted(yaw_rate_radps: float, kind: RemoteKind = RemoteKind.TWIST) -> RemoteCommand:
+    command: RemoteCommand = zeros(RemoteCommand)
+    return command._replace(kind=float(kind), yaw_rate_radps=yaw_rate_radps)
+
+
+def test_the_yaw_rate_of_a_twist_passes_while_the_remote_side_drives(control: ControlSettings) -> None:
+    assert passed(control, Mode.AUTONOMOUS, remote=twisted(1.5)).target_yaw_rate_radps == 1.5
+    for mode in (Mode.PARKED, Mode.MANUAL, Mode.MINIMAL_RISK, Mode.STOPPED, Mode.EMERGENCY_STOP):
+        assert passed(control, mode, remote=twisted(1.5)).target_yaw_rate_radps == 0.0
+    assert passed(control, Mode.AUTONOMOUS, remote=twisted(1.5, RemoteKind.SPEED)).target_yaw_rate_radps == 0.0
+
+
+def test_a_yaw_rate_that_is_not_finite_or_beyond_every_robot_does_not_pass(control: ControlSettings) -> None:
+    bad = passed(control, Mode.AUTONOMOUS, remote=twisted(math.nan))
+    assert bad.target_yaw_rate_radps == 0.0
+    assert GateLimit.NON_FINITE in active(bad)
+    wild = passed(control, Mode.AUTONOMOUS, remote=twisted(-1e9))
+    assert wild.target_yaw_rate_radps == -20.0
+    assert GateLimit.RANGE in active(wild)

@@ -7,6 +7,7 @@ from msgspec import structs
 
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load
+from simconsole.profiles.files.world_files import load_world
 from simconsole.profiles.session import (
     Aids,
     Environment,
@@ -19,10 +20,10 @@ from simconsole.profiles.session import (
 )
 from simconsole.profiles.vehicle import BallProfile, CarProfile
 from simconsole.tick.advance import SETTINGS
-from simconsole.tick.assembly import ResolvedSession, assemble, ground_of, switched
+from simconsole.tick.assembly import ResolvedSession, assemble, ground_of, obstacles_of, switched
 from simconsole.values.host.jit import plain
 from simconsole.values.layout import read
-from simconsole.values.platform import Patch
+from simconsole.values.platform import NO_OBSTACLES, Patch
 from simconsole.values.signals import Commander
 from simconsole.values.state_vector import Snapshot
 from tests.vehicle.altered import HATCHBACK
@@ -64,3 +65,10 @@ def test_a_session_becomes_a_console_at_its_rate_in_its_place() -> None:
     assert (console.tick_hz, console.substeps, state.tick) == (100, 10, 0)
     assert (seen.x_m, seen.y_m, seen.yaw_rad) == (3.0, 4.0, pytest.approx(math.pi / 2.0))
     assert read(console.settings, SETTINGS.control).preferred_commander == Commander.ECU
+
+
+def test_walls_of_an_arena_are_in_the_way_of_robots_and_other_worlds_have_none() -> None:
+    found = obstacles_of(load_world("arena"))
+    assert (0.0, 0.0, 9.0, 0.0) in found.segments
+    assert (4.5, 4.9, 0.15) in found.circles
+    assert obstacles_of(load_world("urban")) == obstacles_of(None) == NO_OBSTACLES

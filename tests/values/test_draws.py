@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from simconsole.values.draws import Channel, bounded, even, normal, wandering
+from simconsole.values.draws import Channel, bounded, even, normal, normals, wandering
 from tests.samples import Sample
 
 
@@ -53,3 +53,9 @@ def test_bounded_numbers_spread_as_normal_ones_and_have_no_tails(sample: Sample)
     assert abs(drawn.std() - 1.0) < 5.0 / np.sqrt(count)
     assert np.abs(drawn).max() <= np.sqrt(3.0)
     assert wandering(sample.seed, Channel.PERSON_AIM, 7.0, bounded) == drawn[7]
+
+
+def test_many_numbers_at_once_are_those_one_by_one(sample: Sample) -> None:
+    for first in (0, 7, 2**40):
+        found = normals(sample.seed, Channel.LIDAR, first, 300)
+        assert found.tolist() == [normal(sample.seed, Channel.LIDAR, first + index) for index in range(300)]

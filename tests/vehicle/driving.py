@@ -9,7 +9,8 @@ from simconsole.profiles.files.loader import load
 from simconsole.profiles.vehicle import VehicleProfile
 from simconsole.values.host.jit import compiled
 from simconsole.values.kernels import Row, put
-from simconsole.values.platform import Ground, Platform, Pose
+from simconsole.values.layout import Part, read
+from simconsole.values.platform import NO_OBSTACLES, Ground, Obstacles, Platform, Pose
 from simconsole.values.signals import VehicleCommand, VehicleState
 from simconsole.values.state_vector import LAYOUT, PLATFORM_AT
 from simconsole.vehicle.platforms import build
@@ -21,9 +22,11 @@ TICK_S = 0.004
 SUBSTEPS = 4
 
 
-def platform(name: str = "hatchback", ground: Ground = LEVEL, pose: Pose = ORIGIN) -> Platform:
+def platform(
+    name: str = "hatchback", ground: Ground = LEVEL, pose: Pose = ORIGIN, obstacles: Obstacles = NO_OBSTACLES
+) -> Platform:
     profile: Any = load("vehicles", name, VehicleProfile)  # type: ignore[arg-type]  # a union
-    return build(profile, pose, ground)
+    return build(profile, pose, ground, obstacles)
 
 
 class Drive:
@@ -43,7 +46,7 @@ class Drive:
 
     @property
     def state(self) -> Any:
-        return self.vehicle.state(*self.row[PLATFORM_AT:].tolist())
+        return read(self.row, Part(self.vehicle.state, PLATFORM_AT))
 
     def tick(self, command: VehicleCommand) -> None:
         row = self.row.copy()

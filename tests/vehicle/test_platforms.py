@@ -8,6 +8,7 @@ import pytest
 from simconsole.profiles.files.loader import load, names, parse, profiles_folder
 from simconsole.profiles.vehicle import BallProfile, CarProfile, VehicleProfile
 from simconsole.values.errors import ProfileError
+from simconsole.values.layout import Part
 from simconsole.values.platform import Pose
 from simconsole.vehicle.platforms import build
 from tests.vehicle.driving import LEVEL, Drive, platform
@@ -18,10 +19,10 @@ def hatchback() -> CarProfile:
 
 
 def test_every_shipped_vehicle_builds_and_stands() -> None:
-    assert {"hatchback", "ball"} <= set(names("vehicles"))
+    assert {"hatchback", "ball", "turtlebot3_burger", "turtlebot3_waffle"} <= set(names("vehicles"))
     for name in names("vehicles"):
         vehicle = platform(name, pose=Pose(3.0, -2.0, 7.0))
-        assert len(vehicle.initial_state) == len(vehicle.state._fields)
+        assert len(vehicle.initial_state) == Part(vehicle.state).width
         assert vehicle.initial_vehicle.x_m == 3.0
         assert abs(vehicle.initial_vehicle.yaw_rad) < 3.2
         seen = Drive(vehicle).hold(1.0)

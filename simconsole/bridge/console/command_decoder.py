@@ -7,7 +7,7 @@ is not newer than the last one's. A stamp of 0 is no stamp: such messages are ta
 from typing import Any, Final, NamedTuple
 
 from simconsole.bridge.console.input_slots import BridgeInputs
-from simconsole.bridge.console.published_tick import MAP_FRAME
+from simconsole.bridge.console.published_tick import MAP_FRAME, ROBOT_FRAMES, prefixed
 from simconsole.bridge.console.topics import BASE_FRAME
 from simconsole.bridge.protocol.topic_registry import Accept
 from simconsole.profiles.bridge import BridgeProfile
@@ -58,7 +58,6 @@ DIRECTIONS: Final[dict[int, float]] = {
 # autoware_vehicle_msgs/TurnIndicatorsCommand and HazardLightsCommand; 0 is NO_COMMAND and leaves them as they are.
 INDICATORS: Final[dict[int, float]] = {1: 0.0, 2: 1.0, 3: -1.0}
 HAZARDS: Final[dict[int, float]] = {1: 0.0, 2: 1.0}
-_BODY_FRAMES: Final = ("", BASE_FRAME)
 _FUTURE_NS: Final = 50_000_000
 _UNIT_TOLERANCE: Final = 0.1
 
@@ -75,8 +74,11 @@ class CommandTopic(NamedTuple):
 class CommandDecoder:
     """Checks commands and puts what they mean into the slot."""
 
-    def __init__(self, inputs: BridgeInputs, profile: BridgeProfile) -> None:
-        """Check against the limits of `profile` and write to `inputs`."""
+    def __init__(self, inputs: BridgeInputs, profile: BridgeProfile, *, is_robot: bool = False) -> None:
+        """Check against the limits of `profile` and write to `inputs`; a robot takes velocities alone."""
+        self._is_robot = is_robot
+        frames = [prefixed(profile.namespace, frame) for frame in ROBOT_FRAMES] if is_robot else [BASE_FRAME]
+        self._body_frames = ("", *frames)
         self._inputs = inputs
         self._limits = profile.commands
         self._follows_clock = profile.sender_clock == "console"
@@ -90,6 +92,13 @@ class CommandDecoder:
 
     def topics(self) -> tuple[CommandTopic, ...]:
         """Return the table of command topics under their standard names."""
+        velocities = (
+            CommandTopic(TWIST, "geometry_msgs/Twist", self._twist),
+            CommandTopic(TWIST_STAMPED, "geometry_msgs/TwistStamped", self._twist_stamped),
+        )
+        request = CommandTopic(REQUEST, "std_msgs/String", self._request, leased=False)
+        if self._is_robot:
+            return (*velocities, request)
         return (
             CommandTopic(CONTROL, "autoware_control_msgs/Control", self._control),
             CommandTopic(GEAR, "autoware_vehicle_msgs/GearCommand", self._gear),
@@ -97,11 +106,10 @@ class CommandDecoder:
             CommandTopic(HAZARD_LIGHTS, "autoware_vehicle_msgs/HazardLightsCommand", self._hazard_lights),
             CommandTopic(ACTUATION, "tier4_vehicle_msgs/ActuationCommandStamped", self._actuation),
             CommandTopic(ACKERMANN, "ackermann_msgs/AckermannDriveStamped", self._ackermann),
-            CommandTopic(TWIST, "geometry_msgs/Twist", self._twist),
-            CommandTopic(TWIST_STAMPED, "geometry_msgs/TwistStamped", self._twist_stamped),
+            *velocities,
             CommandTopic(BALL_POSE, "geometry_msgs/PoseStamped", self._ball_pose),
             CommandTopic(BALL_SPEED, "std_msgs/Float64", self._ball_speed),
-            CommandTopic(REQUEST, "std_msgs/String", self._request, leased=False),
+            request,
         )
 
     def forget_stamps(self) -> None:
@@ -125,7 +133,7 @@ class CommandDecoder:
 
     def _ackermann(self, plain: dict[str, Any] | None, message: Any, now_ns: int) -> None:
         _require(plain, "drive.steering_angle", "drive.speed")
-        _in_frame(message.header, _BODY_FRAMES)
+        _in_frame(message.header, self._body_frames)
         drive, limits = message.drive, self._limits
         speed_mps = _within("drive.speed", drive.speed, limits.speed_mps)
         command = NO_COMMAND._replace(
@@ -143,7 +151,7 @@ class CommandDecoder:
     def _actuation(self, plain: dict[str, Any] | None, message: Any, now_ns: int) -> None:
         """Take pedals 0 to 1 and, as raw_vehicle_cmd_converter passes it on unconverted, the road-wheel angle."""
         _require(plain, "actuation.accel_cmd", "actuation.brake_cmd", "actuation.steer_cmd")
-        _in_frame(message.header, _BODY_FRAMES)
+        _in_frame(message.header, self._body_frames)
         asked = message.actuation
         command = NO_COMMAND._replace(
             kind=float(RemoteKind.ACTUATION),
@@ -160,7 +168,7 @@ class CommandDecoder:
 
     def _twist_stamped(self, plain: dict[str, Any] | None, message: Any, now_ns: int) -> None:
         _require(plain, "twist.linear.x", "twist.angular.z")
-        _in_frame(message.header, _BODY_FRAMES)
+        _in_frame(message.header, self._body_frames)
         self._move(message.twist, "twist.", (TWIST_STAMPED, message.header.stamp), now_ns)
 
     def _move(self, twist: Any, path: str, stamp: tuple[str, Any] | None, now_ns: int) -> None:

@@ -65,7 +65,7 @@ class ConsoleBridge:
         self._acts: list[Act] = []
         self.operator = Operator(self.inputs.raise_events, on_act or self._keep_act)
         self.router.calls.add_builtin(profile.namespace + OPERATE, OPERATE_TYPE, self.operator.operate, Role.CONTROL)
-        self._command_decoder = CommandDecoder(self.inputs, profile)
+        self._command_decoder = CommandDecoder(self.inputs, profile, is_robot=around.robot is not None)
         self.router.on_new_commander = self._command_decoder.forget_stamps
         self._now_ns = 0
         self._out = Outputs(
@@ -75,6 +75,7 @@ class ConsoleBridge:
             around.route,
             around.signals,
             around.shown_map,
+            around.robot,
         )
         outputs = (*view_topics(self.router.registry, profile, around.view), *self._out.topics())
         commands = self._command_decoder.topics()

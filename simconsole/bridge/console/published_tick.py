@@ -5,12 +5,17 @@ from collections.abc import Callable
 from typing import Any, Final, NamedTuple
 
 from simconsole.bridge.link.localisation import Localisation
+from simconsole.bridge.messages import Registry
+from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.signals import VehicleState
 from simconsole.values.state_vector import Snapshot
 from simconsole.values.units import NS_PER_S
 
 ONCE: Final = -1.0
 MAP_FRAME: Final = "map"
+FOOTPRINT_FRAME: Final = "base_footprint"
+ROBOT_FRAMES: Final = (FOOTPRINT_FRAME, "base_link")
+"""The frames in which a robot takes velocities."""
 
 
 class OutputTopic(NamedTuple):
@@ -23,6 +28,10 @@ class OutputTopic(NamedTuple):
     """Returns the message; None: nothing is to be told now."""
     watched: int | None = None
     """A column of the state vector: the topic is latched, and due with each change of it, too."""
+
+
+RobotTable = Callable[[Registry, BridgeProfile], tuple[OutputTopic, ...]]
+"""Makes the table of a robot's topics, in place of the car's, under their standard names."""
 
 
 class PublishedTick:
@@ -58,6 +67,11 @@ class PublishedTick:
         if self._orientation is None:
             self._orientation = self._quaternion(*quaternion(vehicle.roll_rad, vehicle.pitch_rad, vehicle.yaw_rad))
         return self._orientation
+
+
+def prefixed(namespace: str, frame: str) -> str:
+    """Return the name of a robot's frame under a namespace."""
+    return f"{namespace.removeprefix('/')}/{frame}" if namespace else frame
 
 
 def quaternion(roll_rad: float, pitch_rad: float, yaw_rad: float) -> tuple[float, float, float, float]:

@@ -3,6 +3,7 @@
 from typing import Final, NamedTuple
 
 from simconsole.bridge.console.camera_topics import ReadCamera
+from simconsole.bridge.console.published_tick import RobotTable
 from simconsole.bridge.console.road_user_topics import ReadRoadUsers
 from simconsole.bridge.console.topics import Route
 from simconsole.bridge.console.view_topics import NO_VIEW, ExternalView
@@ -20,6 +21,7 @@ class Surroundings(NamedTuple):
     road_users: ReadRoadUsers | None = None  # returns the newest; None: they have no topics
     camera: ReadCamera | None = None  # returns the newest picture; None: there is no camera
     view: ExternalView = NO_VIEW  # what the topics of `external_view` show
+    robot: RobotTable | None = None  # makes the topics of what is driven, where it is a robot
     steering: SteeringLimit | None = None  # beyond it the arbiter refuses a command, and its sender is told so
 
 

@@ -10,7 +10,14 @@ from typing import Any, Final
 
 from simconsole.bridge.console.camera_topics import OPTICAL_FRAME, optical
 from simconsole.bridge.console.map_topics import MapTopics
-from simconsole.bridge.console.published_tick import MAP_FRAME, ONCE, OutputTopic, PublishedTick, quaternion
+from simconsole.bridge.console.published_tick import (
+    MAP_FRAME,
+    ONCE,
+    OutputTopic,
+    PublishedTick,
+    RobotTable,
+    quaternion,
+)
 from simconsole.bridge.console.signal_topics import SignalTopics
 from simconsole.bridge.link.localisation import Localisation, covariances
 from simconsole.bridge.messages import Registry
@@ -99,12 +106,14 @@ class Outputs:
         route: Route = (),
         signals: RoadSignals | None = None,
         shown_map: ShownMap = NO_MAP,
+        robot: RobotTable | None = None,
     ) -> None:
         """Generate the classes of all output topics.
 
         `counts` fills /console/bridge (`counters.bridge_status`), `route` /route, `signals` those of traffic lights,
-        `shown_map` those of the map.
+        `shown_map` those of the map; a `robot` has topics of its own in place of the car's.
         """
+        self._robot_topics = () if robot is None else robot(registry, profile)
         self._route_points = route
         self._signals = SignalTopics(registry, signals)
         self._map = MapTopics(registry, shown_map, profile.link.localisation)
@@ -125,14 +134,19 @@ class Outputs:
             50.0,
             lambda tick: self._odometry(tick, tick.vehicle, MAP_FRAME, _NO_COVARIANCE, _NO_COVARIANCE),
         )
+        truths = (truth,) if self._shows_truth else ()
+        clock = OutputTopic(CLOCK, "rosgraph_msgs/Clock", 100.0, self._clock)
+        joy = OutputTopic(JOY, "sensor_msgs/Joy", 100.0, self._joy)
+        if self._robot_topics:
+            return (clock, joy, *self._authority_topics(), *truths, *self._robot_topics)
         return (
-            OutputTopic(CLOCK, "rosgraph_msgs/Clock", 100.0, self._clock),
+            clock,
             OutputTopic(TF_STATIC, "tf2_msgs/TFMessage", ONCE, self._tf_static),
             OutputTopic(ROUTE, "nav_msgs/Path", ONCE, self._route),
             *self._map.topics(),
             *self._signals.topics(),
             OutputTopic(TF, "tf2_msgs/TFMessage", 50.0, self._tf),
-            OutputTopic(JOY, "sensor_msgs/Joy", 100.0, self._joy),
+            joy,
             OutputTopic(VELOCITY, "autoware_vehicle_msgs/VelocityReport", 30.0, self._velocity),
             OutputTopic(STEERING, "autoware_vehicle_msgs/SteeringReport", 30.0, self._steering),
             OutputTopic(GEAR_STATUS, "autoware_vehicle_msgs/GearReport", 30.0, self._gear),
@@ -141,13 +155,9 @@ class Outputs:
             ),
             OutputTopic(HAZARD_LIGHTS_STATUS, "autoware_vehicle_msgs/HazardLightsReport", 30.0, self._hazard_lights),
             OutputTopic(CONTROL_MODE, "autoware_vehicle_msgs/ControlModeReport", 30.0, self._control_mode),
-            OutputTopic(ARBITRATION, "simconsole_msgs/Arbitration", 50.0, self._arbitration),
-            OutputTopic(MODE, "std_msgs/String", 10.0, self._mode, _MODE_AT),
-            OutputTopic(LATERAL_AUTHORITY, "std_msgs/Float64", 10.0, self._lateral_authority),
-            OutputTopic(LONGITUDINAL_AUTHORITY, "std_msgs/Float64", 10.0, self._longitudinal_authority),
-            OutputTopic(BRIDGE, "simconsole_msgs/Bridge", 1.0, self._bridge),
+            *self._authority_topics(),
             OutputTopic(IMU, "sensor_msgs/Imu", 100.0, self._imu),
-            *((truth,) if self._shows_truth else ()),
+            *truths,
             OutputTopic(
                 ODOMETRY,
                 "nav_msgs/Odometry",
@@ -156,6 +166,16 @@ class Outputs:
                     tick, tick.measured, self._odometry_frame, self._pose_covariance, self._twist_covariance
                 ),
             ),
+        )
+
+    def _authority_topics(self) -> tuple[OutputTopic, ...]:
+        """Return what the console tells of itself, whatever it drives."""
+        return (
+            OutputTopic(ARBITRATION, "simconsole_msgs/Arbitration", 50.0, self._arbitration),
+            OutputTopic(MODE, "std_msgs/String", 10.0, self._mode, _MODE_AT),
+            OutputTopic(LATERAL_AUTHORITY, "std_msgs/Float64", 10.0, self._lateral_authority),
+            OutputTopic(LONGITUDINAL_AUTHORITY, "std_msgs/Float64", 10.0, self._longitudinal_authority),
+            OutputTopic(BRIDGE, "simconsole_msgs/Bridge", 1.0, self._bridge),
         )
 
     def happening(self, tick: PublishedTick, text: str, *, warns: bool) -> Any:

@@ -1,8 +1,8 @@
 """The types the console speaks: the definition files shipped beside this module, laid out as ROS lays out packages.
 
 Names, types and constants are those of ROS 2 Kilted for its common packages, and those of their ROS 2 releases for
-ackermann_msgs, auv_msgs, Autoware's packages, geographic_msgs and vision_msgs; rosapi is rosbridge_suite's
-rosapi_msgs. Comments are left out but in simconsole_msgs, the console's own.
+ackermann_msgs, auv_msgs, Autoware's packages, geographic_msgs, nav2_msgs, turtlebot3_msgs and vision_msgs; rosapi is
+rosbridge_suite's rosapi_msgs. Comments are left out but in simconsole_msgs, the console's own.
 """
 
 from functools import cache

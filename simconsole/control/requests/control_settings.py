@@ -18,6 +18,7 @@ class ControlSettings(NamedTuple):
     wheelbase_m: float
     road_wheel_per_hand_wheel: float
     max_road_wheel_rad: float
+    turns_in_place: float
     # Take-over by the person.
     steering_override_rad: float
     steering_release_rad: float
@@ -107,6 +108,7 @@ def settings(
     wheelbase_m: float,
     tick_hz: int,
     preferred: Commander = Commander.ROS,
+    turns_in_place: bool = False,
 ) -> ControlSettings:
     """Return the settings of one drive.
 
@@ -117,6 +119,7 @@ def settings(
         wheelbase_m: The vehicle's (> 0), between curvature and road-wheel angle.
         tick_hz: Control ticks per second.
         preferred: Which controller is the remote side where both could be.
+        turns_in_place: Whether the vehicle follows a twist as it is, instead of being steered.
     """
     lock_rad = max_road_wheel_rad
     release_deg = max(0.0, profile.steering_override_deg - profile.steering_override_hysteresis_deg)
@@ -125,6 +128,7 @@ def settings(
         wheelbase_m=wheelbase_m,
         road_wheel_per_hand_wheel=1.0 / steering_ratio,
         max_road_wheel_rad=lock_rad,
+        turns_in_place=float(turns_in_place),
         steering_override_rad=profile.steering_override_deg * RAD_PER_DEG,
         steering_release_rad=release_deg * RAD_PER_DEG,
         steering_override_radps=profile.steering_override_rate_degps * RAD_PER_DEG,

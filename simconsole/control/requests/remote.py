@@ -87,7 +87,7 @@ def remote_request(
         brake = clip(remote.brake, 0.0, 1.0)
         throttle = 0.0 if brake >= settings.brake_override else clip(remote.throttle, 0.0, 1.0)
         return RemoteRequest(clip(remote.road_wheel_rad, -_MOST_RAD, _MOST_RAD), throttle, brake, direction, 0.0)
-    if remote.kind == RemoteKind.POSE:
+    if remote.kind == RemoteKind.POSE or (remote.kind == RemoteKind.TWIST and settings.turns_in_place > 0.0):
         # Targets bypass steering and pedals (control/gate.py): a platform that reads them has neither.
         return RemoteRequest(0.0, 0.0, 0.0, direction, 0.0)
     road_wheel_rad = clip(remote.road_wheel_rad, -_MOST_RAD, _MOST_RAD)

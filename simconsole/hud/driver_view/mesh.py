@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from enum import IntEnum
+from itertools import pairwise
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -83,6 +84,19 @@ def box(place: Box, colour: Colour, roof: Colour | None = None, material: Materi
     high = np.column_stack((foot, np.full(4, place.z_m + place.height_m)))
     walls = np.array([(low[i], low[(i + 1) % 4], high[(i + 1) % 4], high[i]) for i in range(4)])
     return joined([quads(walls, colour, material), quads(high[None], colour if roof is None else roof)])
+
+
+def upright(line: Array, colour: Colour, thick_m: float = 0.02) -> Vertices:
+    """Return thin walls along a line [N, 3]: x, y and the height of each corner; each is as high as its first one."""
+    parts = []
+    for (x, y, height), (to_x, to_y, _) in pairwise(line.tolist()):
+        place = Box(
+            x_m=0.5 * (x + to_x), y_m=0.5 * (y + to_y), z_m=0.0,
+            half_length_m=0.5 * (math.hypot(to_x - x, to_y - y) + thick_m), half_width_m=0.5 * thick_m,
+            height_m=height, yaw_rad=math.atan2(to_y - y, to_x - x),
+        )  # fmt: skip
+        parts.append(box(place, colour))
+    return joined(parts)
 
 
 def prism(outline: Array, left_m: float, right_m: float, colour: Colour) -> Vertices:

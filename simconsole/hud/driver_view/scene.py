@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simconsole.hud.driver_view.hills import LAYER_M, draped, heights, land, lifted
-from simconsole.hud.driver_view.mesh import VERTEX, Box, Colour, Material, Vertices, box, cone, joined, quads
+from simconsole.hud.driver_view.mesh import VERTEX, Box, Colour, Material, Vertices, box, cone, joined, quads, upright
 from simconsole.hud.driver_view.road import MEADOW, occupancy_of, road_meshes
-from simconsole.hud.driver_view.surroundings import surroundings
+from simconsole.hud.driver_view.surroundings import NO_SURROUNDINGS, surroundings
 from simconsole.hud.driver_view.vehicle_body import Size, VehicleMeshes, vehicle_meshes
 from simconsole.values.height_field import HeightField
 from simconsole.world.drawing import Drawing
@@ -18,6 +18,7 @@ Array = NDArray[np.float64]
 
 PIECE_M: Final = 120.0
 POST: Final[Colour] = (66, 70, 74)
+WALL: Final[Colour] = (206, 200, 190)
 CASE: Final[Colour] = (22, 24, 26)
 LAMPS: Final[tuple[Colour, ...]] = ((232, 44, 36), (240, 168, 24), (46, 206, 106))
 LAMP_NAMES: Final = ("red", "amber", "green")
@@ -67,7 +68,8 @@ def world_parts(drawing: Drawing | None, limit_kmh: float) -> tuple[Part, ...]:
         return Part("land", land, 0), Part("grid", grid, 1)
     taken = occupancy_of(drawing)
     road = road_meshes(drawing, taken)
-    beside = surroundings(drawing.path, limit_kmh, taken, drawing.ground)
+    indoors = bool(drawing.walls)  # no houses and trees on the floor of an arena
+    beside = NO_SURROUNDINGS if indoors else surroundings(drawing.path, limit_kmh, taken, drawing.ground)
     lamps = [
         Part(f"signal_{index}_{name}", _lamp(light, height_m, _unlit(colour)), signal=_told(light))
         for index, light in enumerate(drawing.lights)
@@ -81,6 +83,7 @@ def world_parts(drawing: Drawing | None, limit_kmh: float) -> tuple[Part, ...]:
         Part("crossings", road.crossings, 3),
         Part("stop_lines", road.stop_lines, 3),
         Part("kerbs", road.kerbs),
+        Part("walls", joined([upright(line, WALL) for line in drawing.walls])),
         Part("signs", beside.signs),
         Part("buildings", beside.houses),
         Part("trees", beside.trees),

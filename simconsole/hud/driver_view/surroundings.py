@@ -43,6 +43,9 @@ class Surroundings(NamedTuple):
     trees: Vertices
 
 
+NO_SURROUNDINGS: Final = Surroundings(joined([]), joined([]), joined([]))
+
+
 def surroundings(path: Array, limit_kmh: float, taken: Occupancy, ground: HeightField | None = None) -> Surroundings:
     """Return houses, trees and signs along a path [N, 2], on ground that is free; takes it. Limit 0: no signs.
 

@@ -11,7 +11,7 @@ import msgspec
 from simconsole.profiles.files.loader import MAX_DATA_BYTES, find, inside, read_bytes, read_text_of
 from simconsole.profiles.strict_yaml import Plain, parse
 from simconsole.profiles.validation import convert
-from simconsole.profiles.world import KINDS, RESERVED, MapFile, RoadsProfile, WorldProfile
+from simconsole.profiles.world import KINDS, MapFile, RoadsProfile, WorldProfile
 from simconsole.values.errors import ProfileError
 
 MAX_MAP_BYTES: Final = 32 * 1024 * 1024
@@ -28,7 +28,7 @@ def load_world(name_or_path: str, *, referrer: Path | None = None) -> WorldProfi
         ProfileError: the profile or a file that it names cannot be used; names file and key.
     """
     path = find("worlds", name_or_path, referrer=referrer)
-    plain = with_kind(parse(read_text_of(path, MAX_DATA_BYTES), str(path)), str(path))
+    plain = with_kind(parse(read_text_of(path, MAX_DATA_BYTES), str(path)))
     profile: WorldProfile = convert(plain, WorldProfile, str(path))  # type: ignore[arg-type]  # a union
     if not isinstance(profile, RoadsProfile):
         return profile
@@ -36,17 +36,9 @@ def load_world(name_or_path: str, *, referrer: Path | None = None) -> WorldProfi
     return msgspec.structs.replace(profile, **named)
 
 
-def with_kind(plain: Plain, origin: str) -> Plain:
-    """Return a world's plain values with its kind: files from before there were kinds describe a course.
-
-    Raises:
-        ProfileError: a kind that no world can have yet.
-    """
-    if not isinstance(plain, dict):
-        return plain
-    if plain.get("kind") in RESERVED:
-        raise ProfileError(f"{origin}: kind: value {plain['kind']}: reserved, not built yet; one of {', '.join(KINDS)}")
-    return {"kind": KINDS[0], **plain}
+def with_kind(plain: Plain) -> Plain:
+    """Return a world's plain values with its kind: files from before there were kinds describe a course."""
+    return {"kind": KINDS[0], **plain} if isinstance(plain, dict) else plain
 
 
 def read_map(file: MapFile) -> bytes:

@@ -35,7 +35,7 @@ def recorded_session(bundle: Bundle) -> ResolvedSession:
         raise RecordingError(problem)
     plain = parse(text, str(path))
     if isinstance(plain, dict) and plain.get("world") is not None:
-        plain["world"] = with_kind(plain["world"], str(path))
+        plain["world"] = with_kind(plain["world"])
     resolved = convert(plain, ResolvedSession, str(path))
     if resolved.world is None:
         return resolved

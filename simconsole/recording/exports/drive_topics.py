@@ -11,6 +11,7 @@ from simconsole.bridge.console.command_decoder import CommandDecoder
 from simconsole.bridge.console.command_messages import CommandMessages
 from simconsole.bridge.console.input_slots import BridgeInputs
 from simconsole.bridge.console.output_schedule import OutputSchedule, topic_names
+from simconsole.bridge.console.published_tick import RobotTable
 from simconsole.bridge.console.road_user_topics import RoadUserTopics
 from simconsole.bridge.console.topics import BRIDGE, ODOMETRY, Outputs, Route
 from simconsole.bridge.console.view_topics import VIEW_TOPICS, view_topics
@@ -26,6 +27,7 @@ from simconsole.values.kernels import Row
 from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE, NO_SITUATION
 from simconsole.values.state_vector import INPUT_WIDTH, LAYOUT, PLATFORM_AT, Snapshot, TickInputs, input_vector
 from simconsole.values.units import tick_time_ns
+from simconsole.vehicle.turtlebot.robot_state import ROBOT
 from simconsole.world.rules.road_signals import RoadSignals
 from simconsole.world.traffic.road_users import NOBODY, RoadUsersAt
 from simconsole.world.world import NO_MAP, ShownMap
@@ -61,10 +63,12 @@ class DriveTopics:
         route: Route = (),
         signals: RoadSignals | None = None,
         shown: ShownMap = NO_MAP,
+        robot: RobotTable | None = None,
     ) -> None:
         """Take names and rates of the session's bridge, or of a bridge as shipped where it has none.
 
-        `route` is what /route shows, `signals` are the world's traffic lights, `shown` its map.
+        `route` is what /route shows, `signals` are the world's traffic lights, `shown` its map; `robot` makes the
+        topics of what was driven if it was one.
 
         Raises:
             ProfileError: the session's bridge renames or rates a topic that does not exist.
@@ -77,11 +81,12 @@ class DriveTopics:
             self._step_ticks = session.mode.control_period_ticks
             odometry_hz = session.mode.tick_hz / self._step_ticks
             profile = msgspec.structs.replace(profile, rates_hz={**profile.rates_hz, ODOMETRY: odometry_hz})
-        self._outputs = Outputs(self.registry, profile, route=route, signals=signals, shown_map=shown)
+        self._outputs = Outputs(self.registry, profile, route=route, signals=signals, shown_map=shown, robot=robot)
+        self._robot = robot
         outputs = (*view_topics(self.registry, profile), *self._outputs.topics())
         if profile.camera is not None:
             outputs = (*outputs, *CameraTopics(self.registry, profile.camera, lambda: None).topics())
-        commands = CommandDecoder(BridgeInputs(), profile).topics()
+        commands = CommandDecoder(BridgeInputs(), profile, is_robot=robot is not None).topics()
         self._road_users = RoadUsersAt(0, NOBODY)
         if session.environment.traffic is not None:
             outputs = (*RoadUserTopics(self.registry, lambda: self._road_users).topics(), *outputs)
@@ -100,7 +105,7 @@ class DriveTopics:
         act = next(acts, None)
         steps = recorded_road_users(recording)
         step = next(steps, None)
-        for snapshot in snapshots(recording, on_tick):
+        for snapshot in snapshots(recording, on_tick, () if self._robot is None else ROBOT.names):
             sent_ns = tick_time_ns(snapshot.tick - 1, snapshot.tick_hz)
             while act is not None and act.tick <= snapshot.tick:
                 text = self.registry.struct(ACTS_TYPE)(act.content.decode("utf-8", "replace"))
@@ -129,17 +134,21 @@ def _acts(recording: Recording) -> Iterator[Message]:
     return recording.messages(ACTS) if known else iter(())
 
 
-def snapshots(recording: Recording, on_tick: OnTick = lambda tick: None) -> Iterator[Snapshot]:
+def snapshots(
+    recording: Recording, on_tick: OnTick = lambda tick: None, platform: tuple[str, ...] = ()
+) -> Iterator[Snapshot]:
     """Yield the ticks of a recording as this version sees them, its columns found by name.
 
-    What the recording does not have is as if nothing had come: other versions have other columns.
+    What the recording does not have is as if nothing had come: other versions have other columns. `platform` names
+    those of the platform's own state that are wanted, all in their order.
     """
     header = recording.header
     here = [f"{stage}.{field}" for stage, part in LAYOUT._asdict().items() for field in part.names]
+    here += [f"platform.{field}" for field in platform]
     known = set(header.columns)
     names = [name for name in here if name in known]
     places = [here.index(name) for name in names]
-    empty = empty_vector()
+    empty = np.concatenate((empty_vector(), np.zeros(len(platform))))
     for block in recording.blocks(names):
         vectors = np.tile(empty, (len(block.ticks), 1))
         vectors[:, places] = block.vectors

@@ -9,6 +9,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Final, NamedTuple
 
+from simconsole.bridge.console.published_tick import RobotTable
 from simconsole.profiles.session import SessionProfile
 from simconsole.profiles.world import WorldProfile
 from simconsole.recording.exports.column_table import ColumnTable, TableChoice
@@ -42,6 +43,7 @@ def export_drive(
     layout: bool = False,
     on_tick: OnTick = lambda tick: None,
     world: WorldProfile | None = None,
+    robot: RobotTable | None = None,
 ) -> Exported:
     """Write a recorded drive to the new file or folder `path`.
 
@@ -54,6 +56,7 @@ def export_drive(
         layout: write a layout of Foxglove beside the topics.
         on_tick: told now and then how far it is.
         world: where it was driven: the route and the traffic lights.
+        robot: makes the topics of what was driven, where it was a robot.
 
     Raises:
         RecordingError: `path` exists or cannot be written, or the choice does not fit the format or the recording.
@@ -71,7 +74,8 @@ def export_drive(
     module = import_module(f"simconsole.recording.exports.{FORMATS[format_name]}")
     topics = None
     if of_topics:
-        topics = DriveTopics(session, route_points(world), road_signals(world, session.mode.tick_hz), shown_map(world))
+        signals = road_signals(world, session.mode.tick_hz)
+        topics = DriveTopics(session, route_points(world), signals, shown_map(world), robot)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         # A folder of its own to write in, because rosbag2 names its files after its folder.

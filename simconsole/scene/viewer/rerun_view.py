@@ -22,6 +22,7 @@ from simconsole.scene.entities import (
     POST_M,
     TAKEOVER_COLOURS,
     THEORETICAL,
+    WALL,
     Array,
     Dimensions,
     Mesh,
@@ -177,12 +178,13 @@ class RerunView:
             ("surface", world.surfaces, ASPHALT),
             ("island", world.islands, GREEN),
             ("paint", world.paint, PAINT),
+            ("walls", world.walls, WALL),
         ):
             self._mesh(f"world/road/{name}", mesh, colour)
         self._still("world/road/edges", _strips3d(world.edges, PAINT, 0.07))
         self._still("world/road/centre", _strips3d(world.centre_dashes, PAINT, 0.07))
         self._still("world/path/theoretical", _strips3d((world.path,), THEORETICAL, 0.12))
-        self._flat("road/edges", world.edges, MAP_EDGE, 0.5, 0.0)
+        self._flat("road/edges", (*world.edges, *world.wall_lines), MAP_EDGE, 0.5, 0.0)
         self._flat("path/theoretical", (world.path,), THEORETICAL, 3.0, 1.0)
         self._lights(world)
 

@@ -126,6 +126,7 @@ class VehicleCommand(NamedTuple):
     anti_lock_off: float = 0.0  # 1: switched off by hand, whatever the vehicle has
     traction_off: float = 0.0
     stability_off: float = 0.0
+    target_yaw_rate_radps: float = 0.0  # beside `target_speed_mps`, of a twist: for platforms that turn in place
 
 
 class VehicleState(NamedTuple):

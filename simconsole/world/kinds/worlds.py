@@ -3,7 +3,8 @@
 from functools import lru_cache, partial
 
 from simconsole.profiles.files.world_files import read_map
-from simconsole.profiles.world import CourseProfile, RoadsProfile, WorldProfile
+from simconsole.profiles.world import ArenaProfile, CourseProfile, RoadsProfile, WorldProfile
+from simconsole.world.arena.arena_world import ArenaWorld
 from simconsole.world.course import Course
 from simconsole.world.course_relief import course_field
 from simconsole.world.drawing import draw
@@ -25,6 +26,8 @@ def open_world(profile: WorldProfile) -> World:
         course = Course(profile)
         raise_ground = None if profile.ground is None else partial(course_field, course, profile.ground)
         return World(profile.title, course, partial(draw, course), raise_ground)
+    if isinstance(profile, ArenaProfile):
+        return ArenaWorld(profile)
     return road_world(profile, open_map(profile))
 
 

@@ -74,6 +74,14 @@ def test_twist_becomes_the_angle_of_its_curvature(control: ControlSettings) -> N
     assert back.direction == -1.0
 
 
+def test_a_twist_needs_neither_steering_nor_pedals_where_the_vehicle_turns_in_place(control: ControlSettings) -> None:
+    robot = control._replace(turns_in_place=1.0)
+    for speed, rate in ((0.0, 1.0), (0.2, 0.0), (-0.2, -1.0)):
+        asked = request(robot, RemoteKind.TWIST, speed_mps=speed, yaw_rate_radps=rate)
+        assert asked[:3] == (0.0, 0.0, 0.0)
+    assert request(robot, RemoteKind.SPEED, speed_mps=1.0).throttle > 0.0
+
+
 @pytest.mark.parametrize("speed", [0.0, -0.0, 0.049, -0.049, 5e-324])
 def test_a_standing_twist_holds_the_wheels(speed: float, control: ControlSettings) -> None:
     assert twist_road_wheel(speed, 1e308, HELD_RAD, control) == HELD_RAD

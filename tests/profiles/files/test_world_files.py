@@ -20,16 +20,15 @@ def written(folder: Path, name: str = "m.net.xml", content: bytes = b"<net/>") -
 
 def test_worlds_from_before_there_were_kinds_are_courses() -> None:
     assert isinstance(load_world("urban"), CourseProfile)
-    assert with_kind({"schema": 1}, "f") == {"schema": 1, "kind": "course"}
-    assert with_kind([1], "f") == [1]
+    assert with_kind({"schema": 1}) == {"schema": 1, "kind": "course"}
+    assert with_kind([1]) == [1]
 
 
-def test_reserved_and_unknown_kinds_are_refused(tmp_path: Path) -> None:
+def test_unknown_kinds_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "w.yaml"
-    for kind, told in (("arena", "kind: value arena: reserved, not built yet"), ("sea", 'kind: value "sea"')):
-        path.write_text(HEAD.replace("roads", kind))
-        with pytest.raises(ProfileError, match=told):
-            load_world(str(path))
+    path.write_text(HEAD.replace("roads", "sea"))
+    with pytest.raises(ProfileError, match='kind: value "sea"'):
+        load_world(str(path))
 
 
 def test_map_is_named_with_its_hash_and_read_back(tmp_path: Path) -> None:

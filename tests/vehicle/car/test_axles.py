@@ -50,7 +50,7 @@ def test_a_car_at_rest_is_pushed_nowhere() -> None:
 def test_locked_wheels_push_against_the_motion_and_turn_nothing() -> None:
     slid = WHEEL._replace(deflection_x_m=0.1)
     sliding = forces(BODY._replace(vx_mps=10.0), slid)
-    most = 2.0 * (CAR.front.friction_left * CAR.front.static_n + CAR.rear.friction_left * CAR.rear.static_n)
+    most = 2.0 * (CAR.front.friction * CAR.front.static_n + CAR.rear.friction * CAR.rear.static_n)
     assert -most * (1.0 + 1e-12) <= sliding.force_x_n < -0.5 * most
     assert sliding.moment_nm == 0.0
 

@@ -24,6 +24,13 @@ def test_every_shipped_world_gives_a_route_and_a_drawing(name: str) -> None:
         assert Path(profile.map.name).stat().st_size < 1_000_000
 
 
+def test_the_arena_is_a_world_like_the_others() -> None:
+    world = open_world(load_world("arena"))
+    assert world.route.length_m > 20.0
+    assert len(world.drawing.walls) > 5
+    assert route_points(load_world("arena"))[0] == (0.8, 0.8, pytest.approx(0.6747, abs=1e-3))
+
+
 def test_urban_network_has_what_the_course_has() -> None:
     course, network = (open_world(load_world(name)).route for name in ("urban", "urban_signals"))
     assert network.length_m == pytest.approx(course.length_m, rel=0.002)

@@ -1,0 +1,1 @@
+"""What a robot tells over rosbridge, and what it hears: the topics of a TurtleBot3."""
