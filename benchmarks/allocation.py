@@ -79,9 +79,9 @@ def main() -> None:
         for method in METHODS:
             runs = [timed(method, scene, objective, seed) for seed, scene in enumerate(drawn)]
             gaps = sorted(cost / least - 1.0 for (cost, _), least in zip(runs, known, strict=True))
-            times = sorted(1000.0 * spent for _, spent in runs)
+            spent_ms = sorted(1000.0 * spent for _, spent in runs)
             print(
-                f"{method:<22} median {statistics.median(times):.3f} ms, most {times[-1]:.3f} ms; gap mean "
+                f"{method:<22} median {statistics.median(spent_ms):.3f} ms, most {spent_ms[-1]:.3f} ms; gap mean "
                 f"{100 * statistics.mean(gaps):.2f} %, p95 {100 * gaps[int(0.95 * len(gaps))]:.2f} %, most "
                 f"{100 * gaps[-1]:.2f} %, optimal in {100 * sum(gap < 1e-9 for gap in gaps) / len(gaps):.0f} %"
             )
