@@ -32,6 +32,7 @@ from simconsole.session.paced import (
     worker_specs,
 )
 from simconsole.session.pacing import Pacer, UnpacedPacer, realtime_hints
+from simconsole.session.preconditions import check_address, check_commander, check_links
 from simconsole.session.recorder import LogRecorder
 from simconsole.session.seat import open_seating
 from simconsole.session.traffic_source import TrafficSource, open_traffic
@@ -88,7 +89,7 @@ def open_headless(
         DeviceError: a device is missing.
     """
     check_commander(resolved.session)
-    _check_links(resolved.session)
+    check_links(resolved.session)
     commands: CommandSource = NobodyCommands()
     outputs: tuple[Output, ...] = ()
     pace = UnpacedPacer()
@@ -154,7 +155,7 @@ def open_realtime(
     """
     check_commander(resolved.session)
     if resolved.session.outputs.bridge is not None:
-        _check_address(resolved.session.outputs.bridge)
+        check_address(resolved.session.outputs.bridge)
     token, drive = own_token(resolved.session), new_nonce()
     folder = make_run_folder()
     stack.callback(remove_run_folder, folder)
@@ -265,33 +266,6 @@ def _await_workers(
     return address
 
 
-def _check_links(session: SessionProfile) -> None:
-    """Refuse links that a drive without a bridge would leave out in silence."""
-    bridge = session.outputs.bridge
-    if bridge is None:
-        return
-    if bridge.camera is not None:
-        pacing = session.mode.pacing
-        raise ProfileError(f"mode.pacing: value {pacing}: realtime, where outputs.bridge.camera is to be drawn")
-    if session.mode.pacing == "lockstep":
-        return
-    if bridge.upstream is not None:
-        raise ProfileError("mode.pacing: value free: realtime, where outputs.bridge.upstream is to be connected to")
-    if bridge.ros2 is not None:
-        raise ProfileError("mode.pacing: value free: lockstep or realtime, where outputs.bridge.ros2 joins a graph")
-
-
-def _check_address(profile: BridgeProfile) -> None:
-    """Listen briefly on the bridge's port: one in use is one error now, not a worker that fails at each restart."""
-    from simconsole.bridge.ros2.node import check
-    from simconsole.bridge.transport.message_files import load_registry
-    from simconsole.bridge.transport.sockets import listen
-
-    load_registry(profile)
-    check(profile)
-    listen(profile.host, profile.port).close()
-
-
 def _idle(snapshot: Snapshot) -> None:
     """Sleep while simulated time stands, where no other standby function waits."""
     time.sleep(STAND_S)
@@ -367,23 +341,6 @@ def _wait_for_controller(
     if program is not None and program.poll() is not None:
         raise BridgeError(f"the autopilot ended with exit code {program.returncode} before it connected")
     raise BridgeError(f"no controller subscribed to odometry at {bridge.url} within {patience_s:g} s")
-
-
-def check_commander(session: SessionProfile) -> None:
-    """Refuse a session whose `features.commander` could never command.
-
-    Raises:
-        ProfileError: it could not.
-    """
-    features = session.features
-    if features.commands is not None and (session.mode.pacing != "free" or features.autopilot is not None):
-        raise ProfileError(f"features.commands: value {features.commands}: mode.pacing free, and no autopilot")
-    if features.commander != "can":
-        return
-    if session.outputs.can is None:
-        raise ProfileError("features.commander: value can: needs outputs.can")
-    if session.mode.pacing == "lockstep":
-        raise ProfileError("mode.pacing: value lockstep: realtime or free, where features.commander is can")
 
 
 def _open_can(resolved: ResolvedSession, console: Console, bundle: Path, stack: ExitStack) -> "HeadlessCan | None":

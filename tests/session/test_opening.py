@@ -5,50 +5,6 @@ import pytest
 import yaml
 
 from simconsole.cli.main import main
-from simconsole.profiles.session import SessionProfile
-from simconsole.session.opening import check_commander
-from simconsole.session.resolution import load_session, override
-from simconsole.values.errors import ProfileError
-
-
-@pytest.fixture
-def session() -> SessionProfile:
-    return load_session("can")
-
-
-def test_shipped_session_can_be_driven(session: SessionProfile) -> None:
-    assert session.features.commander == "can"
-    check_commander(session)  # it raises where the commander has no way in
-    check_commander(load_session("demo"))
-
-
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ({"outputs": {"can": None}}, r"features\.commander: value can: needs outputs\.can"),
-        ({"mode": {"pacing": "lockstep"}}, r"mode\.pacing: value lockstep"),
-    ],
-)
-def test_commander_with_no_way_in_is_refused(
-    session: SessionProfile, changes: dict[str, dict[str, object]], words: str
-) -> None:
-    with pytest.raises(ProfileError, match=words):
-        check_commander(override(session, **changes))
-
-
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"mode": {"pacing": "realtime"}},
-        {"mode": {"pacing": "lockstep"}},
-        {"mode": {"pacing": "free"}, "features": {"commands": "bag:drive.mcap", "autopilot": "urban"}},
-    ],
-)
-def test_a_bag_commands_only_where_no_other_controller_is_waited_for(changes: dict[str, dict[str, object]]) -> None:
-    session = override(load_session("seated"), features={"commands": "bag:drive.mcap"})
-    check_commander(override(session, mode={"pacing": "free"}))
-    with pytest.raises(ProfileError, match=r"features\.commands: value bag:drive\.mcap: mode\.pacing free"):
-        check_commander(override(session, **changes))
 
 
 @pytest.mark.parametrize(
