@@ -6,6 +6,7 @@ not read is replaced by the next: nobody waits for it.
 
 import contextlib
 import os
+import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -46,8 +47,9 @@ class CameraWorker(Worker, frozen=True, kw_only=True):
         from simconsole.hud.gl.context import windowless_context
         from simconsole.session.view_job import load_view_job
 
-        with contextlib.suppress(OSError, AttributeError):  # no such thing on Windows
-            os.nice(NICE)
+        if sys.platform != "win32":
+            with contextlib.suppress(OSError):  # not granted: then as it is
+                os.nice(NICE)
         os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
         ring, slot = Ring.open(folder / SNAPSHOTS), Ring.open(folder / CAMERA, writable=True)
         users = RoadUsersRing(folder) if self.has_traffic else None
