@@ -12,20 +12,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Final
 
-import numpy as np
-
-from simconsole.bridge.console.camera_topics import CameraShot
+from simconsole.processes.byte_slot import ByteSlot
 from simconsole.processes.shared_memory import Ring
 from simconsole.processes.worker import Worker
 from simconsole.profiles.bridge import CameraProfile
-from simconsole.session.worker_programs import SNAPSHOTS, VIEW_JOB, RoadUsersRing, snapshot_of
-from simconsole.values.errors import WorkerError
+from simconsole.session.worker_programs import CAMERA, SNAPSHOTS, VIEW_JOB, RoadUsersRing, snapshot_of
 
-CAMERA: Final = "camera"
-SLOT_CAPACITY: Final = 4
-BYTES_PER_PX: Final = 3
-"""No JPEG is longer than the picture itself, but for noise."""
-WORD_BYTES: Final = 8
 LOOK_S: Final = 0.002
 NICE: Final = 10
 """The core, and the display of a person who drives, come first."""
@@ -51,7 +43,7 @@ class CameraWorker(Worker, frozen=True, kw_only=True):
             with contextlib.suppress(OSError):  # not granted: then as it is
                 os.nice(NICE)
         os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
-        ring, slot = Ring.open(folder / SNAPSHOTS), Ring.open(folder / CAMERA, writable=True)
+        ring, slot = Ring.open(folder / SNAPSHOTS), ByteSlot.open(folder / CAMERA, writable=True)
         users = RoadUsersRing(folder) if self.has_traffic else None
         job = load_view_job(folder / VIEW_JOB)
         picture = CameraPicture(windowless_context(), view_scene(job.drawing, job.limit_kmh, job.size), self.profile)
@@ -67,45 +59,4 @@ class CameraWorker(Worker, frozen=True, kw_only=True):
             shown = shown_vehicle(snapshot)
             if users is not None:
                 shown = shown._replace(others=at_moment(users.newest(), shown.t_s, self.tick_hz))
-            write_shot(slot, CameraShot(snapshot.tick, picture.jpeg(shown)))
-
-
-class CameraReader:
-    """The newest picture, for the bridge's process."""
-
-    def __init__(self, folder: Path) -> None:
-        self._slot = Ring.open(folder / CAMERA)
-        self._seen, self._shot = 0, CameraShot(0, b"")
-
-    def newest(self) -> CameraShot | None:
-        """Return the newest picture, None before the first."""
-        if self._slot.newest != self._seen:
-            record = self._slot.latest()
-            if record is not None:
-                self._seen = record.number
-                self._shot = CameraShot(record.stamp, record.values.tobytes()[: record.second_stamp])
-        return self._shot if self._seen else None
-
-
-def make_camera_slot(folder: Path, profile: CameraProfile) -> Ring:
-    """Make the memory for the newest pictures.
-
-    Raises:
-        WorkerError: it cannot be made.
-    """
-    words = -(-profile.width_px * profile.height_px * BYTES_PER_PX // WORD_BYTES)
-    return Ring.create(folder / CAMERA, words, SLOT_CAPACITY)
-
-
-def write_shot(slot: Ring, shot: CameraShot) -> None:
-    """Publish a picture.
-
-    Raises:
-        WorkerError: it is longer than its memory.
-    """
-    room = slot.width * WORD_BYTES
-    if len(shot.jpeg) > room:
-        raise WorkerError(f"camera: a picture of {len(shot.jpeg)} bytes: at most {room}")
-    values = np.zeros(slot.width)
-    values.view(np.uint8)[: len(shot.jpeg)] = np.frombuffer(shot.jpeg, np.uint8)
-    slot.write(values, shot.tick, len(shot.jpeg))
+            slot.write(snapshot.tick, picture.jpeg(shown))

@@ -9,10 +9,11 @@ import msgspec
 
 from simconsole.bridge.console.operator_acts import ACT_BYTES, ACTS_MAX
 from simconsole.control.requests.refusals import steering_limit
+from simconsole.processes.byte_slot import ByteSlot
 from simconsole.processes.shared_memory import EventCounters, Ring, TextQueue
 from simconsole.processes.worker import Worker, WorkerSpec
 from simconsole.profiles.vehicle import TurtlebotProfile
-from simconsole.session.camera_worker import CameraWorker, make_camera_slot
+from simconsole.session.camera_worker import CameraWorker
 from simconsole.session.external_view import display_settings
 from simconsole.session.scene_job import LIVE_SCENE, scene_job
 from simconsole.session.traffic_source import TrafficSource
@@ -20,6 +21,7 @@ from simconsole.session.view_job import save_view_job, view_job
 from simconsole.session.worker_programs import (
     ACTS,
     ADDRESS,
+    CAMERA,
     CAN_COMMAND,
     CAN_EVENTS,
     CAN_STATUS,
@@ -53,6 +55,8 @@ from simconsole.values.units import NS_PER_S
 from simconsole.world.traffic.road_users import RECORD_WIDTH, to_record
 
 START_PATIENCE_S = 20.0
+JPEG_BYTES_PER_PX = 3
+"""No JPEG is longer than the picture itself, but for noise."""
 
 
 class RingOutput:
@@ -217,7 +221,8 @@ def worker_specs(
     if has_view or (bridge is not None and (bridge.external_view or bridge.camera is not None)):
         save_view_job(folder / VIEW_JOB, view_job(resolved))
     if bridge is not None and bridge.camera is not None:
-        make_camera_slot(folder, bridge.camera)
+        camera = bridge.camera
+        ByteSlot.create(folder / CAMERA, camera.width_px * camera.height_px * JPEG_BYTES_PER_PX)
         workers["camera"] = CameraWorker(profile=bridge.camera, tick_hz=tick_hz, has_traffic=has_traffic)
     if outputs.hud is not None:
         workers["hud"] = HudWorker(

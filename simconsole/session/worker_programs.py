@@ -3,7 +3,6 @@
 A worker's fields are its whole configuration; `simconsole.processes.worker` brings them into its process.
 """
 
-import contextlib
 import time
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -15,6 +14,8 @@ import numpy as np
 
 from simconsole.control.requests.refusals import SteeringLimit
 from simconsole.hud.view import HudSettings
+from simconsole.processes.byte_slot import ByteSlot
+from simconsole.processes.receipts import Receipts
 from simconsole.processes.shared_memory import EventCounters, Record, Ring, TextQueue
 from simconsole.processes.worker import Worker
 from simconsole.profiles.bridge import BridgeProfile
@@ -25,13 +26,12 @@ from simconsole.profiles.world import WorldProfile
 from simconsole.values.host.files import write_atomically
 from simconsole.values.kernels import Row
 from simconsole.values.labels import LINK_DOWN
-from simconsole.values.latency import Hop, LatencyStatistics
 from simconsole.values.signals import RemoteCommand
 from simconsole.values.state_vector import LAYOUT, Snapshot
-from simconsole.values.units import NS_PER_S
 from simconsole.world.traffic.road_users import NOBODY, RoadUsersAt, from_record
 
 if TYPE_CHECKING:
+    from simconsole.bridge.console.camera_topics import ReadCamera
     from simconsole.hud.driver_view.scene import ViewScene
 
 SNAPSHOTS: Final = "snapshots"
@@ -49,6 +49,7 @@ ROAD_USERS: Final = "road_users"
 LATENCY: Final = "latency"
 SCENE_JOB: Final = "scene.npz"
 VIEW_JOB: Final = "view.npz"
+CAMERA: Final = "camera"
 SNAPSHOT_CAPACITY: Final = 1024
 SLOT_CAPACITY: Final = 4
 ROAD_USERS_CAPACITY: Final = 64
@@ -82,7 +83,6 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
         from simconsole.bridge.console.view_topics import NO_VIEW
         from simconsole.bridge.transport.server import serve
         from simconsole.bridge.transport.sockets import address_url
-        from simconsole.session.camera_worker import CameraReader
         from simconsole.session.external_view import external_view
         from simconsole.session.robots import robot_at_work
         from simconsole.session.view_job import load_view_job
@@ -99,7 +99,7 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
             route=route_points(self.world),
             shown_map=shown_map(self.world),
             signals=road_signals(self.world, self.tick_hz),
-            camera=CameraReader(folder).newest if profile.camera is not None else None,
+            camera=None if profile.camera is None else _shots(folder),
             road_users=RoadUsersRing(folder).newest if self.has_traffic else None,
             view=NO_VIEW if self.display is None else external_view(load_view_job(folder / VIEW_JOB), self.display),
             robot=robot_at_work(self.vehicle, self.world),
@@ -124,6 +124,19 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
             on_ready=ready, on_act=keep_act, on_counts=write_counts, on_link_state=write_link_state,
             folder=Path(self.bundle), drive=self.drive, around=around,
         )  # fmt: skip
+
+
+def _shots(folder: Path) -> "ReadCamera":
+    """Return what returns the newest picture of the camera's worker."""
+    from simconsole.bridge.console.camera_topics import CameraShot
+
+    slot = ByteSlot.open(folder / CAMERA)
+
+    def newest() -> CameraShot | None:
+        piece = slot.newest()
+        return None if piece is None else CameraShot(*piece)
+
+    return newest
 
 
 class CanWorker(Worker, frozen=True, kw_only=True):
@@ -320,42 +333,6 @@ class LinkWatch(_Watch):
     def __call__(self) -> str:
         """Return a label of `simconsole.values.labels`, or how many clients there are."""
         return str(self.status().get("state", LINK_DOWN))
-
-
-class Receipts:
-    """A worker's part of the latency statistics, written to a file once a second."""
-
-    SAVE_NS: Final = NS_PER_S
-
-    def __init__(self, path: Path, clock_ns: Callable[[], int] = time.monotonic_ns) -> None:
-        self._path = path
-        self._clock_ns = clock_ns
-        self._latencies = LatencyStatistics(clock_ns)
-        self._number = 0
-        self._fresh = False
-        self._saved_ns = clock_ns()
-
-    def received(self, record: Record) -> None:
-        """Note a record; one that was noted before is not counted again."""
-        self._fresh = record.number != self._number
-        if self._fresh:
-            self._number = record.number
-            self._latencies.received(record.second_stamp)
-            self._save()
-
-    def drawn(self) -> None:
-        """Note that the picture of the record received last is on the screen."""
-        if self._fresh:
-            self._fresh = False
-            self._latencies.mark(Hop.DRAW)
-
-    def _save(self) -> None:
-        now_ns = self._clock_ns()
-        if now_ns - self._saved_ns < self.SAVE_NS:
-            return
-        self._saved_ns = now_ns
-        with contextlib.suppress(OSError):  # the run folder is gone: the core has ended
-            write_atomically(self._path, msgspec.json.encode(self._latencies.summary_us()), durable=False)
 
 
 class NewestOnce:

@@ -1,4 +1,4 @@
-"""A camera's pictures from a real drive over a real WebSocket, and the memory that they go through."""
+"""A camera's pictures from a real drive over a real WebSocket."""
 
 import base64
 import sys
@@ -8,12 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from simconsole.bridge.console.camera_topics import CameraShot
-from simconsole.profiles.bridge import CameraProfile
 from simconsole.profiles.files.world_files import load_world
 from simconsole.recording.bundles.bundle import open_bundle
-from simconsole.session.camera_worker import CameraReader, make_camera_slot, write_shot
-from simconsole.values.errors import WorkerError
 from simconsole.world.kinds.worlds import open_world
 from tests.drives.console import complaint, simconsole
 from tests.drives.controllers import free_port
@@ -119,21 +115,3 @@ def test_where_nobody_could_draw_it_a_camera_is_refused(pacing: str, tmp_path: P
     path.write_text(path.read_text().replace("realtime", pacing))
     told = complaint(simconsole("drive", path, "--out", tmp_path / "bundle", "--for", 1))
     assert f"mode.pacing: value {pacing}: realtime, where outputs.bridge.camera is to be drawn" in told
-
-
-def test_the_newest_picture_arrives_whole_and_an_unread_one_is_replaced(tmp_path: Path) -> None:
-    slot = make_camera_slot(tmp_path, CameraProfile(width_px=64, height_px=48))
-    reader = CameraReader(tmp_path)
-    assert reader.newest() is None
-    generator = np.random.Generator(np.random.PCG64(1))
-    for tick, length in enumerate((1, 7, 9000, 64 * 48 * 3), start=1):
-        jpeg = generator.bytes(length)
-        write_shot(slot, CameraShot(tick, b"never read"))
-        write_shot(slot, CameraShot(tick, jpeg))
-        assert reader.newest() == reader.newest() == CameraShot(tick, jpeg)
-
-
-def test_a_picture_that_is_too_long_is_refused(tmp_path: Path) -> None:
-    slot = make_camera_slot(tmp_path, CameraProfile(width_px=64, height_px=48))
-    with pytest.raises(WorkerError, match="9217 bytes: at most 9216"):
-        write_shot(slot, CameraShot(1, bytes(64 * 48 * 3 + 1)))

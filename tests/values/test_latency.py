@@ -13,7 +13,7 @@ from simconsole.session.lockstep import LockstepLink
 from simconsole.session.paced import RingOutput, worker_latencies
 from simconsole.session.pacing import UnpacedPacer
 from simconsole.session.resolution import resolve
-from simconsole.session.worker_programs import LATENCY, NewestOnce, Receipts
+from simconsole.session.worker_programs import LATENCY, NewestOnce
 from simconsole.tick.advance import Console, ConsoleState
 from simconsole.tick.assembly import assemble
 from simconsole.tick.loop import Components, run
@@ -180,32 +180,6 @@ def test_in_lockstep_the_answer_is_waited_for_at_the_exchange() -> None:
     assert LockstepLink.hop is Hop.EXCHANGE
 
 
-def record(number: int, published_ns: int) -> Record:
-    return Record(number, number, published_ns, np.zeros(1))
-
-
-@pytest.mark.parametrize(
-    ("receive_ns", "draw_ns"), [(400_000, 2_000_000), (7_400_000, 2_000_000), (400_000, 9_000_000)]
-)
-def test_a_worker_that_is_late_is_found_at_receive_or_at_draw(tmp_path: Path, receive_ns: int, draw_ns: int) -> None:
-    clock = Clock({})
-    receipts = Receipts(tmp_path / f"{LATENCY}.hud.json", clock.read)
-    for number in range(1, 200):
-        published_ns = clock.now_ns
-        clock.now_ns += receive_ns
-        receipts.received(record(number, published_ns))
-        clock.now_ns += draw_ns
-        receipts.drawn()
-        receipts.received(record(number, published_ns))  # the same again: neither received nor drawn
-        receipts.drawn()
-        clock.now_ns += 10_000_000
-    found = worker_latencies(tmp_path)
-    assert list(found) == ["receive, hud", "draw, hud"]
-    assert found["receive, hud"]["max"] == receive_ns / 1e3
-    assert found["draw, hud"]["max"] == draw_ns / 1e3
-    assert 80 < found["draw, hud"]["count"] < 200, "saved once a second, each picture once"
-
-
 def test_workers_that_said_nothing_have_no_statistics(tmp_path: Path) -> None:
     (tmp_path / f"{LATENCY}.bridge.json").write_text("{")
     assert worker_latencies(tmp_path) == {}
@@ -222,18 +196,6 @@ def test_the_ring_tells_a_worker_when_it_was_published(tmp_path: Path, monkeypat
     assert (snapshot.tick, seen[0].second_stamp) == (7, 987_654_321)
     assert newest() is None
     assert len(seen) == 1
-
-
-def test_a_full_disk_of_the_run_folder_harms_no_worker(tmp_path: Path) -> None:
-    clock = Clock({})
-    receipts = Receipts(tmp_path / "gone" / f"{LATENCY}.hud.json", clock.read)
-    clock.now_ns += 2_000_000_000
-    receipts.received(record(1, clock.now_ns))
-    (tmp_path / "gone").mkdir()
-    clock.now_ns += 2_000_000_000
-    receipts.received(record(2, clock.now_ns))
-    found = worker_latencies(tmp_path / "gone")
-    assert found["receive, hud"]["count"] == 2, "counted all the same, and saved when it can be"
 
 
 def test_percentiles_hold_to_one_bin() -> None:

@@ -22,7 +22,7 @@ from simconsole.world.people.walking import (
 )
 from simconsole.world.people.yielding import Crossed
 from simconsole.world.roads.road_map import Array, RoadMap
-from simconsole.world.traffic.columns import BOX, LANE, LENGTH, SPEED, WIDTH
+from simconsole.world.traffic_columns import BOX, LANE, LENGTH, SPEED, WIDTH
 
 PACE_MPS: Final = 1.34
 """How fast people walk, and how much that varies: Weidmann, Transporttechnik der Fussgänger, Schriftenreihe des IVT 90,

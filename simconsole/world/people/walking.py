@@ -9,7 +9,7 @@ from typing import Final, NamedTuple
 
 from simconsole.values.kernels import Row, approach, kernel
 from simconsole.world.people.footways import Footways
-from simconsole.world.traffic.columns import (
+from simconsole.world.traffic_columns import (
     ALONG,
     BOX,
     COSINE,

@@ -3,7 +3,7 @@
 from typing import Final, NamedTuple
 
 from simconsole.values.kernels import Row, kernel
-from simconsole.world.traffic.columns import COUNT, LANES
+from simconsole.world.traffic_columns import COUNT, LANES
 
 FAR_M: Final = 1e6
 _PASSED_M: Final = 0.3  # whose front is further than this on the crossing drives on

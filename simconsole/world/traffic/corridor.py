@@ -4,9 +4,9 @@ import math
 from typing import Final, NamedTuple
 
 from simconsole.values.kernels import Row, kernel
-from simconsole.world.traffic.columns import COSINE, COUNT, LANES, LENGTH, SINE, SPEED, WIDTH, X, Y
 from simconsole.world.traffic.following import FAR_M
 from simconsole.world.traffic.network import Network
+from simconsole.world.traffic_columns import COSINE, COUNT, LANES, LENGTH, SINE, SPEED, WIDTH, X, Y
 
 MARGIN_M: Final = 0.35
 _DISCS: Final = 5  # that cover a box, from end to end

@@ -2,8 +2,8 @@
 
 from typing import Final
 
+from simconsole.world import traffic_columns as at
 from simconsole.world.roads.road_map import Array
-from simconsole.world.traffic import columns as at
 from simconsole.world.traffic.junctions import GIVE_WAY, GO
 from simconsole.world.traffic.network import Network, Numbers
 

@@ -9,7 +9,9 @@ from typing import Final, NamedTuple
 
 from simconsole.values.kernels import Row, kernel
 from simconsole.world.people.yielding import Crossed
-from simconsole.world.traffic.columns import (
+from simconsole.world.traffic.following import clearing_s
+from simconsole.world.traffic.network import Network
+from simconsole.world.traffic_columns import (
     ALONG,
     CONNECTIONS,
     COUNT,
@@ -21,8 +23,6 @@ from simconsole.world.traffic.columns import (
     STOOD,
     S,
 )
-from simconsole.world.traffic.following import clearing_s
-from simconsole.world.traffic.network import Network
 
 GO: Final = 0
 GIVE_WAY: Final = 1

@@ -8,7 +8,10 @@ others. Whoever is on a lane that nothing follows must leave it: then only safet
 from typing import Final
 
 from simconsole.values.kernels import Row, kernel
-from simconsole.world.traffic.columns import (
+from simconsole.world.traffic.following import FAR_M, acceleration
+from simconsole.world.traffic.network import Network
+from simconsole.world.traffic.paths import look_ahead
+from simconsole.world.traffic_columns import (
     ACCELERATION,
     ALONG,
     CHANGED,
@@ -30,9 +33,6 @@ from simconsole.world.traffic.columns import (
     X,
     Y,
 )
-from simconsole.world.traffic.following import FAR_M, acceleration
-from simconsole.world.traffic.network import Network
-from simconsole.world.traffic.paths import look_ahead
 
 POLITENESS: Final = 0.2
 THRESHOLD_MPS2: Final = 0.2

@@ -6,8 +6,8 @@ from typing import Final
 
 import numpy as np
 
+from simconsole.world import traffic_columns as at
 from simconsole.world.roads.road_map import ROAD, Array, Lane, RoadMap
-from simconsole.world.traffic import columns as at
 
 LENGTH_M: Final = 4.4
 WIDTH_M: Final = 1.8

@@ -4,8 +4,8 @@ import math
 from typing import Final, NamedTuple
 
 from simconsole.values.kernels import Row, kernel
-from simconsole.world.traffic.columns import CONNECTIONS, COUNT, GRANTS, LANES, SLOTS, drawn
 from simconsole.world.traffic.network import Network
+from simconsole.world.traffic_columns import CONNECTIONS, COUNT, GRANTS, LANES, SLOTS, drawn
 
 AHEAD_M: Final = 220.0
 BEHIND_M: Final = 12.0

@@ -4,8 +4,8 @@ from typing import Final
 
 import numpy as np
 
+from simconsole.world import traffic_columns as at
 from simconsole.world.roads.road_map import Array
-from simconsole.world.traffic import columns as at
 from simconsole.world.traffic.network import Network, Numbers
 from simconsole.world.traffic.paths import middle_at
 

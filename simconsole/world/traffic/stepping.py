@@ -7,7 +7,23 @@ from simconsole.values.kernels import Row, kernel
 from simconsole.values.trigonometry import atan2
 from simconsole.world.people.walking import TALLEST_M
 from simconsole.world.people.yielding import occupied_ahead
-from simconsole.world.traffic.columns import (
+from simconsole.world.traffic.corridor import Body, horizon, near_boxes, nearest_ahead
+from simconsole.world.traffic.following import FAR_M, acceleration
+from simconsole.world.traffic.junctions import (
+    DISTANCE,
+    SLOT,
+    Turn,
+    asking_m,
+    count_grants,
+    count_others,
+    decide,
+    find_line,
+)
+from simconsole.world.traffic.lane_changes import CHANGE_S, consider, rested
+from simconsole.world.traffic.network import Network
+from simconsole.world.traffic.paths import desired_speed, forget_behind, look_ahead, middle_at
+from simconsole.world.traffic.road_users import RoadUserKind
+from simconsole.world.traffic_columns import (
     ACCELERATION,
     BOX,
     CHANGED,
@@ -28,22 +44,6 @@ from simconsole.world.traffic.columns import (
     X,
     Y,
 )
-from simconsole.world.traffic.corridor import Body, horizon, near_boxes, nearest_ahead
-from simconsole.world.traffic.following import FAR_M, acceleration
-from simconsole.world.traffic.junctions import (
-    DISTANCE,
-    SLOT,
-    Turn,
-    asking_m,
-    count_grants,
-    count_others,
-    decide,
-    find_line,
-)
-from simconsole.world.traffic.lane_changes import CHANGE_S, consider, rested
-from simconsole.world.traffic.network import Network
-from simconsole.world.traffic.paths import desired_speed, forget_behind, look_ahead, middle_at
-from simconsole.world.traffic.road_users import RoadUserKind
 
 VAN_M: Final = 5.2  # longer vehicles are vans
 _CONSIDER_EVERY: Final = 16  # steps; a vehicle's turn comes by its number

@@ -7,12 +7,12 @@ import numpy as np
 
 from simconsole.profiles.traffic import LeadVehicle, TrafficProfile
 from simconsole.values.trigonometry import direction
+from simconsole.world import traffic_columns as at
 from simconsole.world.people.people import People
 from simconsole.world.people.walking import Others
 from simconsole.world.roads.lane_index import LaneIndex, nearest_segment
 from simconsole.world.roads.road_map import Array, RoadMap
 from simconsole.world.route import Route
-from simconsole.world.traffic import columns as at
 from simconsole.world.traffic.courtesy import Courtesy
 from simconsole.world.traffic.junctions import LINE, Turn
 from simconsole.world.traffic.lead_vehicle import LeadDriver

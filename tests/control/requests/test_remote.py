@@ -79,7 +79,7 @@ def test_a_twist_needs_neither_steering_nor_pedals_where_the_vehicle_turns_in_pl
     for speed, rate in ((0.0, 1.0), (0.2, 0.0), (-0.2, -1.0)):
         asked = request(robot, RemoteKind.TWIST, speed_mps=speed, yaw_rate_radps=rate)
         assert asked[:3] == (0.0, 0.0, 0.0)
-    assert request(robot, RemoteKind.SPEED, speed_mps=1.0).throttle > 0.0
+    assert request(robot, RemoteKind.SPEED, vx_mps=0.0, speed_mps=1.0).throttle > 0.0
 
 
 @pytest.mark.parametrize("speed", [0.0, -0.0, 0.049, -0.049, 5e-324])

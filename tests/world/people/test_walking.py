@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from simconsole.profiles.files.world_files import load_world
+from simconsole.world import traffic_columns as at
 from simconsole.world.kinds.worlds import open_map
 from simconsole.world.people.crossings import crossings_of
 from simconsole.world.people.footways import Footways, footways
 from simconsole.world.people.walking import PACE, PERSON, SIZE_M, STEPPED, WALK, WAY, Crowd, Others, step_people
 from simconsole.world.roads.road_map import Array
-from simconsole.world.traffic import columns as at
 
 PERIOD_S = 0.04
 

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
+from simconsole.world import traffic_columns as at
 from simconsole.world.people.yielding import FAR_M, Crossed, occupied_ahead
-from simconsole.world.traffic import columns as at
 
 # Lane 0 of 50 m, lane 1 of 10 m with a strip 2 m after its beginning, lane 2.
 LENGTHS = np.array((50.0, 10.0, 100.0))

@@ -3,9 +3,9 @@
 import numpy as np
 
 from simconsole.values.host.jit import plain
+from simconsole.world import traffic_columns as at
 from simconsole.world.people.people import People
 from simconsole.world.roads.road_map import Array, RoadMap
-from simconsole.world.traffic import columns as at
 from simconsole.world.traffic.junctions import GIVE_WAY, LINE, Turn
 from simconsole.world.traffic.network import Network, Numbers
 from simconsole.world.traffic.paths import middle_at

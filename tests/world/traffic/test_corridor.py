@@ -3,8 +3,8 @@ import math
 import numpy as np
 import pytest
 
+from simconsole.world import traffic_columns as at
 from simconsole.world.roads.road_map import Array
-from simconsole.world.traffic import columns as at
 from simconsole.world.traffic.corridor import Ahead, Body, horizon, near_boxes, nearest_ahead
 from simconsole.world.traffic.following import FAR_M
 from simconsole.world.traffic.network import network

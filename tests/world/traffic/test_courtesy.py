@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
+from simconsole.world import traffic_columns as at
 from simconsole.world.roads.road_map import Array
-from simconsole.world.traffic import columns as at
 from simconsole.world.traffic.courtesy import KEPT_S, SETS_OFF_S, WAITED_S, Courtesy
 from simconsole.world.traffic.junctions import GIVE_WAY, GO, STOP
 from simconsole.world.traffic.network import network

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from simconsole.world import traffic_columns as at
 from simconsole.world.roads.road_map import RoadMap
-from simconsole.world.traffic import columns as at
 from simconsole.world.traffic import junctions
 from simconsole.world.traffic.junctions import GIVE_WAY, GO, STOP, STOP_IF_POSSIBLE, asking_m
 from simconsole.world.traffic.network import Network, network

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
+from simconsole.world import traffic_columns as at
 from simconsole.world.roads.road_map import RoadMap
-from simconsole.world.traffic import columns as at
 from simconsole.world.traffic.following import FAR_M, acceleration
 from simconsole.world.traffic.lane_changes import consider, rested
 from simconsole.world.traffic.network import Network, network

@@ -3,8 +3,8 @@ import math
 import numpy as np
 
 from simconsole.values.host.jit import plain
+from simconsole.world import traffic_columns as at
 from simconsole.world.roads.lane_index import LaneIndex, nearest_segment
-from simconsole.world.traffic import columns as at
 from simconsole.world.traffic.parking import parked_cars
 from tests.world.nets import CITY, generated_map, straight_map
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from simconsole.world.traffic import columns as at
+from simconsole.world import traffic_columns as at
 from simconsole.world.traffic.network import network
 from simconsole.world.traffic.paths import (
     AHEAD_M,

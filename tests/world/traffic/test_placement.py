@@ -1,7 +1,7 @@
 import numpy as np
 
+from simconsole.world import traffic_columns as at
 from simconsole.world.roads.road_map import RoadMap
-from simconsole.world.traffic import columns as at
 from simconsole.world.traffic.network import network
 from simconsole.world.traffic.placement import CLEAR_M, Placement
 from tests.world.nets import SMALL, generated_map, straight_map

@@ -3,7 +3,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from simconsole.world.traffic import columns as at
+from simconsole.world import traffic_columns as at
 from simconsole.world.traffic.network import network
 from simconsole.world.traffic.road_users import FIELDS, RoadUserKind, users
 from simconsole.world.traffic.stepping import list_users, step_traffic

@@ -1,4 +1,4 @@
-from simconsole.world.traffic import columns as at
+from simconsole.world import traffic_columns as at
 from tests.world.traffic.made import path_on
 
 

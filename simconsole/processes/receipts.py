@@ -1,0 +1,50 @@
+"""A worker's part of the latency statistics, in a file of the run folder."""
+
+import contextlib
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Final
+
+import msgspec
+
+from simconsole.processes.shared_memory import Record
+from simconsole.values.host.files import write_atomically
+from simconsole.values.latency import Hop, LatencyStatistics
+from simconsole.values.units import NS_PER_S
+
+
+class Receipts:
+    """A worker's part of the latency statistics, written to a file once a second."""
+
+    SAVE_NS: Final = NS_PER_S
+
+    def __init__(self, path: Path, clock_ns: Callable[[], int] = time.monotonic_ns) -> None:
+        self._path = path
+        self._clock_ns = clock_ns
+        self._latencies = LatencyStatistics(clock_ns)
+        self._number = 0
+        self._fresh = False
+        self._saved_ns = clock_ns()
+
+    def received(self, record: Record) -> None:
+        """Note a record; one that was noted before is not counted again."""
+        self._fresh = record.number != self._number
+        if self._fresh:
+            self._number = record.number
+            self._latencies.received(record.second_stamp)
+            self._save()
+
+    def drawn(self) -> None:
+        """Note that the picture of the record received last is on the screen."""
+        if self._fresh:
+            self._fresh = False
+            self._latencies.mark(Hop.DRAW)
+
+    def _save(self) -> None:
+        now_ns = self._clock_ns()
+        if now_ns - self._saved_ns < self.SAVE_NS:
+            return
+        self._saved_ns = now_ns
+        with contextlib.suppress(OSError):  # the run folder is gone: the core has ended
+            write_atomically(self._path, msgspec.json.encode(self._latencies.summary_us()), durable=False)
