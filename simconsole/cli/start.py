@@ -13,8 +13,10 @@ from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load, names
 from simconsole.profiles.files.world_files import load_world
 from simconsole.profiles.session import SessionProfile
+from simconsole.profiles.vehicle import TurtlebotProfile
 from simconsole.profiles.view import HudProfile
-from simconsole.session.resolution import override
+from simconsole.profiles.world import ArenaProfile
+from simconsole.session.resolution import override, resolve
 from simconsole.values.errors import DeviceError, DeviceNotFound, WorkerError
 
 KEYBOARD: Final = "keyboard"
@@ -54,10 +56,12 @@ def offered(session: SessionProfile, message: str) -> Offered:
         lines.append(line)
     order = sorted(range(len(lines)), key=lambda at: (not lines[at].possible, cockpits[at] == KEYBOARD))
     watched = Offer("Nobody: a simulated person", "a virtual wheel; you watch")
-    places = ["", *world_names()]
+    worlds = {name: load_world(name) for name in world_names()}
+    indoors = isinstance(resolve(session).vehicle, TurtlebotProfile)  # a car does not fit into a robots' arena
+    places = ["", *(name for name, world in worlds.items() if isinstance(world, ArenaProfile) is indoors)]
     own = session.environment.world
     shown = [Offer(f"as in {session.title or 'the session'}", "" if own is None else str(own).rsplit("/", 1)[-1])]
-    shown += [Offer(load_world(name).title or name, name) for name in places[1:]]
+    shown += [Offer(worlds[name].title or name, name) for name in places[1:]]
     page = opened([*(lines[at] for at in order), watched], shown, message)
     return Offered(page, (*(cockpits[at] for at in order), VIRTUAL), tuple(places))
 

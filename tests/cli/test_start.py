@@ -65,6 +65,13 @@ def test_every_choice_is_a_session_that_resolves(cockpit: str, world: str) -> No
     assert session.features.control.manual_automatic == (cockpit == "keyboard")
 
 
+def test_a_robot_is_offered_arenas_and_a_car_is_not() -> None:
+    robot, car = offered(load_session("turtlebot3_burger"), ""), offered(SEATED, "")
+    assert robot.places == ("", "arena")
+    assert "urban" in car.places
+    assert "arena" not in car.places
+
+
 @pytest.mark.parametrize(
     ("typed", "driver", "world"),
     [
