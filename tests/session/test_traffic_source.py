@@ -79,7 +79,8 @@ def test_whom_the_vehicle_follows_is_an_input_from_the_tick_after_each_step_on(t
         if at.tick:
             vehicle = Snapshot(at.tick, console.tick_hz, vectors[at.tick]).vehicle
             found = leaders.find(ego_box(vehicle, console.platform), at.users)
-            assert (told[at.tick : at.tick + PERIOD_TICKS] == np.array(found)).all()
+            gap_and_speed = (found.lead_gap_m, found.lead_speed_mps)
+            assert (told[at.tick : at.tick + PERIOD_TICKS] == gap_and_speed).all()
     assert (told[:, 0] < FAR).all(), "the leader is there from the first tick on"
     assert (table.column("situation.lead_gap_m") == told[:, 0]).all()
     contact_s = table.column("situation.time_to_collision_s")
