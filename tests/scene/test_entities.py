@@ -146,10 +146,11 @@ def test_on_ground_with_height_every_shape_lies_on_it() -> None:
     level, raised = world_shapes(drawing()), world_shapes(drawing()._replace(ground=hill))
     pairs = [(level.surfaces.vertices, raised.surfaces.vertices), (level.path, raised.path)]
     pairs += [*zip(level.edges, raised.edges, strict=True), (level.light_posts, raised.light_posts)]
-    pairs.append((level.light_lamps.reshape(-1, 3), raised.light_lamps.reshape(-1, 3)))
     for flat, high in pairs:
         assert high[:, :2] == pytest.approx(flat[:, :2])
         assert high[:, 2] - flat[:, 2] == pytest.approx(spline_at(hill, 0, flat[:, 0], flat[:, 1]))
+    feet = spline_at(hill, 0, level.light_posts[:, 0], level.light_posts[:, 1])
+    assert raised.light_lamps[..., 2] - level.light_lamps[..., 2] == pytest.approx(np.tile(feet[:, None], 3))
     land = raised.ground.vertices
     assert land[:, 2] == pytest.approx(spline_at(hill, 0, land[:, 0], land[:, 1]) - LAND_SUNK_M)
     corners = land[raised.ground.triangles]

@@ -6,6 +6,7 @@ import pytest
 
 from simconsole.bridge.console.command_decoder import CommandDecoder
 from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.protocol.operations import write_publish
 from simconsole.profiles.bridge import BridgeProfile, CommandLimits
 from simconsole.values.errors import RemoteProtocolError
 from simconsole.values.signals import Event, RemoteCommand, RemoteKind
@@ -60,6 +61,22 @@ def test_actuation_is_pedals_and_the_road_wheel(peer: Any) -> None:
         assert f"{text} - at `$.actuation.{name}`" in outcome.text
     assert "is not base_link" in peer.publish(topic, {**stamped, "header": {"frame_id": "map"}}).text
     assert command(peer) == got._replace(refused=5.0)
+
+
+def test_a_command_given_in_full_is_read_at_once_and_means_the_same(peer: Any) -> None:
+    registry = peer.bridge.router.registry
+    twist, vector = (registry.struct(f"geometry_msgs/{name}") for name in ("Twist", "Vector3"))
+    whole = twist(linear=vector(x=3.0), angular=vector(z=0.4))
+    assert peer.send(write_publish("/cmd_vel", whole)).kind == "command"
+    at_once = command(peer)
+    plain = {"linear": {"x": 3.0, "y": 0.0, "z": 0.0}, "angular": {"x": 0.0, "y": 0.0, "z": 0.4}}
+    assert peer.publish("/cmd_vel", plain).kind == "command"
+    assert command(peer) == at_once._replace(sequence=2.0)
+    assert (at_once.kind, at_once.speed_mps, at_once.yaw_rate_radps) == (RemoteKind.TWIST, 3.0, 0.4)
+    fast = twist(linear=vector(x=1e6), angular=vector())
+    refused = peer.send(write_publish("/cmd_vel", fast))
+    assert refused.text == peer.publish("/cmd_vel", {**plain, "linear": {"x": 1e6, "y": 0.0, "z": 0.0}}).text != ""
+    assert command(peer).refused == 2.0
 
 
 def test_twist_and_its_stamped_form(peer: Any) -> None:

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 from simconsole.bridge.console.robots.laser_scan import LaserScanner
 from simconsole.profiles.files.loader import load
@@ -49,6 +50,17 @@ def test_errors_hang_on_seed_and_turn_alone() -> None:
         assert other is not None
         apart = (other.ranges_m - first.ranges_m)[(other.ranges_m > 0.0) & (first.ranges_m > 0.0)]
         assert apart.std() == pytest.approx(0.01 * 2.0**0.5, rel=0.2)
+
+
+def test_without_errors_every_turn_on_the_spot_is_the_same() -> None:
+    world = arena_of(open_world(load_world("arena")))
+    assert world is not None
+    exact = LaserScanner(replace(BURGER.lidar, noise_m=0.0), ray_grid(world.outlines), 1, plain)
+    first, later = exact.scan(state()), exact.scan(state(scans=4.0))
+    assert first is not None
+    assert later is not None
+    assert (first.ranges_m == later.ranges_m).all()
+    assert first.ranges_m[180] == pytest.approx(0.8 - 0.032, abs=1e-3)
 
 
 def test_other_robots_are_seen() -> None:
