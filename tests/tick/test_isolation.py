@@ -266,8 +266,8 @@ def test_a_log_that_raises_is_a_recording_that_failed(tmp_path: Path, monkeypatc
             raise RuntimeError("broken")
         append(log, tick, row, messages)
 
-    def one_by_one(log: LogWriter, tick: int, vectors: Row) -> int:
-        log.append(tick, vectors[0])
+    def one_by_one(log: LogWriter, tick: int, vectors: Row, messages: Sequence[tuple[str, bytes]] = ()) -> int:
+        log.append(tick, vectors[0], messages)
         return 1
 
     monkeypatch.setattr(LogWriter, "append", broken)
