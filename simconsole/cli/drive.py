@@ -23,12 +23,12 @@ from simconsole.world.kinds.worlds import route_length_m
 
 def drive(options: Namespace) -> Outcome:
     """Drive the named session with the options of the command line laid over it."""
+    given = Given(participant=options.participant, trial=options.trial, notes=tuple(options.note)).checked()
     session = _with_options(load_session(options.session), options)
     resolved = resolve(session, options.cockpit)
     if options.choose or session.devices.driver == "sdl":
         asks = not (options.json or options.headless)
         resolved = _with_a_cockpit(resolved, choose=options.choose, asks=asks)
-    given = Given(participant=options.participant, trial=options.trial, notes=tuple(options.note)).checked()
     folder = Path(options.out) if options.out else Path("out") / time.strftime("drive-%Y%m%d-%H%M%S")
     with Progress("driving", route_length_m(resolved.world)) as progress:
         result = drive_session(resolved, folder, progress.watch, given=given)
