@@ -29,7 +29,8 @@ class World:
     @cached_property
     def drawing(self) -> Drawing:
         """Everything there is to draw."""
-        return self._draw()._replace(ground=self.ground)
+        flat = self._draw()
+        return flat if self.ground is None else flat._replace(ground=self.ground)
 
     @cached_property
     def ground(self) -> HeightField | None:

@@ -19,7 +19,9 @@ from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.files.loader import parse
 from simconsole.profiles.session import Outputs as OutputsSection
 from simconsole.values.signals import RemoteKind
+from simconsole.world.earth import earth_of
 from simconsole.world.traffic.road_users import NOBODY, RoadUsersAt
+from simconsole.world.world import ShownMap
 from tests.paths import ROOT
 from tests.patience import PATIENCE_S
 
@@ -42,7 +44,7 @@ def test_output_table() -> None:
         return "once, latched" if row.rate_hz == ONCE else f"{row.rate_hz:g}"
 
     others = RoadUserTopics(standard_registry(), lambda: RoadUsersAt(0, NOBODY)).topics()
-    topics = (*others, *Outputs(standard_registry(), BridgeProfile()).topics())
+    topics = (*others, *Outputs(standard_registry(), BridgeProfile(), shown_map=ShownMap(earth=earth_of())).topics())
     assert rows("What the console publishes") == [[f"`{row.name}`", row.type, rate(row)] for row in topics]
 
 

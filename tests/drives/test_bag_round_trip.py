@@ -104,7 +104,7 @@ def test_an_export_is_what_a_client_got_during_the_drive(driven: Bundle, exporte
     """Against the recorder on the live bridge: every topic of the log, message by message and byte by byte."""
     live, made = raw(driven.folder / "topics.mcap"), raw(exported("mcap"))
     outputs = [name for name in live if not name.startswith(NOT_IN_THE_LOG)]
-    assert len(outputs) == 20
+    assert len(outputs) == 22
     for name in outputs:
         assert made[name] == live[name], name
     command_times = {name: [time_ns for time_ns, _ in made[name]] for name in made if name.startswith("/control")}

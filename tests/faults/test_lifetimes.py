@@ -88,7 +88,7 @@ def test_each_child_reads_a_pipe_that_its_parent_alone_holds(tmp_path: Path) -> 
     session = write_session(tmp_path / "first", free_port())
     with living(tmp_path / "first", "held", "drive", session, "--out", tmp_path / "bundle") as life:
         life.wait_for(PROGRAM)
-        wait_until(lambda: len(life.family()) == 6, "core, supervisor, three workers, autopilot")
+        wait_until(lambda: len(life.family()) == 7, "core, supervisor, four workers, autopilot")
         children = {process: said for process, said in life.family().items() if process != life.core}
         assert all(any(word in said for word in HELD) for said in children.values())
         for process in children:

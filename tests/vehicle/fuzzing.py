@@ -61,9 +61,10 @@ BOUNDS: Final[dict[str, tuple[float, float]]] = {
     "rim_friction_share": (-1.0, 1.0),
     "hand_wheel_torque_nm": (-14.9, 14.9),  # most_nm: 14, rim friction and damping of the fastest rack
     **dict.fromkeys(("fl_radps", "fr_radps", "rl_radps", "rr_radps"), (-330.0, 330.0)),  # 100 m/s over 0.306 m
-    # slide_demand * grip / stiffness where a falling line leaves its least share, at three static loads (tyre.py)
-    **dict.fromkeys([f"{wheel}_deflection_x_m" for wheel in WHEELS], (-0.252, 0.252)),
-    **dict.fromkeys([f"{wheel}_deflection_y_m" for wheel in WHEELS], (-0.454, 0.454)),
+    # slide_demand * grip / stiffness where a falling line leaves its least share, at three static loads (tyre.py);
+    # grip is the tyre's 1.05 times the ground's 1.2
+    **dict.fromkeys([f"{wheel}_deflection_x_m" for wheel in WHEELS], (-0.2646, 0.2646)),
+    **dict.fromkeys([f"{wheel}_deflection_y_m" for wheel in WHEELS], (-0.4767, 0.4767)),
     **dict.fromkeys([f"{wheel}_lift_mps" for wheel in WHEELS], (-50.0, 50.0)),  # 37 kg thrown by a stop over 0.5 m
     **dict.fromkeys([f"{wheel}_brake_nm" for wheel in WHEELS], (0.0, 3600.0)),  # pedal 1700 N m and ESC 1900
     "engine_radps": (-4750.0, 4750.0),  # 330 rad/s at a wheel in first gear, clutch closed
@@ -84,10 +85,10 @@ BOUNDS: Final[dict[str, tuple[float, float]]] = {
 }
 """What each state of the hatchback may be, and why."""
 
-# slide_demand 3.59 * peak / stiffness * relaxation length, largest along without load: 1.08 * 1.2 / 14.7 * 0.25 m;
-# across at twice the nominal load with 0.6 rad of camber: 0.91 * 1.2 / 6.4 * 0.3 m (tir_tyre.py, example.tir)
+# slide_demand 3.59 * peak / stiffness * relaxation length, largest along without load: 1.08 * 1.26 / 14.7 * 0.25 m;
+# across at twice the nominal load with 0.6 rad of camber: 0.91 * 1.26 / 6.4 * 0.3 m (tir_tyre.py, example.tir)
 TIR_BOUNDS: Final = BOUNDS | {
-    **dict.fromkeys([f"{wheel}_deflection_x_m" for wheel in WHEELS], (-0.0795, 0.0795)),
+    **dict.fromkeys([f"{wheel}_deflection_x_m" for wheel in WHEELS], (-0.0835, 0.0835)),
     **dict.fromkeys([f"{wheel}_deflection_y_m" for wheel in WHEELS], (-0.2, 0.2)),
 }
 """The same of the hatchback on example.tir: all but its contact patches is the same car."""

@@ -9,7 +9,10 @@ from simconsole.world.drawing import Drawing
 def test_everything_is_finite_pairs(drawn: Drawing) -> None:
     assert np.isfinite([light[:3] for light in drawn.lights]).all()
     lines_of = {**drawn._asdict(), "path": (drawn.path,)}
-    del lines_of["lights"]
+    for name in ("lights", "ground", "walls"):  # there is neither a hill nor a wall
+        del lines_of[name]
+    assert drawn.ground is None
+    assert drawn.walls == ()
     for name, lines in lines_of.items():
         assert lines, f"the urban course has {name}"
         for line in lines:

@@ -75,6 +75,7 @@ def world_parts(drawing: Drawing | None, limit_kmh: float) -> tuple[Part, ...]:
         for index, light in enumerate(drawing.lights)
         for name, height_m, colour in zip(LAMP_NAMES, LAMP_HEIGHTS_M, LAMPS, strict=True)
     ]
+    walls = [Part("walls", joined([upright(line, WALL) for line in drawing.walls]))] if indoors else []
     parts = (
         Part("land", road.land, 0),
         Part("asphalt", road.asphalt, 1),
@@ -83,7 +84,7 @@ def world_parts(drawing: Drawing | None, limit_kmh: float) -> tuple[Part, ...]:
         Part("crossings", road.crossings, 3),
         Part("stop_lines", road.stop_lines, 3),
         Part("kerbs", road.kerbs),
-        Part("walls", joined([upright(line, WALL) for line in drawing.walls])),
+        *walls,
         Part("signs", beside.signs),
         Part("buildings", beside.houses),
         Part("trees", beside.trees),

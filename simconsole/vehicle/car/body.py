@@ -120,7 +120,7 @@ def body_step(car: Car, p: CarParameters, lie: Lie, air: Plane, axles: Axles, st
     rolling += front.moment_nm + rear.moment_nm
     roll_radps = before.roll_radps + rolling * (step_s * body.per_roll_inertia_kgm2)
     pitching = p.front.ahead_m * (front.force_n + front_lift) + p.rear.ahead_m * (rear.force_n + rear_lift)
-    pitching += body.cg_height_m * axles.force_x_n
+    pitching += body.cg_height_m * axles.force_x_n + pressing * body.unsprung_kgm
     pitch_radps = before.pitch_radps - pitching * (step_s * body.per_pitch_inertia_kgm2)
     # base_link lies on the ground: it does not go along when the body rocks above standing tyres.
     on_ground_x = vx - body.cg_height_m * pitch_radps

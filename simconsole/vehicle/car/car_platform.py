@@ -183,6 +183,7 @@ def _body(profile: CarProfile, front: AxleParameters, rear: AxleParameters, driv
         yaw_nm_per_square_mps=0.5 * AIR_KGPM3 * body.yaw_volume_m3,
         sway_nm_per_rad=body.mass_kg * STANDARD_GRAVITY_MPS2 * arm,
         full_brake_n=2.0 * (front.brake_nm + rear.brake_nm) / driven_radius_m,
+        unsprung_kgm=profile.front.unsprung_kg * front.ahead_m + profile.rear.unsprung_kg * rear.ahead_m,
     )
 
 

@@ -158,6 +158,7 @@ class BodyParameters(NamedTuple):
     )
     sway_nm_per_rad: float  # sprung weight times the mean roll arm, per rad: rolling lets the body down
     full_brake_n: float  # what the brakes of all four wheels give
+    unsprung_kgm: float  # how far ahead of the centre of gravity the wheels' masses are, times them
 
 
 class SteeringParameters(NamedTuple):

@@ -37,6 +37,8 @@ def _lines(world: CourseProfile, plan_name: str) -> Iterator[str]:
     yield f"# Generated from {plan_name} by simconsole.world.tools.generate; edit the plan instead."
     for key in CourseProfile.__struct_fields__:
         value = getattr(world, key)
+        if value is None:  # a part that the plan does not have
+            continue
         if not isinstance(value, tuple):
             yield f"{key}: {json.dumps(value)}"
             continue

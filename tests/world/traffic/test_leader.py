@@ -41,12 +41,12 @@ def test_nobody_is_ahead_of_an_empty_road() -> None:
 
 def test_gap_is_bumper_to_bumper() -> None:
     found = leader(None, box(0.0, 0.0, speed_mps=15.0), table([user(30.0, 0.3, speed_mps=10.0), user(60.0, 0.0)]))
-    assert found == pytest.approx((30.0 - 2.25 - 2.0, 10.0), abs=1e-6)
+    assert (found.lead_gap_m, found.lead_speed_mps) == pytest.approx((30.0 - 2.25 - 2.0, 10.0), abs=1e-6)
 
 
 def test_oncoming_vehicle_has_a_negative_speed() -> None:
     found = leader(None, box(0.0, 0.0, speed_mps=10.0), table([user(50.0, 0.0, math.pi, 10.0)]))
-    assert found == pytest.approx((50.0 - 4.25, -10.0))
+    assert (found.lead_gap_m, found.lead_speed_mps) == pytest.approx((50.0 - 4.25, -10.0))
 
 
 def test_who_is_beside_behind_or_far_away_is_no_leader() -> None:
@@ -68,7 +68,7 @@ def test_way_of_the_route_round_bends_is_the_one_that_counts() -> None:
         ego = box(here.x_m, here.y_m, here.yaw_rad, 10.0)
         ahead: Array = table([user(there.x_m, there.y_m, there.yaw_rad, 4.0)])
         found = leader(route, ego, ahead)
-        assert found == pytest.approx((40.0 - 4.25, 4.0), abs=0.1)
+        assert (found.lead_gap_m, found.lead_speed_mps) == pytest.approx((40.0 - 4.25, 4.0), abs=0.1)
 
 
 def test_far_beside_its_route_a_vehicle_goes_straight_on() -> None:
