@@ -10,6 +10,7 @@ from simconsole.hud.start_page import Offer, StartPage, opened
 from simconsole.hud.window.start_window import choose, has_display
 from simconsole.profiles.view import HudProfile
 from tests.hud.window.x_server import hands, x_server
+from tests.patience import wait_until
 
 PAGE = opened((Offer("wheel", "not connected", possible=False), Offer("keyboard")), (Offer("here"), Offer("there")))
 
@@ -27,11 +28,16 @@ def display(server: str, monkeypatch: pytest.MonkeyPatch) -> str:
     return server
 
 
+def has_keyboard() -> bool:
+    return pygame.display.get_init() and pygame.key.get_focused()
+
+
 def pressed(display: str, *keys: str) -> StartPage | None:
     """Choose with these keys pressed as soon as the window has the keyboard."""
 
     def press() -> None:
         hands(display, "search", "--sync", "--onlyvisible", "--class", ".", "windowfocus", "--sync")
+        wait_until(has_keyboard, "the window knows that it has the keyboard")
         hands(display, "key", "--delay", "60", *keys)
 
     person = threading.Thread(target=press)
