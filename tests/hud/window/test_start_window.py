@@ -1,18 +1,27 @@
 """The page before a drive in a real window: keys choose, Return drives, Escape and closing leave."""
 
-import threading
+import json
+import os
+import subprocess
+import sys
 from collections.abc import Iterator
 
-import pygame
 import pytest
 
-from simconsole.hud.start_page import Offer, StartPage, opened
-from simconsole.hud.window.start_window import choose, has_display
-from simconsole.profiles.view import HudProfile
+from simconsole.hud.window.start_window import has_display
 from tests.hud.window.x_server import hands, x_server
-from tests.patience import wait_until
+from tests.patience import PATIENCE_S
 
-PAGE = opened((Offer("wheel", "not connected", possible=False), Offer("keyboard")), (Offer("here"), Offer("there")))
+PROGRAM = """
+import json
+from simconsole.hud.start_page import Offer, opened
+from simconsole.hud.window.start_window import choose
+from simconsole.profiles.view import HudProfile
+
+cockpits = (Offer("wheel", "not connected", possible=False), Offer("keyboard"))
+page = choose(opened(cockpits, (Offer("here"), Offer("there"))), HudProfile())
+print(json.dumps(page and (page.cockpit, page.place)))
+"""
 
 
 @pytest.fixture(scope="module")
@@ -28,31 +37,20 @@ def display(server: str, monkeypatch: pytest.MonkeyPatch) -> str:
     return server
 
 
-def has_keyboard() -> bool:
-    return pygame.display.get_init() and pygame.key.get_focused()
-
-
-def pressed(display: str, *keys: str) -> StartPage | None:
-    """Choose with these keys pressed as soon as the window has the keyboard."""
-
-    def press() -> None:
+def pressed(display: str, *keys: str) -> list[int] | None:
+    """Choose, in a process of its own, with these keys pressed as soon as the window has the keyboard."""
+    around = {**os.environ, "DISPLAY": display}
+    with subprocess.Popen([sys.executable, "-c", PROGRAM], env=around, stdout=subprocess.PIPE, text=True) as shown:
         hands(display, "search", "--sync", "--onlyvisible", "--class", ".", "windowfocus", "--sync")
-        wait_until(has_keyboard, "the window knows that it has the keyboard")
         hands(display, "key", "--delay", "60", *keys)
-
-    person = threading.Thread(target=press)
-    person.start()
-    try:
-        return choose(PAGE, HudProfile())
-    finally:
-        person.join(20.0)
-        assert not pygame.display.get_init()
+        told, _ = shown.communicate(timeout=PATIENCE_S)
+    assert shown.returncode == 0
+    found: list[int] | None = json.loads(told.splitlines()[-1])
+    return found
 
 
 def test_keys_choose_and_return_drives(display: str) -> None:
-    page = pressed(display, "Down", "Right", "Down", "Return")
-    assert page is not None
-    assert (page.cockpit, page.place) == (1, 1)
+    assert pressed(display, "Down", "Right", "Down", "Return") == [1, 1]
 
 
 def test_escape_leaves(display: str) -> None:
