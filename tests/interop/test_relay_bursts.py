@@ -121,6 +121,27 @@ def test_calls_and_goals_whose_node_leaves_end(sides: tuple[Served, Puppet], web
         ended[heard["op"]].add(heard["id"])
 
 
+def test_goals_end_whose_server_is_replaced_at_once(web: Client, node: Puppet) -> None:
+    """Under its name there is always a server, but none that knows these goals."""
+    node.do("act", name="/ros/changing", step_s=1.0)
+    wait_for(web, "action_servers", "action_servers", "/ros/changing")
+    goal = {"op": "send_action_goal", "action": "/ros/changing", "action_type": FIBONACCI, "args": {"order": 600}}
+    for number in range(5):
+        web.say(**goal, id=number, feedback=True)
+    under_way: set[int] = set()
+    while len(under_way) < 5:
+        under_way.add(web.hear(lambda heard: heard["op"] == "action_feedback")["id"])
+    node.do("destroy", kind="action server", name="/ros/changing")
+    node.do("act", name="/ros/changing")
+    ended: set[int] = set()
+    while ended != under_way:
+        heard = web.hear(lambda heard: heard["op"] == "action_result")
+        assert (heard["result"], heard["status"]) == (False, ABORTED)
+        ended.add(heard["id"])
+    web.say(**{**goal, "args": {"order": 3}}, id=9)
+    assert web.hear(lambda heard: heard["op"] == "action_result")["status"] == SUCCEEDED
+
+
 @pytest.mark.parametrize("all_at_once", [False, True])
 def test_a_burst_of_goals_that_are_cancelled(web: Client, node: Puppet, all_at_once: bool) -> None:
     node.do("act", name="/ros/patient", step_s=0.5)

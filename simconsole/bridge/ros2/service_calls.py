@@ -21,6 +21,34 @@ IDLE_POLLS: Final = 50
 """How long the end of ours of a service stays when nobody calls it."""
 QUEUE: Final = 1000
 """Answers of a burst that wait to be read."""
+ASK_POLLS: Final = 10
+"""After how long an accepted goal's result is asked for again: a second, then twice as long each time."""
+ASK_POLLS_MOST: Final = 600
+
+
+class _Pursued:
+    """An accepted goal.
+
+    Its result is asked for again and again. A server that takes the place of the one that accepted it has never heard
+    the first question: it answers that it does not know the goal, which is its end.
+    """
+
+    def __init__(self, handle: Any, ended: Callable[[Any], None]) -> None:
+        self.handle = handle
+        self._ended = ended
+        self._wait_polls = ASK_POLLS
+        self._left_polls = ASK_POLLS
+
+    def poll(self) -> None:
+        """Count; ask when it is time."""
+        self._left_polls -= 1
+        if self._left_polls <= 0:
+            self._wait_polls = self._left_polls = min(2 * self._wait_polls, ASK_POLLS_MOST)
+            self.ask()
+
+    def ask(self) -> None:
+        """Ask for the result."""
+        self.handle.get_result_async().add_done_callback(self._ended)
 
 
 class _Called:
@@ -35,8 +63,7 @@ class _Called:
         self.waiting: deque[GraphOperation] = deque()
         self.unanswered: dict[str, int] = {}
         """Requests on their way by key, and the poll at which their time is over."""
-        self.goals: dict[str, Any] = {}
-        """Handles of accepted goals."""
+        self.goals: dict[str, _Pursued] = {}
         self.unwanted: set[str] = set()
         """Goals that were cancelled before they were accepted."""
         self.unready_polls = 0
@@ -103,7 +130,7 @@ class GraphCalls:
             return
         key = operation.key
         if key in called.goals:
-            called.goals[key].cancel_goal_async()
+            called.goals[key].handle.cancel_goal_async()
         elif key in called.unanswered:
             called.unwanted.add(key)
         elif key in called.keys:
@@ -130,6 +157,8 @@ class GraphCalls:
         for late in [late for late, end in called.unanswered.items() if self._polls > end]:
             self._take(called, late)
             self._fail(called.is_call, called.name, late, "no answer within the time limit")
+        for pursued in list(called.goals.values()):
+            pursued.poll()
         self._advance(called)
         called.idle_polls = 0 if called.keys else called.idle_polls + 1
 
@@ -207,8 +236,8 @@ class GraphCalls:
             if not handle.accepted:
                 self._fail(False, name, key, "the goal was not accepted")
             else:
-                called.goals[key] = handle
-                handle.get_result_async().add_done_callback(ended)
+                called.goals[key] = _Pursued(handle, ended)
+                called.goals[key].ask()
                 if key in called.unwanted:
                     handle.cancel_goal_async()
             called.unwanted.discard(key)
@@ -220,8 +249,10 @@ class GraphCalls:
                 return
             try:
                 found = future.result()
-                status = found.status or ABORTED
-                self._put("goal_ended", key, name, serialize_message(found.result), status, "")
+                if not found.status:
+                    self._fail(False, name, key, "the server that is there now does not know the goal")
+                    return
+                self._put("goal_ended", key, name, serialize_message(found.result), found.status, "")
             except Exception as error:  # noqa: BLE001  rclpy says of no call what it raises
                 self._fail(False, name, key, str(error))
 
